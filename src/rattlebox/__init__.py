@@ -1,0 +1,1 @@
+"""Simulator and design tool for particle and impact dampers."""

@@ -1,0 +1,1 @@
+"""From a case to the core and back to a run."""

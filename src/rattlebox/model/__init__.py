@@ -1,0 +1,1 @@
+"""What a user describes: structures, loads, dampers, materials, contact laws, cases."""

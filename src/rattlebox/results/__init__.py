@@ -1,0 +1,1 @@
+"""What comes back: runs, impacts, the energy ledger, and their files."""
