@@ -1,0 +1,55 @@
+// One of several laws, chosen when a case is packed: a tagged union of trivially copyable types.
+// std::variant would do on the CPU, but is not there when the same headers are compiled for a GPU at run time.
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <type_traits>
+
+namespace rattlebox {
+
+template <class... Types> class Choice {
+    static_assert((std::is_trivially_copyable_v<Types> && ...), "laws are plain data");
+
+    static constexpr std::size_t largest() {
+        std::size_t size = 0;
+        ((size = sizeof(Types) > size ? sizeof(Types) : size), ...);
+        return size;
+    }
+
+    alignas(Types...) std::byte storage_[largest()]{};
+    int index_ = 0;
+
+    template <class T> static constexpr int index_of() {
+        int index = -1, position = 0;
+        ((std::is_same_v<T, Types> ? void(index = position) : void(), ++position), ...);
+        return index;
+    }
+
+    template <class T> const T& as() const { return *std::launder(reinterpret_cast<const T*>(storage_)); }
+
+    template <class First, class... Rest, class F> decltype(auto) visit_from(F&& f) const {
+        if constexpr (sizeof...(Rest) == 0) {
+            return f(as<First>());
+        } else {
+            if (index_ == index_of<First>()) return f(as<First>());
+            return visit_from<Rest...>(f);
+        }
+    }
+
+  public:
+    template <class T> void set(const T& value) {
+        static_assert(index_of<T>() >= 0, "not one of the choices");
+        new (storage_) T(value);
+        index_ = index_of<T>();
+    }
+
+    template <class F> decltype(auto) visit(F&& f) const { return visit_from<Types...>(f); }
+
+    template <class T> const T* get_if() const { return index_ == index_of<T>() ? &as<T>() : nullptr; }
+
+    // Calls f with a null pointer of each type in turn: how the doors build a law from its name.
+    template <class F> static void each_type(F&& f) { (f(static_cast<const Types*>(nullptr)), ...); }
+};
+
+} // namespace rattlebox

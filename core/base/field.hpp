@@ -1,0 +1,25 @@
+// A law lists its coefficients by name, so that they are filled by name and never by position.
+#pragma once
+
+#include "base/real.hpp"
+
+namespace rattlebox {
+
+// A read-only array owned by the problem that the law belongs to.
+struct Table {
+    const real* data = nullptr;
+    int size = 0;
+    real operator[](int i) const { return data[i]; }
+};
+
+template <class Law> struct Field {
+    const char* name;
+    real Law::* member;
+};
+
+template <class Law> struct TableField {
+    const char* name;
+    Table Law::* member;
+};
+
+} // namespace rattlebox

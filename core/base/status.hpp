@@ -1,0 +1,15 @@
+// How a trajectory ended. The sentences that say what to try are in rattlebox/engines/status.py.
+#pragma once
+
+namespace rattlebox {
+
+enum class Status : int {
+    finished = 0,
+    law_domain = 1,      // a restitution law was asked for a speed beyond its validity
+    too_many_events = 2, // the budget of events is spent
+    step_too_small = 3,  // the error bound cannot be met
+    interrupted = 4,     // the user asked to stop
+    not_finite = 5,      // a state became infinite or not a number
+};
+
+} // namespace rattlebox

@@ -1,0 +1,21 @@
+// Constant restitution.
+#pragma once
+
+#include "base/field.hpp"
+
+namespace rattlebox {
+
+struct ConstantRestitution {
+    real e = 1;
+    real maximum = 1;
+
+    static constexpr const char* name = "constant";
+    static constexpr Field<ConstantRestitution> fields[] = {{"e", &ConstantRestitution::e},
+                                                            {"maximum", &ConstantRestitution::maximum}};
+
+    real limit() const { return infinity; } // largest speed at which the law holds
+    bool beyond() const { return true; }    // may it be used above
+    real value(real) const { return e; }
+};
+
+} // namespace rattlebox

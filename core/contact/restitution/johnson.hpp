@@ -1,0 +1,26 @@
+// Johnson's restitution of a fully plastic impact.
+//
+//     e = (V / V_0)^(-1/4), at most 1
+//
+// V_0 = speed scale [m/s], from the yield stress when the case is packed. K. L. Johnson, Contact Mechanics, Cambridge
+// University Press 1985, section 11.5, eq. 11.47. Meant for V >> V_0.
+#pragma once
+
+#include "base/field.hpp"
+
+namespace rattlebox {
+
+struct JohnsonRestitution {
+    real speed_scale = infinity; // V_0, m/s
+    real maximum = 1;
+
+    static constexpr const char* name = "johnson";
+    static constexpr Field<JohnsonRestitution> fields[] = {{"speed_scale", &JohnsonRestitution::speed_scale},
+                                                           {"maximum", &JohnsonRestitution::maximum}};
+
+    real limit() const { return infinity; }
+    bool beyond() const { return true; }
+    real value(real speed) const { return speed <= speed_scale ? 1 : std::sqrt(std::sqrt(speed_scale / speed)); }
+};
+
+} // namespace rattlebox

@@ -1,0 +1,220 @@
+// Motion with no contact: modes and balls propagated exactly, the first touch found so that none is missed.
+//
+// Without load each mode is in closed form and each ball a parabola, to any horizon. Under a load the flight is a cell of
+// bounded length with Taylor series (structure/cell.hpp). Either way every gap has a lower bound L on g'', so that no touch
+// can come before the first root of g + g' s + L s^2 / 2: stepping from one such root to the next closes in on the first
+// touch quadratically and cannot jump over one.
+#pragma once
+
+#include <vector>
+
+#include "impact/state.hpp"
+
+namespace rattlebox {
+
+struct Touch {
+    real after = 0;   // time from the flight's start
+    int contact = -1; // none: the flight's horizon was reached
+};
+
+// First positive root of g + rate s + L s^2 / 2 for g >= 0.
+inline real safe_step(real g, real rate, real curvature) {
+    if (g <= 0 && rate > 0) return curvature < 0 ? -2 * rate / curvature : infinity;
+    const real discriminant = rate * rate - 2 * curvature * g;
+    if (rate < 0) return discriminant < 0 ? infinity : 2 * g / (-rate + std::sqrt(discriminant));
+    return curvature < 0 ? (rate + std::sqrt(discriminant)) / -curvature : infinity;
+}
+
+class Flight {
+    const Problem& problem_;
+    const State* start_ = nullptr;
+    const Loads* loads_ = nullptr;
+    bool series_ = false;
+    real horizon_ = 0;
+    std::vector<FreeMode> free_;
+    std::vector<Series> mode_series_, ball_series_, load_series_;
+    std::vector<real> curvature_; // lower bound on each gap's second derivative
+    mutable State scratch_;
+
+    Series gap_series(const Contact& contact) const {
+        Series g;
+        const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
+        const real side = contact.below == wall ? 1 : -1;
+        if (contact.above != wall) g.add(1, ball_series_[static_cast<std::size_t>(contact.above)]);
+        if (contact.below != wall) g.add(-1, ball_series_[static_cast<std::size_t>(contact.below)]);
+        if (contact.below == wall || contact.above == wall) {
+            for (std::size_t k = 0; k < damper.shape.size(); ++k) g.add(-side * damper.shape[k], mode_series_[k]);
+            g.c[0] += 0.5 * damper.clearance;
+        }
+        return g;
+    }
+
+    void bound_curvatures() {
+        for (std::size_t c = 0; c < problem_.contacts.size(); ++c) {
+            const Contact& contact = problem_.contacts[c];
+            if (contact.below != wall && contact.above != wall) {
+                curvature_[c] = 0; // both balls of a row feel the same gravity and base
+            } else if (series_) {
+                const Series g = gap_series(contact);
+                curvature_[c] = 2 * g.c[2] - g.curvature_change(horizon_);
+            } else {
+                const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
+                real bound = 0;
+                for (std::size_t k = 0; k < free_.size(); ++k)
+                    bound += std::fabs(damper.shape[k]) * free_[k].acceleration_bound();
+                curvature_[c] = (contact.below == wall ? damper.gravity : -damper.gravity) - bound;
+            }
+        }
+    }
+
+  public:
+    explicit Flight(const Problem& problem)
+        : problem_(problem), load_series_(problem.loads.size()), curvature_(problem.contacts.size()), scratch_(problem) {
+        free_.reserve(problem.modes.size());
+        mode_series_.reserve(problem.modes.size());
+        ball_series_.reserve(problem.ball_mass.size());
+    }
+
+    // A flight from `start` for at most `length`; `series` asks for Taylor series although no load acts.
+    void begin(const State& start, const Loads& loads, real length, bool series) {
+        start_ = &start;
+        loads_ = &loads;
+        series_ = series || loads.active();
+        horizon_ = length;
+        if (series_) {
+            real rate = loads.frequency();
+            for (const Mode& mode : problem_.modes) rate = std::max(rate, mode.rate());
+            if (rate * horizon_ > 1) horizon_ = 1 / rate;
+            Series base;
+            for (std::size_t l = 0; l < loads.size(); ++l) {
+                load_series_[l] = Series{};
+                loads.piece(l).add_taylor(start.t, 1, Series::order, load_series_[l].c);
+                if (loads.load(l).base) base.add(-1, load_series_[l]);
+            }
+            mode_series_.clear();
+            for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
+                Series force;
+                for (std::size_t l = 0; l < loads.size(); ++l) force.add(loads.load(l).shape[k], load_series_[l]);
+                mode_series_.push_back(forced_mode(problem_.modes[k], {start.y[2 * k], start.y[2 * k + 1]}, force));
+            }
+            ball_series_.clear();
+            for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) {
+                Series pull = base;
+                pull.c[0] += problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
+                ball_series_.push_back(forced_ball(positions(problem_, start.y.data())[i],
+                                                   velocities(problem_, start.y.data())[i], pull));
+            }
+        } else {
+            free_.clear();
+            for (std::size_t k = 0; k < problem_.modes.size(); ++k)
+                free_.emplace_back(problem_.modes[k], ModeState{start.y[2 * k], start.y[2 * k + 1]});
+        }
+        bound_curvatures();
+    }
+
+    real horizon() const { return horizon_; }
+
+    // The state after time s.
+    void at(real s, State& out) const {
+        out.t = start_->t + s;
+        for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
+            const ModeState mode =
+                series_ ? ModeState{mode_series_[k].value(s), mode_series_[k].slope(s)} : free_[k].at(s);
+            out.y[2 * k] = mode.q;
+            out.y[2 * k + 1] = mode.p;
+        }
+        const real* s0 = positions(problem_, start_->y.data());
+        const real* v0 = velocities(problem_, start_->y.data());
+        real* position = positions(problem_, out.y.data());
+        real* velocity = velocities(problem_, out.y.data());
+        for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) {
+            if (series_) {
+                position[i] = ball_series_[i].value(s);
+                velocity[i] = ball_series_[i].slope(s);
+            } else {
+                const real g = problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
+                position[i] = s0[i] + s * (v0[i] + 0.5 * g * s);
+                velocity[i] = v0[i] + g * s;
+            }
+        }
+    }
+
+    // Adds work and viscous loss over [0, s], by quadrature or in closed form, never as a difference of energies.
+    void account(real s, Ledger& ledger) const {
+        if (!series_) {
+            for (const FreeMode& mode : free_) ledger.viscous += mode.dissipated(s);
+            return;
+        }
+        for (std::size_t k = 0; k < problem_.modes.size(); ++k)
+            if (problem_.modes[k].decay != 0)
+                ledger.viscous +=
+                    2 * problem_.modes[k].decay * integrate(s, [&](real r) { return square(mode_series_[k].slope(r)); });
+        for (std::size_t l = 0; l < loads_->size(); ++l) {
+            if (loads_->piece(l).silent()) continue;
+            const Load& load = loads_->load(l);
+            const real work = integrate(s, [&](real r) {
+                real speed = 0;
+                for (std::size_t k = 0; k < problem_.modes.size(); ++k)
+                    speed += load.shape[k] * mode_series_[k].slope(r);
+                if (load.base)
+                    for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i)
+                        speed -= problem_.ball_mass[i] * ball_series_[i].slope(r);
+                return load_series_[l].value(r) * speed;
+            });
+            (load.base ? ledger.base_work : ledger.load_work) += work;
+        }
+    }
+
+    // How a contact that touches at rest goes on: -1 closing, +1 parting (the horizon is shortened so that it cannot come
+    // back), 0 no motion at all. Needs series.
+    int tendency(const Contact& contact) {
+        const Series g = gap_series(contact);
+        real scale = 0, power = 1;
+        for (int n = 1; n <= Series::order; ++n) scale = std::max(scale, std::fabs(g.c[n]) * (power *= horizon_));
+        power = horizon_;
+        for (int n = 2; n <= Series::order; ++n) {
+            power *= horizon_;
+            if (std::fabs(g.c[n]) * power <= 64 * epsilon * scale || g.c[n] == 0) continue;
+            if (g.c[n] < 0) return -1;
+            for (;;) {
+                real rest = 0, later = 1;
+                for (int j = n + 1; j <= Series::order; ++j) rest += std::fabs(g.c[j]) * (later *= horizon_);
+                if (rest < g.c[n]) return 1;
+                horizon_ *= 0.5;
+            }
+        }
+        return 0;
+    }
+
+    // The first touch of the watched contacts within the horizon.
+    Touch first_touch(const std::vector<char>& watched) const {
+        real s = 0;
+        const State* now = start_;
+        for (int iteration = 0; iteration < 100000; ++iteration) {
+            real step = infinity;
+            int nearest = -1;
+            for (std::size_t c = 0; c < problem_.contacts.size(); ++c) {
+                if (!watched[c]) continue;
+                const Contact& contact = problem_.contacts[c];
+                const Gap g = gap(problem_, contact, now->y.data());
+                const real half = 0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
+                const int ball = contact.below == wall ? contact.above : contact.below;
+                const real blur = 4 * epsilon * (half + std::fabs(positions(problem_, now->y.data())[ball]));
+                if (g.value <= blur && g.rate < 0) return {s, static_cast<int>(c)};
+                const real safe = safe_step(std::fmax(g.value, 0.0), g.rate, curvature_[c]);
+                if (safe < step) {
+                    step = safe;
+                    nearest = static_cast<int>(c);
+                }
+            }
+            if (!(s + step < horizon_)) return {horizon_, -1};
+            if (step <= epsilon * s) return {s, nearest}; // closer than the clock can tell
+            s += step;
+            at(s, scratch_);
+            now = &scratch_;
+        }
+        return {s, -1};
+    }
+};
+
+} // namespace rattlebox

@@ -1,0 +1,64 @@
+// One line of motion as the core sees it: modes, signals, balls in rows, contacts between neighbours.
+//
+// Frame: the base. Balls have reduced positions s: a row packed tight and centred has s = 0 for each ball, so every gap is
+// a difference. Contact 0 of a damper is its left wall, contact n its right wall, contact i lies between ball i and i + 1.
+#pragma once
+
+#include <vector>
+
+#include "base/real.hpp"
+#include "contact/laws.hpp"
+#include "structure/loads.hpp"
+#include "structure/mode.hpp"
+
+namespace rattlebox {
+
+inline constexpr int wall = -1;
+
+struct Damper {
+    int first_ball = 0, balls = 0, first_contact = 0;
+    real clearance = 0;      // G, total
+    real gravity = 0;        // along the line, m/s^2
+    std::vector<real> shape; // mode shapes at the damper's point
+};
+
+struct Contact {
+    int damper = 0;
+    int below = wall, above = wall; // global index of the ball on each side
+    real mass = 0;                  // reduced mass, walls count with the structure's effective mass
+    NormalLaw normal;
+    RestitutionLaw restitution;
+};
+
+enum class Method : int { event_driven = 0, newton = 1, two_step = 2 };
+
+struct Settings {
+    Method method = Method::event_driven;
+    real duration = 0;
+    real tolerance = 1e-12;
+    long max_events = 10'000'000;
+    real stick = 1e-6;                              // newton: bounce shorter than this x the shortest period sticks
+    real dt_flight = 5e-6, dt_contact = 3e-8;       // two_step
+    bool adaptive_inner = false;                    // two_step: dopri5 instead of rk4
+    bool collocation = true;                        // event_driven: lone contacts by collocation in phase
+};
+
+struct Problem {
+    std::vector<Mode> modes;
+    std::vector<ModeState> start;
+    std::vector<Load> loads;
+    std::vector<Damper> dampers;
+    std::vector<Contact> contacts;
+    std::vector<real> ball_mass, ball_position, ball_velocity;
+    std::vector<int> ball_damper;
+    std::vector<std::vector<real>> tables; // storage of Table views
+    std::vector<real> sample_times;        // increasing, within [0, duration]
+    Settings settings;
+
+    int mode_count() const { return static_cast<int>(modes.size()); }
+    int ball_count() const { return static_cast<int>(ball_mass.size()); }
+    int contact_count() const { return static_cast<int>(contacts.size()); }
+    int damper_count() const { return static_cast<int>(dampers.size()); }
+};
+
+} // namespace rattlebox

@@ -1,0 +1,69 @@
+// Where everything is, and what has been done and lost so far.
+//
+// One flat vector y serves flights and contacts: q, p of each mode, then the positions of all balls, then their velocities.
+#pragma once
+
+#include <vector>
+
+#include "impact/problem.hpp"
+
+namespace rattlebox {
+
+struct State {
+    real t = 0;
+    std::vector<real> y;
+
+    explicit State(const Problem& p) : y(2 * (p.modes.size() + p.ball_mass.size())) {
+        for (std::size_t k = 0; k < p.modes.size(); ++k) {
+            y[2 * k] = p.start[k].q;
+            y[2 * k + 1] = p.start[k].p;
+        }
+        const std::size_t first = 2 * p.modes.size(), b = p.ball_mass.size();
+        for (std::size_t i = 0; i < b; ++i) {
+            y[first + i] = p.ball_position[i];
+            y[first + b + i] = p.ball_velocity[i];
+        }
+    }
+};
+
+inline const real* positions(const Problem& p, const real* y) { return y + 2 * p.modes.size(); }
+inline const real* velocities(const Problem& p, const real* y) { return y + 2 * p.modes.size() + p.ball_mass.size(); }
+inline real* positions(const Problem& p, real* y) { return y + 2 * p.modes.size(); }
+inline real* velocities(const Problem& p, real* y) { return y + 2 * p.modes.size() + p.ball_mass.size(); }
+
+// Displacement and velocity of a damper's cavity (or velocity and acceleration, given those of the modes).
+inline ModeState cavity(const Damper& damper, const real* y) {
+    ModeState z;
+    for (std::size_t k = 0; k < damper.shape.size(); ++k) {
+        z.q += damper.shape[k] * y[2 * k];
+        z.p += damper.shape[k] * y[2 * k + 1];
+    }
+    return z;
+}
+
+// Gap between the two sides of a contact and its rate: positive gap = apart, positive rate = parting.
+struct Gap {
+    real value = 0, rate = 0;
+};
+
+inline Gap gap(const Problem& problem, const Contact& contact, const real* y) {
+    const real* s = positions(problem, y);
+    const real* v = velocities(problem, y);
+    if (contact.below != wall && contact.above != wall)
+        return {s[contact.above] - s[contact.below], v[contact.above] - v[contact.below]};
+    const Damper& damper = problem.dampers[static_cast<std::size_t>(contact.damper)];
+    const ModeState z = cavity(damper, y);
+    const real half = 0.5 * damper.clearance;
+    if (contact.below == wall) return {(s[contact.above] - z.q) + half, v[contact.above] - z.p};
+    return {half - (s[contact.below] - z.q), z.p - v[contact.below]};
+}
+
+// Work done and energy lost since the start, by channel.
+struct Ledger {
+    real load_work = 0, base_work = 0, viscous = 0;
+    std::vector<real> normal, plastic; // by damper
+
+    explicit Ledger(const Problem& p) : normal(p.dampers.size(), 0.0), plastic(p.dampers.size(), 0.0) {}
+};
+
+} // namespace rattlebox

@@ -1,0 +1,236 @@
+// The equations of motion while contacts are closed.
+//
+// State y: modes and balls as in impact/state.hpp; time since the start, work of loads, work of the base, viscous loss; then
+// for each soft contact x with overlap = offset + x^4, and the energy its dashpot has taken. The independent variable is
+// a transformed time, dt = dtau / sum(1 / x_j^3): it makes Hertz contact regular at first touch and at the end, for any
+// number of contacts at once. With no soft contact it is time itself.
+//
+// Stuck contacts (hard impacts that have come to rest) are constraints: their forces are what keeps the rates zero.
+#pragma once
+
+#include <vector>
+
+#include "impact/state.hpp"
+
+namespace rattlebox {
+
+struct Active {
+    int contact = 0;
+    Memory memory;
+    int impact = -1; // its line in the log
+};
+
+class System {
+    const Problem& problem_;
+    const Loads* loads_ = nullptr;
+    real start_ = 0;
+    std::vector<real> cavity_rate_, cavity_push_, ball_push_, clock_;
+    std::vector<real> matrix_, forces_; // stuck contacts
+
+    std::size_t mode_count() const { return problem_.modes.size(); }
+    std::size_t ball_count() const { return problem_.ball_mass.size(); }
+
+    const Contact& contact(int c) const { return problem_.contacts[static_cast<std::size_t>(c)]; }
+
+    void cavity_rates(const real* y) {
+        for (std::size_t d = 0; d < problem_.dampers.size(); ++d) cavity_rate_[d] = cavity(problem_.dampers[d], y).p;
+    }
+
+    // Rate at which the two sides approach, from any vector of ball speeds and cavity speeds.
+    real closing(const Contact& c, const real* ball_speed, const real* cavity_speed) const {
+        const real below = c.below == wall ? cavity_speed[c.damper] : ball_speed[c.below];
+        const real above = c.above == wall ? cavity_speed[c.damper] : ball_speed[c.above];
+        return below - above;
+    }
+
+    void push(const Contact& c, real force) {
+        (c.below == wall ? cavity_push_[static_cast<std::size_t>(c.damper)]
+                         : ball_push_[static_cast<std::size_t>(c.below)]) -= force;
+        (c.above == wall ? cavity_push_[static_cast<std::size_t>(c.damper)]
+                         : ball_push_[static_cast<std::size_t>(c.above)]) += force;
+    }
+
+    // d(closing rate of a)/dt per unit of force in b.
+    real coupling(const Contact& a, const Contact& b) const {
+        real sum = 0;
+        const auto side = [](const Contact& c, int ball) {
+            return (c.above == ball ? 1.0 : 0.0) - (c.below == ball ? 1.0 : 0.0);
+        };
+        for (int ball : {a.below, a.above})
+            if (ball != wall) sum -= side(a, ball) * side(b, ball) / problem_.ball_mass[static_cast<std::size_t>(ball)];
+        const real wall_a = side(a, wall), wall_b = side(b, wall);
+        if (wall_a != 0 && wall_b != 0) {
+            const auto& shape_a = problem_.dampers[static_cast<std::size_t>(a.damper)].shape;
+            const auto& shape_b = problem_.dampers[static_cast<std::size_t>(b.damper)].shape;
+            for (std::size_t k = 0; k < mode_count(); ++k) sum -= wall_a * wall_b * shape_a[k] * shape_b[k];
+        }
+        return sum;
+    }
+
+    // Accelerations of modes and balls for the pushes gathered so far.
+    void accelerate(const real* y, real t, real* dy) {
+        const std::size_t m = mode_count(), b = ball_count();
+        real* dv = velocities(problem_, dy);
+        for (std::size_t k = 0; k < m; ++k) {
+            real a = -2 * problem_.modes[k].decay * y[2 * k + 1] - problem_.modes[k].stiffness * y[2 * k];
+            for (std::size_t d = 0; d < problem_.dampers.size(); ++d)
+                a += problem_.dampers[d].shape[k] * cavity_push_[d];
+            dy[2 * k + 1] = a;
+        }
+        for (std::size_t i = 0; i < b; ++i)
+            dv[i] = ball_push_[i] / problem_.ball_mass[i] +
+                    problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
+        if (!loads_->active()) return;
+        for (std::size_t l = 0; l < loads_->size(); ++l) {
+            if (loads_->piece(l).silent()) continue;
+            const real f = loads_->piece(l).value(t);
+            for (std::size_t k = 0; k < m; ++k) dy[2 * k + 1] += loads_->load(l).shape[k] * f;
+            if (loads_->load(l).base)
+                for (std::size_t i = 0; i < b; ++i) dv[i] -= f;
+        }
+    }
+
+    void clear_pushes() {
+        for (real& f : cavity_push_) f = 0;
+        for (real& f : ball_push_) f = 0;
+    }
+
+    // Solves coupling x forces = -closing acceleration for the stuck contacts by elimination.
+    void solve_stuck(const real* dy) {
+        const std::size_t n = stuck.size();
+        matrix_.resize(n * n);
+        forces_.resize(n);
+        cavity_rates(dy); // of a derivative: accelerations
+        for (std::size_t i = 0; i < n; ++i) {
+            const Contact& a = contact(stuck[i]);
+            forces_[i] = -closing(a, velocities(problem_, dy), cavity_rate_.data());
+            for (std::size_t j = 0; j < n; ++j) matrix_[i * n + j] = coupling(a, contact(stuck[j]));
+        }
+        for (std::size_t i = 0; i < n; ++i) { // symmetric negative definite: no pivoting needed
+            for (std::size_t r = i + 1; r < n; ++r) {
+                const real factor = matrix_[r * n + i] / matrix_[i * n + i];
+                for (std::size_t j = i; j < n; ++j) matrix_[r * n + j] -= factor * matrix_[i * n + j];
+                forces_[r] -= factor * forces_[i];
+            }
+        }
+        for (std::size_t i = n; i-- > 0;) {
+            for (std::size_t j = i + 1; j < n; ++j) forces_[i] -= matrix_[i * n + j] * forces_[j];
+            forces_[i] /= matrix_[i * n + i];
+        }
+    }
+
+  public:
+    std::vector<Active> active;
+    std::vector<int> stuck;
+
+    explicit System(const Problem& problem)
+        : problem_(problem), cavity_rate_(problem.dampers.size()), cavity_push_(problem.dampers.size()),
+          ball_push_(problem.ball_mass.size()) {}
+
+    void begin(const Loads& loads, real start) {
+        loads_ = &loads;
+        start_ = start;
+        clock_.resize(active.size());
+    }
+
+    std::size_t time_index() const { return 2 * (mode_count() + ball_count()); }
+    std::size_t x_index(std::size_t j) const { return time_index() + 4 + 2 * j; }
+    std::size_t size() const { return time_index() + 4 + 2 * active.size(); }
+
+    real approach(const real* y, int c) const { return -gap(problem_, contact(c), y).rate; }
+
+    real force(const real* y, std::size_t j) const {
+        const Active& a = active[j];
+        const real rate = approach(y, a.contact);
+        return contact(a.contact).normal.visit([&](const auto& l) { return l.force(a.memory, y[x_index(j)], rate); });
+    }
+
+    // Forces of the stuck contacts at y.
+    const std::vector<real>& stuck_forces(const real* y, std::vector<real>& work) {
+        work.resize(size());
+        (*this)(y, work.data());
+        return forces_;
+    }
+
+    void operator()(const real* y, real* dy) {
+        const std::size_t m = mode_count(), b = ball_count(), n = active.size();
+        const real* v = velocities(problem_, y);
+        cavity_rates(y);
+        clear_pushes();
+
+        // Clock: with r_j = (x_min / x_j)^3 and R = sum r_j, dt/dtau = x_min^3 / R and x_j' = closing r_j / (4 R).
+        real clock = 1, total = 1;
+        if (n == 1) {
+            clock = cube(y[x_index(0)]);
+            clock_[0] = 1;
+        } else if (n > 1) {
+            real smallest = y[x_index(0)];
+            for (std::size_t j = 1; j < n; ++j)
+                if (std::fabs(y[x_index(j)]) < std::fabs(smallest)) smallest = y[x_index(j)];
+            total = 0;
+            for (std::size_t j = 0; j < n; ++j) {
+                const real x = y[x_index(j)];
+                clock_[j] = x == smallest ? 1 : cube(smallest / x);
+                total += clock_[j];
+            }
+            clock = cube(smallest) / total;
+        }
+        for (std::size_t j = 0; j < n; ++j) {
+            const Active& a = active[j];
+            const Contact& c = contact(a.contact);
+            const std::size_t at = x_index(j);
+            const real x = y[at], rate = closing(c, v, cavity_rate_.data());
+            real lost = 0;
+            const real f = c.normal.visit([&](const auto& law) {
+                lost = law.lost_power(a.memory, x, rate);
+                return law.force(a.memory, x, rate);
+            });
+            push(c, f);
+            dy[at] = 0.25 * rate * clock_[j] / total;
+            dy[at + 1] = clock * lost;
+        }
+
+        const real t = start_ + y[time_index()];
+        real* dv = velocities(problem_, dy);
+        accelerate(y, t, dy);
+        if (!stuck.empty()) {
+            solve_stuck(dy);
+            clear_pushes();
+            for (std::size_t i = 0; i < stuck.size(); ++i) push(contact(stuck[i]), forces_[i]);
+            for (std::size_t k = 0; k < m; ++k)
+                for (std::size_t d = 0; d < problem_.dampers.size(); ++d)
+                    dy[2 * k + 1] += problem_.dampers[d].shape[k] * cavity_push_[d];
+            for (std::size_t i = 0; i < b; ++i) dv[i] += ball_push_[i] / problem_.ball_mass[i];
+        }
+
+        real viscous = 0, work[2] = {0, 0};
+        for (std::size_t k = 0; k < m; ++k) viscous += 2 * problem_.modes[k].decay * square(y[2 * k + 1]);
+        if (loads_->active()) {
+            for (std::size_t l = 0; l < loads_->size(); ++l) {
+                if (loads_->piece(l).silent()) continue;
+                const Load& load = loads_->load(l);
+                real speed = 0;
+                for (std::size_t k = 0; k < m; ++k) speed += load.shape[k] * y[2 * k + 1];
+                if (load.base)
+                    for (std::size_t i = 0; i < b; ++i) speed -= problem_.ball_mass[i] * v[i];
+                work[load.base] += loads_->piece(l).value(t) * speed;
+            }
+        }
+        for (std::size_t k = 0; k < m; ++k) {
+            dy[2 * k] = clock * y[2 * k + 1];
+            dy[2 * k + 1] *= clock;
+        }
+        real* ds = positions(problem_, dy);
+        for (std::size_t i = 0; i < b; ++i) {
+            ds[i] = clock * v[i];
+            dv[i] *= clock;
+        }
+        const std::size_t at = time_index();
+        dy[at] = clock;
+        dy[at + 1] = clock * work[0];
+        dy[at + 2] = clock * work[1];
+        dy[at + 3] = clock * viscous;
+    }
+};
+
+} // namespace rattlebox

@@ -1,0 +1,88 @@
+// A load or a base acceleration in time: half-sine pulse, harmonic, piecewise-linear record.
+//
+//     half-sine   amplitude sin(pi (t - start) / duration)     start <= t < stop = start + duration
+//     harmonic    amplitude sin(frequency t + phase)           start <= t < stop
+//     record      straight lines through (times, values)       0 outside
+//
+// Between two knots each is a constant, a slope and a sine, which is what a flight needs to be exact.
+#pragma once
+
+#include <algorithm>
+
+#include "base/field.hpp"
+#include "base/real.hpp"
+
+namespace rattlebox {
+
+// A signal between two of its knots: constant + slope (t - origin) + amplitude sin(frequency (t - origin) + phase).
+struct Piece {
+    real origin = 0, constant = 0, slope = 0, amplitude = 0, frequency = 0, phase = 0;
+
+    bool silent() const { return constant == 0 && slope == 0 && amplitude == 0; }
+
+    real value(real t) const {
+        const real s = t - origin;
+        real f = constant + slope * s;
+        if (amplitude != 0) f += amplitude * std::sin(frequency * s + phase);
+        return f;
+    }
+
+    // Adds `weight` times the Taylor coefficients about t to c[0..order].
+    void add_taylor(real t, real weight, int order, real* c) const {
+        const real s = t - origin;
+        c[0] += weight * (constant + slope * s);
+        if (order > 0) c[1] += weight * slope;
+        if (amplitude == 0) return;
+        real even = weight * amplitude * std::sin(frequency * s + phase);
+        real odd = weight * amplitude * frequency * std::cos(frequency * s + phase);
+        const real minus_square = -frequency * frequency;
+        for (int n = 0; n <= order; n += 2) {
+            c[n] += even;
+            if (n + 1 <= order) c[n + 1] += odd;
+            even *= minus_square / ((n + 1) * (n + 2));
+            odd *= minus_square / ((n + 2) * (n + 3));
+        }
+    }
+};
+
+struct Signal {
+    enum class Kind { half_sine, harmonic, record };
+
+    Kind kind = Kind::harmonic;
+    real amplitude = 0, frequency = 0, phase = 0; // N or m/s^2, rad/s, rad
+    real start = 0, stop = infinity;              // s
+    Table times, values;                          // record only
+
+    // The piece that holds from t on (to the next knot).
+    Piece piece(real t) const {
+        Piece p;
+        if (kind == Kind::record) {
+            const real* last = times.data + times.size;
+            const auto after = static_cast<int>(std::upper_bound(times.data, last, t) - times.data);
+            if (after == 0 || after == times.size) return p;
+            p.origin = times[after - 1];
+            p.constant = values[after - 1];
+            p.slope = (values[after] - values[after - 1]) / (times[after] - times[after - 1]);
+            return p;
+        }
+        if (t < start || t >= stop) return p;
+        p.origin = kind == Kind::half_sine ? start : 0;
+        p.amplitude = amplitude;
+        p.frequency = frequency;
+        p.phase = phase;
+        return p;
+    }
+
+    // The first knot after t.
+    real next_knot(real t) const {
+        if (kind == Kind::record) {
+            const real* last = times.data + times.size;
+            const real* after = std::upper_bound(times.data, last, t);
+            return after == last ? infinity : *after;
+        }
+        if (t < start) return start;
+        return t < stop ? stop : infinity;
+    }
+};
+
+} // namespace rattlebox
