@@ -113,6 +113,7 @@ class Flight {
     }
 
     real horizon() const { return horizon_; }
+    real curvature(std::size_t contact) const { return curvature_[contact]; }
 
     // The state after time s.
     void at(real s, State& out) const {
@@ -200,8 +201,14 @@ class Flight {
                 const real half = 0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
                 const int ball = contact.below == wall ? contact.above : contact.below;
                 const real blur = 4 * epsilon * (half + std::fabs(positions(problem_, now->y.data())[ball]));
-                if (g.value <= blur && g.rate < 0) return {s, static_cast<int>(c)};
-                const real safe = safe_step(std::fmax(g.value, 0.0), g.rate, curvature_[c]);
+                real safe;
+                if (g.value < -blur && g.rate > 0) { // released, still recovering: when it is open at the latest
+                    const real room = g.rate * g.rate + 2 * curvature_[c] * -g.value;
+                    safe = -2 * g.value / (g.rate + std::sqrt(std::fmax(room, 0.0)));
+                } else {
+                    if (g.value <= blur && g.rate < 0) return {s, static_cast<int>(c)};
+                    safe = safe_step(std::fmax(g.value, 0.0), g.rate, curvature_[c]);
+                }
                 if (safe < step) {
                     step = safe;
                     nearest = static_cast<int>(c);

@@ -18,6 +18,16 @@ struct Active {
     int contact = 0;
     Memory memory;
     int impact = -1; // its line in the log
+    real x = 0;      // overlap = memory.offset + x^4
+    real speed = 0;  // largest approach speed so far: the scale of its errors
+};
+
+// A contact whose force has ended before its overlap: it recovers in flight, or takes hold again.
+struct Released {
+    int contact = 0;
+    Memory memory;
+    int impact = -1;
+    real energy = 0; // stored at the release, lost while it recovers
 };
 
 class System {
@@ -48,23 +58,6 @@ class System {
                          : ball_push_[static_cast<std::size_t>(c.below)]) -= force;
         (c.above == wall ? cavity_push_[static_cast<std::size_t>(c.damper)]
                          : ball_push_[static_cast<std::size_t>(c.above)]) += force;
-    }
-
-    // d(closing rate of a)/dt per unit of force in b.
-    real coupling(const Contact& a, const Contact& b) const {
-        real sum = 0;
-        const auto side = [](const Contact& c, int ball) {
-            return (c.above == ball ? 1.0 : 0.0) - (c.below == ball ? 1.0 : 0.0);
-        };
-        for (int ball : {a.below, a.above})
-            if (ball != wall) sum -= side(a, ball) * side(b, ball) / problem_.ball_mass[static_cast<std::size_t>(ball)];
-        const real wall_a = side(a, wall), wall_b = side(b, wall);
-        if (wall_a != 0 && wall_b != 0) {
-            const auto& shape_a = problem_.dampers[static_cast<std::size_t>(a.damper)].shape;
-            const auto& shape_b = problem_.dampers[static_cast<std::size_t>(b.damper)].shape;
-            for (std::size_t k = 0; k < mode_count(); ++k) sum -= wall_a * wall_b * shape_a[k] * shape_b[k];
-        }
-        return sum;
     }
 
     // Accelerations of modes and balls for the pushes gathered so far.
@@ -137,6 +130,23 @@ class System {
     std::size_t x_index(std::size_t j) const { return time_index() + 4 + 2 * j; }
     std::size_t size() const { return time_index() + 4 + 2 * active.size(); }
 
+    // d(closing rate of a)/dt per unit of force in b.
+    real coupling(const Contact& a, const Contact& b) const {
+        real sum = 0;
+        const auto side = [](const Contact& c, int ball) {
+            return (c.above == ball ? 1.0 : 0.0) - (c.below == ball ? 1.0 : 0.0);
+        };
+        for (int ball : {a.below, a.above})
+            if (ball != wall) sum -= side(a, ball) * side(b, ball) / problem_.ball_mass[static_cast<std::size_t>(ball)];
+        const real wall_a = side(a, wall), wall_b = side(b, wall);
+        if (wall_a != 0 && wall_b != 0) {
+            const auto& shape_a = problem_.dampers[static_cast<std::size_t>(a.damper)].shape;
+            const auto& shape_b = problem_.dampers[static_cast<std::size_t>(b.damper)].shape;
+            for (std::size_t k = 0; k < mode_count(); ++k) sum -= wall_a * wall_b * shape_a[k] * shape_b[k];
+        }
+        return sum;
+    }
+
     real approach(const real* y, int c) const { return -gap(problem_, contact(c), y).rate; }
 
     real force(const real* y, std::size_t j) const {
@@ -145,12 +155,8 @@ class System {
         return contact(a.contact).normal.visit([&](const auto& l) { return l.force(a.memory, y[x_index(j)], rate); });
     }
 
-    // Forces of the stuck contacts at y.
-    const std::vector<real>& stuck_forces(const real* y, std::vector<real>& work) {
-        work.resize(size());
-        (*this)(y, work.data());
-        return forces_;
-    }
+    // Forces of the stuck contacts found by the last evaluation.
+    const std::vector<real>& stuck_forces() const { return forces_; }
 
     void operator()(const real* y, real* dy) {
         const std::size_t m = mode_count(), b = ball_count(), n = active.size();
