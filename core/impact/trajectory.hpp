@@ -111,15 +111,16 @@ class Trajectory {
         flight_.at(length, scratch_);
         std::swap(scratch_.y, state_.y);
         state_.t = end;
-        settle_released();
+        settle_released(touch.contact);
         if (pressing) begin_at_rest();
         else if (touch.contact >= 0) meet(touch.contact);
     }
 
     // Released contacts that have opened: their stored energy is gone for good.
-    void settle_released() {
+    void settle_released(int touched) {
         for (std::size_t i = released_.size(); i-- > 0;) {
-            if (gap(problem_, contact(released_[i].contact), state_.y.data()).value <= 0) continue;
+            const int c = released_[i].contact;
+            if (c != touched && gap(problem_, contact(c), state_.y.data()).value <= 0) continue;
             ledger_.normal[damper_of(released_[i].contact)] += released_[i].energy;
             phase(released_[i].contact) = Phase::open;
             released_.erase(released_.begin() + static_cast<std::ptrdiff_t>(i));
