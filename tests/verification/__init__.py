@@ -1,0 +1,1 @@
+"""Verification: runs compared with exact solutions, references and independent searches."""

@@ -1,0 +1,1 @@
+"""Exact solutions from formulas alone; nothing here imports rattlebox."""
