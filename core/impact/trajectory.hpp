@@ -8,6 +8,7 @@
 
 #include "base/dop853.hpp"
 #include "impact/flight.hpp"
+#include "impact/lone_contact.hpp"
 #include "impact/log.hpp"
 #include "impact/system.hpp"
 
@@ -24,6 +25,7 @@ class Trajectory {
     Flight flight_;
     System system_;
     Dop853 integrator_;
+    LoneContact lone_;
     std::vector<Phase> phase_;
     std::vector<char> watched_;
     std::vector<Released> released_;
@@ -147,7 +149,84 @@ class Trajectory {
         if (r.outside) return fail(Status::law_domain, c, speed);
         result_.counts.extrapolated += r.extrapolated;
         if (hard()) return strike(c, speed, r.e);
+        if (problem_.settings.collocation && collocate(c, speed, r.e)) return;
         begin_contact(c, speed, r.e, 0);
+    }
+
+    real energy(const State& state) const {
+        real sum = 0;
+        for (std::size_t k = 0; k < problem_.modes.size(); ++k)
+            sum += ModeState{state.y[2 * k], state.y[2 * k + 1]}.energy(problem_.modes[k]);
+        const real *s = positions(problem_, state.y.data()), *v = velocities(problem_, state.y.data());
+        for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i)
+            sum += problem_.ball_mass[i] *
+                   (0.5 * v[i] * v[i] - problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity * s[i]);
+        return sum;
+    }
+
+    // Can nothing else touch while this contact lasts?
+    bool alone(int c, real speed, real longest) const {
+        if (!system_.active.empty() || !system_.stuck.empty() || !released_.empty()) return false;
+        for (int other = 0; other < problem_.contact_count(); ++other) {
+            if (other == c) continue;
+            const Damper& damper = problem_.dampers[damper_of(other)];
+            if (damper.balls == 1 && contact(other).damper == contact(c).damper) continue;
+            const Gap g = gap(problem_, contact(other), state_.y.data());
+            if (!(g.value > longest * (std::fabs(g.rate) + 4 * speed))) return false;
+        }
+        return true;
+    }
+
+    // The whole contact at once, where that is possible and its energy balance agrees.
+    bool collocate(int c, real speed, real e) {
+        const HertzTsuji* law = contact(c).normal.get_if<HertzTsuji>();
+        if (!law) return false;
+        const real zeta = law->zeta(e);
+        if (!lone_.prepare(contact(c), *law, loads_, state_, speed, zeta, next_stop() - state_.t)) return false;
+        if (!alone(c, speed, lone_.longest_time()) || !lone_.solve()) return false;
+        Ledger after = ledger_;
+        const LoneContact::Instant end = lone_.at(1, &scratch_, &after);
+        const real stored = law->stored({}, end.x);
+        const std::size_t d = damper_of(c);
+        const real residual = energy(scratch_) + stored - energy(state_) + (after.normal[d] - ledger_.normal[d]) +
+                              (after.viscous - ledger_.viscous) - (after.load_work - ledger_.load_work) -
+                              (after.base_work - ledger_.base_work);
+        const real size = contact(c).mass * speed * speed + energy(state_) * 1e-2;
+        if (!(std::fabs(residual) < std::fmax(problem_.settings.tolerance, 64 * epsilon) * size)) return false;
+
+        const LoneContact::Instant deepest = lone_.at(lone_.deepest_position(), nullptr, nullptr);
+        Impact line;
+        line.contact = c;
+        line.time = state_.t;
+        line.approach_speed = speed;
+        if (law->needs_restitution()) line.restitution = e;
+        line.separation_speed = -end.rate;
+        line.duration = end.time;
+        line.peak_overlap = square(square(deepest.x));
+        line.peak_force = lone_.peak_force();
+        line.energy_lost = end.lost + stored;
+        line.complete = true;
+        result_.impacts.push_back(line);
+        ++result_.counts.collocated;
+        while (sample_due(state_.t + end.time)) {
+            const real t = problem_.sample_times[next_sample_++];
+            State at(problem_);
+            Ledger ledger = ledger_;
+            const LoneContact::Instant now = lone_.at(lone_.position_at(t - state_.t), &at, &ledger);
+            clear_contact_samples();
+            stored_[d] = law->stored({}, now.x);
+            add_wall_force(c, now.force);
+            record(t, at, std::move(ledger));
+        }
+        std::swap(state_.y, scratch_.y);
+        state_.t += end.time;
+        ledger_ = after;
+        if (stored > 0) {
+            Memory memory = law->begin(e);
+            released_.push_back({c, memory, static_cast<int>(result_.impacts.size()) - 1, stored});
+            phase(c) = Phase::released;
+        }
+        return true;
     }
 
     void begin_contact(int c, real speed, real e, real x) {
@@ -701,7 +780,7 @@ class Trajectory {
   public:
     Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
         : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem), ledger_(problem),
-          flight_(problem), system_(problem), phase_(problem.contacts.size(), Phase::open),
+          flight_(problem), system_(problem), lone_(problem), phase_(problem.contacts.size(), Phase::open),
           watched_(problem.contacts.size()), stored_(problem.dampers.size()), force_(problem.dampers.size()) {}
 
     Result run() {
