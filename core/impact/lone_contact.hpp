@@ -14,6 +14,7 @@
 // strongly damped or has neighbours, impact/trajectory.hpp integrates it step by step.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "base/collocation.hpp"
@@ -120,8 +121,14 @@ class LoneContact {
 
     // exp(y) for |y| < 0.7: Taylor, so that the loop over nodes vectorises.
     static real short_exp(real y) {
-        real sum = 1 + y / 16;
-        for (int k = 15; k >= 1; --k) sum = 1 + y * sum / k;
+        constexpr int order = 15;
+        static constexpr auto inverse_factorial = [] {
+            std::array<real, order + 1> c{1};
+            for (int k = 1; k <= order; ++k) c[static_cast<std::size_t>(k)] = c[static_cast<std::size_t>(k - 1)] / k;
+            return c;
+        }();
+        real sum = inverse_factorial[order];
+        for (int k = order - 1; k >= 0; --k) sum = inverse_factorial[static_cast<std::size_t>(k)] + y * sum;
         return sum;
     }
 
@@ -231,12 +238,12 @@ class LoneContact {
 
     // Sweeps to convergence.
     bool solve() {
-        real before = infinity;
+        real before = 1;
         for (int pass = 0; pass < most_sweeps; ++pass) {
             const real change = sweep();
             external();
-            // Down to rounding: the change no longer falls.
-            if (change < 64 * epsilon && !(change < 0.1 * before)) {
+            // The next change would be below rounding, or it no longer falls because it is rounding.
+            if (change * change < 0.25 * epsilon * before || (change < 64 * epsilon && change > 0.1 * before)) {
                 rates();
                 return true;
             }

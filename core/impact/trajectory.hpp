@@ -747,35 +747,26 @@ class Trajectory {
                 integrator_.step(system_, y_.data(), turn, partial_.data());
                 note(j, partial_.data());
             }
-            // A parabola through three forces, twice, finds a maximum to the square of its own error.
-            real left = 0, middle = 0.5 * h, right = h;
+            // A maximum inside: the force rises at the step's start and falls at its end.
             const auto force_at = [&](real where) {
                 integrator_.step(system_, y_.data(), where, partial_.data());
                 return system_.force(partial_.data(), j);
             };
-            real f_left = system_.force(y_.data(), j), f_right = system_.force(trial_.data(), j);
-            const real reach = std::fabs(f_right - f_left);
-            if (std::fmax(f_left, f_right) + 2 * reach <
-                result_.impacts[static_cast<std::size_t>(system_.active[j].impact)].peak_force)
-                continue;
-            real f_middle = force_at(middle);
-            for (int pass = 0; pass < 4 && f_middle >= std::fmax(f_left, f_right); ++pass) {
-                const real a = (f_right - f_middle) / (right - middle), b = (f_middle - f_left) / (middle - left);
-                if (!(a < b)) break;
-                const real top = 0.5 * (left + middle) - 0.5 * b * (right - left) / (a - b);
-                note(j, partial_.data());
-                const real half = 0.1 * std::fmin(right - left, h);
-                left = std::fmax(top - half, 0.0);
-                right = std::fmin(top + half, h);
-                middle = top;
-                f_left = force_at(left);
-                f_right = force_at(right);
-                f_middle = force_at(middle);
-                note(j, partial_.data());
+            const real probe = 1e-3 * h;
+            const auto rise = [&](real where) { return force_at(where + probe) - force_at(where - probe); };
+            real low = probe, high = h - probe, f_low = rise(low), f_high = rise(high);
+            if (!(f_low > 0 && f_high < 0)) continue;
+            for (int pass = 0; pass < 8; ++pass) {
+                real next = (low * f_high - high * f_low) / (f_high - f_low);
+                if (pass % 3 == 2) next = 0.5 * (low + high);
+                const real value = rise(next);
+                (value > 0 ? low : high) = next;
+                (value > 0 ? f_low : f_high) = value;
             }
+            force_at((low * f_high - high * f_low) / (f_high - f_low));
+            note(j, partial_.data());
         }
     }
-
 
   public:
     Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
