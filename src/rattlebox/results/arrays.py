@@ -1,0 +1,294 @@
+"""The plain arrays of a run, as an engine fills them.
+
+Frames and signs: everything moves on one line, and all motion is relative to the base. Balls of a damper are
+numbered along the positive direction, and so are its contacts: 0 is the trailing wall, `k` lies between balls
+`k` and `k + 1` (counted from 1), and the last is the leading wall.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .schema import IMPACT_VARIABLES, RUN_VARIABLES, Kind, Variable
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+_DTYPES: dict[Kind, Any] = {"float": np.float64, "int": np.int64, "bool": np.bool_}
+_ABSENT = np.zeros(0)
+
+
+def _absent() -> Any:
+    return _ABSENT
+
+
+def _checked(variable: Variable, value: Any, sizes: Mapping[str, int]) -> NDArray[Any]:
+    """Return `value` as a read-only array of the variable's type, zeros where it was left out."""
+    shape = tuple(sizes[dim] for dim in variable.dims)
+    dtype = np.dtype(_DTYPES[variable.kind])
+    if value is _ABSENT:
+        array: NDArray[Any] = np.zeros(shape, dtype)
+    else:
+        given = np.asarray(value)
+        if not np.can_cast(given.dtype, dtype, "same_kind") and given.size:
+            raise TypeError(f"{variable.name} holds {given.dtype}, but {dtype} is needed")
+        array = np.ascontiguousarray(given, dtype).view()
+    if array.shape != shape:
+        names = ", ".join(variable.dims)
+        raise ValueError(f"{variable.name} has shape {array.shape}, but ({names}) is {shape}")
+    array.flags.writeable = False
+    return array
+
+
+def _same(a: Any, b: Any) -> bool:
+    if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
+        return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
+    return bool(a == b)
+
+
+class _Comparable:
+    """Equality by value of every field; NaN equals NaN."""
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))  # type: ignore[arg-type]
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ImpactArrays(_Comparable):
+    """The impact log: one entry for each contact that closed, in the order of first touch.
+
+    Attributes
+    ----------
+    damper : (I,) int
+        Damper, counted from 0.
+    contact : (I,) int
+        Contact in the row of that damper: 0 is the trailing wall, `n` (number of its balls) the leading
+        wall, `k` between them the contact of balls `k` and `k + 1`, counted from 1.
+    time : (I,) float
+        Time of first touch [s].
+    approach_speed : (I,) float
+        Approach speed at first touch [m/s].
+    restitution : (I,) float
+        Coefficient of restitution that the law returned; NaN where the law has none.
+    separation_speed : (I,) float
+        Speed of separation at the end of the contact [m/s].
+    duration : (I,) float
+        Duration of the contact [s].
+    peak_overlap : (I,) float
+        Largest overlap [m].
+    peak_force : (I,) float
+        Largest contact force [N].
+    energy_lost : (I,) float
+        Energy lost in the contact [J].
+    complete : (I,) bool
+        True where the contact opened before the run ended.
+
+    Raises
+    ------
+    ValueError
+        When the arrays differ in length.
+    TypeError
+        When an array holds the wrong kind of numbers.
+    """
+
+    damper: IntArray = field(default_factory=_absent)
+    contact: IntArray = field(default_factory=_absent)
+    time: FloatArray = field(default_factory=_absent)
+    approach_speed: FloatArray = field(default_factory=_absent)
+    restitution: FloatArray = field(default_factory=_absent)
+    separation_speed: FloatArray = field(default_factory=_absent)
+    duration: FloatArray = field(default_factory=_absent)
+    peak_overlap: FloatArray = field(default_factory=_absent)
+    peak_force: FloatArray = field(default_factory=_absent)
+    energy_lost: FloatArray = field(default_factory=_absent)
+    complete: BoolArray = field(default_factory=_absent)
+
+    def __post_init__(self) -> None:
+        sizes = {"impact": np.asarray(self.time).size}
+        for variable in IMPACT_VARIABLES:
+            value = getattr(self, variable.name)
+            if value is _ABSENT and sizes["impact"]:
+                raise ValueError(f"{variable.name} of the impacts is missing")
+            object.__setattr__(self, variable.name, _checked(variable, value, sizes))
+
+    def __len__(self) -> int:
+        return int(self.time.size)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RunArrays(_Comparable):
+    """Everything an engine computed in one run, in SI units.
+
+    Sizes: T times, P points, B balls (of all dampers, damper after damper), D dampers, L loads, m modes.
+    Fields left out are zero. Arrays become read-only; equality compares every value, NaN equals NaN.
+
+    Attributes
+    ----------
+    time : (T,) float
+        Output times, strictly increasing [s].
+    points, balls, dampers, loads : tuple of str
+        Names; a ball is named "damper/number".
+    displacement, velocity : (T, P) float
+        Motion of the structure's points relative to the base [m], [m/s].
+    ball_damper : (B,) int
+        Damper of each ball, counted from 0.
+    ball_centre : (B,) float
+        Place of the ball's centre from the cavity's centre in the packed, centred row [m].
+    clearance : (D,) float
+        Total clearance of each cavity [m]; ball positions span `ball_centre` plus or minus half of it.
+    ball_position, ball_velocity : (T, B) float
+        Ball centre from the cavity centre's place at rest [m], and its velocity [m/s], relative to the base.
+    relative_position, relative_velocity : (T, B) float
+        The same relative to the moving cavity's centre [m], [m/s].
+    base_displacement, base_velocity, base_acceleration : (T,) float
+        Motion of the base [m], [m/s], [m/s^2].
+    cavity_force : (T, D) float
+        Force of the balls on the cavity [N].
+    load : (T, L) float
+        Load forces [N].
+    mode_frequency : (m,) float
+        Natural frequencies [Hz].
+    mode_energy : (T, m) float
+        Kinetic and elastic energy of each mode [J].
+    ball_energy : (T, B) float
+        Kinetic energy of each ball relative to the base [J].
+    contact_energy, gravity_energy : (T, D) float
+        Elastic energy of the contacts and gravity potential of the balls [J].
+    load_work, base_work : (T,) float
+        Work done since the start by the loads and by the inertial forces of the base motion [J].
+    viscous_loss : (T,) float
+        Energy lost since the start in the structure's damping [J].
+    normal_loss, plastic_loss : (T, D) float
+        Energy lost since the start in impacts: by damping, clipping or hard impacts; by plastic flow [J].
+    impacts : ImpactArrays
+        The impact log.
+    status : str
+        "finished", or the reason why the run ended early.
+    message : str
+        One sentence that explains the status and says what to try.
+    counts : mapping of str to int
+        Numbers of events and steps, by name (an identifier).
+    wall_time : float
+        Computing time [s].
+
+    Raises
+    ------
+    ValueError
+        When a shape does not fit, times do not increase, or a label is not what it should be.
+    TypeError
+        When an array holds the wrong kind of numbers.
+    """
+
+    time: FloatArray
+    points: tuple[str, ...] = ()
+    balls: tuple[str, ...] = ()
+    dampers: tuple[str, ...] = ()
+    loads: tuple[str, ...] = ()
+    displacement: FloatArray = field(default_factory=_absent)
+    velocity: FloatArray = field(default_factory=_absent)
+    ball_damper: IntArray = field(default_factory=_absent)
+    ball_centre: FloatArray = field(default_factory=_absent)
+    clearance: FloatArray = field(default_factory=_absent)
+    ball_position: FloatArray = field(default_factory=_absent)
+    ball_velocity: FloatArray = field(default_factory=_absent)
+    relative_position: FloatArray = field(default_factory=_absent)
+    relative_velocity: FloatArray = field(default_factory=_absent)
+    base_displacement: FloatArray = field(default_factory=_absent)
+    base_velocity: FloatArray = field(default_factory=_absent)
+    base_acceleration: FloatArray = field(default_factory=_absent)
+    cavity_force: FloatArray = field(default_factory=_absent)
+    load: FloatArray = field(default_factory=_absent)
+    mode_frequency: FloatArray = field(default_factory=_absent)
+    mode_energy: FloatArray = field(default_factory=_absent)
+    ball_energy: FloatArray = field(default_factory=_absent)
+    contact_energy: FloatArray = field(default_factory=_absent)
+    gravity_energy: FloatArray = field(default_factory=_absent)
+    load_work: FloatArray = field(default_factory=_absent)
+    base_work: FloatArray = field(default_factory=_absent)
+    viscous_loss: FloatArray = field(default_factory=_absent)
+    normal_loss: FloatArray = field(default_factory=_absent)
+    plastic_loss: FloatArray = field(default_factory=_absent)
+    impacts: ImpactArrays = field(default_factory=ImpactArrays)
+    status: str = "finished"
+    message: str = ""
+    counts: Mapping[str, int] = field(default_factory=dict)
+    wall_time: float = 0.0
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        time = np.ascontiguousarray(self.time, np.float64).view()
+        if time.ndim != 1 or time.size == 0:
+            raise ValueError(f"time has shape {time.shape}, but (T,) with at least one time is needed")
+        if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0):
+            raise ValueError("output times must be finite and strictly increasing")
+        time.flags.writeable = False
+        put(self, "time", time)
+        for name in ("points", "balls", "dampers", "loads"):
+            labels = tuple(str(label) for label in getattr(self, name))
+            if len(set(labels)) != len(labels) or "" in labels or any("\0" in label for label in labels):
+                raise ValueError(f"{name} {labels} must be different and not empty")
+            put(self, name, labels)
+        modes = np.size(self.mode_frequency)
+        sizes = {
+            "time": time.size,
+            "point": len(self.points),
+            "ball": len(self.balls),
+            "damper": len(self.dampers),
+            "source": len(self.loads),
+            "mode": modes,
+        }
+        for variable in RUN_VARIABLES:
+            put(self, variable.name, _checked(variable, getattr(self, variable.name), sizes))
+        self._check_references(sizes["damper"])
+        counts = {str(name): int(number) for name, number in self.counts.items()}
+        for name in counts:
+            if not name.isidentifier():
+                raise ValueError(f"count {name!r} is not an identifier")
+        put(self, "counts", MappingProxyType(counts))
+        put(self, "wall_time", float(self.wall_time))
+
+    def _check_references(self, dampers: int) -> None:
+        for name, index in (
+            ("ball_damper", self.ball_damper),
+            ("damper of the impacts", self.impacts.damper),
+        ):
+            if index.size and (index.min() < 0 or index.max() >= dampers):
+                raise ValueError(f"{name} names a damper outside 0..{dampers - 1}")
+        if np.any(np.diff(self.ball_damper) < 0):
+            raise ValueError("ball_damper must not decrease: balls come damper after damper")
+        last = np.bincount(self.ball_damper, minlength=max(dampers, 1))[self.impacts.damper]
+        contact = self.impacts.contact
+        if np.any(contact < 0) or np.any(contact > last):
+            raise ValueError("a contact of the impacts lies outside its row")
+
+    def contact_names(self, damper: int) -> tuple[str, ...]:
+        """Names of the contacts of a damper, in the order of the impact log's `contact`.
+
+        Parameters
+        ----------
+        damper
+            Damper, counted from 0.
+        """
+        balls = int(np.count_nonzero(self.ball_damper == damper))
+        between = (f"ball {k} - ball {k + 1}" for k in range(1, balls))
+        return ("trailing wall", *between, "leading wall") if balls else ()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        values["counts"] = dict(self.counts)
+        return (_rebuild, (values,))
+
+
+def _rebuild(values: dict[str, Any]) -> RunArrays:
+    return RunArrays(**values)

@@ -1,0 +1,147 @@
+"""Runs in MATLAB and CSV files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .datasets import columns, labels
+from .schema import COORDINATES, GROUPS, Group, variables
+
+if TYPE_CHECKING:
+    from .run import Run
+
+
+def _cells(names: tuple[str, ...]) -> Any:
+    """Texts as a column of cells."""
+    cells = np.empty((len(names), 1), dtype=object)
+    cells[:, 0] = names
+    return cells
+
+
+def to_mat(run: Run, path: Path) -> Path:
+    """Write a MATLAB file (version 5, up to 2 GB a variable).
+
+    It holds the structs `motion`, `energy` and `impacts` with a field for each variable and coordinate,
+    `units` with the unit of each of those, and `info` with the case, the status and the provenance. Time runs
+    along the first dimension; vectors are columns. Indices count from 0, as in all other files.
+
+    Parameters
+    ----------
+    run
+        Run to write.
+    path
+        File to write.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written.
+    """
+    from scipy.io import savemat
+
+    arrays = run.arrays
+    names = labels(arrays)
+    content: dict[str, Any] = {}
+    units: dict[str, dict[str, str]] = {}
+    for group in GROUPS:
+        values = columns(arrays, run.ledger, group)
+        struct: dict[str, Any] = {}
+        unit: dict[str, str] = {}
+        for v in variables(group):
+            for dim in v.dims:
+                if dim == "impact" or dim in struct:
+                    continue
+                label = names[dim]
+                struct[dim] = _cells(label) if isinstance(label, tuple) else label
+                unit[dim] = COORDINATES[dim][0]
+            struct[v.name] = values[v.name]
+            unit[v.name] = v.units
+        content[group] = struct
+        units[group] = unit
+    info: dict[str, Any] = asdict(run.provenance)
+    info |= {
+        "case_toml": run.case_toml,
+        "status": run.status,
+        "message": run.message,
+        "closure": run.closure,
+        "wall_time": arrays.wall_time,
+        "counts": dict(arrays.counts) or np.zeros((0, 0)),
+    }
+    savemat(
+        path,
+        content | {"units": units, "info": info},
+        long_field_names=True,
+        oned_as="column",
+        appendmat=False,
+    )
+    return path
+
+
+def _header(name: str, label: str, units: str) -> str:
+    full = f"{name} {label}".strip()
+    return full if units == "1" else f"{full} [{units}]"
+
+
+def _columns(run: Run, group: Group) -> Iterator[tuple[str, Any]]:
+    """Header and values of every column of a CSV file: the index, then what runs along it."""
+    names = labels(run.arrays)
+    values = columns(run.arrays, run.ledger, group)
+    index = "impact" if group == "impacts" else "time"
+    if index == "time":
+        yield _header("time", "", "s"), run.arrays.time
+    for v in variables(group):
+        if v.dims == (index,):
+            yield _header(v.name, "", v.units), values[v.name]
+        elif v.dims[0] == index:
+            for k, label in enumerate(names[v.dims[1]]):
+                yield _header(v.name, str(label), v.units), values[v.name][:, k]
+
+
+def to_csv(run: Run, folder: Path) -> tuple[Path, ...]:
+    """Write motion.csv, energy.csv and impacts.csv.
+
+    One line of headers, "name label [unit]"; every number keeps all its digits. What does not run along time
+    or along the impacts (clearances, natural frequencies, final shares) is found in the other formats.
+
+    Parameters
+    ----------
+    run
+        Run to write.
+    folder
+        Folder to write to, made when missing.
+
+    Returns
+    -------
+    tuple of Path
+        The files.
+
+    Raises
+    ------
+    OSError
+        When a file cannot be written.
+    """
+    import csv
+
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for group in GROUPS:
+        path = folder / f"{group}.csv"
+        header, data = zip(*_columns(run, group), strict=True)
+        # tolist() gives Python numbers, whose repr is the shortest text that reads back equal.
+        lists = [array.astype(int).tolist() if array.dtype == bool else array.tolist() for array in data]
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(header)
+            writer.writerows(zip(*lists, strict=True))
+        written.append(path)
+    return tuple(written)

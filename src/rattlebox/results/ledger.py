@@ -1,0 +1,114 @@
+"""The energy ledger: what was supplied, where it went, and how well the sum closes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .arrays import FloatArray, RunArrays
+from .schema import CHANNELS
+
+
+@dataclass(frozen=True, eq=False)
+class Ledger:
+    """Sums over the energies of a run; every array is (T,) in J.
+
+    The balance is  E(t) - E(0) = W(t) - losses(t)  with the total energy E (structure, particles, elastic
+    contacts, gravity), the work W of load and base, and the losses (viscous, impact, plastic).
+    """
+
+    arrays: RunArrays
+
+    @cached_property
+    def structure(self) -> FloatArray:
+        """Energy of all modes."""
+        return np.asarray(self.arrays.mode_energy.sum(axis=1))
+
+    @cached_property
+    def particles(self) -> FloatArray:
+        """Kinetic energy of all balls."""
+        return np.asarray(self.arrays.ball_energy.sum(axis=1))
+
+    @cached_property
+    def contact(self) -> FloatArray:
+        """Elastic energy of all contacts."""
+        return np.asarray(self.arrays.contact_energy.sum(axis=1))
+
+    @cached_property
+    def gravity(self) -> FloatArray:
+        """Gravity potential of all balls."""
+        return np.asarray(self.arrays.gravity_energy.sum(axis=1))
+
+    @cached_property
+    def motion(self) -> FloatArray:
+        """Energy of structure, particles and elastic contacts, without the gravity potential."""
+        return self.structure + self.particles + self.contact
+
+    @cached_property
+    def total(self) -> FloatArray:
+        """Total energy E(t)."""
+        return self.motion + self.gravity
+
+    @cached_property
+    def work(self) -> FloatArray:
+        """Work W(t) of the load and of the base motion since the start."""
+        return self.arrays.load_work + self.arrays.base_work
+
+    @cached_property
+    def impact_loss(self) -> FloatArray:
+        """Loss by damping in all contacts."""
+        return np.asarray(self.arrays.normal_loss.sum(axis=1))
+
+    @cached_property
+    def plastic_loss(self) -> FloatArray:
+        """Loss by plastic flow in all contacts."""
+        return np.asarray(self.arrays.plastic_loss.sum(axis=1))
+
+    @cached_property
+    def losses(self) -> FloatArray:
+        """All energy lost since the start."""
+        return self.arrays.viscous_loss + self.impact_loss + self.plastic_loss
+
+    @cached_property
+    def supplied(self) -> FloatArray:
+        """Energy available so far: at the start, by load and base, and released by gravity."""
+        return np.asarray(self.motion[0] + self.work + (self.gravity[0] - self.gravity))
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        """E(t) - E(0) - W(t) + losses(t): zero in exact arithmetic."""
+        return np.asarray(self.total - self.total[0] - self.work + self.losses)
+
+    @cached_property
+    def closure(self) -> float:
+        """Largest residual over the energy that was put in.
+
+        The reference is max|W_load| + max|W_base| + E(0), where the gravity potential, whose zero is
+        arbitrary, enters as max|V(t) - V(0)| in place of V(0). It is 0 when nothing ever moved.
+        """
+        arrays = self.arrays
+        reference = (
+            np.max(np.abs(arrays.load_work))
+            + np.max(np.abs(arrays.base_work))
+            + self.motion[0]
+            + np.max(np.abs(self.gravity - self.gravity[0]))
+        )
+        worst = np.max(np.abs(self.residual))
+        if worst == 0.0:
+            return 0.0
+        return float(worst / reference) if reference != 0.0 else float("inf")
+
+    @cached_property
+    def shares(self) -> dict[str, float]:
+        """Shares of the energy supplied by the end: viscous, impact, plastic, and left in the motion.
+
+        They add up to one, to the ledger's closure. NaN when nothing was supplied.
+        """
+        parts = (self.arrays.viscous_loss[-1], self.impact_loss[-1], self.plastic_loss[-1], self.motion[-1])
+        supplied = float(self.supplied[-1])
+        return {
+            channel: float(part) / supplied if supplied > 0.0 else float("nan")
+            for channel, part in zip(CHANNELS, parts, strict=True)
+        }

@@ -1,0 +1,233 @@
+"""Runs in netCDF-4 files, restricted to what every netCDF reader knows.
+
+Numbers are double, 32-bit integer or byte; texts are arrays of characters (UTF-8), not variable-length
+strings; attributes are plain characters. Groups: `motion`, `energy` and `impacts` hold the datasets of a run,
+`counts` the counters, and the root the case, the message and the provenance. Dimensions of length zero are
+left out together with the variables that need them, except `impact`, which is unlimited.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .arrays import ImpactArrays, RunArrays
+from .datasets import columns, labels
+from .provenance import Provenance
+from .schema import COORDINATES, GROUP_TITLES, GROUPS, IMPACT_VARIABLES, RUN_VARIABLES, Kind, variables
+
+if TYPE_CHECKING:
+    from .run import Run
+
+FORMAT = 1
+"""Number of the layout; files with a higher one are refused."""
+
+_STORED: dict[Kind, str] = {"float": "f8", "int": "i4", "bool": "i1"}
+_LABELS = {"point": "points", "ball": "balls", "damper": "dampers", "source": "loads"}
+_COMPRESSION: dict[str, Any] = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
+
+
+def _characters(texts: tuple[str, ...]) -> Any:
+    """Array of single UTF-8 bytes, one row a text, padded with zeros."""
+    encoded = np.array([text.encode() for text in texts])
+    return encoded.view("S1").reshape(len(texts), -1)
+
+
+def _texts(characters: Any) -> tuple[str, ...]:
+    rows = np.ascontiguousarray(characters)
+    return tuple(row.tobytes().rstrip(b"\0").decode() for row in rows)
+
+
+def _attribute(text: str) -> np.bytes_:
+    """Fixed-length characters: older readers do not know variable-length strings."""
+    return np.bytes_(text.encode("ascii", "backslashreplace") or b" ")
+
+
+def _describe(target: Any, **attributes: str) -> None:
+    for name, text in attributes.items():
+        target.attrs[name] = _attribute(text)
+
+
+def _write_text(group: Any, name: str, text: str, long_name: str) -> None:
+    if not text:
+        return
+    characters = np.frombuffer(text.encode(), "S1")
+    group.dimensions[f"{name}_length"] = characters.size
+    variable = group.create_variable(name, (f"{name}_length",), "S1", data=characters)
+    _describe(variable, long_name=long_name, _Encoding="utf-8")
+
+
+def _write_coordinate(group: Any, dim: str, values: Any) -> None:
+    units, long_name = COORDINATES[dim]
+    group.dimensions[dim] = len(values)
+    if isinstance(values, tuple):
+        characters = _characters(values)
+        group.dimensions[f"{dim}_length"] = characters.shape[1]
+        variable = group.create_variable(dim, (dim, f"{dim}_length"), "S1", data=characters)
+        _describe(variable, long_name=long_name, _Encoding="utf-8")
+        return
+    array = np.asarray(values)
+    stored = array.astype("i4") if array.dtype.kind == "i" else array
+    variable = group.create_variable(dim, (dim,), stored.dtype, data=stored)
+    _describe(variable, long_name=long_name, units=units)
+
+
+def _write(run: Run, path: Path) -> None:
+    import h5netcdf  # type: ignore[import-untyped]
+
+    arrays = run.arrays
+    names = labels(arrays)
+    with h5netcdf.File(path, "w", invalid_netcdf=False) as file:
+        _describe(file, title="Rattlebox run", status=arrays.status)
+        file.attrs["rattlebox_format"] = np.int32(FORMAT)
+        for name, value in asdict(run.provenance).items():
+            file.attrs[name] = np.int64(value) if isinstance(value, int) else _attribute(value)
+        file.attrs["wall_time"] = np.float64(arrays.wall_time)
+        _write_text(file, "case", run.case_toml, "case that was run, as the text of a case file")
+        _write_text(file, "message", arrays.message, "what the status means and what to try")
+        if arrays.counts:
+            counts = file.create_group("counts")
+            for name, number in arrays.counts.items():
+                counts.create_variable(name, (), "i8", data=np.int64(number))
+        for title in GROUPS:
+            group = file.create_group(title)
+            _describe(group, title=GROUP_TITLES[title])
+            values = columns(arrays, run.ledger, title)
+            for v in variables(title):
+                if any(dim != "impact" and len(names[dim]) == 0 for dim in v.dims):
+                    continue
+                for dim in v.dims:
+                    if dim == "impact" and dim not in group.dimensions:
+                        group.dimensions[dim] = None
+                        group.resize_dimension(dim, len(arrays.impacts))
+                    elif dim not in group.dimensions:
+                        _write_coordinate(group, dim, names[dim])
+                data = values[v.name]
+                large = _COMPRESSION if data.size > 64 else {}
+                chunks = {"chunks": (max(data.size, 1),)} if v.dims == ("impact",) else {}
+                variable = group.create_variable(v.name, v.dims, _STORED[v.kind], **chunks, **large)
+                if data.size:
+                    variable[...] = data
+                _describe(variable, units=v.units, long_name=v.long_name)
+
+
+def save(run: Run, path: Path) -> Path:
+    """Write a run to one netCDF-4 file; an existing file is replaced once the new one is complete.
+
+    Parameters
+    ----------
+    run
+        Run to write.
+    path
+        File to write.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written.
+    """
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"cannot write {path}: there is no folder {path.parent}")
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        _write(run, temporary)
+        mask = os.umask(0)
+        os.umask(mask)
+        temporary.chmod(0o666 & ~mask)
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    return path
+
+
+def _text_attribute(value: Any) -> str:
+    text = value.decode() if isinstance(value, bytes) else str(value)
+    return "" if text == " " else text
+
+
+def load(path: str | os.PathLike[str]) -> Run:
+    """Read a run from a file that `Run.save` wrote.
+
+    Parameters
+    ----------
+    path
+        netCDF-4 file.
+
+    Returns
+    -------
+    Run
+        Equal to the run that was saved, bit by bit.
+
+    Raises
+    ------
+    FileNotFoundError
+        When there is no such file.
+    ValueError
+        When the file is not a run of Rattlebox, or is one of a later version.
+    """
+    import h5netcdf
+
+    from .run import Run
+
+    path = Path(path)
+    if not path.is_file():
+        raise FileNotFoundError(f"there is no file {path}")
+    try:
+        file = h5netcdf.File(path, "r")
+    except OSError as error:
+        raise ValueError(f"{path} is not a netCDF-4 file") from error
+    with file:
+        layout = file.attrs.get("rattlebox_format")
+        if layout is None:
+            raise ValueError(f"{path} is a netCDF-4 file, but not a run written by Rattlebox")
+        if int(layout) > FORMAT:
+            version = _text_attribute(file.attrs.get("version", "?"))
+            raise ValueError(f"{path} was written by a later Rattlebox ({version}); update to read it")
+        texts: dict[str, Any] = {f.name: _text_attribute(file.attrs[f.name]) for f in fields(Provenance)}
+        provenance = Provenance(**texts | {"seed": int(file.attrs["seed"])})
+        return Run(_read(file), _read_text(file, "case"), provenance)
+
+
+def _read_text(file: Any, name: str) -> str:
+    return file.variables[name][...].tobytes().decode() if name in file.variables else ""
+
+
+def _read(file: Any) -> RunArrays:
+    found: dict[str, Any] = {}
+    for v in RUN_VARIABLES:
+        group = file.groups[v.group]
+        if v.name in group.variables:
+            found[v.name] = group.variables[v.name][...]
+        for dim in v.dims:
+            if dim in _LABELS and dim in group.variables:
+                found[_LABELS[dim]] = _texts(group.variables[dim][...])
+    log = file.groups["impacts"].variables
+    impacts = ImpactArrays(
+        **{
+            v.name: log[v.name][...].astype(bool) if v.kind == "bool" else log[v.name][...]
+            for v in IMPACT_VARIABLES
+        }
+    )
+    counts = file.groups["counts"].variables if "counts" in file.groups else {}
+    return RunArrays(
+        time=file.groups["motion"].variables["time"][...],
+        impacts=impacts,
+        status=_text_attribute(file.attrs["status"]),
+        message=_read_text(file, "message"),
+        counts={name: int(variable[...]) for name, variable in counts.items()},
+        wall_time=float(file.attrs["wall_time"]),
+        **found,
+    )

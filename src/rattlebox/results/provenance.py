@@ -1,0 +1,61 @@
+"""Where a run comes from: program, machine, method and seed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Origin of a run.
+
+    Attributes
+    ----------
+    version
+        Version of Rattlebox that computed the run.
+    method
+        Method of the engine, in one line.
+    seed
+        Seed of the case.
+    created
+        Date and time in UTC, ISO 8601.
+    platform
+        Operating system, machine and Python version.
+    """
+
+    version: str = ""
+    method: str = ""
+    seed: int = 0
+    created: str = ""
+    platform: str = ""
+
+    @classmethod
+    def now(cls, method: str = "", seed: int = 0) -> Provenance:
+        """Provenance of a run that is made here and now.
+
+        Parameters
+        ----------
+        method
+            Method of the engine, in one line.
+        seed
+            Seed of the case.
+        """
+        import platform
+        from datetime import UTC, datetime
+
+        return cls(
+            version=_version(),
+            method=method,
+            seed=int(seed),
+            created=datetime.now(UTC).isoformat(timespec="seconds"),
+            platform=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+        )
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("rattlebox")
+    except PackageNotFoundError:
+        return "unknown"

@@ -1,0 +1,86 @@
+"""Numbers with units as a reader wants them: SI prefixes and four significant digits."""
+
+from __future__ import annotations
+
+import math
+
+PREFIXES: dict[int, str] = {
+    -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T",
+}  # fmt: skip
+"""Prefix of each power of ten."""
+
+MISSING = "-"
+"""Stands for a number that does not exist."""
+
+
+def _exponent(value: float, significant: int) -> int:
+    """Power of ten of the first digit once the number is rounded."""
+    return int(f"{value:.{significant - 1}e}".partition("e")[2])
+
+
+def prefix(value: float) -> tuple[float, str]:
+    """Power of ten and SI prefix in which `value` has one to three digits before the point.
+
+    Parameters
+    ----------
+    value
+        Number in the unit without prefix; zero and non-finite numbers get no prefix.
+
+    Returns
+    -------
+    scale : float
+        Divide by this.
+    name : str
+        Write this before the unit.
+    """
+    if value == 0.0 or not math.isfinite(value):
+        return 1.0, ""
+    power = min(max(3 * (_exponent(value, 4) // 3), min(PREFIXES)), max(PREFIXES))
+    return 10.0**power, PREFIXES[power]
+
+
+def digits(value: float, significant: int = 4) -> str:
+    """Write a number with a fixed count of significant digits and no exponent for ordinary sizes.
+
+    Parameters
+    ----------
+    value
+        Number.
+    significant
+        Count of significant digits.
+    """
+    if not math.isfinite(value):
+        return MISSING if math.isnan(value) else str(value)
+    if value == 0.0:
+        return "0"
+    exponent = _exponent(value, significant)
+    if -4 <= exponent < 7:
+        return f"{value:.{max(significant - 1 - exponent, 0)}f}"
+    return f"{value:.{significant - 1}e}"
+
+
+def quantity(value: float, unit: str, significant: int = 4) -> str:
+    """Write a number with its unit and a fitting SI prefix.
+
+    Parameters
+    ----------
+    value
+        Number in SI units.
+    unit
+        Unit, such as "m" or "m/s"; "" or "1" for a pure number, "%" for a share written in per cent.
+    significant
+        Count of significant digits.
+
+    Examples
+    --------
+    >>> quantity(0.00041234, "m")
+    '412.3 µm'
+    """
+    if math.isnan(value):
+        return MISSING
+    if unit == "%":
+        return f"{digits(100.0 * value, significant)} %"
+    if unit in ("", "1"):
+        return digits(value, significant)
+    scale, name = prefix(value)
+    return f"{digits(value / scale, significant)} {name}{unit}"

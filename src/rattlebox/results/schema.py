@@ -1,0 +1,132 @@
+"""What a run holds: every variable with its group, dimensions, unit and meaning, told once.
+
+The arrays are checked against this table, and the datasets and all files are written from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Group = Literal["motion", "energy", "impacts"]
+Kind = Literal["float", "int", "bool"]
+
+GROUPS: tuple[Group, ...] = ("motion", "energy", "impacts")
+GROUP_TITLES: dict[Group, str] = {
+    "motion": "Motion of the structure and the balls in the frame of the base",
+    "energy": "Energy ledger in the frame of the base",
+    "impacts": "Impact log, one entry for each closed contact",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One variable of a run.
+
+    Attributes
+    ----------
+    name
+        Name of the field in the arrays, of the variable in datasets and files.
+    group
+        Dataset that holds it.
+    dims
+        Names of the dimensions, in order.
+    units
+        SI unit, "1" for pure numbers.
+    long_name
+        Meaning in a few words, fit for an axis label.
+    kind
+        Number type.
+    """
+
+    name: str
+    group: Group
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    kind: Kind = "float"
+
+
+_TIME = ("time",)
+_POINT = ("time", "point")
+_BALL = ("time", "ball")
+_DAMPER = ("time", "damper")
+_IMPACT = ("impact",)
+
+RUN_VARIABLES: tuple[Variable, ...] = (
+    Variable("displacement", "motion", _POINT, "m", "displacement of the structure"),
+    Variable("velocity", "motion", _POINT, "m/s", "velocity of the structure"),
+    Variable("ball_position", "motion", _BALL, "m", "ball position from the cavity's rest place"),
+    Variable("ball_velocity", "motion", _BALL, "m/s", "ball velocity"),
+    Variable("relative_position", "motion", _BALL, "m", "ball position in the cavity"),
+    Variable("relative_velocity", "motion", _BALL, "m/s", "ball velocity relative to the cavity"),
+    Variable("base_displacement", "motion", _TIME, "m", "displacement of the base"),
+    Variable("base_velocity", "motion", _TIME, "m/s", "velocity of the base"),
+    Variable("base_acceleration", "motion", _TIME, "m/s^2", "acceleration of the base"),
+    Variable("cavity_force", "motion", _DAMPER, "N", "force of the balls on the cavity"),
+    Variable("load", "motion", ("time", "source"), "N", "load on the structure"),
+    Variable("ball_damper", "motion", ("ball",), "1", "damper that holds the ball, from 0", "int"),
+    Variable("ball_centre", "motion", ("ball",), "m", "ball place in the packed, centred row"),
+    Variable("clearance", "motion", ("damper",), "m", "total clearance of the cavity"),
+    Variable("mode_frequency", "energy", ("mode",), "Hz", "natural frequency of the mode"),
+    Variable("mode_energy", "energy", ("time", "mode"), "J", "energy of the mode"),
+    Variable("ball_energy", "energy", _BALL, "J", "kinetic energy of the ball"),
+    Variable("contact_energy", "energy", _DAMPER, "J", "elastic energy of the contacts"),
+    Variable("gravity_energy", "energy", _DAMPER, "J", "gravity potential of the balls"),
+    Variable("load_work", "energy", _TIME, "J", "work of the load"),
+    Variable("base_work", "energy", _TIME, "J", "work of the base motion"),
+    Variable("viscous_loss", "energy", _TIME, "J", "loss in the structure's damping"),
+    Variable("normal_loss", "energy", _DAMPER, "J", "loss in impacts by damping"),
+    Variable("plastic_loss", "energy", _DAMPER, "J", "loss in impacts by plastic flow"),
+)
+
+IMPACT_VARIABLES: tuple[Variable, ...] = (
+    Variable("damper", "impacts", _IMPACT, "1", "damper of the contact, from 0", "int"),
+    Variable(
+        "contact", "impacts", _IMPACT, "1", "contact in the row: 0 trailing wall, n leading wall", "int"
+    ),
+    Variable("time", "impacts", _IMPACT, "s", "time of first touch"),
+    Variable("approach_speed", "impacts", _IMPACT, "m/s", "approach speed at first touch"),
+    Variable("restitution", "impacts", _IMPACT, "1", "coefficient of restitution used"),
+    Variable("separation_speed", "impacts", _IMPACT, "m/s", "separation speed at the end of the contact"),
+    Variable("duration", "impacts", _IMPACT, "s", "duration of the contact"),
+    Variable("peak_overlap", "impacts", _IMPACT, "m", "largest overlap"),
+    Variable("peak_force", "impacts", _IMPACT, "N", "largest contact force"),
+    Variable("energy_lost", "impacts", _IMPACT, "J", "energy lost in the contact"),
+    Variable("complete", "impacts", _IMPACT, "1", "contact opened before the run ended", "bool"),
+)
+
+DERIVED_VARIABLES: tuple[Variable, ...] = (
+    Variable("structure", "energy", _TIME, "J", "energy of the structure"),
+    Variable("particles", "energy", _TIME, "J", "kinetic energy of the balls"),
+    Variable("total", "energy", _TIME, "J", "total energy"),
+    Variable("work", "energy", _TIME, "J", "work of load and base motion"),
+    Variable("losses", "energy", _TIME, "J", "energy lost since the start"),
+    Variable("residual", "energy", _TIME, "J", "what the ledger misses"),
+    Variable("share", "energy", ("channel",), "1", "share of the supplied energy at the end"),
+)
+
+CHANNELS: tuple[str, ...] = ("viscous", "impact", "plastic", "motion")
+"""Where the supplied energy can be found at the end of a run; the shares add up to one."""
+
+COORDINATES: dict[str, tuple[str, str]] = {
+    "time": ("s", "time"),
+    "point": ("", "point of the structure"),
+    "ball": ("", "ball"),
+    "damper": ("", "damper"),
+    "source": ("", "load"),
+    "mode": ("1", "number of the mode"),
+    "channel": ("", "channel of the energy"),
+}
+"""Unit and meaning of each coordinate; names have no unit."""
+
+
+def variables(group: Group) -> tuple[Variable, ...]:
+    """Stored and derived variables of a dataset, in the order of files.
+
+    Parameters
+    ----------
+    group
+        "motion", "energy" or "impacts".
+    """
+    return tuple(v for v in RUN_VARIABLES + DERIVED_VARIABLES + IMPACT_VARIABLES if v.group == group)

@@ -1,0 +1,252 @@
+"""The numbers of a run that one looks at first, for one run or several side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TextIO
+
+import numpy as np
+
+from .quantities import MISSING, quantity
+from .schema import CHANNELS
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from .run import Run
+
+Value = float | int | str
+
+_MOST_POINTS = 4
+_CHANNEL_LABELS = {
+    "viscous": "lost in the structure",
+    "impact": "lost in impacts",
+    "plastic": "lost in plastic flow",
+    "motion": "left in the motion",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """One line: key of the value, its label, and its unit ("%" for a share, "" for a count or a text)."""
+
+    key: str
+    label: str
+    unit: str
+
+    def text(self, values: Mapping[str, Value]) -> str:
+        value = values.get(self.key)
+        if value is None:
+            return MISSING
+        if isinstance(value, float):
+            return f"{value:.1e}" if self.unit == "1e" else quantity(value, self.unit)
+        return f"{value:,}".replace(",", " ") if isinstance(value, int) else value
+
+
+def _measure(run: Run) -> dict[str, Value]:
+    """Numbers of the summary, in SI units, in the order of its lines."""
+    arrays, log = run.arrays, run.arrays.impacts
+    values: dict[str, Value] = {
+        "status": run.status,
+        "end_time": float(arrays.time[-1]),
+        "impacts": len(log),
+        "supplied_energy": float(run.ledger.supplied[-1]),
+    }
+    values |= {f"share_{channel}": run.ledger.shares[channel] for channel in CHANNELS}
+    values["closure"] = run.closure
+    values["peak_contact_force"] = _largest(log.peak_force)
+    values["largest_approach_speed"] = _largest(log.approach_speed)
+    if arrays.mode_frequency.size:
+        for k, point in enumerate(arrays.points):
+            x = arrays.displacement[:, k]
+            values[f"peak_displacement[{point}]"] = _largest(np.abs(x))
+            values[f"rms_displacement[{point}]"] = _rms(arrays.time, x)
+    values["computing_time"] = arrays.wall_time
+    return values
+
+
+def _largest(x: Any) -> float:
+    return float(np.max(x)) if x.size else float("nan")
+
+
+def _rms(time: Any, x: Any) -> float:
+    """Root mean square over time of a motion sampled at uneven times."""
+    if time.size < 2:
+        return float(np.abs(x[0]))
+    return float(np.sqrt(np.trapezoid(x**2, time) / (time[-1] - time[0])))
+
+
+def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
+    """Lines that any of the runs needs."""
+    rows = [
+        _Row("status", "status", ""),
+        _Row("end_time", "simulated time", "s"),
+        _Row("impacts", "impacts", ""),
+        _Row("supplied_energy", "energy supplied", "J"),
+    ]
+    for channel in CHANNELS:
+        key = f"share_{channel}"
+        if channel != "plastic" or any(values[key] != 0.0 for values in all_values):
+            rows.append(_Row(key, _CHANNEL_LABELS[channel], "%"))
+    rows += [
+        _Row("closure", "ledger closure", "1e"),
+        _Row("peak_contact_force", "peak contact force", "N"),
+        _Row("largest_approach_speed", "largest approach speed", "m/s"),
+    ]
+    peaks = dict.fromkeys(
+        key for values in all_values for key in values if key.startswith("peak_displacement[")
+    )
+    points = [key.partition("[")[2][:-1] for key in peaks]
+    for point in points[:_MOST_POINTS]:
+        where = f", {point}" if len(points) > 1 else ""
+        rows.append(_Row(f"peak_displacement[{point}]", f"peak displacement{where}", "m"))
+        rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
+    rows.append(_Row("computing_time", "computing time", "s"))
+    return rows
+
+
+class _Report:
+    """A table of texts with a title, one label and one or more columns, and notes below."""
+
+    def __init__(self, title: str, columns: tuple[str, ...], notes: tuple[str, ...]) -> None:
+        self._title = title
+        self._columns = columns
+        self._notes = notes
+
+    def _cells(self) -> list[tuple[str, ...]]:
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        cells = self._cells()
+        if any(self._columns):
+            cells.insert(0, ("", *self._columns))
+        widths = [max(len(row[k]) for row in cells) for k in range(len(cells[0]))]
+        lines = [self._title] if self._title else []
+        for row in cells:
+            padded = [text.rjust(width) for text, width in zip(row, widths, strict=True)]
+            padded[0] = row[0].ljust(widths[0])
+            lines.append("  ".join(padded).rstrip())
+        return "\n".join((*lines, *self._notes))
+
+    __repr__ = __str__
+
+    def __rich__(self) -> Table:
+        from rich import box
+        from rich.markup import escape
+        from rich.table import Table
+
+        table = Table(
+            title=escape(self._title) or None,
+            caption=escape("\n".join(self._notes)) or None,
+            box=box.SIMPLE_HEAD,
+            show_header=any(self._columns),
+            title_justify="left",
+            caption_justify="left",
+        )
+        table.add_column("")
+        for column in self._columns:
+            table.add_column(escape(column), justify="right", no_wrap=True)
+        for label, *texts in self._cells():
+            table.add_row(escape(label), *(escape(text) for text in texts))
+        return table
+
+    def show(self, file: TextIO | None = None) -> None:
+        """Print a table with lines in a terminal, and plain text anywhere else.
+
+        Parameters
+        ----------
+        file
+            Where to print; standard output when left out.
+        """
+        from rich.console import Console
+
+        console = Console(file=file)
+        if console.is_terminal:
+            console.print(self)
+        else:
+            print(str(self), file=file)
+
+
+class Summary(_Report):
+    """The numbers of one run that one looks at first.
+
+    `print(summary)` writes plain text, `rich.print(summary)` a table, `summary.show()` whichever fits. Peak
+    and RMS displacement are taken at the output times, relative to the base.
+
+    Parameters
+    ----------
+    run
+        Run to summarise.
+
+    Attributes
+    ----------
+    values : dict
+        Numbers in SI units: `status`, `end_time`, `impacts`, `supplied_energy`, `share_viscous`,
+        `share_impact`, `share_plastic`, `share_motion` (of the energy supplied, adding to one), `closure`,
+        `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`,
+        `rms_displacement[point]`, `computing_time`.
+    """
+
+    def __init__(self, run: Run) -> None:
+        super().__init__("", ("",), (run.message,) if run.message and not run.ok else ())
+        self.values = _measure(run)
+
+    def _cells(self) -> list[tuple[str, ...]]:
+        return [(row.label, row.text(self.values)) for row in _rows((self.values,))]
+
+
+class Comparison(_Report):
+    """The summaries of several runs side by side, one column a run.
+
+    Parameters
+    ----------
+    runs
+        Runs by the name that heads their column.
+    title
+        Title above the table.
+
+    Attributes
+    ----------
+    values : dict
+        For each name the `values` of that run's summary.
+
+    Raises
+    ------
+    ValueError
+        When there is no run.
+    """
+
+    def __init__(self, runs: Mapping[str, Run], title: str = "") -> None:
+        if not runs:
+            raise ValueError("there is no run to compare")
+        notes = tuple(f"{name}: {run.message}" for name, run in runs.items() if run.message and not run.ok)
+        super().__init__(title, tuple(runs), notes)
+        self.values = {name: _measure(run) for name, run in runs.items()}
+
+    def _cells(self) -> list[tuple[str, ...]]:
+        every = tuple(self.values.values())
+        return [(row.label, *(row.text(values) for values in every)) for row in _rows(every)]
+
+
+def compare(runs: Mapping[str, Run], title: str = "") -> Comparison:
+    """Set the summaries of several runs side by side.
+
+    Parameters
+    ----------
+    runs
+        Runs by the name that heads their column.
+    title
+        Title above the table.
+
+    Returns
+    -------
+    Comparison
+        `str()` gives plain text, rich prints a table, `.show()` picks one, `.values` holds the numbers.
+
+    Raises
+    ------
+    ValueError
+        When there is no run.
+    """
+    return Comparison(runs, title)
