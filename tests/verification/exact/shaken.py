@@ -116,7 +116,7 @@ class InelasticBall:
     approach: float
 
     def apparent_mass(self) -> tuple[float, float]:
-        """m' and m'' of m_app = m' - i m'': first harmonic of the force over that of the table's acceleration."""
+        """M' and m'' of m_app = m' - i m'': first harmonic of the force over that of the table's acceleration."""
         g = self.gamma
         start, stop = self.landing, self.take_off + 2 * math.pi
         # Force on the ball: 1 - gamma sin t while it rests on the table, and an impulse on landing.

@@ -1,0 +1,250 @@
+"""Cases of the verification, built through the public interface only."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import rattlebox as rb
+
+from .exact import masri_caughey, shaken
+from .exact.impact_oscillator import StopOrbit
+
+YOUNG, POISSON, DENSITY, YIELD = 200e9, 0.3, 7850.0, 1030e6
+"""The steel of the seed."""
+RADIUS = 0.01
+GAP = 1e-3
+MODULUS = YOUNG / (2 * (1 - POISSON**2))
+MASS = DENSITY * 4 / 3 * math.pi * RADIUS**3
+STIFFNESS = 4 / 3 * MODULUS * math.sqrt(RADIUS)
+
+
+def ball(mass: float | None = None) -> Any:
+    """Return the small steel ball, of a given mass where theory asks for one."""
+    return rb.Sphere(radius=RADIUS, material="steel", mass=mass)
+
+
+def single_impact(contact: Any, speed: float, duration: float) -> Any:
+    """Return a ball thrown at a fixed wall a millimetre away."""
+    return rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ImpactDamper(ball=ball(), gap=GAP, start=0.0, velocity=speed, contact=contact),
+        duration=GAP / speed + duration,
+        output=rb.Output(times=[0.0]),
+    )
+
+
+def still_cavity(contact: Any, speed: float, duration: float, method: Any = None) -> Any:
+    """Return a ball that bounces in a fixed cavity."""
+    return rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ImpactDamper(ball=ball(), gap=1e-4, velocity=speed, contact=contact),
+        duration=duration,
+        method=method or rb.EventDriven(),
+        output=rb.Output(times=[0.0]),
+    )
+
+
+def impact_damper(
+    orbit: masri_caughey.Orbit,
+    half_cycles: float,
+    *,
+    method: Any = None,
+    contact: Any = None,
+    shift: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
+) -> Any:
+    """Return the damper of Masri and Caughey on its orbit, begun where the structure passes through rest.
+
+    `shift` disturbs the start: displacement and velocity of the structure, position and velocity of the ball.
+    """
+    begin = orbit.zero_crossing()
+    x, v = orbit.structure(begin)
+    y, w = orbit.ball(begin)
+    gap = 0.5 * orbit.clearance
+    law = contact or rb.Tsuji(restitution=orbit.restitution)
+    return rb.Case(
+        structure=rb.SDOF(
+            mass=1.0,
+            stiffness=1.0,
+            damping_ratio=orbit.zeta,
+            displacement=x + shift[0],
+            velocity=v + shift[1],
+        ),
+        damper=rb.ImpactDamper(
+            ball=ball(orbit.mass_ratio),
+            gap=gap,
+            start=(y + shift[2]) / gap,
+            velocity=w + shift[3],
+            contact=law,
+        ),
+        load=rb.Harmonic(
+            amplitude=1.0,
+            frequency=f"{orbit.omega!r} rad/s",
+            phase=orbit.load_phase + orbit.omega * begin,
+        ),
+        duration=half_cycles * orbit.half_period,
+        method=method or rb.Newton(restitution=orbit.restitution),
+        output=rb.Output(times=[0.0]),
+    )
+
+
+def shaken_cavity(orbit: shaken.TwoImpacts, cycles: float) -> Any:
+    """Return a ball in a cavity that moves as orbit.amplitude sin t, begun in the middle between its walls."""
+    begin = 0.5 * math.pi
+    phase = begin + orbit.phase
+    return rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{orbit.amplitude!r} m", frequency="1 rad/s", phase=phase)),
+        damper=rb.ImpactDamper(
+            ball=ball(1.0),
+            gap=1.0,
+            start=-orbit.amplitude * math.sin(phase),
+            velocity=-orbit.speed - orbit.amplitude * math.cos(phase),
+            contact=rb.Tsuji(restitution=orbit.restitution),
+        ),
+        duration=2 * math.pi * cycles,
+        method=rb.Newton(restitution=orbit.restitution),
+        output=rb.Output(times=[0.0]),
+    )
+
+
+def sticky_load(ratio: float, cycles: float) -> Any:
+    """Return an inelastic ball in a cavity that moves as `ratio` sin t, with a free clearance of one."""
+    return rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{ratio!r} m", frequency="1 rad/s")),
+        damper=rb.ImpactDamper(ball=ball(1.0), gap=0.5, start=-1.0, contact=rb.Tsuji(restitution=0.5)),
+        duration=2 * math.pi * cycles,
+        method=rb.Newton(restitution=0.0),
+        output=rb.Output(times=[0.0]),
+    )
+
+
+TABLE_GAP = 50.0
+
+
+def table(orbit: shaken.TableOrbit, bounces: float, shift: Sequence[float] = (0.0, 0.0)) -> Any:
+    """Return a ball bouncing on a shaken table, g = omega = 1, begun at the top of a flight.
+
+    `shift` disturbs the ball's position and velocity relative to the table.
+    """
+    half = math.pi * orbit.cycles
+    phase = orbit.phase + half
+    height = orbit.gamma * math.sin(orbit.phase) + 0.5 * orbit.launch**2 - orbit.gamma * math.sin(phase)
+    return rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{orbit.gamma!r} m", frequency="1 rad/s", phase=phase)),
+        damper=rb.ImpactDamper(
+            ball=ball(1.0),
+            gap=TABLE_GAP,
+            start=(height + shift[0]) / TABLE_GAP - 1,
+            velocity=-orbit.gamma * math.cos(phase) + shift[1],
+            contact=rb.Tsuji(restitution=orbit.restitution),
+            gravity=-1.0,
+        ),
+        duration=2 * half * bounces,
+        method=rb.Newton(restitution=orbit.restitution),
+        output=rb.Output(times=[0.0]),
+    )
+
+
+def dropped(height: float, restitution: float, gravity: float, duration: float) -> Any:
+    """Return a ball dropped on a fixed floor."""
+    return rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ImpactDamper(
+            ball=ball(1.0),
+            gap=1.0,
+            start=height - 1.0,
+            gravity=-gravity,
+            contact=rb.Tsuji(restitution=restitution),
+        ),
+        duration=duration,
+        method=rb.Newton(restitution=restitution),
+        output=rb.Output(times=[0.0]),
+    )
+
+
+def inelastic_ball(gamma: float, cycles: float, times: Sequence[float] = (0.0,)) -> Any:
+    """Return an inelastic ball that starts at rest on a table gamma sin t, g = 1."""
+    return rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{gamma!r} m", frequency="1 rad/s")),
+        damper=rb.ImpactDamper(
+            ball=ball(1.0), gap=TABLE_GAP, start=-1.0, gravity=-1.0, contact=rb.Tsuji(restitution=0.5)
+        ),
+        duration=2 * math.pi * cycles,
+        method=rb.Newton(restitution=0.0),
+        output=rb.Output(times=list(times)),
+    )
+
+
+STOP_GAP = 20.0
+
+
+def impact_oscillator(orbit: StopOrbit, cycles: float) -> Any:
+    """Return an oscillator that hits a stop, a ball of enormous mass at rest; begun half a cycle after an impact."""
+    begin = math.pi / orbit.omega
+    x, v = orbit.state(begin)
+    return rb.Case(
+        structure=rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio=orbit.zeta, displacement=x, velocity=v),
+        damper=rb.ImpactDamper(
+            ball=ball(1e15),
+            gap=STOP_GAP,
+            start=(orbit.stop - STOP_GAP) / STOP_GAP,
+            contact=rb.Tsuji(restitution=orbit.restitution),
+        ),
+        load=rb.Harmonic(
+            amplitude=1.0,
+            frequency=f"{orbit.omega!r} rad/s",
+            phase=orbit.load_phase + orbit.omega * begin + 0.5 * math.pi,
+        ),
+        duration=cycles * 2 * math.pi / orbit.omega,
+        method=rb.Newton(restitution=orbit.restitution),
+        output=rb.Output(times=[0.0]),
+    )
+
+
+def seed_case(
+    *,
+    start: float = 0.0,
+    force: float = 5000.0,
+    contact: Any = None,
+    duration: float = 5.0,
+    wall: str | None = None,
+    method: Any = None,
+    times: Sequence[float] | None = None,
+    mass: float | None = None,
+) -> Any:
+    """Return the steel ball of the seed on its oscillator, under a half sine of one millisecond."""
+    return rb.Case(
+        structure=rb.SDOF(mass=20.0, stiffness=80e3, damping=25.3),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius=0.03317, material="steel", mass=mass),
+            gap=0.4e-3,
+            wall=wall,
+            start=start,
+            contact=contact or rb.Tsuji(alpha=0.006313, ending="zero_overlap"),
+        ),
+        load=rb.HalfSine(amplitude=force, duration=1e-3),
+        duration=duration,
+        method=method or rb.EventDriven(),
+        output=rb.Output(times=list(times)) if times is not None else rb.Output(),
+    )
+
+
+def five_balls(duration: float = 2.0) -> Any:
+    """Return a row of five unequal balls at the tip of a structure with three modes, struck and shaken."""
+    materials = ["steel", "brass", "glass", "steel", "aluminium"]
+    radii = [6e-3, 5e-3, 4e-3, 5e-3, 7e-3]
+    return rb.Case(
+        structure=rb.Modal(
+            frequencies=[8.0, 23.0, 51.0], damping_ratios=[0.004, 0.006, 0.01], shapes={"tip": [0.5, -0.35, 0.2]}
+        ),
+        damper=rb.ImpactDamper(
+            balls=[rb.Sphere(radius=r, material=m) for r, m in zip(radii, materials, strict=True)],
+            gap=0.6e-3,
+            start=[-0.5, -0.2, 0.0, 0.3, 0.6],
+            contact=rb.Tsuji(restitution=0.9),
+        ),
+        load=[
+            rb.HalfSine(amplitude=600.0, duration=2e-3, point="tip"),
+            rb.Harmonic(amplitude=20.0, frequency=9.0, point="tip"),
+        ],
+        duration=duration,
+    )

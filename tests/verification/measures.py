@@ -1,0 +1,319 @@
+"""What runs give where an exact value is known: shared by the tests and by the table of the docs."""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+import rattlebox as rb
+
+from . import cases
+from .exact import dashpot, impact_oscillator, masri_caughey, printed, restitution_laws, shaken
+
+ENDINGS = ("zero_overlap", "zero_force")
+
+
+@dataclass(frozen=True)
+class Line:
+    """One comparison: what was asked, the exact value, ours and the relative difference that the method allows."""
+
+    item: str
+    case: str
+    exact: float
+    ours: float
+    allowed: float
+
+    @property
+    def difference(self) -> float:
+        """Difference relative to the exact value."""
+        return abs(self.ours - self.exact) / abs(self.exact)
+
+    @property
+    def held(self) -> bool:
+        """Whether the difference is within what the method allows."""
+        return self.difference <= self.allowed
+
+
+def simulate(case: Any) -> Any:
+    """Run a case that must finish."""
+    run = rb.simulate(case)
+    if not run.ok:
+        raise AssertionError(f"{run.status}: {run.message}")
+    return run
+
+
+def first_impact(case: Any) -> tuple[float, float, float, float]:
+    """Return restitution, duration, peak overlap and peak force of the first impact."""
+    log = simulate(case).arrays.impacts
+    return (
+        float(log.separation_speed[0] / log.approach_speed[0]),
+        float(log.duration[0]),
+        float(log.peak_overlap[0]),
+        float(log.peak_force[0]),
+    )
+
+
+def tsuji() -> Iterator[Line]:
+    """Yield restitution, contact time and overlap of Tsuji's law against a fixed wall."""
+    speed = 0.7
+    scale = (cases.MASS / cases.STIFFNESS) ** 0.4 * speed**-0.2
+    for zeta in (0.0, 0.1, 0.3, 0.5, 0.9):
+        for ending in ENDINGS:
+            contact = rb.Tsuji(alpha=math.sqrt(5) * zeta, ending=ending)
+            time = dashpot.tsuji_contact_time(zeta, ending) * scale
+            e, duration, peak, _ = first_impact(cases.single_impact(contact, speed, 1.5 * time))
+            name = f"Tsuji, damping ratio {zeta}, ends at {ending.replace('_', ' ')}"
+            yield Line("1", f"{name}: restitution", dashpot.restitution(zeta, ending), e, 1e-10)
+            yield Line("1", f"{name}: contact time", time, duration, 1e-10)
+            overlap = dashpot.tsuji_peak_overlap(zeta) * (cases.MASS * speed**2 / cases.STIFFNESS) ** 0.4
+            yield Line("1", f"{name}: largest overlap", overlap, peak, 1e-10)
+
+
+def linear() -> Iterator[Line]:
+    """Yield restitution and contact time of the linear spring-dashpot against a fixed wall."""
+    speed, stiffness = 0.7, 1e7
+    rate = math.sqrt(stiffness / cases.MASS)
+    for zeta in (0.0, 0.1, 0.5, 0.9):
+        for ending in ENDINGS:
+            contact = rb.Linear(stiffness=stiffness, damping=2 * zeta * cases.MASS * rate, ending=ending)
+            time = dashpot.linear_contact_time(zeta, ending) / rate
+            e, duration, _, force = first_impact(cases.single_impact(contact, speed, 1.5 * time))
+            name = f"linear, damping ratio {zeta}, ends at {ending.replace('_', ' ')}"
+            yield Line("1", f"{name}: restitution", dashpot.restitution(zeta, ending), e, 1e-10)
+            yield Line("1", f"{name}: contact time", time, duration, 1e-10)
+            top = dashpot.linear_peak_force(zeta) * speed * rate * cases.MASS
+            yield Line("1", f"{name}: largest force", top, force, 1e-10)
+
+
+def asked() -> Iterator[Line]:
+    """Yield the restitution that a contact returns when it is asked for."""
+    for e in (0.05, 0.3, 0.8, 0.99117, 1.0):
+        for ending in ENDINGS:
+            for contact in (rb.Tsuji(restitution=e, ending=ending), rb.Linear(stiffness=1e7, restitution=e, ending=ending)):
+                got = first_impact(cases.single_impact(contact, 0.3, 1e-3))[0]
+                yield Line("1", f"{type(contact).__name__}, e = {e} asked for, {ending.replace('_', ' ')}", e, got, 1e-10)
+
+
+def jackson_green() -> Iterator[Line]:
+    """Yield speeds of a ball in a fixed cavity after n hits, over the critical speed."""
+    strain = cases.YIELD / cases.YOUNG
+    critical = restitution_laws.jackson_green_speed(
+        cases.RADIUS, cases.MASS, cases.MODULUS, cases.YIELD, cases.POISSON
+    )
+    contact = rb.Tsuji(restitution=rb.JacksonGreen())
+    log = simulate(cases.still_cavity(contact, 10 * critical, 0.2)).arrays.impacts
+    for hits in printed.JACKSON_GREEN_HITS:
+        exact = restitution_laws.jackson_green_after(10, hits, strain)
+        # Every contact adds its own error to the speed.
+        yield Line(
+            "2", f"Jackson-Green, V/V_c after {hits} hits", exact, log.separation_speed[hits - 1] / critical, 1e-10 * hits
+        )
+
+
+def thornton() -> Iterator[Line]:
+    """Yield restitution of the hysteretic contact."""
+    pressure = 1.6 * cases.YIELD
+    critical = restitution_laws.thornton_speed(cases.RADIUS, cases.MASS, cases.MODULUS, pressure)
+    for ratio in printed.THORNTON:
+        case = cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 2e-3 / ratio)
+        yield Line("3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10)
+
+
+def stable(key: tuple[float, float, float]) -> masri_caughey.Orbit:
+    """Return the orbit that is printed for (mass ratio, restitution, clearance)."""
+    multiplier = printed.MASRI_CAUGHEY[key][2]
+    return min(
+        masri_caughey.orbits(*key), key=lambda orbit: abs(max(abs(orbit.multipliers())) - multiplier)
+    )
+
+
+def differences(state: Callable[[NDArray[np.float64]], NDArray[np.float64]], steps: list[float]) -> Any:
+    """Return the Jacobian of a map at zero by central differences of fourth order."""
+    columns = []
+    for k, step in enumerate(steps):
+        d = np.zeros(len(steps))
+        d[k] = step
+        near, far = state(d) - state(-d), state(2 * d) - state(-2 * d)
+        columns.append((8 * near - far) / (12 * step))
+    return np.array(columns).T
+
+
+def damper_multiplier(orbit: masri_caughey.Orbit) -> float:
+    """Largest multiplier of the mirrored half-cycle map, from disturbed runs."""
+
+    def end(shift: NDArray[np.float64]) -> NDArray[np.float64]:
+        a = simulate(cases.impact_damper(orbit, 1.0, shift=tuple(shift))).arrays
+        return np.array(
+            [a.displacement[-1, 0], a.velocity[-1, 0], a.ball_position[-1, 0], a.ball_velocity[-1, 0]]
+        )
+
+    size = 1e-3 * orbit.clearance
+    return float(max(abs(np.linalg.eigvals(-differences(end, [size] * 4)))))
+
+
+def impact_damper() -> Iterator[Line]:
+    """Yield ball speed and multiplier of the orbits of Masri and Caughey."""
+    for key in printed.MASRI_CAUGHEY:
+        orbit = stable(key)
+        name = "Masri-Caughey, mass ratio {}, e {}, clearance {}".format(*key)
+        exact = max(abs(orbit.multipliers()))
+        # Differences of fourth order with steps of a thousandth: some 1e-12 twelfth powers, 1e-12 of rounding.
+        yield Line("4", f"{name}: multiplier", exact, damper_multiplier(orbit), 1e-7)
+        if exact < 1:
+            run = simulate(cases.impact_damper(orbit, 40.0))
+            yield Line("4", f"{name}: approach speed", orbit.approach, run.arrays.impacts.approach_speed[-1], 1e-10)
+
+
+SOFT_KEY = (0.1, 0.25, 20)
+SOFT_TIMES = (1 / 80, 1 / 160, 1 / 320, 1 / 640)
+
+
+def soft_errors(law: str = "linear") -> tuple[list[float], list[float]]:
+    """Return contact times over the period, and relative errors of the approach speed of soft impact dampers."""
+    orbit = stable(SOFT_KEY)
+    error = []
+    for fraction in SOFT_TIMES:
+        time = fraction * 2 * orbit.half_period
+        contact = rb.Linear(contact_time=time, restitution=orbit.restitution, ending="zero_force")
+        run = simulate(cases.impact_damper(orbit, 160.0, method=rb.EventDriven(), contact=contact))
+        log = run.arrays.impacts
+        speeds = log.approach_speed[log.complete][-2:]
+        error.append(float(speeds.mean() / orbit.approach - 1))
+    return list(SOFT_TIMES), error
+
+
+def soft_order() -> float:
+    """Return the order at which soft impacts approach hard ones as the contact time goes to zero."""
+    times, error = soft_errors()
+    return math.log(error[-2] / error[-1]) / math.log(times[-2] / times[-1])
+
+
+def soft_limit() -> Iterator[Line]:
+    """Yield the approach speed of soft impacts extrapolated to no contact time."""
+    times, error = soft_errors()
+    orbit = stable(SOFT_KEY)
+    # Polynomial through the four runs; what is left is of fourth order in the longest contact time, at most 1e-5.
+    limit = sum(
+        e * math.prod(t / (t - own) for j, t in enumerate(times) if j != i)
+        for i, (own, e) in enumerate(zip(times, error, strict=True))
+    )
+    yield Line(
+        "4", "soft contact extrapolated to contact time 0: approach speed", orbit.approach, orbit.approach * (1 + limit), 1e-5
+    )
+
+
+def slow_manifold() -> Iterator[Line]:
+    """Yield ball speeds in a shaken cavity with two impacts a cycle."""
+    for e in printed.SLOW_MANIFOLD_THRESHOLD:
+        for above in (1.001, 1.5):
+            orbit = shaken.two_impacts(e, above * shaken.threshold(e))
+            log = simulate(cases.shaken_cavity(orbit, 20.0)).arrays.impacts
+            yield Line(
+                "5", f"shaken cavity, e {e}, {above} x threshold: approach speed", orbit.approach, log.approach_speed[-1], 1e-9
+            )
+
+
+def collect_and_collide() -> Iterator[Line]:
+    """Yield energy lost in a cycle by a ball that sticks to the walls."""
+    for ratio in printed.COLLECT_AND_COLLIDE:
+        log = simulate(cases.sticky_load(ratio, 10.25)).arrays.impacts
+        landed = log.energy_lost[log.energy_lost > 1e-6 * log.energy_lost.max()]
+        ours = float(landed[-2:].sum() / ratio**2)
+        yield Line("6", f"collect and collide, A/g = {ratio}: energy a cycle", shaken.collect_and_collide(ratio), ours, 1e-10)
+
+
+def table_multiplier(orbit: shaken.TableOrbit) -> Any:
+    """Return the Jacobian of the map from one flight's top to the next, from disturbed runs."""
+
+    def end(shift: NDArray[np.float64]) -> NDArray[np.float64]:
+        a = simulate(cases.table(orbit, 1.0, tuple(shift))).arrays
+        return np.array([a.relative_position[-1, 0], a.relative_velocity[-1, 0]])
+
+    return differences(end, [1e-3, 1e-3])
+
+
+def doubling(restitution: float, cycles: int) -> float:
+    """Return the acceleration at which the bouncing motion doubles its period, from disturbed runs."""
+
+    def flip(gamma: float) -> float:
+        jacobian = table_multiplier(shaken.table_orbit(restitution, gamma, cycles))
+        return float(1 + np.trace(jacobian) + np.linalg.det(jacobian))
+
+    middle = shaken.table_bounds(restitution, cycles)[1]
+    return float(brentq(flip, 0.95 * middle, 1.05 * middle, xtol=1e-9))
+
+
+def vibrating_table() -> Iterator[Line]:
+    """Yield impact speed and doubling threshold of a ball on a shaken table."""
+    for (e, n), (start, end) in printed.VIBRATING_TABLE.items():
+        orbit = shaken.table_orbit(e, 0.5 * (start + end), n)
+        log = simulate(cases.table(orbit, 30.0)).arrays.impacts
+        name = f"vibrating table, e {e}, {n} cycles"
+        yield Line("7", f"{name}: approach speed", orbit.approach, log.approach_speed[-1], 1e-10)
+        yield Line("7", f"{name}: doubling", shaken.table_bounds(e, n)[1], doubling(e, n), 1e-7)
+
+
+def chatter() -> Iterator[Line]:
+    """Yield time and path of a ball that chatters to rest."""
+    height, e, gravity = 0.5, 0.8, 9.81
+    log = simulate(cases.dropped(height, e, gravity, 4.0)).arrays.impacts
+    bounced = np.asarray(log.separation_speed > 0)
+    speed = log.separation_speed[bounced]
+    # Bounces below the threshold of sticking are summed as the geometric series they are.
+    rest = float(log.time[bounced][-1] + 2 * speed[-1] / (gravity * (1 - e)))
+    path = float(height + (speed**2).sum() / gravity + (speed[-1] * e) ** 2 / gravity / (1 - e * e))
+    yield Line("7", "chatter: time to rest", shaken.chatter_time(height, e, gravity), rest, 1e-9)
+    yield Line("7", "chatter: path", shaken.chatter_path(height, e), path, 1e-9)
+
+
+def apparent_mass(gamma: float) -> tuple[float, float]:
+    """Return m' and m'' of an inelastic ball on a shaker, from one cycle of the force on the cavity."""
+    log = simulate(cases.inelastic_ball(gamma, 6.0)).arrays.impacts
+    hits = log.approach_speed > 1e-3 * log.approach_speed.max()
+    land, speed = float(log.time[hits][-2]), float(log.approach_speed[hits][-2])
+    off = land + (math.asin(1 / gamma) - land) % (2 * math.pi)
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    times, weights = land + 0.5 * (off - land) * (nodes + 1), 0.5 * (off - land) * weights
+    arrays = simulate(cases.inelastic_ball(gamma, 6.0, list(times))).arrays
+    force = -np.interp(times, arrays.time, arrays.cavity_force[:, 0])
+    sines = (weights * force * np.sin(times)).sum() + speed * math.sin(land)
+    cosines = (weights * force * np.cos(times)).sum() + speed * math.cos(land)
+    return -float(sines) / (math.pi * gamma), float(cosines) / (math.pi * gamma)
+
+
+def inelastic_ball() -> Iterator[Line]:
+    """Yield the apparent mass of an inelastic ball on a shaker."""
+    for gamma in printed.APPARENT_MASS:
+        exact, ours = shaken.inelastic_ball(gamma).apparent_mass(), apparent_mass(gamma)
+        for name, a, b in zip(("m'", "m''"), exact, ours, strict=True):
+            yield Line("8", f"inelastic ball on a shaker, Gamma {gamma}: {name}", a, b, 1e-9)
+
+
+def oscillator_with_stop() -> Iterator[Line]:
+    """Yield the speed before impact of an oscillator with a stop."""
+    for key, shown in printed.IMPACT_OSCILLATOR.items():
+        orbit = min(impact_oscillator.orbits(*key), key=lambda o: abs(o.speed - shown))
+        log = simulate(cases.impact_oscillator(orbit, 20.0)).arrays.impacts
+        name = "impact oscillator, zeta {}, omega {}, stop {}, e {}".format(*key)
+        yield Line("9", f"{name}: speed before impact", orbit.speed, log.approach_speed[-1], 1e-9)
+
+
+ALL: tuple[Callable[[], Iterator[Line]], ...] = (
+    tsuji,
+    linear,
+    asked,
+    jackson_green,
+    thornton,
+    impact_damper,
+    soft_limit,
+    slow_manifold,
+    collect_and_collide,
+    vibrating_table,
+    chatter,
+    inelastic_ball,
+    oscillator_with_stop,
+)
