@@ -1,1 +1,17 @@
 """Figures in one style."""
+
+from .compare import plot_comparison
+from .energy import plot_energy
+from .impacts import plot_impacts
+from .motion import plot_motion
+from .phase import plot_phase_portrait
+from .style import paper
+
+__all__ = [
+    "paper",
+    "plot_comparison",
+    "plot_energy",
+    "plot_impacts",
+    "plot_motion",
+    "plot_phase_portrait",
+]

@@ -45,7 +45,7 @@ def _texts(characters: Any) -> tuple[str, ...]:
 
 def _attribute(text: str) -> np.bytes_:
     """Fixed-length characters: older readers do not know variable-length strings."""
-    return np.bytes_(text.encode("ascii", "backslashreplace") or b" ")
+    return np.bytes_(text.encode() or b" ")
 
 
 def _describe(target: Any, **attributes: str) -> None:
@@ -154,8 +154,9 @@ def save(run: Run, path: Path) -> Path:
 
 
 def _text_attribute(value: Any) -> str:
-    text = value.decode() if isinstance(value, bytes) else str(value)
-    return "" if text == " " else text
+    # Fixed-length characters carry no encoding, so other bytes than ASCII arrive escaped.
+    raw = value if isinstance(value, bytes) else str(value).encode("ascii", "surrogateescape")
+    return "" if raw == b" " else raw.decode()
 
 
 def load(path: str | os.PathLike[str]) -> Run:

@@ -29,7 +29,10 @@ _CHANNEL_LABELS = {
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """One line: key of the value, its label, and its unit ("%" for a share, "" for a count or a text)."""
+    """One line: key of the value, its label, and its unit.
+
+    The unit is "%" for a share, "order" where only the size matters, "" for a count or a text.
+    """
 
     key: str
     label: str
@@ -40,7 +43,9 @@ class _Row:
         if value is None:
             return MISSING
         if isinstance(value, float):
-            return f"{value:.1e}" if self.unit == "1e" else quantity(value, self.unit)
+            if self.unit == "order":
+                return f"{value:.1e}" if value else "0"
+            return quantity(value, self.unit)
         return f"{value:,}".replace(",", " ") if isinstance(value, int) else value
 
 
@@ -55,8 +60,9 @@ def _measure(run: Run) -> dict[str, Value]:
     }
     values |= {f"share_{channel}": run.ledger.shares[channel] for channel in CHANNELS}
     values["closure"] = run.closure
-    values["peak_contact_force"] = _largest(log.peak_force)
-    values["largest_approach_speed"] = _largest(log.approach_speed)
+    # Hard impacts have no force, and a contact cut off by the end may lack a number.
+    values["peak_contact_force"] = _largest(log.peak_force[np.isfinite(log.peak_force)])
+    values["largest_approach_speed"] = _largest(log.approach_speed[np.isfinite(log.approach_speed)])
     if arrays.mode_frequency.size:
         for k, point in enumerate(arrays.points):
             x = arrays.displacement[:, k]
@@ -90,7 +96,7 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         if channel != "plastic" or any(values[key] != 0.0 for values in all_values):
             rows.append(_Row(key, _CHANNEL_LABELS[channel], "%"))
     rows += [
-        _Row("closure", "ledger closure", "1e"),
+        _Row("closure", "ledger closure", "order"),
         _Row("peak_contact_force", "peak contact force", "N"),
         _Row("largest_approach_speed", "largest approach speed", "m/s"),
     ]

@@ -1,0 +1,73 @@
+"""Several runs side by side: motion and energy ledger, one column a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+
+from ..results import Run
+from .energy import draw_ledger
+from .motion import draw_cavity, draw_structure, row_places
+from .style import PaperFigure, Size, label, paper, scaled
+
+
+def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
+    """Draw the motion and the energy ledger of several runs side by side, on common axes.
+
+    Parameters
+    ----------
+    runs
+        Runs by the name that heads their column; two to four fit well.
+    size
+        Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    Figure
+        With one column a run: displacement of the structure, balls of the first damper, ledger. Rows that no
+        run can fill are left out.
+
+    Raises
+    ------
+    ValueError
+        When there is no run, or the size is unknown.
+    """
+    if not runs:
+        raise ValueError("there is no run to compare")
+    every = list(runs.values())
+    moving = any(run.arrays.mode_frequency.size for run in every)
+    dampers = any(np.any(run.arrays.ball_damper == 0) for run in every)
+    rows = int(moving) + int(dampers) + 1
+    with paper(size):
+        figure = PaperFigure(size, 0.1 + 0.17 * rows)
+        panels = figure.subplots(rows, len(every), sharex="col", sharey="row", squeeze=False)
+        length = scaled([np.abs(run.arrays.displacement).max(initial=0.0) for run in every], "m")
+        places = [np.abs(row_places(run.arrays, 0)).max() for run in every if run.arrays.dampers]
+        travel = scaled(places, "m")
+        energy = scaled([run.ledger.supplied.max() for run in every], "J")
+        for column, (name, run) in enumerate(runs.items()):
+            arrays, left = run.arrays, iter(panels[:, column])
+            shown, time = slice(0, arrays.time.size), scaled(arrays.time, "s")
+            panels[0, column].set_title(name)
+            if moving:
+                draw_structure(next(left), arrays, shown, time, length)
+            if dampers:
+                panel = next(left)
+                if np.any(arrays.ball_damper == 0):
+                    draw_cavity(panel, arrays, 0, shown, time, travel)
+                else:
+                    panel.text(0.5, 0.5, "no ball", transform=panel.transAxes, ha="center", va="center")
+            draw_ledger(run, next(left), time, energy)
+            label(panels[-1, column], "x", "Time", time.unit)
+        for panel in panels[:, 1:].flat:
+            panel.set_ylabel("")
+        entries: dict[str, Artist] = {}
+        for panel in panels[-1]:
+            handles, names = panel.get_legend_handles_labels()
+            entries |= dict(zip(names, handles, strict=True))
+        figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=len(entries))
+        figure.align_ylabels(panels[:, 0])
+    return figure

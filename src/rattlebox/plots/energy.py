@@ -1,0 +1,132 @@
+"""The energy of a run: what is there at each time, and where everything that was supplied has gone."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..results import Run
+from .style import CHANNEL_COLOURS, INK, PaperFigure, Scale, Size, label, legend_above, paper, scaled
+
+LOG_DECADES = 6.0
+_LEDGER_LABELS = {
+    "viscous": "structure damping",
+    "impact": "impacts",
+    "plastic": "plastic flow",
+    "motion": "left in motion",
+}
+
+
+def plot_energy(run: Run, *, size: Size = "column", log: bool = False) -> Figure:
+    """Draw the instantaneous energies, and below them the ledger stacked up to the energy supplied.
+
+    The coloured areas of the ledger are the losses since the start and the energy left in the motion; the
+    line is what load, base, initial motion and gravity have supplied. Where the ledger does not close, the
+    line leaves the edge of the areas.
+
+    Parameters
+    ----------
+    run
+        Run to draw.
+    size
+        Width of the figure: "column", "page" or "slide".
+    log
+        Draw the instantaneous energies on a logarithmic axis of six decades.
+
+    Returns
+    -------
+    Figure
+        With two panels over the same time.
+
+    Raises
+    ------
+    ValueError
+        When the size is unknown.
+    """
+    with paper(size):
+        figure = PaperFigure(size, 1.15 if size == "column" else 0.62)
+        upper, lower = figure.subplots(2, 1, sharex=True)
+        time = scaled(run.arrays.time, "s")
+        draw_energies(run, upper, time, log=log)
+        draw_ledger(run, lower, time, scaled(run.ledger.supplied, "J"))
+        legend_above(upper)
+        legend_above(lower)
+        label(lower, "x", "Time", time.unit)
+        figure.align_ylabels([upper, lower])
+    return figure
+
+
+def draw_energies(run: Run, axes: Axes, time: Scale, *, log: bool = False) -> None:
+    """Draw the energies of structure, balls, contacts and gravity against time.
+
+    Parameters
+    ----------
+    run
+        Run to draw.
+    axes
+        Axes to fill.
+    time
+        Scale of the horizontal axis.
+    log
+        Use a logarithmic axis.
+    """
+    ledger = run.ledger
+    parts = {
+        "structure": ledger.structure,
+        "particles": ledger.particles,
+        "contact": ledger.contact,
+        "gravity": ledger.gravity - ledger.gravity.min(),
+    }
+    parts = {name: energy for name, energy in parts.items() if np.any(energy != 0.0)}
+    highest = max((float(np.nanmax(energy)) for energy in parts.values()), default=0.0)
+    scale, unit = scaled(highest, "J")
+    names = {"particles": "balls", "contact": "contacts"}
+    for name, energy in parts.items():
+        axes.plot(
+            run.arrays.time / time.divisor,
+            np.where(energy > 0.0, energy, np.nan) / scale if log else energy / scale,
+            color=CHANNEL_COLOURS[name],
+            label=names.get(name, name),
+            linewidth=0.6,
+        )
+    if log and highest > 0.0:
+        axes.set_yscale("log")
+        axes.set_ylim(highest / scale * 10.0**-LOG_DECADES, 2.0 * highest / scale)
+    else:
+        axes.set_ylim(bottom=0.0)
+    label(axes, "y", "Energy", unit)
+
+
+def draw_ledger(run: Run, axes: Axes, time: Scale, energy: Scale) -> None:
+    """Draw losses and remaining energy as stacked areas under the line of the energy supplied.
+
+    Parameters
+    ----------
+    run
+        Run to draw.
+    axes
+        Axes to fill.
+    time, energy
+        Scales of the axes.
+    """
+    ledger = run.ledger
+    parts = {
+        "viscous": run.arrays.viscous_loss,
+        "impact": ledger.impact_loss,
+        "plastic": ledger.plastic_loss,
+        "motion": ledger.motion,
+    }
+    parts = {name: part for name, part in parts.items() if name == "motion" or np.any(part != 0.0)}
+    t = run.arrays.time / time.divisor
+    axes.stackplot(
+        t,
+        [part / energy.divisor for part in parts.values()],
+        labels=[_LEDGER_LABELS[name] for name in parts],
+        colors=[CHANNEL_COLOURS[name] for name in parts],
+        edgecolor="white",
+        linewidth=0.3,
+    )
+    axes.plot(t, ledger.supplied / energy.divisor, color=INK, label="supplied", clip_on=False)
+    axes.set_ylim(bottom=0.0)
+    label(axes, "y", "Energy", energy.unit)

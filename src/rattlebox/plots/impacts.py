@@ -1,0 +1,132 @@
+"""The impact log against time: approach speed, peak force, restitution."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib import rcParams
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ..results import Run, RunArrays
+from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, paper, scaled
+
+_SIDES: dict[str, dict[str, Any]] = {
+    "trailing wall": {"marker": "o", "color": "colour", "linewidths": 0.0},
+    "leading wall": {"marker": "o", "facecolors": "none", "edgecolors": "colour", "linewidths": 0.6},
+    "between balls": {"marker": "x", "color": "colour", "linewidths": 0.6},
+}
+
+
+def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figure:
+    """Draw approach speed, peak force and restitution of every impact against its time of first touch.
+
+    Filled marks are hits on the trailing wall, open ones on the leading wall, crosses between balls; dampers
+    differ in colour. Quantities that no impact has (force of hard impacts, restitution of hysteretic laws)
+    are left out.
+
+    Parameters
+    ----------
+    run
+        Run to draw.
+    size
+        Width of the figure: "column", "page" or "slide".
+    log
+        Use logarithmic axes for speed and force.
+
+    Returns
+    -------
+    Figure
+        With one panel a quantity; a note when there was no impact.
+
+    Raises
+    ------
+    ValueError
+        When the size is unknown.
+    """
+    impacts = run.arrays.impacts
+    offered = (
+        ("Approach speed", "m/s", impacts.approach_speed),
+        ("Peak force", "N", impacts.peak_force),
+        ("Restitution", "", impacts.restitution),
+    )
+    shown = [panel for panel in offered if np.any(np.isfinite(panel[2]))] or [offered[0]]
+    t_scale, t_unit = scaled(run.arrays.time, "s")
+    with paper(size):
+        figure = PaperFigure(
+            size, (0.2 if size == "column" else 0.1) + (0.34 if size == "column" else 0.18) * len(shown)
+        )
+        axes = list(np.ravel(figure.subplots(len(shown), 1, sharex=True)))
+        for panel, (name, unit, values) in zip(axes, shown, strict=True):
+            scale, prefixed = scaled(values, unit) if unit else (1.0, "")
+            _scatter(panel, run.arrays, impacts.time / t_scale, values / scale)
+            label(panel, "y", name, prefixed)
+            if log and unit and len(impacts):
+                panel.set_yscale("log")
+            elif unit:
+                panel.set_ylim(bottom=0.0)
+            else:
+                _limit_restitution(panel, values)
+        if not len(impacts):
+            axes[0].text(0.5, 0.5, "no impacts", transform=axes[0].transAxes, ha="center", va="center")
+            axes[0].set_yticks([])
+        axes[-1].set_xlim(run.arrays.time[0] / t_scale, run.arrays.time[-1] / t_scale)
+        label(axes[-1], "x", "Time", t_unit)
+        _add_legend(figure, run.arrays)
+        figure.align_ylabels(axes)
+    return figure
+
+
+def _limit_restitution(axes: Axes, values: Any) -> None:
+    """Show the range that the law used, and never less than a tenth, so that a constant is a flat line."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    span = max(high - low, 0.1)
+    middle = (low + high) / 2
+    top = min(middle + 0.6 * span, 1.0 + 0.05 * span)
+    axes.set_ylim(max(top - 1.2 * span, -0.05 * span), top)
+    if top >= 1.0:
+        axes.axhline(1.0, color=FAINT, linewidth=0.5, zorder=0)
+
+
+def _scatter(axes: Axes, arrays: RunArrays, x: Any, y: Any) -> None:
+    """Mark each impact by its damper and by the side of the contact."""
+    log = arrays.impacts
+    area = 9.0 if len(log) < 300 else 3.0
+    for d in range(len(arrays.dampers)):
+        for side, marks in _SIDES.items():
+            here = (log.damper == d) & (_sides(arrays) == side)
+            axes.scatter(x[here], y[here], s=area, **_marks(marks, SERIES_COLOURS[d % len(SERIES_COLOURS)]))
+    axes.margins(x=0.02, y=0.08)
+
+
+def _sides(arrays: RunArrays) -> Any:
+    """Name of the side of each impact."""
+    last = np.bincount(arrays.ball_damper, minlength=len(arrays.dampers))[arrays.impacts.damper]
+    contact = arrays.impacts.contact
+    return np.select([contact == 0, contact == last], ["trailing wall", "leading wall"], "between balls")
+
+
+def _marks(marks: dict[str, Any], colour: str) -> dict[str, Any]:
+    return {name: colour if value == "colour" else value for name, value in marks.items()}
+
+
+def _add_legend(figure: Figure, arrays: RunArrays) -> None:
+    """Explain the marks that occur, and the colours when there are several dampers."""
+    seen = set(_sides(arrays).tolist())
+    size = float(rcParams["lines.markersize"])
+    entries = [
+        Line2D([], [], linestyle="", markersize=size, marker=marks["marker"], color=INK, label=side,
+               markerfacecolor="none" if marks.get("facecolors") == "none" else INK)
+        for side, marks in _SIDES.items()
+        if side in seen
+    ]  # fmt: skip
+    if len(arrays.dampers) > 1:
+        entries += [
+            Line2D([], [], linestyle="", markersize=1.6 * size, marker="s", label=name,
+                   color=SERIES_COLOURS[d % len(SERIES_COLOURS)])
+            for d, name in enumerate(arrays.dampers)
+        ]  # fmt: skip
+    if entries:
+        figure.legend(handles=entries, loc="outside upper left", ncols=3, handletextpad=0.2, handlelength=1.0)

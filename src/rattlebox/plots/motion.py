@@ -1,0 +1,157 @@
+"""Motion of the structure and of the balls in their cavities against time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..results import Run, RunArrays
+from .style import (
+    FAINT,
+    INK,
+    SERIES_COLOURS,
+    SERIES_STYLES,
+    PaperFigure,
+    Scale,
+    Size,
+    label,
+    legend_above,
+    paper,
+    scaled,
+)
+
+MOST_SERIES = len(SERIES_COLOURS)
+
+
+def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float] | None = None) -> Figure:
+    """Draw the displacement of the structure, and below it the place of the balls in each cavity.
+
+    The balls' range is marked: a ball touches a wall or its neighbour when it reaches the edge of its band.
+
+    Parameters
+    ----------
+    run
+        Run to draw.
+    size
+        Width of the figure: "column", "page" or "slide".
+    between
+        First and last time to show [s]; the whole run when left out.
+
+    Returns
+    -------
+    Figure
+        With one panel for the structure (unless it cannot move) and one for each damper.
+
+    Raises
+    ------
+    ValueError
+        When no output time lies between the given ones, or the size is unknown.
+    """
+    arrays = run.arrays
+    shown = _window(arrays, between)
+    moving = arrays.mode_frequency.size > 0 or not arrays.balls
+    panels = int(moving) + sum(bool(np.any(arrays.ball_damper == d)) for d in range(len(arrays.dampers)))
+    with paper(size):
+        figure = PaperFigure(size, 0.16 + 0.34 * panels if size == "column" else 0.08 + 0.2 * panels)
+        axes = list(np.ravel(figure.subplots(panels, 1, sharex=True)))
+        time = scaled(arrays.time[shown], "s")
+        left = iter(axes)
+        if moving:
+            draw_structure(next(left), arrays, shown, time, scaled(arrays.displacement[shown], "m"))
+        for d, name in enumerate(arrays.dampers):
+            if np.any(arrays.ball_damper == d):
+                panel = next(left)
+                draw_cavity(panel, arrays, d, shown, time, scaled(row_places(arrays, d), "m"))
+                if len(arrays.dampers) > 1:
+                    panel.set_title(name, loc="right")
+        label(axes[-1], "x", "Time", time.unit)
+        figure.align_ylabels(axes)
+    return figure
+
+
+def _window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
+    if between is None:
+        return slice(0, arrays.time.size)
+    first, last = np.searchsorted(arrays.time, between[0]), np.searchsorted(arrays.time, between[1], "right")
+    if first >= last:
+        raise ValueError(f"no output time lies between {between[0]} s and {between[1]} s")
+    return slice(int(first), int(last))
+
+
+def row_places(arrays: RunArrays, damper: int) -> Any:
+    """Departures of the balls of one damper from the packed, centred row, and the range of both sides [m].
+
+    Parameters
+    ----------
+    arrays
+        Arrays of the run.
+    damper
+        Damper, counted from 0.
+    """
+    own = arrays.ball_damper == damper
+    return np.append((arrays.relative_position - arrays.ball_centre)[:, own], arrays.clearance[damper] / 2)
+
+
+def draw_structure(axes: Axes, arrays: RunArrays, shown: slice, time: Scale, length: Scale) -> None:
+    """Draw the displacement of the structure's points.
+
+    Parameters
+    ----------
+    axes
+        Axes to fill.
+    arrays
+        Arrays of the run.
+    shown
+        Output times to show.
+    time, length
+        Scales of the axes.
+    """
+    x = arrays.displacement[shown, :MOST_SERIES]
+    axes.axhline(0.0, color=FAINT, linewidth=0.5, zorder=0)
+    for k in range(x.shape[1]):
+        axes.plot(
+            arrays.time[shown] / time.divisor,
+            x[:, k] / length.divisor,
+            color=SERIES_COLOURS[k],
+            linestyle=SERIES_STYLES[k],
+            label=arrays.points[k] if x.shape[1] > 1 else None,
+        )
+    label(axes, "y", "Displacement", length.unit)
+    legend_above(axes)
+
+
+def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, shown: slice, time: Scale, length: Scale) -> None:
+    """Draw the place of the balls of one damper in its cavity, as departures from the packed, centred row.
+
+    Parameters
+    ----------
+    axes
+        Axes to fill.
+    arrays
+        Arrays of the run.
+    damper
+        Damper, counted from 0.
+    shown
+        Output times to show.
+    time, length
+        Scales of the axes.
+    """
+    own = np.flatnonzero(arrays.ball_damper == damper)
+    half = arrays.clearance[damper] / 2
+    x = (arrays.relative_position - arrays.ball_centre)[shown][:, own]
+    for wall in (-half, half):
+        axes.axhline(wall / length.divisor, color=INK, linewidth=0.7, zorder=0)
+    for k in range(min(len(own), MOST_SERIES)):
+        axes.plot(
+            arrays.time[shown] / time.divisor,
+            x[:, k] / length.divisor,
+            color=SERIES_COLOURS[(k + 1) % MOST_SERIES],
+            linestyle=SERIES_STYLES[k],
+            label=f"ball {k + 1}" if len(own) > 1 else None,
+        )
+    axes.margins(y=0.12)
+    label(axes, "y", "Ball in cavity", length.unit)
+    legend_above(axes)

@@ -1,0 +1,93 @@
+"""Phase portraits: velocity against position."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+
+from ..results import Run
+from .style import FAINT, INK, PaperFigure, Size, label, paper, scaled
+
+
+def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column") -> Figure:
+    """Draw velocity against position of a ball relative to its cavity, or of a point of the structure.
+
+    The line runs from dark to light with time. For a ball, the walls that bound its range are marked (for a
+    ball in a row, they touch it through its packed neighbours), and its position counts from the packed,
+    centred row.
+
+    Parameters
+    ----------
+    run
+        Run to draw.
+    of
+        Name of a ball or of a point; the first ball when left out, or the first point without balls.
+    size
+        Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    Figure
+        With one panel and a scale of time.
+
+    Raises
+    ------
+    ValueError
+        When no ball or point has that name, or the size is unknown.
+    """
+    arrays = run.arrays
+    names = (*arrays.balls, *arrays.points)
+    chosen = of if of is not None else next(iter(names), "")
+    if chosen not in names:
+        raise ValueError(f"there is no ball or point {chosen!r}; there are {', '.join(names) or 'none'}")
+    half = None
+    if chosen in arrays.balls:
+        k = arrays.balls.index(chosen)
+        half = float(arrays.clearance[arrays.ball_damper[k]]) / 2
+        x, v = arrays.relative_position[:, k] - arrays.ball_centre[k], arrays.relative_velocity[:, k]
+        texts = "Ball in cavity", "Relative velocity"
+    else:
+        k = arrays.points.index(chosen)
+        x, v = arrays.displacement[:, k], arrays.velocity[:, k]
+        texts = "Displacement", "Velocity"
+    x_scale, x_unit = scaled(x if half is None else np.append(x, half), "m")
+    v_scale, v_unit = scaled(v, "m/s")
+    t_scale, t_unit = scaled(arrays.time, "s")
+    with paper(size):
+        figure = PaperFigure(size, 0.8 if size == "column" else 0.6)
+        axes = figure.subplots()
+        points = np.column_stack((x / x_scale, v / v_scale))
+        line = LineCollection(
+            list(np.stack((points[:-1], points[1:]), axis=1)),
+            array=arrays.time[:-1] / t_scale,
+            cmap=_colours(),
+            linewidths=0.5,
+            rasterized=True,
+        )
+        axes.add_collection(line)
+        reach = max(float(np.max(np.abs(points[:, 0]))), (half or 0.0) / x_scale) or 1.0
+        speed = float(np.max(np.abs(points[:, 1]))) or 1.0
+        axes.set_xlim(-1.12 * reach, 1.12 * reach)
+        axes.set_ylim(-1.08 * speed, 1.08 * speed)
+        if half is not None:
+            wall = half / x_scale
+            for side in (-1, 1):
+                axes.axvspan(
+                    side * wall, side * 2 * reach, facecolor=FAINT, alpha=0.45, linewidth=0, zorder=0
+                )
+                axes.axvline(side * wall, color=INK, linewidth=0.7)
+        label(axes, "x", texts[0], x_unit)
+        label(axes, "y", texts[1], v_unit)
+        bar = figure.colorbar(line, ax=axes, aspect=30, pad=0.02)
+        bar.outline.set_visible(False)
+        bar.set_label(f"Time ({t_unit})")
+    return figure
+
+
+def _colours() -> LinearSegmentedColormap:
+    """The dark three quarters of a map with even lightness: its pale end would vanish on paper."""
+    from cmcrameri import cm  # type: ignore[import-untyped]
+
+    return LinearSegmentedColormap.from_list("batlow_dark", cm.batlow(np.linspace(0.0, 0.78, 256)))

@@ -1,0 +1,231 @@
+"""One style for all figures: sizes of a journal, colours that survive greyscale and colour blindness."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, Literal, NamedTuple, cast
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..results.quantities import prefix
+
+Size = Literal["column", "page", "slide"]
+
+WIDTHS: dict[Size, float] = {"column": 85.0, "page": 178.0, "slide": 254.0}
+"""Width of a figure in mm: one column and the full page of a journal, and a slide."""
+
+_DPI: dict[Size, float] = {"column": 300.0, "page": 300.0, "slide": 150.0}
+_FONT: dict[Size, float] = {"column": 8.0, "page": 8.0, "slide": 15.0}
+
+INK = "#1a1a1a"
+FAINT = "#b3b3b3"
+
+CHANNEL_COLOURS: dict[str, str] = {
+    "viscous": "#0b3d6b",
+    "impact": "#d1742c",
+    "plastic": "#b4cf7a",
+    "motion": "#e3ecf3",
+    "structure": "#0b3d6b",
+    "particles": "#d1742c",
+    "contact": "#7d9a4b",
+    "gravity": "#9a86b8",
+    "work": INK,
+}
+"""Fill of each channel of the energy; neighbours in the ledger differ clearly in lightness."""
+
+SERIES_COLOURS: tuple[str, ...] = ("#0b3d6b", "#d1742c", "#5f9ea0", "#a33b5c", "#8c8c2e", "#7a6fb0")
+SERIES_STYLES: tuple[Any, ...] = (
+    "-",
+    (0, (5, 1.5)),
+    (0, (1, 1.2)),
+    (0, (6, 1.5, 1, 1.5)),
+    (0, (3, 1)),
+    (0, (8, 2)),
+)
+SERIES_MARKERS: tuple[str, ...] = ("o", "^", "s", "D", "v", "P")
+
+
+def _settings(size: Size) -> dict[str, Any]:
+    font = _FONT[size]
+    line = font / 8.0
+    return {
+        "font.family": "sans-serif",
+        "font.sans-serif": ["DejaVu Sans"],
+        "mathtext.fontset": "dejavusans",
+        "font.size": font,
+        "axes.labelsize": font,
+        "axes.titlesize": font,
+        "axes.titleweight": "normal",
+        "axes.titlelocation": "left",
+        "xtick.labelsize": 0.9 * font,
+        "ytick.labelsize": 0.9 * font,
+        "legend.fontsize": 0.9 * font,
+        "axes.linewidth": 0.6 * line,
+        "xtick.major.width": 0.6 * line,
+        "ytick.major.width": 0.6 * line,
+        "xtick.major.size": 2.5 * line,
+        "ytick.major.size": 2.5 * line,
+        "xtick.minor.size": 1.5 * line,
+        "ytick.minor.size": 1.5 * line,
+        "lines.linewidth": 0.9 * line,
+        "lines.markersize": 3.0 * line,
+        "axes.edgecolor": INK,
+        "axes.labelcolor": INK,
+        "xtick.color": INK,
+        "ytick.color": INK,
+        "text.color": INK,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.xmargin": 0.0,
+        "legend.frameon": False,
+        "legend.handlelength": 1.8,
+        "legend.borderaxespad": 0.2,
+        "legend.columnspacing": 1.2,
+        "legend.labelspacing": 0.25,
+        "figure.facecolor": "white",
+        "axes.facecolor": "white",
+        "agg.path.chunksize": 20000,
+        "pdf.fonttype": 42,
+        "svg.fonttype": "none",
+    }
+
+
+@contextmanager
+def paper(size: Size = "column") -> Iterator[None]:
+    """Draw in the style of all figures of Rattlebox while the context lasts.
+
+    Parameters
+    ----------
+    size
+        "column" (85 mm), "page" (178 mm) or "slide" (254 mm, larger letters).
+
+    Raises
+    ------
+    ValueError
+        When there is no such size.
+    """
+    if size not in WIDTHS:
+        raise ValueError(f"size {size!r} is not one of {', '.join(map(repr, WIDTHS))}")
+    with mpl.rc_context(cast("Any", _settings(size))):
+        yield
+
+
+class PaperFigure(Figure):
+    """Figure without a window, shown by notebooks, that also keeps the style while it is saved.
+
+    Parameters
+    ----------
+    size
+        Name of the width.
+    height
+        Height over width.
+    """
+
+    def __init__(self, size: Size, height: float) -> None:
+        width = WIDTHS[size] / 25.4
+        super().__init__(figsize=(width, height * width), layout="constrained", dpi=_DPI[size])
+        self._size_name: Size = size
+
+    def savefig(self, fname: Any, **options: Any) -> None:
+        """Save as `matplotlib.figure.Figure.savefig` does, with letters that stay text in PDF and SVG.
+
+        Parameters
+        ----------
+        fname
+            File to write, its ending tells the format.
+        **options
+            Passed on to matplotlib.
+        """
+        with paper(self._size_name):
+            super().savefig(fname, **options)
+
+    def _repr_png_(self) -> bytes:
+        buffer = io.BytesIO()
+        self.savefig(buffer, format="png")
+        return buffer.getvalue()
+
+
+class Scale(NamedTuple):
+    """Divisor of an axis, and its unit with the SI prefix."""
+
+    divisor: float
+    unit: str
+
+
+def scaled(values: Any, unit: str) -> Scale:
+    """Divisor and unit with the SI prefix that suits the largest of `values`.
+
+    Parameters
+    ----------
+    values
+        Numbers in SI units, any shape; may be empty.
+    unit
+        SI unit.
+
+    Returns
+    -------
+    Scale
+        Divisor, and unit with its prefix.
+    """
+    array = np.abs(np.asarray(values, dtype=float))
+    array = array[np.isfinite(array)]
+    scale, name = prefix(float(array.max()) if array.size else 0.0)
+    return Scale(scale, name + unit)
+
+
+def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
+    """Write "text (unit)" on an axis.
+
+    Parameters
+    ----------
+    axes
+        Axes to label.
+    which
+        "x" or "y".
+    text
+        Quantity.
+    unit
+        Unit with its prefix; "" for a pure number.
+    """
+    full = f"{text} ({unit})" if unit else text
+    (axes.set_xlabel if which == "x" else axes.set_ylabel)(full)
+
+
+def legend_above(axes: Axes, **options: Any) -> None:
+    """Put the legend over the axes, where it hides nothing, in as many columns as fit.
+
+    Parameters
+    ----------
+    axes
+        Axes with labelled artists; without any, nothing happens.
+    **options
+        Passed on to `Axes.legend`.
+    """
+    handles, names = axes.get_legend_handles_labels()
+    if handles:
+        room = _letters(axes)
+        columns = _fitting_columns(names, room)
+        shown = [name if len(name) <= room else f"{name[: room - 1]}…" for name in names]
+        axes.legend(handles, shown, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, **options)
+
+
+def _letters(axes: Axes) -> int:
+    """Count of letters of a legend that fit over an axes."""
+    figure, grid = axes.get_figure(root=True), axes.get_gridspec()
+    assert figure is not None
+    width = 72.0 * figure.get_figwidth() / (grid.ncols if grid is not None else 1)
+    return int(0.8 * width / (0.58 * 0.9 * float(mpl.rcParams["font.size"])))
+
+
+def _fitting_columns(names: list[str], room: int) -> int:
+    """Largest number of legend columns that are not wider than `room` letters."""
+    mark = 6
+    for columns in range(len(names), 1, -1):
+        if sum(max(len(name) for name in names[k::columns]) + mark for k in range(columns)) <= room:
+            return columns
+    return 1
