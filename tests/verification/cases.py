@@ -92,7 +92,9 @@ def shaken_cavity(orbit: shaken.TwoImpacts, cycles: float) -> Any:
     begin = 0.5 * math.pi
     phase = begin + orbit.phase
     return rb.Case(
-        structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{orbit.amplitude!r} m", frequency="1 rad/s", phase=phase)),
+        structure=rb.Shaker(
+            motion=rb.Harmonic(amplitude=f"{orbit.amplitude!r} m", frequency="1 rad/s", phase=phase)
+        ),
         damper=rb.ImpactDamper(
             ball=ball(1.0),
             gap=1.0,
@@ -129,7 +131,9 @@ def table(orbit: shaken.TableOrbit, bounces: float, shift: Sequence[float] = (0.
     phase = orbit.phase + half
     height = orbit.gamma * math.sin(orbit.phase) + 0.5 * orbit.launch**2 - orbit.gamma * math.sin(phase)
     return rb.Case(
-        structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{orbit.gamma!r} m", frequency="1 rad/s", phase=phase)),
+        structure=rb.Shaker(
+            motion=rb.Harmonic(amplitude=f"{orbit.gamma!r} m", frequency="1 rad/s", phase=phase)
+        ),
         damper=rb.ImpactDamper(
             ball=ball(1.0),
             gap=TABLE_GAP,
@@ -234,7 +238,9 @@ def five_balls(duration: float = 2.0) -> Any:
     radii = [6e-3, 5e-3, 4e-3, 5e-3, 7e-3]
     return rb.Case(
         structure=rb.Modal(
-            frequencies=[8.0, 23.0, 51.0], damping_ratios=[0.004, 0.006, 0.01], shapes={"tip": [0.5, -0.35, 0.2]}
+            frequencies=[8.0, 23.0, 51.0],
+            damping_ratios=[0.004, 0.006, 0.01],
+            shapes={"tip": [0.5, -0.35, 0.2]},
         ),
         damper=rb.ImpactDamper(
             balls=[rb.Sphere(radius=r, material=m) for r, m in zip(radii, materials, strict=True)],

@@ -93,9 +93,18 @@ def asked() -> Iterator[Line]:
     """Yield the restitution that a contact returns when it is asked for."""
     for e in (0.05, 0.3, 0.8, 0.99117, 1.0):
         for ending in ENDINGS:
-            for contact in (rb.Tsuji(restitution=e, ending=ending), rb.Linear(stiffness=1e7, restitution=e, ending=ending)):
+            for contact in (
+                rb.Tsuji(restitution=e, ending=ending),
+                rb.Linear(stiffness=1e7, restitution=e, ending=ending),
+            ):
                 got = first_impact(cases.single_impact(contact, 0.3, 1e-3))[0]
-                yield Line("1", f"{type(contact).__name__}, e = {e} asked for, {ending.replace('_', ' ')}", e, got, 1e-10)
+                yield Line(
+                    "1",
+                    f"{type(contact).__name__}, e = {e} asked for, {ending.replace('_', ' ')}",
+                    e,
+                    got,
+                    1e-10,
+                )
 
 
 def jackson_green() -> Iterator[Line]:
@@ -110,7 +119,11 @@ def jackson_green() -> Iterator[Line]:
         exact = restitution_laws.jackson_green_after(10, hits, strain)
         # Every contact adds its own error to the speed.
         yield Line(
-            "2", f"Jackson-Green, V/V_c after {hits} hits", exact, log.separation_speed[hits - 1] / critical, 1e-10 * hits
+            "2",
+            f"Jackson-Green, V/V_c after {hits} hits",
+            exact,
+            log.separation_speed[hits - 1] / critical,
+            1e-10 * hits,
         )
 
 
@@ -120,15 +133,15 @@ def thornton() -> Iterator[Line]:
     critical = restitution_laws.thornton_speed(cases.RADIUS, cases.MASS, cases.MODULUS, pressure)
     for ratio in printed.THORNTON:
         case = cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 2e-3 / ratio)
-        yield Line("3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10)
+        yield Line(
+            "3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10
+        )
 
 
 def stable(key: tuple[float, float, float]) -> masri_caughey.Orbit:
     """Return the orbit that is printed for (mass ratio, restitution, clearance)."""
     multiplier = printed.MASRI_CAUGHEY[key][2]
-    return min(
-        masri_caughey.orbits(*key), key=lambda orbit: abs(max(abs(orbit.multipliers())) - multiplier)
-    )
+    return min(masri_caughey.orbits(*key), key=lambda orbit: abs(max(abs(orbit.multipliers())) - multiplier))
 
 
 def differences(state: Callable[[NDArray[np.float64]], NDArray[np.float64]], steps: list[float]) -> Any:
@@ -165,7 +178,9 @@ def impact_damper() -> Iterator[Line]:
         yield Line("4", f"{name}: multiplier", exact, damper_multiplier(orbit), 1e-7)
         if exact < 1:
             run = simulate(cases.impact_damper(orbit, 40.0))
-            yield Line("4", f"{name}: approach speed", orbit.approach, run.arrays.impacts.approach_speed[-1], 1e-10)
+            yield Line(
+                "4", f"{name}: approach speed", orbit.approach, run.arrays.impacts.approach_speed[-1], 1e-10
+            )
 
 
 SOFT_KEY = (0.1, 0.25, 20)
@@ -202,7 +217,11 @@ def soft_limit() -> Iterator[Line]:
         for i, (own, e) in enumerate(zip(times, error, strict=True))
     )
     yield Line(
-        "4", "soft contact extrapolated to contact time 0: approach speed", orbit.approach, orbit.approach * (1 + limit), 1e-5
+        "4",
+        "soft contact extrapolated to contact time 0: approach speed",
+        orbit.approach,
+        orbit.approach * (1 + limit),
+        1e-5,
     )
 
 
@@ -213,7 +232,11 @@ def slow_manifold() -> Iterator[Line]:
             orbit = shaken.two_impacts(e, above * shaken.threshold(e))
             log = simulate(cases.shaken_cavity(orbit, 20.0)).arrays.impacts
             yield Line(
-                "5", f"shaken cavity, e {e}, {above} x threshold: approach speed", orbit.approach, log.approach_speed[-1], 1e-9
+                "5",
+                f"shaken cavity, e {e}, {above} x threshold: approach speed",
+                orbit.approach,
+                log.approach_speed[-1],
+                1e-9,
             )
 
 
@@ -223,7 +246,13 @@ def collect_and_collide() -> Iterator[Line]:
         log = simulate(cases.sticky_load(ratio, 10.25)).arrays.impacts
         landed = log.energy_lost[log.energy_lost > 1e-6 * log.energy_lost.max()]
         ours = float(landed[-2:].sum() / ratio**2)
-        yield Line("6", f"collect and collide, A/g = {ratio}: energy a cycle", shaken.collect_and_collide(ratio), ours, 1e-10)
+        yield Line(
+            "6",
+            f"collect and collide, A/g = {ratio}: energy a cycle",
+            shaken.collect_and_collide(ratio),
+            ours,
+            1e-10,
+        )
 
 
 def table_multiplier(orbit: shaken.TableOrbit) -> Any:

@@ -1,0 +1,104 @@
+"""Runs against exact solutions: the lines of the verification table."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+from . import cases, measures
+from .exact import printed, shaken
+
+
+@pytest.mark.parametrize("lines", measures.ALL, ids=lambda f: f.__name__)
+def test_run_has_the_exact_value(lines: Callable[[], Iterator[measures.Line]]) -> None:
+    """Every line of the verification table holds within what the method allows."""
+    found = list(lines())
+    assert found
+    failed = [f"{line.case}: {line.ours!r}, exact {line.exact!r}" for line in found if not line.held]
+    assert not failed, "\n".join(failed)
+
+
+def test_soft_impacts_become_hard_ones_at_first_order() -> None:
+    """The approach speed of a soft impact damper tends to that of a hard one as the contact time itself."""
+    times, error = measures.soft_errors()
+    orders = np.diff(np.log(np.abs(error))) / np.diff(np.log(times))
+    assert orders[-1] == pytest.approx(1.0, abs=0.05)
+    assert abs(orders[-1] - 1) < abs(orders[0] - 1)
+
+
+@pytest.mark.parametrize("key", printed.MASRI_CAUGHEY)
+def test_impact_damper_keeps_or_leaves_its_orbit(key: tuple[float, float, float]) -> None:
+    """A small disturbance of the periodic motion dies out where the multiplier is below one, and grows above."""
+    orbit = measures.stable(key)
+    size = 1e-5 * orbit.clearance
+    log = measures.simulate(cases.impact_damper(orbit, 24.0, shift=(size, 0, 0, 0))).arrays.impacts
+    off = np.abs(log.approach_speed / orbit.approach - 1)
+    early, late = off[:4].max(), off[-4:].max()
+    if max(abs(orbit.multipliers())) < 1:
+        assert late < early
+    else:
+        assert late > 30 * early
+
+
+@pytest.mark.parametrize("e", printed.SLOW_MANIFOLD_THRESHOLD)
+def test_two_impacts_a_cycle_end_at_the_threshold(e: float) -> None:
+    """Just above the threshold the ball makes two impacts a cycle for ever; just below it falls out of step."""
+    cycles = 400
+    above = shaken.two_impacts(e, 1.0005 * shaken.threshold(e))
+    below = shaken.TwoImpacts(e, 0.9995 * shaken.threshold(e), above.reach, above.phase)
+    keeps = measures.simulate(cases.shaken_cavity(above, cycles)).arrays.impacts
+    loses = measures.simulate(cases.shaken_cavity(below, cycles)).arrays.impacts
+    assert np.diff(keeps.time) == pytest.approx(np.pi, rel=1e-8)
+    assert np.abs(np.diff(loses.time) - np.pi).max() > 0.3
+
+
+@pytest.mark.parametrize("ratio", printed.COLLECT_AND_COLLIDE)
+def test_sticky_load_hits_at_the_known_phase(ratio: float) -> None:
+    """A ball that sticks leaves the wall at its fastest and hits the other one at the exact phase."""
+    log = measures.simulate(cases.sticky_load(ratio, 3.0)).arrays.impacts
+    landed = log.time[log.energy_lost > 1e-6 * log.energy_lost.max()]
+    exact = shaken.collide_phase(ratio) + np.pi * np.arange(landed.size)
+    assert landed.size >= 5
+    assert landed == pytest.approx(exact, rel=1e-9)
+
+
+def test_chatter_has_the_exact_times() -> None:
+    """Each of the first forty impacts of a dropped ball comes at the exact time with the exact speed."""
+    log = measures.simulate(cases.dropped(0.5, 0.8, 9.81, 4.0)).arrays.impacts
+    exact = [shaken.chatter_time(0.5, 0.8, 9.81, k + 1) for k in range(40)]
+    assert log.time[:40] == pytest.approx(exact, rel=1e-11)
+    speed = np.sqrt(2 * 9.81 * 0.5) * 0.8 ** np.arange(40)
+    # An error of 1e-12 in each flight time is g times that in speed.
+    assert log.approach_speed[:40] == pytest.approx(speed, rel=1e-9, abs=1e-11)
+
+
+def test_chatter_ends_at_rest() -> None:
+    """After the time to rest the ball lies still on the floor, and the floor bears its weight."""
+    case = cases.dropped(0.5, 0.8, 9.81, 4.0)
+    run = measures.simulate(case.model_copy(update={"output": rb.Output(times=[3.0, 3.5])}))
+    a = run.arrays
+    assert np.all(np.abs(a.ball_velocity[1:, 0]) == 0)
+    assert a.cavity_force[-2, 0] == pytest.approx(-9.81, rel=1e-12)
+
+
+def test_soft_ball_chatters_to_rest() -> None:
+    """With a soft contact the ball comes to rest in its static indentation, later than a hard one by its contacts."""
+    case = rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ImpactDamper(
+            ball=cases.ball(),
+            gap=1e-3,
+            start=0.0,
+            gravity=-9.81,
+            contact=rb.Tsuji(restitution=0.5, ending="zero_force"),
+        ),
+        duration=0.3,
+    )
+    run = measures.simulate(case)
+    weight = 9.81 * cases.MASS
+    assert run.arrays.cavity_force[-1, 0] == pytest.approx(-weight, rel=1e-6)
+    depth = -run.arrays.ball_position[-1, 0] - 1e-3
+    assert depth == pytest.approx((weight / cases.STIFFNESS) ** (2 / 3), rel=1e-4)
+    assert run.closure <= 1e-10

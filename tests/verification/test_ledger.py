@@ -1,0 +1,88 @@
+"""The energy ledger closes: what the loads put in is found somewhere."""
+
+from typing import Any
+
+import pytest
+
+import rattlebox as rb
+
+from . import cases, measures
+
+LAWS: dict[str, tuple[Any, str | None]] = {
+    "constant alpha, zero overlap": (lambda: rb.Tsuji(alpha=0.006313, ending="zero_overlap"), None),
+    "constant alpha, zero force": (lambda: rb.Tsuji(alpha=0.006313, ending="zero_force"), None),
+    "Jackson-Green, steel wall": (lambda: rb.Tsuji(restitution=rb.JacksonGreen()), None),
+    "Jackson-Green, rigid wall": (lambda: rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid")), "rigid"),
+    "hysteretic": (lambda: rb.Thornton(), None),
+    "linear": (lambda: rb.Linear(contact_time="0.4 ms", restitution=0.9), None),
+}
+STARTS = (0.0, -1.0, 1.0)
+
+
+@pytest.mark.parametrize("start", STARTS)
+@pytest.mark.parametrize("force", [100.0, 5000.0])
+@pytest.mark.parametrize("law", LAWS)
+def test_ledger_of_the_seed_closes(law: str, force: float, start: float) -> None:
+    """Work, losses and energy balance to 1e-10 of the work at every output time of five seconds."""
+    contact, wall = LAWS[law]
+    run = measures.simulate(cases.seed_case(start=start, force=force, contact=contact(), wall=wall))
+    assert run.arrays.load_work[-1] > 0
+    assert run.closure <= 1e-10
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_impact_log_adds_up_to_the_loss(law: str) -> None:
+    """The losses of the single impacts sum to what the ledger lost in impacts."""
+    contact, wall = LAWS[law]
+    a = measures.simulate(cases.seed_case(contact=contact(), wall=wall, duration=2.0)).arrays
+    lost = a.normal_loss[-1, 0] + a.plastic_loss[-1, 0]
+    assert a.impacts.energy_lost.sum() == pytest.approx(lost, abs=1e-11 * a.load_work[-1])
+
+
+def test_small_pulse_never_moves_the_ball() -> None:
+    """At 100 N the structure of the centred case never reaches the ball, which stays where it was."""
+    a = measures.simulate(cases.seed_case(force=100.0)).arrays
+    assert len(a.impacts) == 0
+    assert abs(a.displacement).max() == pytest.approx(0.0503e-3, rel=2e-3)
+    assert abs(a.ball_position).max() == 0
+
+
+def test_ledger_of_a_row_of_balls_closes() -> None:
+    """Five unequal balls in a row on three modes balance to 1e-8 of the work."""
+    run = measures.simulate(cases.five_balls())
+    assert len(run.arrays.impacts) > 100
+    assert set(run.arrays.impacts.contact) == set(range(6))
+    assert run.closure <= 1e-8
+
+
+@pytest.mark.parametrize("method", ["newton", "event_driven"])
+def test_momentum_of_a_free_system_is_conserved(method: str) -> None:
+    """A free cavity with a ball keeps its momentum to rounding, and hard impacts keep it too."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=2.0, stiffness=0.0, velocity=0.3),
+        damper=rb.ImpactDamper(ball=cases.ball(0.7), gap=1e-2, contact=rb.Tsuji(restitution=0.95)),
+        duration=2.0,
+        method=rb.Newton(restitution=0.95) if method == "newton" else rb.EventDriven(),
+    )
+    a = measures.simulate(case).arrays
+    momentum = 2.0 * a.velocity[:, 0] + 0.7 * a.ball_velocity[:, 0]
+    assert len(a.impacts) > 10
+    assert momentum == pytest.approx(0.6, rel=1e-13)
+
+
+def test_base_work_closes() -> None:
+    """With a shaken base, in the base's frame, the work of inertia balances as the work of a load does."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=20.0, stiffness=80e3, damping=25.3),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius=0.03317, material="steel"),
+            gap=0.4e-3,
+            contact=rb.Tsuji(restitution=0.9),
+            gravity=-9.81,
+        ),
+        base=rb.Harmonic(amplitude=2.0, frequency=10.0),
+        duration=2.0,
+    )
+    run = measures.simulate(case)
+    assert len(run.arrays.impacts) > 10
+    assert run.closure <= 1e-10
