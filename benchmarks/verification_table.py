@@ -24,8 +24,9 @@ TITLES = {
 }
 HEAD = """# Verification table
 
-Exact values, what rattlebox computes and the relative difference. Each line is also a test; this page is written by
-`python benchmarks/verification_table.py`. The exact values come from closed formulas in `tests/verification/exact`.
+Exact values, what rattlebox computes and the relative difference. Each line is also a test; this page is
+written by `python benchmarks/verification_table.py`. The exact values come from closed formulas in
+`tests/verification/exact`.
 """
 
 
@@ -42,8 +43,8 @@ def table() -> str:
         ]
     order = measures.soft_order()
     parts.append(
-        "\nSoft contacts tend to hard impacts as the contact time goes to zero; measured order of the error in the"
-        f" approach speed: {order:.3f}.\n"
+        "\nSoft contacts tend to hard impacts as the contact time goes to zero; measured order of the error in"
+        f" the approach speed: {order:.3f}.\n"
     )
     return "".join(parts)
 

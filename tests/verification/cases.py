@@ -88,7 +88,7 @@ def impact_damper(
 
 
 def shaken_cavity(orbit: shaken.TwoImpacts, cycles: float) -> Any:
-    """Return a ball in a cavity that moves as orbit.amplitude sin t, begun in the middle between its walls."""
+    """Return a ball in a cavity that moves as orbit.amplitude sin t, begun in the middle of a flight."""
     begin = 0.5 * math.pi
     phase = begin + orbit.phase
     return rb.Case(
@@ -182,7 +182,7 @@ STOP_GAP = 20.0
 
 
 def impact_oscillator(orbit: StopOrbit, cycles: float) -> Any:
-    """Return an oscillator that hits a stop, a ball of enormous mass at rest; begun half a cycle after an impact."""
+    """Return an oscillator whose stop is a ball of enormous mass; begun half a cycle after an impact."""
     begin = math.pi / orbit.omega
     x, v = orbit.state(begin)
     return rb.Case(

@@ -19,7 +19,7 @@ ENDINGS = ("zero_overlap", "zero_force")
 
 @dataclass(frozen=True)
 class Line:
-    """One comparison: what was asked, the exact value, ours and the relative difference that the method allows."""
+    """One comparison: the exact value, ours and the relative difference that the method allows."""
 
     item: str
     case: str
@@ -174,7 +174,8 @@ def impact_damper() -> Iterator[Line]:
         orbit = stable(key)
         name = "Masri-Caughey, mass ratio {}, e {}, clearance {}".format(*key)
         exact = max(abs(orbit.multipliers()))
-        # Differences of fourth order with steps of a thousandth: some 1e-12 twelfth powers, 1e-12 of rounding.
+        # Differences of fourth order with steps of a thousandth: some 1e-11 of truncation and rounding,
+        # times the condition of the eigenvalue.
         yield Line("4", f"{name}: multiplier", exact, damper_multiplier(orbit), 1e-7)
         if exact < 1:
             run = simulate(cases.impact_damper(orbit, 40.0))
@@ -188,7 +189,7 @@ SOFT_TIMES = (1 / 80, 1 / 160, 1 / 320, 1 / 640)
 
 
 def soft_errors(law: str = "linear") -> tuple[list[float], list[float]]:
-    """Return contact times over the period, and relative errors of the approach speed of soft impact dampers."""
+    """Return contact times over the period, and relative errors of the approach speed of soft dampers."""
     orbit = stable(SOFT_KEY)
     error = []
     for fraction in SOFT_TIMES:
@@ -211,7 +212,7 @@ def soft_limit() -> Iterator[Line]:
     """Yield the approach speed of soft impacts extrapolated to no contact time."""
     times, error = soft_errors()
     orbit = stable(SOFT_KEY)
-    # Polynomial through the four runs; what is left is of fourth order in the longest contact time, at most 1e-5.
+    # Polynomial through the four runs; what is left is of fourth order in the contact time, at most 1e-5.
     limit = sum(
         e * math.prod(t / (t - own) for j, t in enumerate(times) if j != i)
         for i, (own, e) in enumerate(zip(times, error, strict=True))

@@ -1,4 +1,4 @@
-"""No contact is missed: first touches of random flights against a search that shares nothing with the engine."""
+"""No contact is missed: first touches of random flights against an independent search."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -38,7 +38,7 @@ class Flights:
     gravity: Array
 
     def cavity(self, k: NDArray[np.intp], t: Array) -> Array:
-        """Displacement of the cavity of flights k (K,) at times t (K, T), superposed from free and forced motion."""
+        """Displacement of the cavity of flights k (K,) at times t (K, T), free and forced motion."""
         total = np.zeros_like(t)
         for j in range(self.rate.shape[1]):
             w, z, f = self.rate[k, j, None], self.ratio[k, j, None], self.shape[k, j, None]
@@ -69,7 +69,7 @@ class Flights:
         return half + off, half - off
 
     def case(self, k: int) -> Any:
-        """Return flight k as a case; the impact is hard, so that the first touch is the first line of the log."""
+        """Return flight k as a case; impacts are hard, and the first touch is the first line of the log."""
         names = {"frequency": f"{self.omega[k]!r} rad/s", "phase": float(self.phase[k])}
         load = (
             rb.Harmonic(amplitude=float(self.force[k]), point="tip", **names)
@@ -129,7 +129,7 @@ def random_flights(modes: int, harmonic: bool, count: int, seed: int) -> Flights
     )
     start = flights.cavity(np.arange(count), np.zeros((count, 1)))[:, 0]
     flights.ball[:] = start * rng.uniform(0, 1, count)
-    # Graze: the clearance is set so that the first extreme of the offset just reaches, or just misses, a wall.
+    # Graze: the clearance is such that the first extreme of the offset just reaches or misses a wall.
     k = np.arange(0, count, 2)
     t = np.linspace(0, DURATION, GRID)[None, :]
     for part in np.array_split(k, max(1, k.size // 250)):
@@ -151,8 +151,8 @@ def random_flights(modes: int, harmonic: bool, count: int, seed: int) -> Flights
 def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray[np.intp], Array]:
     """First touch by a fine grid with polished minima and bisection.
 
-    Returns time (infinite where there is none), side, and how near to a tangent the decision was taken: the smallest
-    |gap| over the clearance among the minima before the touch.
+    Returns time (infinite where there is none), side, and how near to a tangent the decision was taken: the
+    smallest |gap| over the clearance among the minima before the touch.
     """
     t = np.linspace(0, DURATION, GRID)
     n = k.size
@@ -161,7 +161,7 @@ def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray
     for wall, gap in enumerate(margins):
         dips = (gap[:, 1:-1] <= gap[:, :-2]) & (gap[:, 1:-1] <= gap[:, 2:])
         curve = gap[:, 2:] - 2 * gap[:, 1:-1] + gap[:, :-2]
-        # Minima that a parabola through three points puts within reach of zero are polished by golden section.
+        # Minima that a parabola through three points puts within reach of zero: golden section.
         near = dips & (gap[:, 1:-1] < 4 * np.abs(curve) + 1e-3 * flights.clearance[k, None])
         row, column = np.nonzero(near)
         low, high = t[column], t[column + 2]
@@ -225,7 +225,7 @@ def test_no_first_touch_is_missed(modes: int, harmonic: bool, share: float) -> N
     assert wrong.size == 0, f"flights {wrong[:10]}: brute force {time[wrong[:10]]}, ours {ours[wrong[:10]]}"
     both = clear & hit
     assert np.array_equal(wall[both], side[both])
-    # A touch at a shallow angle is known to rounding over its slope: gap ~ slope^2 / (2 curvature) at a dip of depth d.
+    # A touch at a shallow angle is known to rounding over its slope, and that slope is the root of the dip.
     known = 1e-9 + 1e-15 / np.sqrt(np.minimum(doubt[both], 1.0)) * 1e3
     assert np.all(np.abs(ours[both] - time[both]) <= known)
 

@@ -132,7 +132,7 @@ def test_chatter_has_the_printed_values() -> None:
 
 @pytest.mark.parametrize("gamma", printed.APPARENT_MASS)
 def test_apparent_mass_has_the_printed_values(gamma: float) -> None:
-    """Both parts of the apparent mass agree with the printed six places, and the loss with the impact's energy."""
+    """The apparent mass agrees with the printed six places, and the loss with the impact's energy."""
     ball = shaken.inelastic_ball(gamma)
     for value, shown in zip(ball.apparent_mass(), printed.APPARENT_MASS[gamma], strict=True):
         digits(value, shown, 6)

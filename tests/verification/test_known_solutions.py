@@ -30,7 +30,7 @@ def test_soft_impacts_become_hard_ones_at_first_order() -> None:
 
 @pytest.mark.parametrize("key", printed.MASRI_CAUGHEY)
 def test_impact_damper_keeps_or_leaves_its_orbit(key: tuple[float, float, float]) -> None:
-    """A small disturbance of the periodic motion dies out where the multiplier is below one, and grows above."""
+    """A small disturbance dies out where the multiplier is below one, and grows above."""
     orbit = measures.stable(key)
     size = 1e-5 * orbit.clearance
     log = measures.simulate(cases.impact_damper(orbit, 24.0, shift=(size, 0, 0, 0))).arrays.impacts
@@ -44,7 +44,7 @@ def test_impact_damper_keeps_or_leaves_its_orbit(key: tuple[float, float, float]
 
 @pytest.mark.parametrize("e", printed.SLOW_MANIFOLD_THRESHOLD)
 def test_two_impacts_a_cycle_end_at_the_threshold(e: float) -> None:
-    """Just above the threshold the ball makes two impacts a cycle for ever; just below it falls out of step."""
+    """Just above the threshold the ball makes two impacts a cycle; just below it falls out of step."""
     cycles = 400
     above = shaken.two_impacts(e, 1.0005 * shaken.threshold(e))
     below = shaken.TwoImpacts(e, 0.9995 * shaken.threshold(e), above.reach, above.phase)
@@ -84,7 +84,7 @@ def test_chatter_ends_at_rest() -> None:
 
 
 def test_soft_ball_chatters_to_rest() -> None:
-    """With a soft contact the ball comes to rest in its static indentation, later than a hard one by its contacts."""
+    """With a soft contact the ball comes to rest in its static indentation."""
     case = rb.Case(
         structure=rb.Fixed(),
         damper=rb.ImpactDamper(

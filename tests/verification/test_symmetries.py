@@ -1,4 +1,4 @@
-"""What must not change the answer: mirrors, units, the order of balls, a stop on the way, threads and processes."""
+"""What must not change the answer: mirrors, units, order of balls, a stop on the way, threads, processes."""
 
 import hashlib
 import subprocess
@@ -46,7 +46,7 @@ def test_mirrored_case_is_the_mirrored_run() -> None:
 
 
 def test_row_counted_from_the_other_end_is_the_mirrored_run() -> None:
-    """A row in reverse order under the reverse pulse moves as the mirror image, up to the order of summation."""
+    """A row in reverse order under the reverse pulse moves as the mirror image, up to rounding."""
     a, b = measures.simulate(row()).arrays, measures.simulate(row(-1.0, -1)).arrays
     assert len(a.impacts) > 5
     early = a.impacts.time < 0.1
@@ -60,7 +60,7 @@ def test_row_counted_from_the_other_end_is_the_mirrored_run() -> None:
 
 @pytest.mark.parametrize("exact", [True, False], ids=["powers of two", "any factor"])
 def test_rescaled_units_give_the_rescaled_run(exact: bool) -> None:
-    """Length, mass and time in other units give the same run: no dimensional constant hides in the program."""
+    """Length, mass and time in other units give the same run: no dimensional constant is hidden."""
     length, mass, time = (2.0**4, 2.0**-6, 2.0**2) if exact else (3.7, 0.21, 1.9)
     force = mass * length / time**2
 

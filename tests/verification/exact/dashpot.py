@@ -1,7 +1,8 @@
 """A ball against a still wall: Hertz contact with Tsuji's dashpot, and the linear spring-dashpot.
 
-With Y = d^(5/4) and d(tau) = d^(1/4) dt Tsuji's equation m d'' + A d^(3/2) + alpha sqrt(m A) d^(1/4) d' = 0 is the linear
-oscillator Y'' + 2 zeta w Y' + w^2 Y = 0 with w^2 = 5 A / (4 m), zeta = alpha / sqrt(5) and Y'(0) = (5/4) V.
+With Y = d^(5/4) and d(tau) = d^(1/4) dt Tsuji's equation
+m d'' + A d^(3/2) + alpha sqrt(m A) d^(1/4) d' = 0 is the linear oscillator
+Y'' + 2 zeta w Y' + w^2 Y = 0 with w^2 = 5 A / (4 m), zeta = alpha / sqrt(5) and Y'(0) = (5/4) V.
 """
 
 import math

@@ -1,7 +1,7 @@
 """Impact damper with two impacts a cycle: S. F. Masri and T. K. Caughey, J. Appl. Mech. 33 (1966) 586.
 
-M = K = F0 = 1, a ball of mass mu in a cavity of total clearance d, hard impacts of restitution e. The right-hand
-impact is at t = 0, the left-hand one half a cycle later with everything mirrored.
+M = K = F0 = 1, a ball of mass mu in a cavity of total clearance d, hard impacts of restitution e. The
+right-hand impact is at t = 0, the left-hand one half a cycle later with everything mirrored.
 """
 
 import math
@@ -17,8 +17,8 @@ from .oscillator import amplitude, lag, roots, transition
 class Orbit:
     """A symmetric orbit with two impacts a cycle.
 
-    `speed` is the ball's velocity w after the right-hand impact; `position`, `before` and `after` belong to the
-    structure at that impact; `load_phase` makes the load sin(omega t + load_phase).
+    `speed` is the ball's velocity w after the right-hand impact; `position`, `before` and `after` belong to
+    the structure at that impact; `load_phase` makes the load sin(omega t + load_phase).
     """
 
     mass_ratio: float
@@ -89,8 +89,8 @@ class Orbit:
     def multipliers(self) -> NDArray[np.complex128]:
         """Eigenvalues of the mirrored half-cycle map, from its variational equation.
 
-        Between impacts a disturbance of (x, x', y, y') is carried by the transition matrix; at an impact the jump in
-        state and in time is differentiated (saltation).
+        Between impacts a disturbance of (x, x', y, y') is carried by the transition matrix; at an impact the jump
+        in state and in time is differentiated (saltation).
         """
         mu, e = self.mass_ratio, self.restitution
         flight = np.zeros((4, 4))

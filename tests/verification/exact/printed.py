@@ -1,4 +1,4 @@
-"""Values as printed in the literature and in this project's notes on physics; the formulas are checked against them."""
+"""Values as printed in the literature, to check the formulas against."""
 
 TSUJI_RESTITUTION = {
     0.1: (0.7292476, 0.7440794),

@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 class TwoImpacts:
     """Symmetric motion with two impacts a cycle, in units of the half clearance and of 1 / omega.
 
-    Cavity `amplitude` sin(t + phase); the ball is at +`reach` at t = 0, where it leaves the right wall, and crosses to
-    -`reach` in half a cycle.
+    Cavity `amplitude` sin(t + phase); the ball is at +`reach` at t = 0, where it leaves the right wall, and
+    crosses to -`reach` in half a cycle.
     """
 
     restitution: float
@@ -46,7 +46,7 @@ def two_impacts(restitution: float, amplitude: float) -> TwoImpacts:
 
 
 def collide_phase(ratio: float) -> float:
-    """Phase after take-off at which a ball that collects at one wall hits the other; ratio = A / clearance."""
+    """Phase after take-off at which a ball that sticks hits the other wall; ratio = A / clearance."""
     return float(
         brentq(lambda tau: tau - math.sin(tau) - 1 / ratio, 1e-9, 1 / ratio + 1, xtol=1e-15, rtol=1e-15)
     )
@@ -61,7 +61,7 @@ def collect_and_collide(ratio: float) -> float:
 class TableOrbit:
     """A ball that bounces on a table A sin(omega t) with g = omega = 1: one impact in n cycles.
 
-    The impact is at the table's phase `phase`; the ball leaves it at `launch`, both in the frame of the ground.
+    The impact is at the table's phase `phase`; the ball leaves it at the speed `launch` over ground.
     """
 
     restitution: float
@@ -116,7 +116,7 @@ class InelasticBall:
     approach: float
 
     def apparent_mass(self) -> tuple[float, float]:
-        """M' and m'' of m_app = m' - i m'': first harmonic of the force over that of the table's acceleration."""
+        """Parts of m' - i m'', first harmonic of the force over that of the table's acceleration."""
         g = self.gamma
         start, stop = self.landing, self.take_off + 2 * math.pi
         # Force on the ball: 1 - gamma sin t while it rests on the table, and an impulse on landing.
