@@ -122,7 +122,8 @@ class Trajectory {
     void settle_released(int touched) {
         for (std::size_t i = released_.size(); i-- > 0;) {
             const int c = released_[i].contact;
-            if (c != touched && gap(problem_, contact(c), state_.y.data()).value <= 0) continue;
+            const real blur = 8 * epsilon * problem_.dampers[damper_of(c)].clearance;
+            if (c != touched && gap(problem_, contact(c), state_.y.data()).value < -blur) continue;
             ledger_.normal[damper_of(released_[i].contact)] += released_[i].energy;
             phase(released_[i].contact) = Phase::open;
             released_.erase(released_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -257,20 +258,22 @@ class Trajectory {
             bool negligible = true;
             for (std::size_t c = 0; c < phase_.size(); ++c)
                 if (phase_[c] == Phase::touching)
-                    negligible = negligible && weak(static_cast<int>(c), scratch_.y.data(), length);
+                    negligible = negligible && weak(static_cast<int>(c), scratch_.y.data(), length, 0);
             if (negligible) break;
         }
         return length;
     }
 
-    // Is the force of a contact that closes from rest, after `length`, below 1e-8 of the inertia that closes it?
-    bool weak(int c, const real* y, real length) const {
+    // Is what the force of a contact that closes from rest does in `length` negligible: below 1e-8 of the closing rate
+    // itself, or within the tolerance of the speeds around it?
+    bool weak(int c, const real* y, real length, real speed) const {
         const Gap g = gap(problem_, contact(c), y);
         if (g.value >= 0) return true;
         const real e = rebound(contact(c).restitution, 0).e, x = std::sqrt(std::sqrt(-g.value));
         const real f = contact(c).normal.visit(
             [&](const auto& law) { return law.force(law.begin(e), x, -g.rate); });
-        return std::fabs(f) * length <= 1e-8 * contact(c).mass * std::fabs(g.rate);
+        return std::fabs(f) * length <=
+               contact(c).mass * std::fmax(1e-8 * std::fabs(g.rate), problem_.settings.tolerance * speed);
     }
 
     void begin_at_rest() {
@@ -431,6 +434,12 @@ class Trajectory {
         return h;
     }
 
+    real contact_speed() const {
+        real speed = 0;
+        for (const Active& a : system_.active) speed = std::max(speed, a.speed);
+        return speed;
+    }
+
     // Errors are measured against the speeds and overlaps of the contacts themselves.
     void set_scales() {
         const real tolerance = problem_.settings.tolerance;
@@ -502,6 +511,7 @@ class Trajectory {
     enum class Event { none, boundary, touch, rest_touch, opened, engaged, unstuck };
 
     void integrate_closed() {
+        settle_released(-1);
         system_.begin(loads_, state_.t);
         load_system();
         const std::size_t n = system_.size(), clock = system_.time_index();
@@ -587,7 +597,7 @@ class Trajectory {
                 if (phase(c) == Phase::touching || (std::fabs(before.value) <= blur && std::fabs(before.rate) <= blur)) {
                     if (after.value > blur) phase(c) = Phase::open;
                     if (after.value >= -blur || hard()) continue;
-                    if (weak(c, trial_.data(), trial_[clock])) {
+                    if (weak(c, trial_.data(), trial_[clock], contact_speed())) {
                         phase(c) = Phase::touching;
                         event = Event::rest_touch;
                     } else {

@@ -79,10 +79,25 @@ nb::list simulate(const nb::list& problems, int threads) {
     return results;
 }
 
+// Restitution of a packed law at each speed; not a number beyond it.
+nb::object restitution(const nb::dict& law, const door::Array& speeds) {
+    Problem storage;
+    storage.tables.reserve(2);
+    RestitutionLaw choice;
+    door::choose(choice, law, storage);
+    std::vector<real> values;
+    for (std::size_t i = 0; i < speeds.shape(0); ++i) {
+        const Rebound r = rebound(choice, speeds.data()[i]);
+        values.push_back(r.outside ? not_a_number : r.e);
+    }
+    return door::array(std::move(values));
+}
+
 } // namespace
 
 NB_MODULE(RATTLEBOX_MODULE, module) {
     module.doc() = "Rattlebox core";
     module.def("simulate", &simulate, nb::arg("problems"), nb::arg("threads") = 1,
                "Run packed problems (see rattlebox/engines/pack.py) and return their results.");
+    module.def("restitution", &restitution, nb::arg("law"), nb::arg("speeds"));
 }

@@ -1,1 +1,89 @@
-"""Simulator and design tool for particle and impact dampers."""
+"""Simulator and design tool for particle and impact dampers.
+
+The one import path: `import rattlebox as rb`. Everything public is a name of this module; heavy parts load when first
+used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from rattlebox.model.case import Case
+from rattlebox.model.contacts import Linear, Thornton, Tsuji, alpha_of_restitution, restitution_of_alpha
+from rattlebox.model.dampers import ImpactDamper, Sphere
+from rattlebox.model.errors import CaseError
+from rattlebox.model.materials import Material, materials
+from rattlebox.model.methods import EventDriven, Newton, Output, TwoStep
+from rattlebox.model.pairs import Body, Pair, contact_pairs
+from rattlebox.model.restitutions import Constant, JacksonGreen, Johnson, Tabulated, ThorntonRestitution
+from rattlebox.model.signals import HalfSine, Harmonic, Record, chirp, random_record
+from rattlebox.model.structures import SDOF, Fixed, Matrices, Modal, Shaker
+
+if TYPE_CHECKING:
+    from rattlebox.engines.curves import restitution_curve
+    from rattlebox.engines.simulate import simulate, simulate_many
+    from rattlebox.results import Run, load
+
+__version__ = "0.1.0"
+
+_LATER = {
+    "simulate": "rattlebox.engines.simulate",
+    "simulate_many": "rattlebox.engines.simulate",
+    "restitution_curve": "rattlebox.engines.curves",
+    "Run": "rattlebox.results",
+    "load": "rattlebox.results",
+}
+
+__all__ = [
+    "SDOF",
+    "Body",
+    "Case",
+    "CaseError",
+    "Constant",
+    "EventDriven",
+    "Fixed",
+    "HalfSine",
+    "Harmonic",
+    "ImpactDamper",
+    "JacksonGreen",
+    "Johnson",
+    "Linear",
+    "Material",
+    "Matrices",
+    "Modal",
+    "Newton",
+    "Output",
+    "Pair",
+    "Record",
+    "Run",
+    "Shaker",
+    "Sphere",
+    "Tabulated",
+    "Thornton",
+    "ThorntonRestitution",
+    "Tsuji",
+    "TwoStep",
+    "alpha_of_restitution",
+    "chirp",
+    "contact_pairs",
+    "load",
+    "materials",
+    "random_record",
+    "restitution_curve",
+    "restitution_of_alpha",
+    "simulate",
+    "simulate_many",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LATER:
+        value = getattr(import_module(_LATER[name]), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'rattlebox' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ..results import Run
 from .energy import draw_ledger
 from .motion import draw_cavity, draw_structure, row_places
-from .style import PaperFigure, Size, label, paper, scaled
+from .style import PaperFigure, Size, paper, scaled, time_axis
 
 
 def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
@@ -61,7 +61,7 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
                 else:
                     panel.text(0.5, 0.5, "no ball", transform=panel.transAxes, ha="center", va="center")
             draw_ledger(run, next(left), time, energy)
-            label(panels[-1, column], "x", "Time", time.unit)
+            time_axis(panels[-1, column], arrays.time, time, 5)
         for panel in panels[:, 1:].flat:
             panel.set_ylabel("")
         entries: dict[str, Artist] = {}

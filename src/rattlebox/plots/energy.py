@@ -7,7 +7,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..results import Run
-from .style import CHANNEL_COLOURS, INK, PaperFigure, Scale, Size, label, legend_above, paper, scaled
+from .style import (
+    CHANNEL_COLOURS,
+    INK,
+    PaperFigure,
+    Scale,
+    Size,
+    label,
+    legend_above,
+    paper,
+    pen,
+    scaled,
+    time_axis,
+)
 
 LOG_DECADES = 6.0
 _LEDGER_LABELS = {
@@ -52,7 +64,7 @@ def plot_energy(run: Run, *, size: Size = "column", log: bool = False) -> Figure
         draw_ledger(run, lower, time, scaled(run.ledger.supplied, "J"))
         legend_above(upper)
         legend_above(lower)
-        label(lower, "x", "Time", time.unit)
+        time_axis(lower, run.arrays.time, time)
         figure.align_ylabels([upper, lower])
     return figure
 
@@ -88,7 +100,7 @@ def draw_energies(run: Run, axes: Axes, time: Scale, *, log: bool = False) -> No
             np.where(energy > 0.0, energy, np.nan) / scale if log else energy / scale,
             color=CHANNEL_COLOURS[name],
             label=names.get(name, name),
-            linewidth=0.6,
+            linewidth=pen(),
         )
     if log and highest > 0.0:
         axes.set_yscale("log")
@@ -125,8 +137,8 @@ def draw_ledger(run: Run, axes: Axes, time: Scale, energy: Scale) -> None:
         labels=[_LEDGER_LABELS[name] for name in parts],
         colors=[CHANNEL_COLOURS[name] for name in parts],
         edgecolor="white",
-        linewidth=0.3,
+        linewidth=pen(0.3),
     )
     axes.plot(t, ledger.supplied / energy.divisor, color=INK, label="supplied", clip_on=False)
     axes.set_ylim(bottom=0.0)
-    label(axes, "y", "Energy", energy.unit)
+    label(axes, "y", "Energy ledger", energy.unit)

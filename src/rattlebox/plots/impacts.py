@@ -9,9 +9,10 @@ from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from ..results import Run, RunArrays
-from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, paper, scaled
+from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, paper, pen, scaled, time_axis
 
 _SIDES: dict[str, dict[str, Any]] = {
     "trailing wall": {"marker": "o", "color": "colour", "linewidths": 0.0},
@@ -50,10 +51,10 @@ def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figur
     offered = (
         ("Approach speed", "m/s", impacts.approach_speed),
         ("Peak force", "N", impacts.peak_force),
-        ("Restitution", "", impacts.restitution),
+        ("Coefficient of restitution", "", impacts.restitution),
     )
     shown = [panel for panel in offered if np.any(np.isfinite(panel[2]))] or [offered[0]]
-    t_scale, t_unit = scaled(run.arrays.time, "s")
+    time = scaled(run.arrays.time, "s")
     with paper(size):
         figure = PaperFigure(
             size, (0.2 if size == "column" else 0.1) + (0.34 if size == "column" else 0.18) * len(shown)
@@ -61,7 +62,7 @@ def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figur
         axes = list(np.ravel(figure.subplots(len(shown), 1, sharex=True)))
         for panel, (name, unit, values) in zip(axes, shown, strict=True):
             scale, prefixed = scaled(values, unit) if unit else (1.0, "")
-            _scatter(panel, run.arrays, impacts.time / t_scale, values / scale)
+            _scatter(panel, run.arrays, impacts.time / time.divisor, values / scale)
             label(panel, "y", name, prefixed)
             if log and unit and len(impacts):
                 panel.set_yscale("log")
@@ -69,11 +70,11 @@ def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figur
                 panel.set_ylim(bottom=0.0)
             else:
                 _limit_restitution(panel, values)
+                panel.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
         if not len(impacts):
             axes[0].text(0.5, 0.5, "no impacts", transform=axes[0].transAxes, ha="center", va="center")
             axes[0].set_yticks([])
-        axes[-1].set_xlim(run.arrays.time[0] / t_scale, run.arrays.time[-1] / t_scale)
-        label(axes[-1], "x", "Time", t_unit)
+        time_axis(axes[-1], run.arrays.time, time)
         _add_legend(figure, run.arrays)
         figure.align_ylabels(axes)
     return figure
@@ -87,13 +88,13 @@ def _limit_restitution(axes: Axes, values: Any) -> None:
     top = min(middle + 0.6 * span, 1.0 + 0.05 * span)
     axes.set_ylim(max(top - 1.2 * span, -0.05 * span), top)
     if top >= 1.0:
-        axes.axhline(1.0, color=FAINT, linewidth=0.5, zorder=0)
+        axes.axhline(1.0, color=FAINT, linewidth=pen(0.5), zorder=0)
 
 
 def _scatter(axes: Axes, arrays: RunArrays, x: Any, y: Any) -> None:
     """Mark each impact by its damper and by the side of the contact."""
     log = arrays.impacts
-    area = 9.0 if len(log) < 300 else 3.0
+    area = (9.0 if len(log) < 300 else 3.0) * pen(1.0) ** 2
     for d in range(len(arrays.dampers)):
         for side, marks in _SIDES.items():
             here = (log.damper == d) & (_sides(arrays) == side)
@@ -109,24 +110,40 @@ def _sides(arrays: RunArrays) -> Any:
 
 
 def _marks(marks: dict[str, Any], colour: str) -> dict[str, Any]:
-    return {name: colour if value == "colour" else value for name, value in marks.items()}
+    """Settings of a scatter in a colour, the edge as wide as the letters ask."""
+    set_in = {name: colour if value == "colour" else value for name, value in marks.items()}
+    return set_in | {"linewidths": pen(marks["linewidths"])}
 
 
 def _add_legend(figure: Figure, arrays: RunArrays) -> None:
-    """Explain the marks that occur, and the colours when there are several dampers."""
+    """Explain the marks that occur, and in a second line the colours when there are several dampers."""
     seen = set(_sides(arrays).tolist())
     size = float(rcParams["lines.markersize"])
-    entries = [
+    sides = [
         Line2D([], [], linestyle="", markersize=size, marker=marks["marker"], color=INK, label=side,
                markerfacecolor="none" if marks.get("facecolors") == "none" else INK)
         for side, marks in _SIDES.items()
         if side in seen
     ]  # fmt: skip
-    if len(arrays.dampers) > 1:
-        entries += [
-            Line2D([], [], linestyle="", markersize=1.6 * size, marker="s", label=name,
-                   color=SERIES_COLOURS[d % len(SERIES_COLOURS)])
-            for d, name in enumerate(arrays.dampers)
-        ]  # fmt: skip
-    if entries:
-        figure.legend(handles=entries, loc="outside upper left", ncols=3, handletextpad=0.2, handlelength=1.0)
+    dampers = [
+        Line2D([], [], linestyle="", markersize=1.6 * size, marker="s", label=name,
+               color=SERIES_COLOURS[d % len(SERIES_COLOURS)])
+        for d, name in enumerate(arrays.dampers)
+    ]  # fmt: skip
+    if not sides:
+        return
+    columns = 3
+    entries = _filled(sides, columns)
+    if len(dampers) > 1:
+        entries += _filled(dampers, columns)
+    # Legends fill column by column.
+    by_column = [entry for k in range(columns) for entry in entries[k::columns]]
+    figure.legend(
+        handles=by_column, loc="outside upper left", ncols=columns, handletextpad=0.2, handlelength=1.0
+    )
+
+
+def _filled(entries: list[Line2D], columns: int) -> list[Line2D]:
+    """Entries with blank ones behind, so that they fill whole lines of the legend."""
+    blank = [Line2D([], [], linestyle="", label=" ") for _ in range(-len(entries) % columns)]
+    return entries + blank

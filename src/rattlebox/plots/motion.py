@@ -20,7 +20,9 @@ from .style import (
     label,
     legend_above,
     paper,
+    pen,
     scaled,
+    time_axis,
 )
 
 MOST_SERIES = len(SERIES_COLOURS)
@@ -55,7 +57,7 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
     moving = arrays.mode_frequency.size > 0 or not arrays.balls
     panels = int(moving) + sum(bool(np.any(arrays.ball_damper == d)) for d in range(len(arrays.dampers)))
     with paper(size):
-        figure = PaperFigure(size, 0.16 + 0.34 * panels if size == "column" else 0.08 + 0.2 * panels)
+        figure = PaperFigure(size, 0.14 + 0.36 * panels if size == "column" else 0.1 + 0.2 * panels)
         axes = list(np.ravel(figure.subplots(panels, 1, sharex=True)))
         time = scaled(arrays.time[shown], "s")
         left = iter(axes)
@@ -67,7 +69,7 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
                 draw_cavity(panel, arrays, d, shown, time, scaled(row_places(arrays, d), "m"))
                 if len(arrays.dampers) > 1:
                     panel.set_title(name, loc="right")
-        label(axes[-1], "x", "Time", time.unit)
+        time_axis(axes[-1], arrays.time[shown], time)
         figure.align_ylabels(axes)
     return figure
 
@@ -110,7 +112,7 @@ def draw_structure(axes: Axes, arrays: RunArrays, shown: slice, time: Scale, len
         Scales of the axes.
     """
     x = arrays.displacement[shown, :MOST_SERIES]
-    axes.axhline(0.0, color=FAINT, linewidth=0.5, zorder=0)
+    axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
     for k in range(x.shape[1]):
         axes.plot(
             arrays.time[shown] / time.divisor,
@@ -143,7 +145,7 @@ def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, shown: slice, time: 
     half = arrays.clearance[damper] / 2
     x = (arrays.relative_position - arrays.ball_centre)[shown][:, own]
     for wall in (-half, half):
-        axes.axhline(wall / length.divisor, color=INK, linewidth=0.7, zorder=0)
+        axes.axhline(wall / length.divisor, color=INK, linewidth=pen(0.7), zorder=0)
     for k in range(min(len(own), MOST_SERIES)):
         axes.plot(
             arrays.time[shown] / time.divisor,
@@ -153,5 +155,5 @@ def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, shown: slice, time: 
             label=f"ball {k + 1}" if len(own) > 1 else None,
         )
     axes.margins(y=0.12)
-    label(axes, "y", "Ball in cavity", length.unit)
+    label(axes, "y", "Place in cavity", length.unit)
     legend_above(axes)

@@ -8,7 +8,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from ..results import Run
-from .style import FAINT, INK, PaperFigure, Size, label, paper, scaled
+from .style import FAINT, INK, PaperFigure, Size, label, paper, pen, scaled
 
 
 def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column") -> Figure:
@@ -47,7 +47,7 @@ def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column
         k = arrays.balls.index(chosen)
         half = float(arrays.clearance[arrays.ball_damper[k]]) / 2
         x, v = arrays.relative_position[:, k] - arrays.ball_centre[k], arrays.relative_velocity[:, k]
-        texts = "Ball in cavity", "Relative velocity"
+        texts = "Place in cavity", "Relative velocity"
     else:
         k = arrays.points.index(chosen)
         x, v = arrays.displacement[:, k], arrays.velocity[:, k]
@@ -63,7 +63,7 @@ def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column
             list(np.stack((points[:-1], points[1:]), axis=1)),
             array=arrays.time[:-1] / t_scale,
             cmap=_colours(),
-            linewidths=0.5,
+            linewidths=pen(0.5),
             rasterized=True,
         )
         axes.add_collection(line)
@@ -77,7 +77,7 @@ def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column
                 axes.axvspan(
                     side * wall, side * 2 * reach, facecolor=FAINT, alpha=0.45, linewidth=0, zorder=0
                 )
-                axes.axvline(side * wall, color=INK, linewidth=0.7)
+                axes.axvline(side * wall, color=INK, linewidth=pen(0.7))
         label(axes, "x", texts[0], x_unit)
         label(axes, "y", texts[1], v_unit)
         bar = figure.colorbar(line, ax=axes, aspect=30, pad=0.02)

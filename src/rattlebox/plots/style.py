@@ -11,6 +11,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from ..results.quantities import prefix
 
@@ -174,12 +175,14 @@ def scaled(values: Any, unit: str) -> Scale:
     """
     array = np.abs(np.asarray(values, dtype=float))
     array = array[np.isfinite(array)]
-    scale, name = prefix(float(array.max()) if array.size else 0.0)
+    # One reads 0.4 mm and 0.5 s, not 400 µm and 500 ms.
+    least = 0.1 if unit in ("m", "s") else 1.0
+    scale, name = prefix(float(array.max()) if array.size else 0.0, least)
     return Scale(scale, name + unit)
 
 
 def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
-    """Write "text (unit)" on an axis.
+    """Write text and unit on an axis, on two lines beside a vertical one, which may be short.
 
     Parameters
     ----------
@@ -192,8 +195,41 @@ def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
     unit
         Unit with its prefix; "" for a pure number.
     """
-    full = f"{text} ({unit})" if unit else text
-    (axes.set_xlabel if which == "x" else axes.set_ylabel)(full)
+    if which == "x":
+        axes.set_xlabel(f"{text} ({unit})" if unit else text)
+    else:
+        axes.set_ylabel(f"{text}\n({unit})" if unit else "\n".join(text.rsplit(" ", 1)))
+
+
+def pen(width: float = 0.6) -> float:
+    """Width of a line that grows with the letters.
+
+    Parameters
+    ----------
+    width
+        Width in points beside letters of 8 points.
+    """
+    return width * float(mpl.rcParams["font.size"]) / 8.0
+
+
+def time_axis(axes: Axes, time: Any, scale: Scale, ticks: int = 6) -> None:
+    """Label the time axis of the lowest panel and limit it to the times shown.
+
+    Parameters
+    ----------
+    axes
+        Lowest panel.
+    time
+        Times shown [s].
+    scale
+        Scale of the axis.
+    ticks
+        Largest number of intervals.
+    """
+    label(axes, "x", "Time", scale.unit)
+    axes.xaxis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 5, 10]))
+    if len(time) > 1:
+        axes.set_xlim(time[0] / scale.divisor, time[-1] / scale.divisor)
 
 
 def legend_above(axes: Axes, **options: Any) -> None:

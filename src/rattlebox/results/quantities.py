@@ -18,13 +18,15 @@ def _exponent(value: float, significant: int) -> int:
     return int(f"{value:.{significant - 1}e}".partition("e")[2])
 
 
-def prefix(value: float) -> tuple[float, str]:
-    """Power of ten and SI prefix in which `value` has one to three digits before the point.
+def prefix(value: float, least: float = 1.0) -> tuple[float, str]:
+    """Power of ten and SI prefix in which `value` is at least `least`, and less than a thousand times that.
 
     Parameters
     ----------
     value
         Number in the unit without prefix; zero and non-finite numbers get no prefix.
+    least
+        Power of ten.
 
     Returns
     -------
@@ -35,7 +37,7 @@ def prefix(value: float) -> tuple[float, str]:
     """
     if value == 0.0 or not math.isfinite(value):
         return 1.0, ""
-    power = min(max(3 * (_exponent(value, 4) // 3), min(PREFIXES)), max(PREFIXES))
+    power = min(max(3 * (_exponent(value / least, 4) // 3), min(PREFIXES)), max(PREFIXES))
     return 10.0**power, PREFIXES[power]
 
 

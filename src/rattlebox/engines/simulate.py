@@ -1,0 +1,143 @@
+"""Case -> core -> Run."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.engines.core import core
+from rattlebox.engines.pack import pack
+from rattlebox.engines.status import describe
+from rattlebox.results.arrays import ImpactArrays, RunArrays
+from rattlebox.results.provenance import Provenance
+from rattlebox.results.run import Run
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rattlebox.model.case import Case
+
+
+
+def simulate(case: Case) -> Run:
+    """Run a case.
+
+    Parameters
+    ----------
+    case
+        What to run. The method is part of it.
+
+    Returns
+    -------
+    Run
+        Motion, energy ledger, impacts, and a status: a run that cannot be finished ends with a status and a message,
+        not with an exception, and keeps what it has.
+    """
+    return simulate_many([case])[0]
+
+
+def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[Run]:
+    """Run several cases, each on one thread.
+
+    Parameters
+    ----------
+    cases
+        What to run.
+    threads
+        How many at once; default as many as there are cores. The results do not depend on it, to the last bit.
+
+    Returns
+    -------
+    list of Run
+        In the order of the cases. Ctrl-C ends the runs in progress with the status "interrupted".
+    """
+    count = max(1, min(len(cases), threads or os.cpu_count() or 1))
+    results = core().simulate([pack(case) for case in cases], count)
+    return [_run(case, result) for case, result in zip(cases, results, strict=True)]
+
+
+def _run(case: Case, raw: dict[str, Any]) -> Run:
+    arrays = _arrays(case, raw)
+    provenance = Provenance.now(method=case.method.kind, seed=case.seed)
+    return Run(arrays, case_toml=case.to_toml(), provenance=provenance)
+
+
+def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
+    modes = case.modes
+    m, dampers = len(modes.decay), case.dampers
+    counts = [len(damper.balls) for damper in dampers]
+    b, d = sum(counts), len(dampers)
+    time = raw["time"]
+    state = raw["state"].reshape(time.size, 2 * (m + b))
+    q, p = state[:, 0 : 2 * m : 2], state[:, 1 : 2 * m : 2]
+    position, velocity = state[:, 2 * m : 2 * m + b], state[:, 2 * m + b :]
+    of = np.repeat(np.arange(d), counts)
+    shapes = np.array([modes.shape(damper.point) for damper in dampers]).reshape(d, m)
+    centre = np.concatenate([damper.centres for damper in dampers]) if b else np.zeros(0)
+    mass = np.concatenate([damper.masses for damper in dampers]) if b else np.zeros(0)
+    gravity = np.array([damper.gravity for damper in dampers])
+    pull = np.zeros((time.size, d))
+    np.add.at(pull.T, of, -(mass * gravity[of])[:, None] * position.T)
+    points = list(modes.shapes)
+    at_points = np.array([modes.shapes[name] for name in points]).reshape(len(points), m)
+    names = [damper.label(index) for index, damper in enumerate(dampers)]
+    base = _base_motion(case, time)
+    stopped = raw["stopped_contact"]
+    name, message = describe(raw["status"], raw["stopped_at"], _contact_name(names, counts, stopped), raw["stopped_value"])
+    by_damper = (time.size, d)
+    impacts = {key: value for key, value in raw["impacts"].items() if key != "complete"}
+    return RunArrays(
+        time=time,
+        points=tuple(points),
+        balls=tuple(f"{names[i]}/{k + 1}" for i in range(d) for k in range(counts[i])),
+        dampers=tuple(names),
+        loads=tuple(f"{signal.kind} {index + 1}" for index, signal in enumerate(case.loads)),
+        displacement=q @ at_points.T,
+        velocity=p @ at_points.T,
+        ball_damper=of,
+        ball_centre=centre,
+        clearance=np.array([damper.clearance for damper in dampers]),
+        ball_position=position + centre,
+        ball_velocity=velocity,
+        relative_position=position + centre - (q @ shapes.T)[:, of],
+        relative_velocity=velocity - (p @ shapes.T)[:, of],
+        base_displacement=base[0],
+        base_velocity=base[1],
+        base_acceleration=base[2],
+        cavity_force=raw["force"].reshape(by_damper),
+        load=np.array([signal.evaluate(time) for signal in case.loads]).reshape(len(case.loads), time.size).T,
+        mode_frequency=np.sqrt(modes.stiffness) / (2 * np.pi),
+        mode_energy=0.5 * (p**2 + modes.stiffness * q**2),
+        ball_energy=0.5 * mass * velocity**2,
+        contact_energy=raw["stored"].reshape(by_damper),
+        gravity_energy=pull,
+        load_work=raw["load_work"],
+        base_work=raw["base_work"],
+        viscous_loss=raw["viscous"],
+        normal_loss=raw["normal"].reshape(by_damper),
+        plastic_loss=raw["plastic"].reshape(by_damper),
+        impacts=ImpactArrays(**impacts, complete=raw["impacts"]["complete"].astype(bool)),
+        status=name,
+        message=message,
+        counts={**raw["counts"], "impacts": raw["impacts"]["time"].size},
+        wall_time=raw["seconds"],
+    )
+
+
+def _contact_name(names: list[str], counts: list[int], contact: int) -> str:
+    for name, balls in zip(names, counts, strict=True):
+        if contact <= balls:
+            place = "trailing wall" if contact == 0 else "leading wall" if contact == balls else f"ball {contact} - {contact + 1}"
+            return f"{name} ({place})"
+        contact -= balls + 1
+    return ""
+
+
+def _base_motion(case: Case, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Displacement, velocity and acceleration of the base, (3, T); a harmonic has no drift, others start at rest."""
+    from rattlebox.engines.base_motion import base_motion
+
+    return sum((base_motion(signal, time) for signal in case.base_acceleration()), np.zeros((3, time.size)))

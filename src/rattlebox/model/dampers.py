@@ -1,0 +1,216 @@
+"""Impact dampers: balls in a row in a cavity."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+
+from .base import Part
+from .contacts import AnyContact
+from .errors import Hint
+from .materials import AnyMaterial, Material, find_wall
+from .units import Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse
+
+from .modes import Vector
+
+
+class Sphere(Part):
+    """A ball.
+
+    Parameters
+    ----------
+    radius, diameter
+        One of them [m].
+    material
+        Name in the library, or a Material.
+    mass
+        Instead of density times volume [kg].
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("ball", "balls")
+    radius: PositiveLength | None = None  # type: ignore[assignment]
+    diameter: PositiveLength | None = Field(default=None, exclude=True)
+    material: AnyMaterial
+    mass: PositiveMass | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_size(cls, values: Any) -> Any:
+        if isinstance(values, dict):
+            if (values.get("radius") is None) == (values.get("diameter") is None):
+                raise Hint("either radius or diameter is needed, not both", 'radius = "10 mm"')
+            if values.get("radius") is None:
+                diameter = parse(values["diameter"], ("m",))[0]
+                rest = {key: value for key, value in values.items() if key != "diameter"}
+                return {**rest, "radius": diameter / 2}
+        return values
+
+    @property
+    def weight(self) -> float:
+        """Mass [kg]."""
+        assert self.radius is not None
+        return self.mass if self.mass is not None else 4 / 3 * math.pi * self.radius**3 * self.material.density
+
+
+
+
+def _place(value: Any) -> Any:
+    if isinstance(value, (list, tuple)) and not (len(value) == 2 and isinstance(value[1], str)):
+        return [_one_place(item) for item in value]
+    return _one_place(value)
+
+
+def _one_place(value: Any) -> float | str:
+    if isinstance(value, bool):
+        raise Hint("a fraction of the gap from -1 to 1 is needed, or a length", 'start = -1 or start = "0.1 mm"')
+    if isinstance(value, (int, float)):
+        if not math.isfinite(value):
+            raise Hint("a finite number is needed")
+        return float(value)
+    length, unit = parse(value, ("m",))
+    return length if unit is None else f"{length!r} m"
+
+
+def _speeds(value: Any) -> Any:
+    if isinstance(value, (list, tuple)) and not (len(value) == 2 and isinstance(value[1], str)):
+        return tuple(parse(item, ("m/s",))[0] for item in value)
+    return (parse(value, ("m/s",))[0],)
+
+
+def _balls(value: Any) -> Any:
+    return tuple(value) if isinstance(value, (list, tuple)) else (value,)
+
+
+class ImpactDamper(Part):
+    """Balls in a row in a cavity that moves with a point of the structure.
+
+    Parameters
+    ----------
+    ball, balls
+        One Sphere or several, from the trailing to the leading wall.
+    gap, cavity_length
+        Clearance on each side when the row is packed and centred, or inner length of the cavity [m]; one of them.
+    wall
+        Material of the walls, "rigid", or None: the same as the ball beside.
+    start
+        Reduced position of each ball: fraction of the gap in [-1, 1] (-1 at the trailing, +1 at the leading wall), or
+        a length. One number for the whole row packed together, or one for each ball, rising.
+    velocity
+        Of each ball at the start, relative to the base [m/s].
+    contact
+        Law of the walls, and of the balls among themselves unless `ball_contact` is given.
+    gravity
+        Along the line, with sign [m/s^2].
+    point
+        Of the structure; not needed where there is one only.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")
+    kind: Literal["impact"] = "impact"
+    name: str = ""
+    balls: Annotated[tuple[Sphere, ...], BeforeValidator(_balls)]
+    gap: NotNegativeLength | None = None  # type: ignore[assignment]
+    wall: Annotated[Material | Literal["rigid"] | None, BeforeValidator(find_wall)] = None
+    start: Annotated[
+        float | str | list[float | str],
+        BeforeValidator(_place),
+        WithJsonSchema({"description": "fraction of the gap from -1 to 1, or a length; one, or one for each ball"}),
+    ] = 0.0
+    velocity: Annotated[
+        tuple[float, ...],
+        BeforeValidator(_speeds),
+        WithJsonSchema({"description": "velocity in m/s, or text with a unit; one, or one for each ball"}),
+    ] = (0.0,)
+    contact: AnyContact
+    ball_contact: AnyContact | None = None
+    gravity: Acceleration = 0.0
+    point: str | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _spellings(cls, values: Any) -> Any:
+        if not isinstance(values, dict):
+            return values
+        values = dict(values)
+        if "ball" in values:
+            if "balls" in values:
+                raise Hint("give ball or balls, not both")
+            values["balls"] = values.pop("ball")
+        length = values.pop("cavity_length", None)
+        if (length is None) == (values.get("gap") is None):
+            raise Hint("either gap or cavity_length is needed, not both", 'gap = "0.4 mm"')
+        if length is not None:
+            total = 0.0
+            for ball in _balls(values.get("balls", ())):
+                sphere = ball if isinstance(ball, Sphere) else Sphere.model_validate(ball)
+                assert sphere.radius is not None
+                total += 2 * sphere.radius
+            inner = parse(length, ("m",))[0]
+            if inner < total:
+                raise Hint(
+                    f"cavity_length is {inner:.6g} m, but the balls alone are {total:.6g} m long",
+                    f'cavity_length = "{1e3 * total * 1.01:.4g} mm"',
+                )
+            values["gap"] = (inner - total) / 2
+        return values
+
+    @model_validator(mode="after")
+    def _row_fits(self) -> ImpactDamper:
+        count = len(self.balls)
+        if count == 0:
+            raise Hint("a damper needs at least one ball")
+        if isinstance(self.start, list) and len(self.start) != count:
+            raise Hint(f"start has {len(self.start)} positions, but there are {count} balls", "one for each ball")
+        if len(self.velocity) not in (1, count):
+            raise Hint(f"velocity has {len(self.velocity)} numbers, but there are {count} balls", "one for each ball")
+        half = 0.5 * self.clearance
+        places = self.positions0
+        for i, place in enumerate(places):
+            if abs(place) > half:
+                raise Hint(
+                    f"ball {i + 1} would start {1e3 * (abs(place) - half):.4g} mm inside a wall", "start between -1 and 1"
+                )
+        for i in range(count - 1):
+            if places[i + 1] < places[i]:
+                raise Hint(
+                    f"balls {i + 1} and {i + 2} overlap by {1e3 * (places[i] - places[i + 1]):.4g} mm", "rising start"
+                )
+        return self
+
+    def label(self, index: int) -> str:
+        """Return the damper's name, or one made from its number in the case."""
+        return self.name or ("damper" if index == 0 else f"damper{index + 1}")
+
+    @property
+    def clearance(self) -> float:
+        """Total clearance of the row, twice the gap [m]."""
+        assert self.gap is not None
+        return 2 * self.gap
+
+    @property
+    def masses(self) -> Vector:
+        """Of the balls, (n,) [kg]."""
+        return np.array([ball.weight for ball in self.balls])
+
+    @property
+    def centres(self) -> Vector:
+        """Places of the ball centres from the cavity's centre in the packed, centred row, (n,) [m]."""
+        radii = np.array([ball.radius for ball in self.balls])
+        edges = np.concatenate([[0.0], np.cumsum(2 * radii)])
+        return edges[:-1] + radii - radii.sum()
+
+    @property
+    def positions0(self) -> Vector:
+        """Reduced start positions, (n,) [m]."""
+        half = 0.5 * self.clearance
+        places = self.start if isinstance(self.start, list) else [self.start] * len(self.balls)
+        return np.array([parse(p, ("m",))[0] if isinstance(p, str) else p * half for p in places])
+
+    @property
+    def velocities0(self) -> Vector:
+        """Start velocities, (n,) [m/s]."""
+        speeds = self.velocity if len(self.velocity) > 1 else self.velocity * len(self.balls)
+        return np.array(speeds)

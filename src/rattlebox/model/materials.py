@@ -1,0 +1,84 @@
+"""Materials: a small library with sources, and the user's own beside it."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from importlib import resources
+from typing import Annotated, Any, ClassVar
+
+from pydantic import BeforeValidator, field_validator
+
+from .base import Part
+from .errors import Hint, nearest
+from .units import Density, Modulus
+
+
+class Material(Part):
+    """An isotropic material.
+
+    Parameters
+    ----------
+    density
+        Mass density [kg/m^3].
+    young
+        Modulus of elasticity [Pa].
+    poisson
+        Poisson's ratio, above -1 and at most 0.5.
+    yield_stress
+        Yield stress [Pa]; left out for a body that breaks before it flows.
+    name, title, source
+        What it is called, what it is, where the values come from.
+
+    Raises
+    ------
+    CaseError
+        When a value is not physical.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("material", "wall")
+    name: str = ""
+    title: str = ""
+    density: Density
+    young: Modulus
+    poisson: float
+    yield_stress: Modulus | None = None
+    source: str = ""
+
+    @field_validator("poisson")
+    @classmethod
+    def _physical(cls, value: float) -> float:
+        if not -1 < value <= 0.5:
+            raise Hint("Poisson's ratio lies above -1 and at most at 0.5 for an isotropic solid", "poisson = 0.3")
+        return value
+
+
+@cache
+def materials() -> dict[str, Material]:
+    """Return the library, by name.
+
+    Returns
+    -------
+    dict of str to Material
+        In the order of the file; each material names its source.
+    """
+    text = resources.files("rattlebox.model").joinpath("materials.toml").read_text(encoding="utf-8")
+    return {name: Material(name=name, **values) for name, values in tomllib.loads(text).items()}
+
+
+def find_material(value: Any) -> Any:
+    """Look a name up in the library; anything else passes."""
+    if isinstance(value, str):
+        library = materials()
+        if value not in library:
+            raise Hint("no material of that name", nearest(value, library))
+        return library[value]
+    return value
+
+
+def find_wall(value: Any) -> Any:
+    """Like find_material, but "rigid" passes."""
+    return value if value == "rigid" else find_material(value)
+
+
+AnyMaterial = Annotated[Material, BeforeValidator(find_material)]

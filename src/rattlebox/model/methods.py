@@ -1,0 +1,121 @@
+"""How a case is computed, and what comes out."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+from .base import Part
+from .errors import Hint
+from .modes import Vector
+from .restitutions import AnyRestitution
+from .units import PositiveFrequency, PositiveTime, parse
+
+
+class EventDriven(Part):
+    """Exact flights, contacts integrated with error control. The method to use.
+
+    Parameters
+    ----------
+    tolerance
+        Relative error of one step through a contact.
+    max_events
+        Budget of flights and contacts; a run that spends it ends with a status.
+    collocation
+        Solve lone Hertz contacts whole; False integrates all of them step by step (slower, for comparison).
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("method",)
+    kind: Literal["event_driven"] = "event_driven"
+    tolerance: Annotated[float, Field(ge=1e-14, le=1e-3)] = 1e-12
+    max_events: Annotated[int, Field(ge=1)] = 10_000_000
+    collocation: bool = True
+
+
+class TwoStep(Part):
+    """Fixed steps, long in flight and short in contact, as in discrete-element programs. For comparison.
+
+    Parameters
+    ----------
+    dt_flight, dt_contact
+        Steps [s].
+    inner
+        "rk4": one Runge-Kutta step each; "dopri5": an adaptive solution of each with MATLAB's ode45 defaults.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("method",)
+    kind: Literal["two_step"] = "two_step"
+    dt_flight: PositiveTime = 5e-6
+    dt_contact: PositiveTime = 3e-8
+    inner: Literal["rk4", "dopri5"] = "rk4"
+
+
+class Newton(Part):
+    """Hard impacts without duration. For theory.
+
+    Parameters
+    ----------
+    restitution
+        A law or a number from 0 to 1; default the contact's own law.
+    stick
+        A contact whose next bounce would last less than this part of the shortest period sticks.
+    max_events
+        Budget of flights and impacts.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("method",)
+    kind: Literal["newton"] = "newton"
+    restitution: AnyRestitution | None = None
+    stick: Annotated[float, Field(ge=0, le=0.1)] = 1e-6
+    max_events: Annotated[int, Field(ge=1)] = 10_000_000
+
+
+AnyMethod = Annotated[EventDriven | TwoStep | Newton, Field(discriminator="kind")]
+
+
+def _times(value: Any) -> Any:
+    if value is None:
+        return None
+    return tuple(sorted({parse(item, ("s",))[0] for item in np.asarray(value, dtype=object).ravel().tolist()}))
+
+
+class Output(Part):
+    """At which times motion and energies are recorded; 0 and the end always are.
+
+    Parameters
+    ----------
+    rate
+        Samples per second [Hz].
+    times
+        Instead: the times themselves [s].
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("output",)
+    rate: PositiveFrequency | None = None
+    times: Annotated[tuple[float, ...] | None, BeforeValidator(_times)] = None
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Output:
+        if self.rate is not None and self.times is not None:
+            raise Hint("give rate or times, not both")
+        return self
+
+    @field_validator("times")
+    @classmethod
+    def _not_before(cls, times: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        if times and times[0] < 0:
+            raise Hint("output times must not be negative")
+        return times
+
+    def sample_times(self, duration: float) -> Vector:
+        """Return the times for a run of this duration, (T,) [s]."""
+        if self.times is not None:
+            inside = [t for t in self.times if 0 < t < duration]
+            return np.array([0.0, *inside, duration])
+        if self.rate is None:
+            return np.linspace(0.0, duration, 2001)
+        count = int(np.floor(duration * self.rate * (1 + 1e-12)))
+        times = np.arange(count + 1) / self.rate
+        return times if abs(times[-1] - duration) <= 1e-9 / self.rate else np.append(times, duration)

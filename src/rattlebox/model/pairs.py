@@ -1,0 +1,125 @@
+"""What two bodies in contact share: effective modulus, radius and mass."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from .errors import Hint
+from .materials import Material
+
+if TYPE_CHECKING:
+    from .case import Case
+
+
+@dataclass(frozen=True)
+class Body:
+    """One side of a contact.
+
+    Attributes
+    ----------
+    material
+        None for a rigid body.
+    radius, mass
+        Of the surface [m] and of the body [kg]; infinite for a wall (radius) and for what cannot move (mass).
+    """
+
+    material: Material | None
+    radius: float = math.inf
+    mass: float = math.inf
+
+    @property
+    def compliance(self) -> float:
+        """(1 - nu^2) / E [1/Pa], 0 for a rigid body."""
+        return 0.0 if self.material is None else (1 - self.material.poisson**2) / self.material.young
+
+    @property
+    def hardness(self) -> float:
+        """C S_y with C = 1.295 exp(0.736 nu) [Pa]: the body with the lower value yields first."""
+        if self.material is None or self.material.yield_stress is None:
+            return math.inf
+        return 1.295 * math.exp(0.736 * self.material.poisson) * self.material.yield_stress
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two bodies in contact.
+
+    Attributes
+    ----------
+    below, above
+        The bodies on the negative and on the positive side.
+    """
+
+    below: Body
+    above: Body
+
+    @property
+    def is_wall(self) -> bool:
+        """True for a ball against a wall."""
+        return math.isinf(self.below.radius) or math.isinf(self.above.radius)
+
+    @property
+    def modulus(self) -> float:
+        """E* [Pa]."""
+        return 1 / (self.below.compliance + self.above.compliance)
+
+    @property
+    def radius(self) -> float:
+        """R* [m]."""
+        return 1 / (1 / self.below.radius + 1 / self.above.radius)
+
+    @property
+    def mass(self) -> float:
+        """Reduced mass m* [kg]."""
+        return 1 / (1 / self.below.mass + 1 / self.above.mass)
+
+    @property
+    def hertz_stiffness(self) -> float:
+        """A = (4/3) E* sqrt(R*) [N/m^1.5]."""
+        return 4 / 3 * self.modulus * math.sqrt(self.radius)
+
+    def first_to_yield(self, need: str) -> Body:
+        """Return the body that yields first.
+
+        Raises
+        ------
+        Hint
+            When neither material has a yield stress; `need` says who asks.
+        """
+        body = min(self.below, self.above, key=lambda b: b.hardness)
+        if math.isinf(body.hardness):
+            raise Hint(f"{need} needs a material with a yield stress", 'yield_stress = "1030 MPa" in the material')
+        return body
+
+    def against(self, wall: Material | str | None) -> Pair:
+        """Return the pair with another wall: a material or "rigid"; None and pairs of balls are left as they are."""
+        if wall is None or not self.is_wall:
+            return self
+        material = None if isinstance(wall, str) else wall
+        if math.isinf(self.below.radius):
+            return replace(self, below=replace(self.below, material=material))
+        return replace(self, above=replace(self.above, material=material))
+
+
+def contact_pairs(case: Case, index: int) -> list[Pair]:
+    """Return the pairs of a damper in order: left wall, ball 1 - ball 2, ..., right wall.
+
+    Parameters
+    ----------
+    case
+        The case.
+    index
+        Number of the damper, from 0. Walls count with the structure's effective mass at its point.
+    """
+    damper = case.dampers[index]
+    wall_mass = case.modes.effective_mass(damper.point)
+    balls = [Body(ball.material, ball.radius, mass) for ball, mass in zip(damper.balls, damper.masses, strict=True)]
+
+    def wall(beside: Body) -> Body:
+        material = beside.material if damper.wall is None else damper.wall
+        return Body(None if isinstance(material, str) else material, mass=wall_mass)
+
+    row = [wall(balls[0]), *balls, wall(balls[-1])]
+    return [Pair(below, above) for below, above in zip(row[:-1], row[1:], strict=True)]

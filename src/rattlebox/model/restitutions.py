@@ -1,0 +1,208 @@
+"""Restitution laws e(V); the formulas themselves are in core/contact/restitution, one file each."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+
+from .base import Part
+from .errors import Hint
+from .materials import Material, find_wall
+from .pairs import Pair
+from .units import Modulus, PositiveVelocity
+
+Coefficients = tuple[str, dict[str, Any]]
+_fraction = WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})
+
+
+def _restitution(value: Any) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise Hint("a number from 0 to 1 is needed", "0.8") from None
+    if not 0 <= number <= 1:
+        raise Hint("restitution lies between 0 (no rebound) and 1 (no loss): above 1 an impact would create energy", "0.8")
+    return number
+
+
+Fraction = Annotated[float, BeforeValidator(_restitution), _fraction]
+
+
+class Restitution(Part):
+    """What all restitution laws share.
+
+    Parameters
+    ----------
+    maximum
+        Cap on e.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("restitution",)
+    kind: str
+    maximum: Fraction = 1.0
+
+    def coefficients(self, pair: Pair) -> Coefficients:
+        """Return the core's name of the law and its coefficients for a pair of bodies."""
+        raise NotImplementedError
+
+
+class Constant(Restitution):
+    """The same restitution at every speed."""
+
+    kind: Literal["constant"] = "constant"
+    e: Fraction
+
+    def __init__(self, e: Any = None, **values: Any) -> None:
+        super().__init__(**({"e": e} if e is not None else {}), **values)
+
+    def coefficients(self, pair: Pair) -> Coefficients:
+        """Return e."""
+        return "constant", {"e": self.e, "maximum": self.maximum}
+
+
+class Tabulated(Restitution):
+    """Restitution from a table, linear in the speed between points and constant outside them.
+
+    Parameters
+    ----------
+    speeds
+        Strictly increasing approach speeds [m/s].
+    values
+        Restitution at each of them.
+    """
+
+    kind: Literal["table"] = "table"
+    speeds: tuple[PositiveVelocity, ...]
+    values: tuple[Fraction, ...]
+
+    @model_validator(mode="after")
+    def _sound(self) -> Tabulated:
+        if len(self.speeds) != len(self.values) or not self.speeds:
+            raise Hint(f"{len(self.speeds)} speeds, but {len(self.values)} values")
+        if any(b <= a for a, b in zip(self.speeds, self.speeds[1:], strict=False)):
+            raise Hint("speeds must increase")
+        return self
+
+    def coefficients(self, pair: Pair) -> Coefficients:
+        """Return the table."""
+        return "table", {"speeds": self.speeds, "values": self.values, "maximum": self.maximum}
+
+
+class JacksonGreen(Restitution):
+    """Elasto-plastic restitution after Jackson and Green, from yield stress and elastic constants.
+
+    Parameters
+    ----------
+    wall
+        Elasticity of the wall in the critical speed: a material, "rigid", or None for the damper's wall.
+    yield_stress
+        Instead of the material's [Pa].
+    extrapolate
+        Use the law above 1000 critical speeds; counted in the run.
+    """
+
+    kind: Literal["jackson_green"] = "jackson_green"
+    wall: Annotated[Material | Literal["rigid"] | None, BeforeValidator(find_wall)] = None
+    yield_stress: Modulus | None = None
+    extrapolate: bool = False
+
+    def critical_speed(self, pair: Pair) -> float:
+        """Return V_c [m/s], the speed at which yield begins (PHYSICS: seed eqs 13 to 16)."""
+        pair = pair.against(self.wall)
+        strength, _ = self._strength(pair)
+        pressure = math.pi * strength / 2
+        depth = (pressure / pair.modulus) ** 2 * pair.radius
+        load = 4 / 3 * (pair.radius / pair.modulus) ** 2 * pressure**3
+        return math.sqrt(4 * depth * load / (5 * pair.mass))
+
+    def _strength(self, pair: Pair) -> tuple[float, float]:
+        if self.yield_stress is not None:
+            bodies = [b for b in (pair.below, pair.above) if b.material is not None]
+            materials = [b.material for b in bodies if b.material is not None]
+            softest = min(materials, key=lambda m: m.poisson)
+            return 1.295 * math.exp(0.736 * softest.poisson) * self.yield_stress, self.yield_stress / softest.young
+        body = pair.first_to_yield("the Jackson-Green law")
+        assert body.material is not None and body.material.yield_stress is not None
+        return body.hardness, body.material.yield_stress / body.material.young
+
+    def coefficients(self, pair: Pair) -> Coefficients:
+        """Return critical speed and yield strain."""
+        _, strain = self._strength(pair.against(self.wall))
+        return "jackson_green", {
+            "critical_speed": self.critical_speed(pair),
+            "yield_strain": strain,
+            "extrapolate": float(self.extrapolate),
+            "maximum": self.maximum,
+        }
+
+
+def yield_pressure(pair: Pair, given: float | None, need: str) -> float:
+    """Return the limiting contact pressure p_y [Pa]: as given, or 1.6 yield stress of the body that yields first."""
+    if given is not None:
+        return given
+    body = pair.first_to_yield(need)
+    assert body.material is not None and body.material.yield_stress is not None
+    return 1.6 * body.material.yield_stress
+
+
+class ThorntonRestitution(Restitution):
+    """Restitution of an elastic, perfectly plastic contact in closed form.
+
+    Parameters
+    ----------
+    yield_pressure
+        Limiting contact pressure [Pa]; default 1.6 yield stress.
+    """
+
+    kind: Literal["thornton"] = "thornton"
+    yield_pressure: Modulus | None = None
+
+    def yield_speed(self, pair: Pair) -> float:
+        """Return V_y [m/s]."""
+        pressure = yield_pressure(pair, self.yield_pressure, "Thornton's law")
+        return (
+            (math.pi / (2 * pair.modulus)) ** 2
+            * math.sqrt(8 * math.pi * pair.radius**3 / (15 * pair.mass))
+            * pressure**2.5
+        )
+
+    def coefficients(self, pair: Pair) -> Coefficients:
+        """Return the yield speed."""
+        return "thornton", {"yield_speed": self.yield_speed(pair), "maximum": self.maximum}
+
+
+class Johnson(Restitution):
+    """Restitution of a fully plastic impact, (V/V_0)^(-1/4).
+
+    Parameters
+    ----------
+    speed_scale
+        V_0 [m/s]; default from the yield stress Y of the body that yields first,
+        V_0 = 3.8^4 (Y/E*)^2 sqrt(2 Y R*^3/m*) (K. L. Johnson, Contact Mechanics 1985, eq. 11.47).
+    """
+
+    kind: Literal["johnson"] = "johnson"
+    speed_scale: PositiveVelocity | None = None
+
+    def coefficients(self, pair: Pair) -> Coefficients:
+        """Return the speed scale."""
+        scale = self.speed_scale
+        if scale is None:
+            strength = yield_pressure(pair, None, "Johnson's law") / 1.6
+            scale = 3.8**4 * (strength / pair.modulus) ** 2 * math.sqrt(2 * strength * pair.radius**3 / pair.mass)
+        return "johnson", {"speed_scale": scale, "maximum": self.maximum}
+
+
+def as_restitution(value: Any) -> Any:
+    """Let a bare number stand for Constant."""
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return {"kind": "constant", "e": value}
+    return value
+
+
+AnyRestitution = Annotated[
+    Annotated[Constant | Tabulated | JacksonGreen | ThorntonRestitution | Johnson, Field(discriminator="kind")],
+    BeforeValidator(as_restitution),
+]

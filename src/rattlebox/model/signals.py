@@ -1,0 +1,366 @@
+"""Loads and motions in time: half-sine pulse, harmonic, record; and helpers that make records."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, model_validator
+
+from .base import Part
+from .errors import Hint
+from .records import read_columns
+from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime, parse
+
+Unit = Literal["N", "m/s^2", "m"]
+_UNITS: tuple[Unit, ...] = ("N", "m/s^2", "m")
+_NAMES = {"N": "a force", "m/s^2": "an acceleration", "m": "a displacement"}
+
+
+class _Amplitude(float):
+    """A number that remembers which unit it was given in."""
+
+    unit: str | None = None
+
+
+def _amplitude(value: Any) -> _Amplitude:
+    number, unit = parse(value, _UNITS)
+    result = _Amplitude(number)
+    result.unit = getattr(value, "unit", None) if isinstance(value, _Amplitude) else unit
+    return result
+
+
+Amplitude = Annotated[
+    float,
+    BeforeValidator(_amplitude),
+    WithJsonSchema(
+        {
+            "anyOf": [{"type": "number"}, {"type": "string"}],
+            "description": "force as a load, acceleration as base motion, displacement or acceleration on a shaker",
+            "examples": ["5 kN", "9.81 m/s^2", "1 mm"],
+        }
+    ),
+]
+
+
+class Signal(Part):
+    """What all signals share.
+
+    Parameters
+    ----------
+    unit
+        SI unit of the values, "N", "m/s^2" or "m"; taken from the amplitude, or from the place of use.
+    point
+        Point of the structure that a load acts at; not needed where there is one only.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("load", "loads", "base", "motion")
+    kind: str
+    unit: Unit | None = None
+    point: str | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _unit_of_amplitude(cls, values: Any) -> Any:
+        if isinstance(values, dict) and "amplitude" in values:
+            try:
+                unit = parse(values["amplitude"], _UNITS)[1]
+            except Hint:
+                return values
+            if unit is not None:
+                if values.get("unit") not in (None, unit):
+                    raise Hint(f"unit is {values['unit']}, but the amplitude is in {unit}", "leave unit out")
+                return {**values, "unit": unit}
+        return values
+
+    def placed(self, allowed: Sequence[Unit], place: str) -> Signal:
+        """Return the signal with its unit settled for the place it is used in.
+
+        Parameters
+        ----------
+        allowed
+            SI units that the place takes; the first is what bare numbers mean.
+        place
+            Name of the place, for the message.
+
+        Raises
+        ------
+        Hint
+            When the signal is in another unit.
+        """
+        unit = allowed[0] if self.unit is None else self.unit
+        if unit not in allowed:
+            wanted = " or ".join(f"{_NAMES[a]} ({a})" for a in allowed)
+            raise Hint(f"{place} needs {wanted}, not {_NAMES[unit]}", f'amplitude = "1 {allowed[0]}"')
+        return self if self.unit == unit else self.model_copy(update={"unit": unit})
+
+    def evaluate(self, time: Any) -> NDArray[np.float64]:
+        """Return the values at the given times [s], in the signal's unit, same shape."""
+        raise NotImplementedError
+
+    def coefficients(self) -> dict[str, Any]:
+        """Return what the core reads (core/structure/signal.hpp)."""
+        raise NotImplementedError
+
+
+class HalfSine(Signal):
+    """A half-sine pulse, amplitude sin(pi (t - start) / duration) for start <= t < start + duration.
+
+    Parameters
+    ----------
+    amplitude
+        Peak value, with its unit.
+    duration, start
+        Length and begin of the pulse [s].
+    """
+
+    kind: Literal["half_sine"] = "half_sine"
+    amplitude: Amplitude
+    duration: PositiveTime
+    start: NotNegativeTime = 0.0
+
+    def evaluate(self, time: Any) -> NDArray[np.float64]:
+        """Return the values at the given times [s]."""
+        t = np.asarray(time, dtype=float)
+        inside = (t >= self.start) & (t < self.start + self.duration)
+        return np.where(inside, self.amplitude * np.sin(math.pi * (t - self.start) / self.duration), 0.0)
+
+    def coefficients(self) -> dict[str, Any]:
+        """Return what the core reads."""
+        return {
+            "kind": "half_sine",
+            "amplitude": float(self.amplitude),
+            "frequency": math.pi / self.duration,
+            "phase": 0.0,
+            "start": self.start,
+            "stop": self.start + self.duration,
+        }
+
+
+class Harmonic(Signal):
+    """A harmonic, amplitude sin(2 pi frequency t + phase) for start <= t < stop.
+
+    Parameters
+    ----------
+    amplitude
+        Peak value, with its unit.
+    frequency
+        In Hz; text in "rad/s" is an angular frequency.
+    phase
+        In rad, or text in "deg".
+    start, stop
+        When it acts [s]; stop is left out for good.
+    """
+
+    kind: Literal["harmonic"] = "harmonic"
+    amplitude: Amplitude
+    frequency: PositiveFrequency
+    phase: Angle = 0.0
+    start: NotNegativeTime = 0.0
+    stop: PositiveTime | None = None
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Harmonic:
+        if self.stop is not None and self.stop <= self.start:
+            raise Hint("stop must be later than start")
+        return self
+
+    def evaluate(self, time: Any) -> NDArray[np.float64]:
+        """Return the values at the given times [s]."""
+        t = np.asarray(time, dtype=float)
+        inside = (t >= self.start) & (t < (math.inf if self.stop is None else self.stop))
+        return np.where(inside, self.amplitude * np.sin(2 * math.pi * self.frequency * t + self.phase), 0.0)
+
+    def coefficients(self) -> dict[str, Any]:
+        """Return what the core reads."""
+        return {
+            "kind": "harmonic",
+            "amplitude": float(self.amplitude),
+            "frequency": 2 * math.pi * self.frequency,
+            "phase": self.phase,
+            "start": self.start,
+            "stop": math.inf if self.stop is None else self.stop,
+        }
+
+    def acceleration(self) -> Harmonic:
+        """Return the acceleration that belongs to a harmonic displacement."""
+        factor = -((2 * math.pi * self.frequency) ** 2)
+        return self.model_copy(update={"amplitude": self.amplitude * factor, "unit": "m/s^2"})
+
+
+def _column(value: Any) -> tuple[float, ...]:
+    array = np.asarray(value, dtype=float)
+    if array.ndim != 1:
+        raise Hint(f"one row of numbers is needed, not shape {array.shape}")
+    bad = np.flatnonzero(~np.isfinite(array))
+    if bad.size:
+        raise Hint(f"number {int(bad[0]) + 1} of {array.size} is not finite")
+    return tuple(array.tolist())
+
+
+class Record(Signal):
+    """A record, straight lines between points; it must cover the whole run.
+
+    Parameters
+    ----------
+    times
+        Strictly increasing [s].
+    values
+        As many, in `unit`, multiplied by `scale`.
+    file
+        Instead of both: a CSV, NPY or MAT file with time in the first and values in the second column.
+    """
+
+    kind: Literal["record"] = "record"
+    times: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
+    values: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
+    file: str | None = None
+    scale: float = 1.0
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_file(cls, values: Any) -> Any:
+        if isinstance(values, dict) and values.get("file") is not None and "times" not in values:
+            times, numbers = read_columns(os.fspath(values["file"]))
+            return {**values, "times": times, "values": numbers}
+        return values
+
+    @model_validator(mode="after")
+    def _sound(self) -> Record:
+        if len(self.times) != len(self.values):
+            raise Hint(f"{len(self.times)} times, but {len(self.values)} values")
+        if len(self.times) < 2:
+            raise Hint("a record needs at least two points")
+        steps = np.flatnonzero(np.diff(self.times) <= 0)
+        if steps.size:
+            raise Hint(f"times must increase, but point {int(steps[0]) + 2} is not later than the one before")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _file_stands_for_numbers(self, handler: Any) -> Any:
+        data = handler(self)
+        if self.file is not None:
+            data.pop("times", None)
+            data.pop("values", None)
+        return data
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Record:
+        """Read a record from a CSV, NPY or MAT file.
+
+        Parameters
+        ----------
+        path
+            The file; time in the first column [s], values in the second.
+        **options
+            unit, scale, point.
+        """
+        return cls(file=os.fspath(path), **options)
+
+    def evaluate(self, time: Any) -> NDArray[np.float64]:
+        """Return the values at the given times [s]."""
+        values = self.scale * np.asarray(self.values)
+        return np.asarray(np.interp(np.asarray(time, dtype=float), self.times, values, left=0.0, right=0.0))
+
+    def coefficients(self) -> dict[str, Any]:
+        """Return what the core reads."""
+        return {
+            "kind": "record",
+            "times": np.array(self.times),
+            "values": self.scale * np.array(self.values),
+        }
+
+
+AnySignal = Annotated[HalfSine | Harmonic | Record, Field(discriminator="kind")]
+
+
+def as_signals(value: Any) -> Any:
+    """Let one signal stand for a list of one, None for none."""
+    if value is None:
+        return ()
+    return tuple(value) if isinstance(value, (list, tuple)) else (value,)
+
+
+def chirp(
+    amplitude: Any,
+    f0: float,
+    f1: float,
+    duration: float,
+    *,
+    rate: float | None = None,
+    method: Literal["linear", "logarithmic"] = "linear",
+    point: str | None = None,
+) -> Record:
+    """Make a sweep from f0 to f1 as a record.
+
+    Parameters
+    ----------
+    amplitude
+        Peak value, with its unit.
+    f0, f1
+        First and last frequency [Hz].
+    duration
+        Length [s].
+    rate
+        Points per second; default 200 per period of the highest frequency (error below 1.3e-4 of the amplitude).
+    method
+        How frequency grows with time.
+    point
+        Point of the structure.
+    """
+    if not (f0 > 0 and f1 > 0 and duration > 0):
+        raise Hint("a chirp needs positive frequencies and duration")
+    number, unit = parse(amplitude, _UNITS)
+    count = math.ceil(duration * (rate or 200 * max(f0, f1))) + 1
+    t = np.linspace(0, duration, count)
+    if method == "linear" or f0 == f1:
+        phase = 2 * np.pi * (f0 * t + (f1 - f0) * t**2 / (2 * duration))
+    else:
+        growth = math.log(f1 / f0)
+        phase = 2 * np.pi * f0 * duration / growth * np.expm1(growth * t / duration)
+    return Record(times=t, values=number * np.sin(phase), unit=unit, point=point)
+
+
+def random_record(
+    psd: Sequence[tuple[float, float]],
+    duration: float,
+    rate: float,
+    *,
+    seed: int = 0,
+    unit: Unit | None = None,
+    point: str | None = None,
+) -> Record:
+    """Make a Gaussian random record of a given power spectral density.
+
+    Parameters
+    ----------
+    psd
+        Points (frequency [Hz], one-sided density [unit^2/Hz]); straight lines in log-log between, nothing outside.
+    duration, rate
+        Length [s] and points per second [1/s].
+    seed
+        Of the random phases and amplitudes: the same seed gives the same record.
+    unit, point
+        Unit of the values, point of the structure.
+    """
+    corners = np.asarray(psd, dtype=float)
+    if corners.ndim != 2 or corners.shape[1] != 2 or np.any(corners <= 0) or np.any(np.diff(corners[:, 0]) <= 0):
+        raise Hint("a PSD needs positive (frequency, density) pairs with rising frequencies", "[(10, 1e-3), (200, 1e-3)]")
+    count = round(duration * rate)
+    frequency = np.fft.rfftfreq(count, 1 / rate)
+    inside = (frequency >= corners[0, 0]) & (frequency <= corners[-1, 0])
+    density = np.zeros(frequency.size)
+    logs = np.log(corners)
+    density[inside] = np.exp(np.interp(np.log(frequency[inside]), logs[:, 0], logs[:, 1]))
+    generator = np.random.default_rng(seed)
+    noise = generator.standard_normal((2, frequency.size))
+    spectrum = np.sqrt(density * rate * count / 4) * (noise[0] + 1j * noise[1])
+    values = np.fft.irfft(spectrum, count)
+    times = np.arange(count + 1) / rate
+    return Record(times=times, values=np.append(values, values[0]), unit=unit, point=point)
+
+

@@ -1,0 +1,281 @@
+"""Structures: single degree of freedom, modes, matrices, a fixed cavity, a shaker."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
+
+from .base import Part
+from .errors import Hint
+from .modes import ModalModel, Vector
+from .signals import AnySignal, Signal, as_signals
+from .units import Damping, Frequency, Length, PositiveMass, Stiffness, Velocity
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+def _numbers(value: Any) -> Any:
+    array = np.asarray(value, dtype=float)
+    if not np.all(np.isfinite(array)):
+        raise Hint("all numbers must be finite")
+    return array.tolist()
+
+
+Numbers = Annotated[list[float], BeforeValidator(_numbers)]
+Matrix = Annotated[list[list[float]], BeforeValidator(_numbers)]
+_ratio_schema = WithJsonSchema({"type": "number", "minimum": 0, "description": "damping ratio"})
+Ratio = Annotated[float, Field(ge=0), _ratio_schema]
+
+
+class SDOF(Part):
+    """Mass, spring and dashpot: M z'' + C z' + K z = F. Its only point is called "mass".
+
+    Parameters
+    ----------
+    mass, stiffness
+        M [kg], K [N/m]; stiffness 0 is a free body.
+    damping, damping_ratio
+        C [N s/m] or C / (2 sqrt(K M)); at most one of them, none means undamped. Any ratio, also above 1.
+    displacement, velocity
+        At the start, relative to the base [m], [m/s].
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("structure",)
+    kind: Literal["sdof"] = "sdof"
+    mass: PositiveMass
+    stiffness: Stiffness
+    damping: Damping | None = None
+    damping_ratio: Ratio | None = None
+    displacement: Length = 0.0
+    velocity: Velocity = 0.0
+
+    @model_validator(mode="after")
+    def _one_damping(self) -> Self:
+        if self.damping is not None and self.damping_ratio is not None:
+            raise Hint("damping and damping_ratio say the same thing twice", "give one of them")
+        if self.damping_ratio and self.stiffness == 0:
+            raise Hint("a damping ratio has no meaning without stiffness", 'damping = "5 N s/m"')
+        return self
+
+    def modes(self) -> ModalModel:
+        """Reduce to one mode."""
+        stiffness = self.stiffness / self.mass
+        if self.damping_ratio is not None:
+            decay = self.damping_ratio * stiffness**0.5
+        else:
+            decay = (self.damping or 0.0) / (2 * self.mass)
+        root = self.mass**0.5
+        return ModalModel(
+            decay=np.array([decay]),
+            stiffness=np.array([stiffness]),
+            shapes={"mass": np.array([1 / root])},
+            participation=np.array([root]),
+            q0=np.array([self.displacement * root]),
+            p0=np.array([self.velocity * root]),
+        )
+
+
+class Modal(Part):
+    """A structure given by its modes.
+
+    Parameters
+    ----------
+    frequencies
+        Undamped natural frequencies [Hz]; 0 is a rigid-body mode.
+    damping_ratios
+        One for each mode.
+    shapes
+        Mass-normalised mode shapes at named points, one number for each mode [kg^-1/2].
+    participation
+        Inertia of each mode per unit of base acceleration [kg^1/2]; needed only with base motion.
+    displacement, velocity
+        Modal amplitudes at the start [kg^1/2 m], [kg^1/2 m/s]; default 0.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("structure",)
+    kind: Literal["modal"] = "modal"
+    frequencies: list[Frequency]
+    damping_ratios: list[Ratio]
+    shapes: dict[str, Numbers]
+    participation: Numbers | None = None
+    displacement: Numbers | None = None
+    velocity: Numbers | None = None
+
+    @model_validator(mode="after")
+    def _same_lengths(self) -> Self:
+        count = len(self.frequencies)
+        rows: dict[str, Any] = {"damping_ratios": self.damping_ratios, "participation": self.participation}
+        rows |= {"displacement": self.displacement, "velocity": self.velocity}
+        rows |= {f"shapes.{name}": row for name, row in self.shapes.items()}
+        for name, row in rows.items():
+            if row is not None and len(row) != count:
+                raise Hint(f"{name} has {len(row)} numbers, but there are {count} frequencies", "one number for each mode")
+        if not self.shapes:
+            raise Hint("at least one named point is needed", "shapes = { tip = [...] }")
+        return self
+
+    def modes(self) -> ModalModel:
+        """Return the modes."""
+        omega = 2 * np.pi * np.array(self.frequencies)
+        zero = np.zeros(len(omega))
+        return ModalModel(
+            decay=np.array(self.damping_ratios) * omega,
+            stiffness=omega**2,
+            shapes={name: np.array(row) for name, row in self.shapes.items()},
+            participation=None if self.participation is None else np.array(self.participation),
+            q0=zero if self.displacement is None else np.array(self.displacement),
+            p0=zero if self.velocity is None else np.array(self.velocity),
+        )
+
+
+def _load_matrix(value: Any) -> Any:
+    if isinstance(value, (str, os.PathLike)):
+        raise Hint("give the matrix itself, or 'file' for all three", 'file = "structure.npz"')
+    return _numbers(value)
+
+
+class Matrices(Part):
+    """A structure given by its matrices, M z'' + C z' + K z = F, reduced to modes.
+
+    Damping must be proportional (diagonal in the modes); otherwise the size of what is not is reported.
+
+    Parameters
+    ----------
+    M, C, K
+        Mass, damping and stiffness, (n, n), SI units.
+    points
+        Named points: number of the degree of freedom, counted from 0, or a vector of n weights.
+    influence
+        Motion of each degree of freedom with the base; default 1 for all.
+    displacement, velocity
+        Of each degree of freedom at the start [m], [m/s]; default 0.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("structure",)
+    kind: Literal["matrices"] = "matrices"
+    M: Annotated[list[list[float]], BeforeValidator(_load_matrix)]
+    C: Annotated[list[list[float]], BeforeValidator(_load_matrix)]
+    K: Annotated[list[list[float]], BeforeValidator(_load_matrix)]
+    points: dict[str, int | Numbers]
+    influence: Numbers | None = None
+    displacement: Numbers | None = None
+    velocity: Numbers | None = None
+
+    @model_validator(mode="after")
+    def _sound(self) -> Self:
+        mass, damping, stiffness = (np.array(x) for x in (self.M, self.C, self.K))
+        n = len(self.M)
+        for name, matrix in (("M", mass), ("C", damping), ("K", stiffness)):
+            if matrix.shape != (n, n):
+                raise Hint(f"{name} has shape {matrix.shape}, but M has {n} rows", "three square matrices of one size")
+            if not np.allclose(matrix, matrix.T, rtol=1e-12, atol=1e-12 * np.abs(matrix).max(initial=0)):
+                raise Hint(f"{name} is not symmetric", f"{name} = ({name} + {name}^T) / 2, if the difference is rounding")
+        if np.linalg.eigvalsh(mass).min() <= 0:
+            raise Hint("M is not positive definite: some motion would have no mass")
+        for name, point in self.points.items():
+            if isinstance(point, int) and not 0 <= point < n:
+                raise Hint(f"points.{name} = {point} is no degree of freedom", f"0 to {n - 1}")
+            if not isinstance(point, int) and len(point) != n:
+                raise Hint(f"points.{name} has {len(point)} numbers, but there are {n} degrees of freedom")
+        self.modes()
+        return self
+
+    def modes(self) -> ModalModel:
+        """Reduce to modes; raises when damping is not proportional."""
+        from scipy.linalg import eigh
+
+        mass, damping, stiffness = (np.array(x) for x in (self.M, self.C, self.K))
+        values, vectors = eigh(stiffness, mass)
+        largest = np.abs(values).max()
+        if values.min() < -1e-9 * largest:
+            raise Hint("K is not positive semidefinite: the structure would be unstable")
+        values = np.where(np.abs(values) < 1e-12 * largest, 0.0, values)
+        vectors = _align(vectors, values, damping, 1e-9 * largest)
+        modal = vectors.T @ damping @ vectors
+        diagonal = np.diag(modal)
+        size = np.sqrt(np.abs(np.outer(diagonal, diagonal)))
+        off = np.abs(modal - np.diag(diagonal)) / np.where(size > 0, size, max(np.abs(modal).max(), 1e-300))
+        if off.size and off.max() > 1e-8:
+            i, j = np.unravel_index(off.argmax(), off.shape)
+            raise Hint(
+                f"damping is not proportional: between modes {i + 1} and {j + 1} |C_ij|/sqrt(C_ii C_jj) = {off[i, j]:.3g}",
+                "Rayleigh damping C = a M + b K, or Modal with damping ratios",
+            )
+        n = len(values)
+        weights = {name: np.eye(n)[p] if isinstance(p, int) else np.array(p) for name, p in self.points.items()}
+        projection = vectors.T @ mass
+        zero = np.zeros(n)
+        return ModalModel(
+            decay=diagonal / 2,
+            stiffness=values,
+            shapes={name: weight @ vectors for name, weight in weights.items()},
+            participation=projection @ (np.ones(n) if self.influence is None else np.array(self.influence)),
+            q0=zero if self.displacement is None else projection @ np.array(self.displacement),
+            p0=zero if self.velocity is None else projection @ np.array(self.velocity),
+        )
+
+
+def _align(vectors: Vector, values: Vector, damping: Vector, tolerance: float) -> Vector:
+    """Turn the modes of a repeated frequency so that damping is diagonal among them."""
+    vectors = vectors.copy()
+    start = 0
+    for end in range(1, len(values) + 1):
+        if end < len(values) and values[end] - values[start] <= tolerance:
+            continue
+        if end - start > 1:
+            block = vectors[:, start:end]
+            _, turn = np.linalg.eigh(block.T @ damping @ block)
+            vectors[:, start:end] = block @ turn
+        start = end
+    return vectors
+
+
+def _still() -> ModalModel:
+    none = np.zeros(0)
+    return ModalModel(none, none, {"cavity": none}, none, none, none)
+
+
+class Fixed(Part):
+    """A cavity that does not move. Its only point is called "cavity"."""
+
+    held_as: ClassVar[tuple[str, ...]] = ("structure",)
+    kind: Literal["fixed"] = "fixed"
+
+    def modes(self) -> ModalModel:
+        """Return no modes at all."""
+        return _still()
+
+
+class Shaker(Part):
+    """A cavity that moves as prescribed. Its only point is called "cavity"; it is the base.
+
+    Parameters
+    ----------
+    motion
+        One signal or several: a Harmonic displacement [m], or accelerations [m/s^2].
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("structure",)
+    kind: Literal["shaker"] = "shaker"
+    motion: Annotated[tuple[AnySignal, ...], BeforeValidator(as_signals)]
+
+    @field_validator("motion")
+    @classmethod
+    def _smooth(cls, motion: tuple[Signal, ...]) -> tuple[Signal, ...]:
+        placed = []
+        for signal in motion:
+            allowed = ("m", "m/s^2") if signal.kind == "harmonic" else ("m/s^2",)
+            placed.append(signal.placed(allowed, "the motion of a shaker"))
+        return tuple(placed)
+
+    def modes(self) -> ModalModel:
+        """Return no modes at all."""
+        return _still()
+
+
+Structure = SDOF | Modal | Matrices | Fixed | Shaker
+AnyStructure = Annotated[Structure, Field(discriminator="kind")]

@@ -1,0 +1,203 @@
+"""Quantities: numbers in SI, or text and pint quantities with units. Pint loads only when a unit must be read."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema
+
+from .errors import Hint, nearest
+
+if TYPE_CHECKING:
+    import pint
+
+_NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
+
+# Factors of the commonest units, so that most case files need no unit registry. Exact powers of ten are applied as one
+# correctly rounded operation: x / 1000 rather than x * 0.001.
+_COMMON: dict[str, dict[str, tuple[float, float]]] = {
+    "m": {"m": (1, 1), "cm": (1, 1e2), "mm": (1, 1e3), "um": (1, 1e6), "µm": (1, 1e6)},
+    "s": {"s": (1, 1), "ms": (1, 1e3), "us": (1, 1e6), "µs": (1, 1e6)},
+    "kg": {"kg": (1, 1), "g": (1, 1e3), "mg": (1, 1e6), "t": (1e3, 1)},
+    "N": {"N": (1, 1), "mN": (1, 1e3), "kN": (1e3, 1), "MN": (1e6, 1)},
+    "N/m": {"N/m": (1, 1), "kN/m": (1e3, 1), "MN/m": (1e6, 1), "N/mm": (1e3, 1)},
+    "N s/m": {"N s/m": (1, 1), "N*s/m": (1, 1), "Ns/m": (1, 1), "kN s/m": (1e3, 1)},
+    "m/s": {"m/s": (1, 1), "mm/s": (1, 1e3)},
+    "m/s^2": {"m/s^2": (1, 1), "m/s²": (1, 1), "mm/s^2": (1, 1e3), "g_0": (9.80665, 1)},
+    "Hz": {"Hz": (1, 1), "kHz": (1e3, 1)},
+    "Pa": {"Pa": (1, 1), "kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1)},
+    "kg/m^3": {"kg/m^3": (1, 1), "g/cm^3": (1e3, 1)},
+    "rad": {"rad": (1, 1)},
+    "kg^-0.5": {"kg^-0.5": (1, 1)},
+}
+
+_NAMES = {
+    "m": "length", "s": "time", "kg": "mass", "N": "force", "N/m": "stiffness", "N s/m": "damping coefficient",
+    "m/s": "velocity", "m/s^2": "acceleration", "Hz": "frequency", "Pa": "pressure or modulus", "kg/m^3": "density",
+    "rad": "angle", "kg^-0.5": "mass-normalised mode shape",
+}  # fmt: skip
+
+_EXAMPLES = {
+    "m": "0.4 mm", "s": "1 ms", "kg": "20 kg", "N": "5 kN", "N/m": "80 kN/m", "N s/m": "25.3 N s/m", "m/s": "0.1 m/s",
+    "m/s^2": "9.81 m/s^2", "Hz": "10 Hz", "Pa": "200 GPa", "kg/m^3": "7850 kg/m^3", "rad": "90 deg",
+}  # fmt: skip
+
+
+@cache
+def registry() -> pint.UnitRegistry[Any]:
+    """Return the unit registry, made at first use."""
+    import pint
+
+    return pint.UnitRegistry()
+
+
+def _pint_unit(unit: str) -> str:
+    return unit.replace("N s/m", "N*s/m").replace("kg^-0.5", "kg**-0.5")
+
+
+def _described(quantity: Any) -> str:
+    for unit, name in _NAMES.items():
+        if quantity.is_compatible_with(_pint_unit(unit)):
+            return f"a {name}"
+    return f"a quantity in {quantity.units:~}"
+
+
+def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
+    """Read a quantity.
+
+    Parameters
+    ----------
+    value
+        A number in SI, text such as "0.4 mm", a pair (number, unit) or a pint Quantity.
+    units
+        SI units allowed; the first is what a bare number means.
+
+    Returns
+    -------
+    tuple
+        The number in SI and the unit that was recognised, None for a bare number.
+
+    Raises
+    ------
+    Hint
+        When there is no finite number, the unit is unknown, or the dimension is another.
+    """
+    if isinstance(value, bool):
+        raise Hint(_wanted(units), _example(units))
+    if isinstance(value, (int, float)):
+        return _finite(float(value)), None
+    if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str):
+        value = f"{value[0]!r} {value[1]}"
+    if isinstance(value, str):
+        match = _NUMBER.match(value)
+        if match is None:
+            raise Hint(_wanted(units), _example(units))
+        number, text = float(match[1]), match[2]
+        if not text:
+            return _finite(number), None
+        for unit in units:
+            if text in _COMMON.get(unit, {}):
+                up, down = _COMMON[unit][text]
+                return _finite(number * up / down), unit
+        value = _with_pint(number, text, units)
+    if hasattr(value, "is_compatible_with") and hasattr(value, "to"):
+        for unit in units:
+            if value.is_compatible_with(_pint_unit(unit)) and (unit == "rad" or not value.dimensionless):
+                if unit == "Hz" and "radian" in str(value.units):
+                    return _finite(float(value.to("rad/s").magnitude) / (2 * math.pi)), unit
+                return _finite(float(value.to(_pint_unit(unit)).magnitude)), unit
+        raise Hint(f"{_wanted(units)}, not {_described(value)}", _example(units))
+    try:
+        return _finite(float(value)), None
+    except (TypeError, ValueError):
+        raise Hint(_wanted(units), _example(units)) from None
+
+
+def _with_pint(number: float, text: str, units: tuple[str, ...]) -> Any:
+    ureg = registry()
+    try:
+        return number * ureg.parse_units(text.replace("µ", "u").replace("^", "**").replace("²", "**2"))
+    except Exception as error:
+        known = {name for unit in units for name in _COMMON.get(unit, {})}
+        raise Hint(f"unknown unit {text!r}", nearest(text, known) if known else _example(units)) from error
+
+
+def _finite(value: float) -> float:
+    if not math.isfinite(value):
+        raise Hint("a finite number is needed")
+    return value
+
+
+def _wanted(units: tuple[str, ...]) -> str:
+    return "a " + " or ".join(f"{_NAMES.get(unit, 'number')} is needed ({unit})" for unit in units)
+
+
+def _example(units: tuple[str, ...]) -> str:
+    return " or ".join(f'"{_EXAMPLES[unit]}"' for unit in units if unit in _EXAMPLES)
+
+
+def text(value: float, unit: str) -> str:
+    """Write a quantity so that it reads back to the same bits."""
+    return f"{value!r} {unit}"
+
+
+def quantity(unit: str, description: str = "") -> Any:
+    """Return the annotations of a field that holds a quantity in this SI unit."""
+
+    def read(value: Any) -> float:
+        return parse(value, (unit,))[0]
+
+    example = _EXAMPLES.get(unit, f"1 {unit}")
+    return (
+        BeforeValidator(read),
+        PlainSerializer(lambda value: text(value, unit), return_type=str, when_used="json"),
+        WithJsonSchema(
+            {
+                "anyOf": [{"type": "number"}, {"type": "string"}],
+                "description": description or f"{_NAMES[unit]} in {unit}, or text with a unit such as '{example}'",
+                "examples": [example],
+            }
+        ),
+    )
+
+
+def _positive(value: float) -> float:
+    if not value > 0:
+        raise Hint("must be greater than zero")
+    return value
+
+
+def _not_negative(value: float) -> float:
+    if value < 0:
+        raise Hint("must not be negative")
+    return value
+
+
+def _make(unit: str, check: Any = None) -> Any:
+    read, *rest = quantity(unit)
+    checks = [] if check is None else [BeforeValidator(check)]
+    return (*checks, read, *rest)  # before-validators run from right to left
+
+
+Length = Annotated[float, *_make("m")]
+PositiveLength = Annotated[float, *_make("m", _positive)]
+NotNegativeLength = Annotated[float, *_make("m", _not_negative)]
+PositiveMass = Annotated[float, *_make("kg", _positive)]
+Stiffness = Annotated[float, *_make("N/m", _not_negative)]
+PositiveStiffness = Annotated[float, *_make("N/m", _positive)]
+Damping = Annotated[float, *_make("N s/m", _not_negative)]
+Velocity = Annotated[float, *_make("m/s")]
+PositiveVelocity = Annotated[float, *_make("m/s", _positive)]
+Acceleration = Annotated[float, *_make("m/s^2")]
+Time = Annotated[float, *_make("s")]
+PositiveTime = Annotated[float, *_make("s", _positive)]
+NotNegativeTime = Annotated[float, *_make("s", _not_negative)]
+Frequency = Annotated[float, *_make("Hz", _not_negative)]
+PositiveFrequency = Annotated[float, *_make("Hz", _positive)]
+Modulus = Annotated[float, *_make("Pa", _positive)]
+Density = Annotated[float, *_make("kg/m^3", _positive)]
+Angle = Annotated[float, *_make("rad")]
+Number = Annotated[float, Field(allow_inf_nan=False)]
