@@ -197,7 +197,7 @@ class LoneContact {
 
     // Prepares the contact c that touches in `start` at this speed; false where collocation is not the right tool.
     bool prepare(const Contact& c, const HertzTsuji& law, const Loads& loads, const State& start, real speed, real zeta,
-                 real available) {
+                 real available, real psi_end = 0) {
         if (!(speed > 0) || zeta > 0.4) return false;
         law_ = law;
         contact_ = &c;
@@ -218,7 +218,8 @@ class LoneContact {
         for (std::size_t k = 0; k < problem_.modes.size(); ++k)
             if (damper_->shape[k] != 0 && problem_.modes[k].rate() * longest > 1) return false;
         if (loads.active() && loads.frequency() * longest > 1) return false;
-        grid_.build(law.zero_overlap != 0 || zeta == 0 ? pi : 2 * std::acos(zeta));
+        const real natural_end = law.zero_overlap != 0 || zeta == 0 ? pi : 2 * std::acos(zeta);
+        grid_.build(psi_end > 0 ? psi_end : natural_end);
         const PhaseGrid& g = grid_;
         for (std::size_t k = 0; k < problem_.modes.size(); ++k)
             for (int i = 0; i < n; ++i) {
@@ -289,18 +290,17 @@ class LoneContact {
         return now;
     }
 
-    // Position in the phase at a time after first touch, by bisection and secant on the monotonic time(x).
-    real position_at(real time) {
-        real low = 0, high = 1, t_low = 0, t_high = at(1, nullptr, nullptr).time;
-        for (int iteration = 0; iteration < 60 && high - low > 2 * epsilon; ++iteration) {
-            real middle = low + (high - low) * (time - t_low) / (t_high - t_low);
-            if (iteration % 3 == 2 || !(middle > low && middle < high)) middle = 0.5 * (low + high);
-            const real t = at(middle, nullptr, nullptr).time;
-            if (t < time) low = middle, t_low = t;
-            else high = middle, t_high = t;
-        }
-        return 0.5 * (low + high);
+    // The phase at a time after first touch, roughly: between nodes.
+    real psi_at(real time) const {
+        const PhaseGrid& g = grid_;
+        int i = 0;
+        while (i + 1 < n - 1 && time_[i + 1] < time) ++i;
+        const real part = (time - time_[i]) / (time_[i + 1] - time_[i]);
+        return std::fmin(std::fmax(g.psi[i] + part * (g.psi[i + 1] - g.psi[i]), 1e-3), g.end);
     }
+
+    // dpsi/dt at an instant, but for the closing acceleration's small part.
+    real turning(const Instant& now) const { return s_ * wave_ * now.x; }
 
     // The largest force: a step of Newton in time from where it would be without the closing acceleration's help.
     real peak_force() {

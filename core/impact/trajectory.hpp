@@ -25,7 +25,7 @@ class Trajectory {
     Flight flight_;
     System system_;
     Dop853 integrator_;
-    LoneContact lone_;
+    LoneContact lone_, sampler_;
     std::vector<Phase> phase_;
     std::vector<char> watched_;
     std::vector<Released> released_;
@@ -178,6 +178,28 @@ class Trajectory {
         return true;
     }
 
+    // A sample inside a lone contact: the contact solved again up to the phase at that time, so that nothing is interpolated.
+    void sample_lone(int c, const HertzTsuji& law, real speed, real zeta) {
+        const real t = problem_.sample_times[next_sample_++];
+        State at(problem_);
+        Ledger ledger = ledger_;
+        LoneContact::Instant now;
+        real psi = lone_.psi_at(t - state_.t);
+        for (int pass = 0; pass < 8; ++pass) {
+            sampler_.prepare(contact(c), law, loads_, state_, speed, zeta, infinity, psi);
+            sampler_.solve();
+            now = sampler_.at(1, nullptr, nullptr);
+            const real late = t - state_.t - now.time;
+            if (std::fabs(late) <= 2 * epsilon * t) break;
+            psi = std::fmax(psi + late * sampler_.turning(now), 0.5 * psi);
+        }
+        now = sampler_.at(1, &at, &ledger);
+        clear_contact_samples();
+        stored_[damper_of(c)] = law.stored({}, now.x);
+        add_wall_force(c, now.force);
+        record(t, at, std::move(ledger));
+    }
+
     // The whole contact at once, where that is possible and its energy balance agrees.
     bool collocate(int c, real speed, real e) {
         const HertzTsuji* law = contact(c).normal.get_if<HertzTsuji>();
@@ -209,16 +231,7 @@ class Trajectory {
         line.complete = true;
         result_.impacts.push_back(line);
         ++result_.counts.collocated;
-        while (sample_due(state_.t + end.time)) {
-            const real t = problem_.sample_times[next_sample_++];
-            State at(problem_);
-            Ledger ledger = ledger_;
-            const LoneContact::Instant now = lone_.at(lone_.position_at(t - state_.t), &at, &ledger);
-            clear_contact_samples();
-            stored_[d] = law->stored({}, now.x);
-            add_wall_force(c, now.force);
-            record(t, at, std::move(ledger));
-        }
+        while (sample_due(state_.t + end.time)) sample_lone(c, *law, speed, zeta);
         std::swap(state_.y, scratch_.y);
         state_.t += end.time;
         ledger_ = after;
@@ -604,6 +617,7 @@ class Trajectory {
                         retry = true;
                     }
                 } else if (after.value <= 0) {
+                    if (after.rate >= 0) continue; // parting, by less than rounding can tell
                     consider(Event::touch, c, std::fmax(before.value, 0.0), value);
                 } else if (before.rate < 0 && after.rate > 0 &&
                            std::fmin(before.value, after.value) <
@@ -781,7 +795,7 @@ class Trajectory {
   public:
     Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
         : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem), ledger_(problem),
-          flight_(problem), system_(problem), lone_(problem), phase_(problem.contacts.size(), Phase::open),
+          flight_(problem), system_(problem), lone_(problem), sampler_(problem), phase_(problem.contacts.size(), Phase::open),
           watched_(problem.contacts.size()), stored_(problem.dampers.size()), force_(problem.dampers.size()) {}
 
     Result run() {
