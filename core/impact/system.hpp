@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "base/solve.hpp"
 #include "impact/state.hpp"
 
 namespace rattlebox {
@@ -88,7 +89,7 @@ class System {
         for (real& f : ball_push_) f = 0;
     }
 
-    // Solves coupling x forces = -closing acceleration for the stuck contacts by elimination.
+    // Solves coupling x forces = -closing acceleration for the stuck contacts.
     void solve_stuck(const real* dy) {
         const std::size_t n = stuck.size();
         matrix_.resize(n * n);
@@ -99,17 +100,7 @@ class System {
             forces_[i] = -closing(a, velocities(problem_, dy), cavity_rate_.data());
             for (std::size_t j = 0; j < n; ++j) matrix_[i * n + j] = coupling(a, contact(stuck[j]));
         }
-        for (std::size_t i = 0; i < n; ++i) { // symmetric negative definite: no pivoting needed
-            for (std::size_t r = i + 1; r < n; ++r) {
-                const real factor = matrix_[r * n + i] / matrix_[i * n + i];
-                for (std::size_t j = i; j < n; ++j) matrix_[r * n + j] -= factor * matrix_[i * n + j];
-                forces_[r] -= factor * forces_[i];
-            }
-        }
-        for (std::size_t i = n; i-- > 0;) {
-            for (std::size_t j = i + 1; j < n; ++j) forces_[i] -= matrix_[i * n + j] * forces_[j];
-            forces_[i] /= matrix_[i * n + i];
-        }
+        solve_definite(matrix_, forces_);
     }
 
   public:

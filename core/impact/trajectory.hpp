@@ -4,6 +4,7 @@
 // have become shorter than a stated part of the shortest period sticks until its force would have to pull.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 
 #include "base/dop853.hpp"
@@ -301,10 +302,9 @@ class Trajectory {
 
     // ---- hard impacts
 
-    // Changes the closing rate of c by -change with an impulse.
-    void impulse(int c, real change) {
+    // Pushes the two sides of c apart with the impulse j.
+    void impulse(int c, real j) {
         const Contact& k = contact(c);
-        const real j = change / -system_.coupling(k, k);
         real* v = velocities(problem_, state_.y.data());
         real on_cavity = 0;
         if (k.below == wall) on_cavity -= j;
@@ -334,9 +334,52 @@ class Trajectory {
         return 2 * pi / rate;
     }
 
+    // The largest speed of a ball relative to its cavity.
+    real largest_speed() const {
+        const real* v = velocities(problem_, state_.y.data());
+        real largest = 0;
+        for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) {
+            const Damper& damper = problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])];
+            largest = std::max(largest, std::fabs(v[i] - cavity(damper, state_.y.data()).p));
+        }
+        return largest;
+    }
+
+    // An impact elsewhere has moved what was at rest on something: it is struck in its turn, or it parts.
+    void wake_stuck() {
+        const real blur = 16 * epsilon * largest_speed();
+        std::erase_if(system_.stuck, [&](int c) {
+            if (std::fabs(system_.approach(state_.y.data(), c)) <= blur) return false;
+            phase(c) = Phase::open;
+            return true;
+        });
+        for (int c = 0; c < problem_.contact_count(); ++c)
+            if (phase(c) == Phase::touching && std::fabs(system_.approach(state_.y.data(), c)) > blur)
+                phase(c) = Phase::open;
+    }
+
+    // An impact of c. What rests on each other meanwhile holds without rebound, where it need not pull: the impulses of c
+    // and of the stuck contacts solve one linear system.
     void strike(int c, real speed, real e) {
-        const real mass = 1 / -system_.coupling(contact(c), contact(c));
-        impulse(c, (1 + e) * speed);
+        // Impacts that shrink without a force that presses (a row that collapses) end like those that do.
+        if (speed < problem_.settings.stick * largest_speed()) e = 0;
+        std::vector<int> held = system_.stuck;
+        held.push_back(c);
+        std::vector<real> matrix, impulses;
+        for (;;) {
+            const std::size_t n = held.size();
+            matrix.resize(n * n);
+            impulses.assign(n, 0.0);
+            impulses[n - 1] = -(1 + e) * speed;
+            for (std::size_t i = 0; i < n; ++i)
+                for (std::size_t j = 0; j < n; ++j)
+                    matrix[i * n + j] = system_.coupling(contact(held[i]), contact(held[j]));
+            solve_definite(matrix, impulses);
+            const auto weakest = std::min_element(impulses.begin(), impulses.end() - 1);
+            if (n == 1 || !(*weakest < 0)) break;
+            held.erase(held.begin() + (weakest - impulses.begin()));
+        }
+        for (std::size_t i = 0; i < held.size(); ++i) impulse(held[i], impulses[i]);
         Impact line;
         line.contact = c;
         line.time = state_.t;
@@ -345,27 +388,30 @@ class Trajectory {
         line.separation_speed = e * speed;
         line.duration = 0;
         line.peak_force = infinity;
-        line.energy_lost = 0.5 * mass * (1 - e) * (1 + e) * speed * speed;
+        line.energy_lost = 0.5 * impulses.back() * (1 - e) * speed;
         line.complete = true;
         ledger_.normal[damper_of(c)] += line.energy_lost;
         result_.impacts.push_back(line);
+        wake_stuck();
         const real rebound_speed = std::fmax(-system_.approach(state_.y.data(), c), 0.0);
         const real acceleration = gap_acceleration(c);
         if (acceleration < 0 && 2 * rebound_speed < -acceleration * problem_.settings.stick * shortest_period()) {
-            const real rest = 0.5 * mass * square(rebound_speed);
-            ledger_.normal[damper_of(c)] += rest;
-            result_.impacts.back().energy_lost += rest;
-            stick(c);
+            result_.impacts.back().energy_lost += stick(c);
         } else if (e == 0) {
             phase(c) = Phase::touching;
         }
     }
 
-    void stick(int c) {
-        impulse(c, system_.approach(state_.y.data(), c));
+    // Holds c at rest from now on; returns the energy that was left in its rebound.
+    real stick(int c) {
+        const Contact& k = contact(c);
+        const real rest = system_.approach(state_.y.data(), c), mass = 1 / -system_.coupling(k, k);
+        impulse(c, mass * rest);
+        ledger_.normal[damper_of(c)] += 0.5 * mass * rest * rest;
         ++result_.counts.sticks;
         system_.stuck.push_back(c);
         phase(c) = Phase::closed;
+        return 0.5 * mass * rest * rest;
     }
 
     // ---- closed contacts
@@ -534,6 +580,8 @@ class Trajectory {
         set_scales();
         const real remaining = next_stop() - state_.t;
         real h = first_step(remaining);
+        // Without a soft contact errors can vanish, so that only this keeps a change of sign in a force from being jumped.
+        const real longest = system_.active.empty() ? 2.5 * h : infinity;
         for (;;) {
             if (stop_ && stop_->load(std::memory_order_relaxed)) fail(Status::interrupted);
             if (result_.counts.contact_steps + result_.counts.rejected_steps > 200 * problem_.settings.max_events)
@@ -665,7 +713,7 @@ class Trajectory {
                 if (at_stop && event == Event::none) state_.t = start + remaining;
                 return handle(event, which);
             }
-            h *= grow;
+            h = std::min(h * grow, longest);
         }
     }
 

@@ -1,0 +1,25 @@
+// Small dense linear systems with a definite symmetric matrix: elimination without pivoting.
+#pragma once
+
+#include <vector>
+
+#include "base/real.hpp"
+
+namespace rattlebox {
+
+// Solves matrix x = right in place; matrix is n x n by rows and is destroyed, right becomes x.
+inline void solve_definite(std::vector<real>& matrix, std::vector<real>& right) {
+    const std::size_t n = right.size();
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t r = i + 1; r < n; ++r) {
+            const real factor = matrix[r * n + i] / matrix[i * n + i];
+            for (std::size_t j = i; j < n; ++j) matrix[r * n + j] -= factor * matrix[i * n + j];
+            right[r] -= factor * right[i];
+        }
+    for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t j = i + 1; j < n; ++j) right[i] -= matrix[i * n + j] * right[j];
+        right[i] /= matrix[i * n + i];
+    }
+}
+
+} // namespace rattlebox
