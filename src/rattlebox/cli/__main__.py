@@ -1,0 +1,5 @@
+"""`python -m rattlebox.cli`."""
+
+from rattlebox.cli.main import main
+
+main()

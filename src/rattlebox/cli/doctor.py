@@ -1,0 +1,33 @@
+"""`rattlebox doctor`."""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
+
+from rich.console import Console
+from rich.table import Table
+
+from rattlebox import __version__
+from rattlebox.engines.core import built, choice, core, supported
+
+_PACKAGES = ("numpy", "scipy", "xarray", "h5netcdf", "h5py", "pydantic", "pint", "matplotlib")
+
+
+def examine() -> None:
+    """Print what this installation and machine offer."""
+    level, why = choice()
+    table = Table(show_header=False, box=None)
+    table.add_row("rattlebox", __version__)
+    table.add_row("python", f"{platform.python_version()} on {platform.system()} {platform.machine()}")
+    table.add_row("cores", str(os.cpu_count()))
+    table.add_row("core", f"{level}: {why}")
+    table.add_row("", f"built: {', '.join(built())}; runnable here: {', '.join(supported())}; RATTLEBOX_SIMD overrides")
+    table.add_row("", f"loaded from {core().__name__}")
+    for name in _PACKAGES:
+        try:
+            table.add_row(name, version(name))
+        except PackageNotFoundError:
+            table.add_row(name, "[bold]missing[/bold]: python -m pip install " + name)
+    Console().print(table)

@@ -1,0 +1,102 @@
+"""The rattlebox command."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rattlebox.model.errors import CaseError
+
+app = typer.Typer(
+    help="Simulate and design particle and impact dampers.", no_args_is_help=True, pretty_exceptions_enable=False
+)
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from rattlebox import __version__
+
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def run(
+    case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("out"),
+    csv: Annotated[bool, typer.Option(help="Write CSV files too.")] = False,
+    mat: Annotated[bool, typer.Option(help="Write a MAT file too.")] = False,
+    figures: Annotated[bool, typer.Option(help="Draw motion, energy and impacts.")] = True,
+) -> None:
+    """Run a case file: summary on the terminal, netCDF and figures in a folder."""
+    from rattlebox.cli.run import run_case
+
+    run_case(case, out, csv=csv, mat=mat, figures=figures)
+
+
+@app.command()
+def demo(out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo")) -> None:
+    """Run a steel ball on a pulsed structure with two restitution models side by side."""
+    from rattlebox.cli.demo import run_demo
+
+    run_demo(out)
+
+
+@app.command()
+def schema(out: Annotated[Path | None, typer.Option("--out", "-o", help="File; default the terminal.")] = None) -> None:
+    """Export the JSON Schema of case files, for editors."""
+    import json
+
+    from rattlebox.model.case import Case
+
+    text = json.dumps(Case.json_schema(), indent=2) + "\n"
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        out.write_text(text, encoding="utf-8")
+
+
+@app.command()
+def materials() -> None:
+    """List the materials of the library, with their sources."""
+    from rattlebox.cli.materials import show_materials
+
+    show_materials()
+
+
+@app.command()
+def doctor() -> None:
+    """Say what this machine can do, and which core is used and why."""
+    from rattlebox.cli.doctor import examine
+
+    examine()
+
+
+def main() -> None:
+    """Run the command; bad input is told on one screen, with exit code 2."""
+    try:
+        app(standalone_mode=False)
+    except CaseError as error:
+        typer.echo(f"error: {error}", err=True)
+        sys.exit(2)
+    except OSError as error:
+        typer.echo(f"error: {error.filename or ''}: {error.strerror or error}", err=True)
+        sys.exit(2)
+    except typer.Exit as stop:
+        sys.exit(stop.exit_code)
+    except Exception as error:
+        show = getattr(error, "show", None)
+        if show is None:
+            raise
+        show()
+        sys.exit(getattr(error, "exit_code", 2))
