@@ -43,8 +43,8 @@ def table() -> str:
         ]
     order = measures.soft_order()
     parts.append(
-        "\nSoft contacts tend to hard impacts as the contact time goes to zero; measured order of the error in"
-        f" the approach speed: {order:.3f}.\n"
+        "\nSoft contacts tend to hard impacts as the contact time goes to zero; measured order of the error"
+        f" in the approach speed: {order:.3f}.\n"
     )
     return "".join(parts)
 

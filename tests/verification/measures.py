@@ -132,7 +132,7 @@ def thornton() -> Iterator[Line]:
     pressure = 1.6 * cases.YIELD
     critical = restitution_laws.thornton_speed(cases.RADIUS, cases.MASS, cases.MODULUS, pressure)
     for ratio in printed.THORNTON:
-        case = cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 2e-3 / ratio)
+        case = cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4)
         yield Line(
             "3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10
         )

@@ -89,8 +89,8 @@ class Orbit:
     def multipliers(self) -> NDArray[np.complex128]:
         """Eigenvalues of the mirrored half-cycle map, from its variational equation.
 
-        Between impacts a disturbance of (x, x', y, y') is carried by the transition matrix; at an impact the jump
-        in state and in time is differentiated (saltation).
+        Between impacts a disturbance of (x, x', y, y') is carried by the transition matrix; at an impact the
+        jump in state and in time is differentiated (saltation).
         """
         mu, e = self.mass_ratio, self.restitution
         flight = np.zeros((4, 4))
