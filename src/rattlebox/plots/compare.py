@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ..results import Run
 from .energy import draw_ledger
 from .motion import draw_cavity, draw_structure, row_places
-from .style import PaperFigure, Size, paper, scaled, time_axis
+from .style import PaperFigure, Size, letters, paper, scaled, shorten, time_axis
 
 
 def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
@@ -51,7 +51,7 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
         for column, (name, run) in enumerate(runs.items()):
             arrays, left = run.arrays, iter(panels[:, column])
             shown, time = slice(0, arrays.time.size), scaled(arrays.time, "s")
-            panels[0, column].set_title(name)
+            panels[0, column].set_title(shorten(name, letters(panels[0, column])))
             if moving:
                 draw_structure(next(left), arrays, shown, time, length)
             if dampers:

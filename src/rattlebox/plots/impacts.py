@@ -12,7 +12,20 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..results import Run, RunArrays
-from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, paper, pen, scaled, time_axis
+from .style import (
+    FAINT,
+    INK,
+    SERIES_COLOURS,
+    PaperFigure,
+    Size,
+    label,
+    letters,
+    paper,
+    pen,
+    scaled,
+    shorten,
+    time_axis,
+)
 
 _SIDES: dict[str, dict[str, Any]] = {
     "trailing wall": {"marker": "o", "color": "colour", "linewidths": 0.0},
@@ -125,8 +138,9 @@ def _add_legend(figure: Figure, arrays: RunArrays) -> None:
         for side, marks in _SIDES.items()
         if side in seen
     ]  # fmt: skip
+    room = letters(figure.axes[0]) // 3
     dampers = [
-        Line2D([], [], linestyle="", markersize=1.6 * size, marker="s", label=name,
+        Line2D([], [], linestyle="", markersize=1.6 * size, marker="s", label=shorten(name, room),
                color=SERIES_COLOURS[d % len(SERIES_COLOURS)])
         for d, name in enumerate(arrays.dampers)
     ]  # fmt: skip

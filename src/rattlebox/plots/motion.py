@@ -22,10 +22,12 @@ from .style import (
     paper,
     pen,
     scaled,
+    shorten,
     time_axis,
 )
 
 MOST_SERIES = len(SERIES_COLOURS)
+LETTERS_ASIDE = 14
 
 
 def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float] | None = None) -> Figure:
@@ -68,7 +70,8 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
                 panel = next(left)
                 draw_cavity(panel, arrays, d, shown, time, scaled(row_places(arrays, d), "m"))
                 if len(arrays.dampers) > 1:
-                    panel.set_title(name, loc="right")
+                    aside = {"rotation": 270, "ha": "left", "va": "center", "transform": panel.transAxes}
+                    panel.text(1.03, 0.5, shorten(name, LETTERS_ASIDE), **aside)
         time_axis(axes[-1], arrays.time[shown], time)
         figure.align_ylabels(axes)
     return figure

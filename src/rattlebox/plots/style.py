@@ -244,24 +244,48 @@ def legend_above(axes: Axes, **options: Any) -> None:
     """
     handles, names = axes.get_legend_handles_labels()
     if handles:
-        room = _letters(axes)
+        room = letters(axes)
         columns = _fitting_columns(names, room)
-        shown = [name if len(name) <= room else f"{name[: room - 1]}…" for name in names]
+        shown = [shorten(name, room - _MARK) for name in names]
         axes.legend(handles, shown, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, **options)
 
 
-def _letters(axes: Axes) -> int:
-    """Count of letters of a legend that fit over an axes."""
+def shorten(text: str, room: int) -> str:
+    """Cut the middle out of a text that is too long.
+
+    Parameters
+    ----------
+    text
+        Text.
+    room
+        Number of letters to keep at most.
+    """
+    if len(text) <= room:
+        return text
+    tail = (room - 1) // 2
+    return f"{text[: room - 1 - tail]}…{text[len(text) - tail :]}"
+
+
+def letters(axes: Axes) -> int:
+    """Count of letters of a legend that fit over an axes.
+
+    Parameters
+    ----------
+    axes
+        Axes of a figure with its final width.
+    """
     figure, grid = axes.get_figure(root=True), axes.get_gridspec()
     assert figure is not None
     width = 72.0 * figure.get_figwidth() / (grid.ncols if grid is not None else 1)
     return int(0.8 * width / (0.58 * 0.9 * float(mpl.rcParams["font.size"])))
 
 
+_MARK = 6
+
+
 def _fitting_columns(names: list[str], room: int) -> int:
     """Largest number of legend columns that are not wider than `room` letters."""
-    mark = 6
     for columns in range(len(names), 1, -1):
-        if sum(max(len(name) for name in names[k::columns]) + mark for k in range(columns)) <= room:
+        if sum(max(len(name) for name in names[k::columns]) + _MARK for k in range(columns)) <= room:
             return columns
     return 1

@@ -23,6 +23,11 @@ def _cells(names: tuple[str, ...]) -> Any:
     return cells
 
 
+def _column(values: Any) -> Any:
+    """Vectors as columns, empty ones too."""
+    return values[:, None] if values.ndim == 1 else values
+
+
 def to_mat(run: Run, path: Path) -> Path:
     """Write a MATLAB file (version 5, up to 2 GB a variable).
 
@@ -62,9 +67,9 @@ def to_mat(run: Run, path: Path) -> Path:
                 if dim == "impact" or dim in struct:
                     continue
                 label = names[dim]
-                struct[dim] = _cells(label) if isinstance(label, tuple) else label
+                struct[dim] = _cells(label) if isinstance(label, tuple) else _column(label)
                 unit[dim] = COORDINATES[dim][0]
-            struct[v.name] = values[v.name]
+            struct[v.name] = _column(values[v.name])
             unit[v.name] = v.units
         content[group] = struct
         units[group] = unit
@@ -81,7 +86,6 @@ def to_mat(run: Run, path: Path) -> Path:
         path,
         content | {"units": units, "info": info},
         long_field_names=True,
-        oned_as="column",
         appendmat=False,
     )
     return path

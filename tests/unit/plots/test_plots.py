@@ -1,0 +1,226 @@
+"""Figures: every kind of run is drawn, what is drawn is true, and it can be read in print."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+
+from rattlebox.plots import paper, plot_comparison
+from rattlebox.plots.style import CHANNEL_COLOURS, WIDTHS, Scale, scaled
+from rattlebox.results import Run
+
+FIGURES = ("motion", "energy", "impacts", "phase_portrait")
+
+
+def _texts_inside(figure: Figure) -> bool:
+    """Whether everything that is drawn lies on the paper."""
+    figure.draw_without_rendering()
+    box = figure.get_tightbbox()
+    width, height = figure.get_size_inches()
+    return bool(box.x0 > -0.01 and box.y0 > -0.01 and box.x1 < width + 0.01 and box.y1 < height + 0.01)
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_every_run_is_drawn(any_run: Run, kind: str, tmp_path: Path) -> None:
+    """Every figure of every kind of run is saved without a warning, and nothing leaves the paper."""
+    figure = getattr(any_run.plot, kind)()
+    path = tmp_path / "figure.png"
+    figure.savefig(path)
+    assert path.stat().st_size > 5000
+    assert _texts_inside(figure)
+
+
+@pytest.mark.parametrize("size", WIDTHS)
+@pytest.mark.parametrize("kind", FIGURES)
+def test_sizes(two_dampers: Run, kind: str, size: str) -> None:
+    """Figures are as wide as they are said to be, with everything on the paper."""
+    figure = getattr(two_dampers.plot, kind)(size=size)
+    assert figure.get_figwidth() * 25.4 == pytest.approx(WIDTHS[size])
+    assert _texts_inside(figure)
+
+
+def test_unknown_size_is_refused(run: Run) -> None:
+    """A size that does not exist is answered with those that do."""
+    with pytest.raises(ValueError, match="'column', 'page', 'slide'"):
+        run.plot.motion(size="poster")
+
+
+def test_style_leaves_no_trace() -> None:
+    """The style ends with its context."""
+    import matplotlib as mpl
+
+    before = dict(mpl.rcParams)
+    with paper("slide"):
+        assert mpl.rcParams["font.size"] != before["font.size"]
+    assert dict(mpl.rcParams) == before
+
+
+def test_axes_have_units(run: Run) -> None:
+    """Axes are labelled with fitting prefixes."""
+    motion = run.plot.motion().axes
+    assert [a.get_ylabel() for a in motion] == ["Displacement\n(mm)", "Place in cavity\n(mm)"]
+    assert motion[-1].get_xlabel() == "Time (s)"
+    assert [a.get_ylabel() for a in run.plot.energy().axes] == ["Energy\n(mJ)", "Energy ledger\n(mJ)"]
+    labels = [a.get_ylabel() for a in run.plot.impacts().axes]
+    assert labels == ["Approach speed\n(mm/s)", "Peak force\n(kN)", "Coefficient of\nrestitution"]
+
+
+def test_prefixes() -> None:
+    """Lengths and times keep the larger prefix from a tenth on; nothing at all keeps the unit."""
+    assert scaled([4e-4], "m") == Scale(1e-3, "mm")
+    assert scaled([0.02, np.nan], "s") == Scale(1e-3, "ms")
+    assert scaled([0.25], "J") == Scale(1e-3, "mJ")
+    assert scaled([], "N") == Scale(1.0, "N")
+
+
+def test_ledger_closes_in_the_picture(run: Run) -> None:
+    """The upper edge of the stacked areas is the line of the energy supplied, at every output time."""
+    lower = run.plot.energy().axes[1]
+    edge = lower.collections[-1].get_paths()[0].vertices
+    (line,) = lower.lines
+    time, supplied = line.get_data()
+    assert np.max(supplied) == pytest.approx(252.1, rel=1e-3)
+    for t, level in zip(time[::100], supplied[::100], strict=True):
+        assert edge[edge[:, 0] == t, 1].max() == pytest.approx(level, rel=1e-12, abs=1e-9)
+
+
+def test_open_ledger_shows(run: Run) -> None:
+    """Where energy is missing, the areas end below the line."""
+    leaking = Run(replace(run.arrays, viscous_loss=0.5 * run.arrays.viscous_loss))
+    lower = leaking.plot.energy().axes[1]
+    edge = lower.collections[-1].get_paths()[0].vertices
+    last = edge[edge[:, 0] == edge[:, 0].max(), 1].max()
+    assert last < 0.8 * lower.lines[0].get_ydata()[-1]
+
+
+def test_all_channels_are_told_apart_in_grey(run: Run) -> None:
+    """Neighbouring areas of the ledger differ by at least a tenth in lightness when printed in grey."""
+
+    def grey(name: str) -> float:
+        return float(np.dot(to_rgb(CHANNEL_COLOURS[name]), (0.299, 0.587, 0.114)))
+
+    order = [grey(name) for name in ("viscous", "impact", "plastic", "motion")]
+    assert np.min(np.diff(order)) > 0.1
+    flowing = Run(replace(run.arrays, plastic_loss=run.arrays.normal_loss / 2))
+    assert len(flowing.plot.energy().axes[1].collections) == 4
+
+
+def test_logarithmic_energies(run: Run) -> None:
+    """The energies may be drawn over six decades; zeros leave gaps instead of warnings."""
+    upper = run.plot.energy(log=True).axes[0]
+    assert upper.get_yscale() == "log"
+    low, high = upper.get_ylim()
+    assert 1e5 < high / low < 1e7
+
+
+def test_gravity_is_drawn(run: Run) -> None:
+    """A gravity potential has its own line, counted from its lowest value."""
+    heavy = Run(replace(run.arrays, gravity_energy=-10.0 - run.arrays.ball_position))
+    upper = heavy.plot.energy().axes[0]
+    names = [text.get_text() for text in upper.get_legend().get_texts()]
+    assert names == ["structure", "balls", "gravity"]
+    assert min(line.get_ydata().min() for line in upper.lines) >= 0.0
+
+
+def test_impacts_show_every_impact(two_dampers: Run) -> None:
+    """Each impact has one mark at its time and speed, in the group of its damper and side."""
+    axes = two_dampers.plot.impacts().axes
+    log = two_dampers.arrays.impacts
+    marks = np.concatenate([c.get_offsets() for c in axes[0].collections])
+    assert len(marks) == len(log)
+    np.testing.assert_allclose(np.sort(marks[:, 0]), np.sort(log.time), rtol=1e-12)
+    between = (log.damper == 1) & (log.contact > 0) & (log.contact < 3)
+    counts = [len(c.get_offsets()) for c in axes[0].collections]
+    assert np.count_nonzero(between) in counts
+
+
+def test_impacts_without_force_or_restitution(run: Run) -> None:
+    """Quantities that no impact has get no empty panel."""
+    log = run.arrays.impacts
+    nan = np.full(len(log), np.nan)
+    bare = Run(replace(run.arrays, impacts=replace(log, peak_force=nan, restitution=nan)))
+    assert len(bare.plot.impacts().axes) == 1
+    assert len(bare.plot.impacts(log=True).axes) == 1
+
+
+def test_walls_stand_where_the_ball_turns(two_dampers: Run) -> None:
+    """The walls of a portrait bound the positions of a ball in a row, each at half the clearance."""
+    axes = two_dampers.plot.phase_portrait("damper2/3").axes[0]
+    walls = sorted(line.get_xdata()[0] for line in axes.lines)
+    np.testing.assert_allclose(walls, [-0.4, 0.4])
+    points = np.concatenate(axes.collections[0].get_segments())
+    assert abs(points[:, 0]).max() == pytest.approx(0.4, rel=0.1)
+
+
+def test_portrait_of_a_point(run: Run) -> None:
+    """A point of the structure is drawn with its own names and without walls."""
+    axes = run.plot.phase_portrait("mass").axes[0]
+    assert axes.get_xlabel() == "Displacement (mm)"
+    assert not axes.lines
+
+
+def test_motion_in_a_window(run: Run) -> None:
+    """A window limits the times; one without any output time is refused."""
+    axes = run.plot.motion(between=(0.1, 0.2)).axes
+    assert axes[-1].get_xlim() == pytest.approx((0.1, 0.2))
+    with pytest.raises(ValueError, match="no output time"):
+        run.plot.motion(between=(3.0, 4.0))
+
+
+def test_comparison_shares_its_axes(run: Run, make_run, tmp_path: Path) -> None:
+    """Columns of a comparison have the same scales, so that what looks larger is larger."""
+    weak = make_run(pulse=100.0)
+    figure = plot_comparison({"strong": run, "weak": weak})
+    figure.savefig(tmp_path / "comparison.png")
+    panels = np.array(figure.axes).reshape(3, 2)
+    assert [panel.get_title(loc="left") for panel in panels[0]] == ["strong", "weak"]
+    for row in panels:
+        assert row[0].get_ylim() == row[1].get_ylim()
+    strong, faint = (panel.lines[-1].get_ydata().max() for panel in panels[0])
+    assert strong / faint == pytest.approx(run.arrays.displacement.max() / weak.arrays.displacement.max())
+    assert _texts_inside(figure)
+
+
+def test_comparison_of_different_structures(run: Run, make_run) -> None:
+    """Runs without a ball or without a moving structure stand beside others; none at all is refused."""
+    figure = plot_comparison({"a": run, "b": make_run(rows=()), "c": make_run(fixed=True, ball_speed=0.1)})
+    assert _texts_inside(figure)
+    assert len(plot_comparison({"c": make_run(fixed=True, ball_speed=0.1)}).axes) == 2
+    with pytest.raises(ValueError, match="no run"):
+        plot_comparison({})
+
+
+def test_long_names_stay_on_the_paper(two_dampers: Run) -> None:
+    """Names longer than the paper are wide are cut rather than squeezing the panels away."""
+    arrays = two_dampers.arrays
+    points = ("left end of the upper flange " * 4, "right end")
+    double = replace(
+        arrays,
+        points=points,
+        displacement=np.repeat(arrays.displacement, 2, axis=1),
+        velocity=np.repeat(arrays.velocity, 2, axis=1),
+        dampers=("a damper with a rather long name, first", "a damper with a rather long name, second"),
+    )
+    for kind in ("motion", "impacts"):
+        figure = getattr(Run(double).plot, kind)()
+        assert _texts_inside(figure), kind
+        assert figure.axes[0].get_position().width > 0.5, kind
+
+
+def test_letters_stay_letters_in_pdf(run: Run, tmp_path: Path) -> None:
+    """A saved PDF embeds TrueType letters, as journals ask, and none as type 3."""
+    path = tmp_path / "figure.pdf"
+    run.plot.energy().savefig(path)
+    content = path.read_bytes()
+    assert b"/Type3" not in content
+    assert b"/CIDFontType2" in content
+
+
+def test_notebooks_show_figures(run: Run) -> None:
+    """A figure offers itself as a PNG picture."""
+    assert run.plot.energy()._repr_png_().startswith(b"\x89PNG")

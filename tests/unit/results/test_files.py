@@ -1,0 +1,212 @@
+"""Files: netCDF that every reader knows, MATLAB, CSV; nothing is lost."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5netcdf
+import h5py
+import numpy as np
+import pytest
+
+from rattlebox.results import Provenance, Run, RunArrays, load
+from rattlebox.results.schema import GROUPS
+
+
+def test_round_trip_is_exact(any_run: Run, tmp_path: Path) -> None:
+    """A saved run of any kind comes back equal in every bit and text."""
+    path = any_run.save(tmp_path / "run.nc")
+    again = load(path)
+    assert again == any_run
+    assert again.arrays.counts == any_run.arrays.counts
+    assert again.provenance == any_run.provenance
+    assert [p.name for p in tmp_path.iterdir()] == ["run.nc"]
+
+
+def test_round_trip_of_odd_values(tmp_path: Path) -> None:
+    """Denormals, NaN, infinities, negative zeros, empty and non-ASCII texts survive."""
+    odd = np.array([5e-324, np.nan, np.inf, -np.inf, -0.0, 0.1 + 0.2])
+    arrays = RunArrays(
+        time=np.arange(6.0),
+        points=("Spitze µ", "b"),
+        displacement=np.column_stack((odd, odd[::-1])),
+        message="σ > 0",
+    )
+    run = Run(arrays, "", Provenance("", "größe", 2**40, "", ""))
+    again = load(run.save(tmp_path / "odd.nc"))
+    assert again == run
+    assert np.signbit(again.arrays.displacement[4, 0])
+
+
+def test_long_case_is_kept(run: Run, tmp_path: Path) -> None:
+    """A case file longer than an attribute may be (64 kB) is kept."""
+    case = "times = [" + ", ".join(map(repr, np.linspace(0, 1, 9000).tolist())) + "]\n"
+    assert len(case) > 2**16
+    assert load(Run(run.arrays, case).save(tmp_path / "long.nc")).case_toml == case
+
+
+def _visit(file: h5py.File) -> list[tuple[str, Any]]:
+    found: list[tuple[str, Any]] = []
+    file.visititems(lambda name, item: found.append((name, item)))
+    return found
+
+
+def test_only_plain_types(any_run: Run, tmp_path: Path) -> None:
+    """The file holds plain numbers and fixed characters: no bool, enum, compound, or ragged text."""
+    path = any_run.save(tmp_path / "run.nc")
+    with h5py.File(path) as file:
+        for name, item in [("/", file), *_visit(file)]:
+            for key, value in item.attrs.items():
+                if key in ("REFERENCE_LIST", "DIMENSION_LIST"):
+                    continue
+                stored = item.attrs.get_id(key).dtype
+                assert stored.kind in "ifS", (name, key)
+                assert h5py.check_vlen_dtype(stored) is None
+                assert not isinstance(value, str), (name, key)
+            if isinstance(item, h5py.Dataset):
+                assert item.dtype.kind in "ifS", name
+                assert h5py.check_enum_dtype(item.dtype) is None, name
+                assert h5py.check_vlen_dtype(item.dtype) is None, name
+                assert item.dtype.kind != "S" or item.dtype.itemsize == 1, name
+                assert item.dtype.kind == "S" or item.dtype.itemsize in (1, 4, 8), name
+                assert item.compression in (None, "gzip"), name
+
+
+def test_strict_netcdf_reader_finds_everything(run: Run, tmp_path: Path) -> None:
+    """A strict netCDF-4 reader finds dimensions, units and meanings of every variable."""
+    path = run.save(tmp_path / "run.nc")
+    with h5netcdf.File(path, "r", invalid_netcdf=False) as file:
+        motion = file.groups["motion"]
+        assert motion.variables["displacement"].dimensions == ("time", "point")
+        np.testing.assert_array_equal(motion.variables["displacement"][...], run.arrays.displacement)
+        assert b"".join(motion.variables["point"][0]) == b"mass"
+        assert file.groups["impacts"].dimensions["impact"].size == len(run.arrays.impacts)
+        assert file.groups["impacts"].variables["complete"].dtype == np.int8
+        assert int(file.groups["counts"].variables["impacts"][...]) == len(run.arrays.impacts)
+        for group in GROUPS:
+            for name, variable in file.groups[group].variables.items():
+                assert "long_name" in variable.attrs, name
+
+
+def test_derived_energies_are_in_the_file(run: Run, tmp_path: Path) -> None:
+    """Sums of the ledger are stored for readers that do not know how to make them."""
+    path = run.save(tmp_path / "run.nc")
+    with h5py.File(path) as file:
+        np.testing.assert_array_equal(file["energy/residual"], run.ledger.residual)
+        np.testing.assert_array_equal(file["energy/share"], list(run.ledger.shares.values()))
+
+
+def test_xarray_opens_the_file(two_dampers: Run, tmp_path: Path) -> None:
+    """Xarray opens each group with its labels as text and plain times."""
+    import xarray
+
+    path = two_dampers.save(tmp_path / "run.nc")
+    with xarray.open_dataset(path, group="motion", engine="h5netcdf") as motion:
+        assert motion.relative_position.sel(ball="damper2/2").shape == two_dampers.arrays.time.shape
+        assert motion.time.dtype == np.float64
+    with xarray.open_dataset(path, group="impacts", engine="h5netcdf") as impacts:
+        np.testing.assert_array_equal(impacts.peak_force, two_dampers.arrays.impacts.peak_force)
+
+
+def test_save_is_all_or_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """When writing fails halfway, the older file is untouched and no rest remains."""
+    path = run.save(tmp_path / "run.nc")
+    before = path.read_bytes()
+
+    def broken(*_: object) -> None:
+        raise OSError("disk full")
+
+    monkeypatch.setattr("rattlebox.results.netcdf._write_coordinate", broken)
+    with pytest.raises(OSError, match="disk full"):
+        run.save(path)
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_saving_into_no_folder(run: Run, tmp_path: Path) -> None:
+    """A missing folder is named."""
+    with pytest.raises(FileNotFoundError, match="no folder"):
+        run.save(tmp_path / "missing" / "run.nc")
+
+
+def test_loading_something_else(tmp_path: Path) -> None:
+    """A missing file, a text, a foreign netCDF file and one of a later version are each refused by name."""
+    with pytest.raises(FileNotFoundError, match=r"there is no file .*none\.nc"):
+        load(tmp_path / "none.nc")
+    text = tmp_path / "text.nc"
+    text.write_text("not a netCDF file")
+    with pytest.raises(ValueError, match=r"text\.nc is not a netCDF-4 file"):
+        load(text)
+    foreign = tmp_path / "foreign.nc"
+    with h5netcdf.File(foreign, "w") as file:
+        file.dimensions["x"] = 1
+    with pytest.raises(ValueError, match="not a run written by Rattlebox"):
+        load(foreign)
+    later = Run(RunArrays(time=np.zeros(1)), "", Provenance("99.0")).save(tmp_path / "later.nc")
+    with h5py.File(later, "a") as file:
+        file.attrs["rattlebox_format"] = np.int32(1000)
+    with pytest.raises(ValueError, match=r"later Rattlebox \(99\.0\)"):
+        load(later)
+
+
+def test_matlab_round_trip(any_run: Run, tmp_path: Path) -> None:
+    """A MATLAB file holds every variable unchanged, in structs with units."""
+    from scipy.io import loadmat
+
+    content = loadmat(any_run.to_mat(tmp_path / "run.mat"), simplify_cells=False)
+    for group in GROUPS:
+        data, struct = getattr(any_run, group), content[group][0, 0]
+        for name in data.variables:
+            read, wanted = struct[name], data[name].values
+            if wanted.dtype.kind == "U":
+                assert [str(cell[0][0]) for cell in read] == wanted.tolist()
+            else:
+                np.testing.assert_array_equal(
+                    read, wanted[:, None] if wanted.ndim == 1 else wanted, err_msg=name
+                )
+            assert content["units"][0, 0][group][0, 0][name].size or wanted.dtype.kind == "U", name
+            assert name.isidentifier()
+            assert len(name) < 32
+    info = content["info"][0, 0]
+    assert info["case_toml"][0] == any_run.case_toml
+    assert info["status"][0] == any_run.status
+    assert info["seed"][0, 0] == 7
+
+
+def _read(path: Path) -> tuple[list[str], np.ndarray]:
+    with path.open(newline="", encoding="utf-8") as file:
+        header, *rows = csv.reader(file)
+    return header, np.array([[float(cell) for cell in row] for row in rows]).reshape(-1, len(header))
+
+
+def test_csv_keeps_every_digit(any_run: Run, tmp_path: Path) -> None:
+    """Numbers read from the CSV files equal those of the run exactly, under headers with units."""
+    files = any_run.to_csv(tmp_path / "new" / "folder")
+    assert [path.name for path in files] == ["motion.csv", "energy.csv", "impacts.csv"]
+    header, table = _read(files[0])
+    point = any_run.arrays.points[0]
+    assert header[0] == "time [s]"
+    np.testing.assert_array_equal(table[:, 0], any_run.arrays.time)
+    np.testing.assert_array_equal(
+        table[:, header.index(f"displacement {point} [m]")], any_run.arrays.displacement[:, 0]
+    )
+    for k, ball in enumerate(any_run.arrays.balls):
+        column = header.index(f"relative_velocity {ball} [m/s]")
+        np.testing.assert_array_equal(table[:, column], any_run.arrays.relative_velocity[:, k])
+    header, table = _read(files[1])
+    np.testing.assert_array_equal(table[:, header.index("residual [J]")], any_run.ledger.residual)
+    header, table = _read(files[2])
+    log = any_run.arrays.impacts
+    np.testing.assert_array_equal(table[:, header.index("peak_force [N]")], log.peak_force)
+    np.testing.assert_array_equal(table[:, header.index("restitution")], log.restitution)
+    np.testing.assert_array_equal(table[:, header.index("complete")], log.complete)
+
+
+def test_csv_of_names_with_commas(run: Run, tmp_path: Path) -> None:
+    """A point whose name holds a comma and quotes keeps one column."""
+    named = Run(replace(run.arrays, points=('tip, "left"',)))
+    header, _ = _read(named.to_csv(tmp_path)[0])
+    assert 'displacement tip, "left" [m]' in header

@@ -1,0 +1,144 @@
+"""The run as a whole: ledger, datasets, lazy imports."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rattlebox.results import Run, RunArrays
+from rattlebox.results.schema import GROUPS
+
+TIME = np.array([0.0, 1.0, 2.0])
+
+
+def _column(*values: float) -> np.ndarray:
+    return np.array(values)[:, None]
+
+
+def _open_ledger(**changes: object) -> Run:
+    """Ledger with 1 J at the start and 4 J of work, of which 0.5 J is missing in the middle."""
+    arrays = RunArrays(
+        time=TIME,
+        dampers=("d",),
+        balls=("d/1",),
+        mode_frequency=np.array([1.0]),
+        mode_energy=_column(1.0, 2.0, 0.5),
+        ball_energy=_column(0.0, 0.5, 0.25),
+        load_work=np.array([0.0, 5.0, 4.0]),
+        base_work=np.array([0.0, -1.0, -2.0]),
+        viscous_loss=np.array([0.0, 1.0, 1.25]),
+        normal_loss=_column(0.0, 1.0, 0.5),
+        plastic_loss=_column(0.0, 0.0, 0.5),
+    )
+    return Run(replace(arrays, **changes))
+
+
+def test_closure_of_an_open_ledger() -> None:
+    """A ledger that misses half a joule of eight says so."""
+    run = _open_ledger()
+    np.testing.assert_array_equal(run.ledger.residual, [0.0, -0.5, 0.0])
+    assert run.closure == 0.5 / (5.0 + 2.0 + 1.0)
+
+
+def test_shares_of_a_ledger() -> None:
+    """Shares refer to what was supplied by the end, 3 J here, and add up to one."""
+    shares = _open_ledger().ledger.shares
+    assert shares == {"viscous": 1.25 / 3, "impact": 0.5 / 3, "plastic": 0.5 / 3, "motion": 0.75 / 3}
+
+
+def test_zero_of_gravity_does_not_matter() -> None:
+    """Closure and shares of a falling ball do not depend on the height from which it is counted."""
+    falling = {
+        "load_work": np.zeros(3), "base_work": np.zeros(3), "viscous_loss": np.zeros(3),
+        "mode_energy": _column(0, 0, 0), "ball_energy": _column(0, 2, 0.5),
+        "normal_loss": _column(0, 0, 1.5), "plastic_loss": _column(0, 0, 0),
+    }  # fmt: skip
+    for zero in (0.0, -3.0, 10.0):
+        run = _open_ledger(**falling, gravity_energy=_column(2.0 + zero, 0.25 + zero, zero))
+        assert run.closure == 0.25 / 2.0
+        assert run.ledger.shares["impact"] == 0.75
+        assert run.ledger.shares["motion"] == 0.25
+
+
+def test_nothing_supplied() -> None:
+    """Without any energy the ledger closes and the shares are undefined; loss from nowhere is infinite."""
+    still = Run(RunArrays(time=TIME))
+    assert still.closure == 0.0
+    assert all(np.isnan(share) for share in still.ledger.shares.values())
+    assert Run(RunArrays(time=TIME, viscous_loss=np.array([0.0, 0.0, 1.0]))).closure == np.inf
+
+
+def test_undefined_energy_is_not_hidden() -> None:
+    """One NaN in an energy makes the closure NaN."""
+    assert np.isnan(_open_ledger(mode_energy=_column(1.0, np.nan, 0.5)).closure)
+
+
+def test_example_runs_close(any_run: Run) -> None:
+    """The hand-made runs close to round-off, so that what is tested with them is plausible."""
+    assert any_run.closure < 1e-13
+
+
+def test_status(make_run) -> None:
+    """A run that ended early is not ok and tells why."""
+    stopped = make_run(duration=0.01, times=11, status="interrupted", message="Stopped by hand.")
+    assert not stopped.ok
+    assert stopped.message == "Stopped by hand."
+    assert "interrupted" in repr(stopped)
+
+
+def test_every_variable_is_described(any_run: Run) -> None:
+    """Every variable of every dataset has a unit and a meaning; the provenance is on the dataset."""
+    for group in GROUPS:
+        data = getattr(any_run, group)
+        for name, variable in data.variables.items():
+            assert variable.attrs["long_name"], name
+            assert "units" in variable.attrs or variable.dtype.kind == "U", name
+        assert data.attrs["case"] == any_run.case_toml
+        assert data.attrs["method"] == "hand-made"
+        assert data.attrs["seed"] == 7
+
+
+def test_datasets_are_selected_by_name(two_dampers: Run) -> None:
+    """Balls, dampers, points and modes are found by their labels."""
+    arrays = two_dampers.arrays
+    ball = two_dampers.motion.relative_position.sel(ball="damper2/3")
+    np.testing.assert_array_equal(ball, arrays.relative_position[:, 3])
+    assert two_dampers.motion.ball_damper.sel(ball="damper2/1") == 1
+    np.testing.assert_array_equal(two_dampers.energy.mode_energy.sel(mode=1), arrays.mode_energy[:, 0])
+    second = two_dampers.impacts.where(two_dampers.impacts.damper == 1, drop=True)
+    assert second.sizes["impact"] == np.count_nonzero(arrays.impacts.damper == 1)
+
+
+def test_energy_dataset_balances(run: Run) -> None:
+    """Total, work, losses and residual of the dataset satisfy the balance; shares are there by channel."""
+    energy = run.energy
+    left = energy.total - energy.total[0] - energy.work + energy.losses
+    assert float(abs(left - energy.residual).max()) < 1e-15
+    assert abs(float(energy.share.sum()) - 1) < 1e-12
+    assert float(energy.share.sel(channel="impact")) == run.ledger.shares["impact"]
+
+
+def test_datasets_are_kept(run: Run) -> None:
+    """A dataset is built once."""
+    assert run.motion is run.motion
+
+
+def test_import_is_light() -> None:
+    """Importing the results and asking for a plain summary loads none of the heavy libraries."""
+    code = (
+        "import sys, numpy, rattlebox.results as r\n"
+        "print(r.Run(r.RunArrays(time=numpy.zeros(1))).summary())\n"
+        "heavy = {'xarray', 'matplotlib', 'h5netcdf', 'h5py', 'scipy', 'rich'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_unknown_ball_is_answered_with_the_known(run: Run) -> None:
+    """A portrait of a ball that does not exist lists what there is."""
+    with pytest.raises(ValueError, match=r"'ball 7'; there are damper1/1, mass"):
+        run.plot.phase_portrait("ball 7")

@@ -1,0 +1,148 @@
+"""The summary: right numbers, readable texts."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rattlebox.results import Run, RunArrays, compare
+from rattlebox.results.quantities import digits, prefix, quantity
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.00041234, "m", "412.3 µm"),
+        (0.0, "m", "0 m"),
+        (-1964.7, "N", "-1.965 kN"),
+        (0.99996, "m", "1.000 m"),
+        (999.96e-6, "m", "1.000 mm"),
+        (1e-15, "J", "0.001000 pJ"),
+        (5e13, "N", "50.00 TN"),
+        (0.05417, "%", "5.417 %"),
+        (0.99117, "1", "0.9912"),
+        (12345.6, "", "12346"),
+        (1.5e9, "", "1.500e+09"),
+        (float("nan"), "N", "-"),
+        (float("inf"), "N", "inf N"),
+    ],
+)
+def test_quantities(value: float, unit: str, text: str) -> None:
+    """Numbers are written with four digits and the prefix that suits them after rounding."""
+    assert quantity(value, unit) == text
+
+
+def test_prefix_of_a_chosen_least() -> None:
+    """With a least of a tenth, 0.4 mm stays in millimetres."""
+    assert prefix(4e-4, 0.1) == (1e-3, "m")
+    assert prefix(4e-4) == (1e-6, "µ")
+    assert digits(2.0, 2) == "2.0"
+
+
+def test_numbers_of_a_hand_made_run() -> None:
+    """Peaks, root mean square at uneven times, and counts are those computed by hand."""
+    arrays = RunArrays(
+        time=np.array([0.0, 1.0, 4.0]),
+        points=("tip",),
+        mode_frequency=np.array([1.0]),
+        displacement=np.array([[0.0], [2.0], [-4.0]]),
+        load_work=np.array([0.0, 1.0, 2.0]),
+        viscous_loss=np.array([0.0, 1.0, 2.0]),
+        wall_time=0.25,
+    )
+    values = Run(arrays).summary().values
+    assert values["peak_displacement[tip]"] == 4.0
+    assert values["rms_displacement[tip]"] == np.sqrt((0.5 * 4 * 1 + 0.5 * (4 + 16) * 3) / 4)
+    assert values["share_viscous"] == 1.0
+    assert values["supplied_energy"] == 2.0
+    assert values["computing_time"] == 0.25
+    assert values["impacts"] == 0
+    assert np.isnan(values["peak_contact_force"])
+
+
+def test_numbers_of_a_run(run: Run) -> None:
+    """The summary holds the largest force and speed of the log and shares that add up to one."""
+    values = run.summary().values
+    assert values["impacts"] == len(run.arrays.impacts)
+    assert values["peak_contact_force"] == run.arrays.impacts.peak_force.max()
+    assert values["largest_approach_speed"] == run.arrays.impacts.approach_speed.max()
+    assert abs(sum(values[f"share_{c}"] for c in ("viscous", "impact", "plastic", "motion")) - 1) < 1e-12
+    assert values["closure"] == run.closure
+
+
+def test_hard_impacts_have_no_force(run: Run) -> None:
+    """An impact log whose forces are partly or all undefined gives the largest defined one, or a dash."""
+    log = run.arrays.impacts
+    force = log.peak_force.copy()
+    force[:-1] = np.nan
+    some = Run(replace(run.arrays, impacts=replace(log, peak_force=force)))
+    assert some.summary().values["peak_contact_force"] == log.peak_force[-1]
+    none = Run(replace(run.arrays, impacts=replace(log, peak_force=np.full(len(log), np.nan))))
+    line = next(text for text in str(none.summary()).splitlines() if text.startswith("peak contact force"))
+    assert line.split()[-1] == "-"
+
+
+def test_plain_text(any_run: Run) -> None:
+    """Every kind of run has a plain text whose columns align, without colours."""
+    text = str(any_run.summary())
+    assert "\x1b" not in text
+    assert "impacts" in text
+    assert "nan" not in text
+    rows = text.splitlines()[:-1] if any_run.message else text.splitlines()
+    assert len({len(row) for row in rows}) == 1
+    assert ("displacement" in text) == bool(any_run.arrays.mode_frequency.size)
+
+
+def test_why_a_run_ended_is_said(make_run) -> None:
+    """The message of an interrupted run stands below its table."""
+    stopped = make_run(duration=0.01, times=11, status="interrupted", message="Stopped by hand [at 3].")
+    assert str(stopped.summary()).endswith("Stopped by hand [at 3].")
+
+
+def test_show_is_plain_outside_a_terminal(run: Run) -> None:
+    """Output that goes to a file has no frames and equals the text."""
+    target = io.StringIO()
+    run.summary().show(target)
+    assert target.getvalue() == f"{run.summary()}\n"
+
+
+def test_show_is_a_table_in_a_terminal(run: Run) -> None:
+    """A terminal gets the framed table with the same numbers."""
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    target = Terminal()
+    compare({"one [a]": run}, "Title").show(target)
+    assert "─" in target.getvalue()
+    assert "one [a]" in target.getvalue()
+    assert "25.79 %" in target.getvalue()
+
+
+def test_comparison_has_a_column_for_each_run(run: Run, make_run) -> None:
+    """Runs with different points, dampers and ends share one table, a dash where a number is missing."""
+    fixed = make_run(fixed=True, ball_speed=0.2, status="interrupted", message="Stopped by hand.")
+    table = compare({"free": run, "fixed": fixed}, "Two cavities")
+    assert set(table.values) == {"free", "fixed"}
+    lines = str(table).splitlines()
+    assert lines[0] == "Two cavities"
+    assert lines[1].split() == ["free", "fixed"]
+    assert next(line for line in lines if line.startswith("peak displacement")).split()[-1] == "-"
+    assert lines[-1] == "fixed: Stopped by hand."
+
+
+def test_comparison_of_nothing() -> None:
+    """A comparison needs a run."""
+    with pytest.raises(ValueError, match="no run"):
+        compare({})
+
+
+def test_plastic_line_only_where_it_is_lost(run: Run) -> None:
+    """Plastic flow has its line when some run lost energy to it."""
+    assert "plastic" not in str(run.summary())
+    flowing = Run(replace(run.arrays, plastic_loss=run.arrays.normal_loss / 2))
+    assert "plastic" in str(compare({"a": run, "b": flowing}))
