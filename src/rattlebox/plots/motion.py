@@ -155,6 +155,7 @@ def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, shown: slice, time: 
             x[:, k] / length.divisor,
             color=SERIES_COLOURS[(k + 1) % MOST_SERIES],
             linestyle=SERIES_STYLES[k],
+            linewidth=pen(),
             label=f"ball {k + 1}" if len(own) > 1 else None,
         )
     axes.margins(y=0.12)
