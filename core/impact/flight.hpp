@@ -55,8 +55,7 @@ class Flight {
             if (contact.below != wall && contact.above != wall) {
                 curvature_[c] = 0; // both balls of a row feel the same gravity and base
             } else if (series_) {
-                const Series g = gap_series(contact);
-                curvature_[c] = 2 * g.c[2] - g.curvature_change(horizon_);
+                curvature_[c] = gap_series(contact).least_curvature(horizon_);
             } else {
                 const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
                 real bound = 0;
@@ -179,8 +178,8 @@ class Flight {
             if (g.c[n] < 0) return -1;
             for (;;) {
                 real rest = 0, later = 1;
-                for (int j = n + 1; j <= Series::order; ++j) rest += std::fabs(g.c[j]) * (later *= horizon_);
-                if (rest < g.c[n]) return 1;
+                for (int j = n + 1; j <= Series::order; ++j) rest += std::fmin(g.c[j], 0.0) * (later *= horizon_);
+                if (g.c[n] + rest > 0) return 1;
                 horizon_ *= 0.5;
             }
         }
@@ -191,7 +190,8 @@ class Flight {
     Touch first_touch(const std::vector<char>& watched) const {
         real s = 0;
         const State* now = start_;
-        for (int iteration = 0; iteration < 100000; ++iteration) {
+        constexpr int patience = 1000; // a flight that has not found its end by then starts afresh from where it is
+        for (int iteration = 0; iteration < patience; ++iteration) {
             real step = infinity;
             int nearest = -1;
             for (std::size_t c = 0; c < problem_.contacts.size(); ++c) {

@@ -571,6 +571,11 @@ class Trajectory {
 
     void integrate_closed() {
         settle_released(-1);
+        for (int r = static_cast<int>(released_.size()) - 1; r >= 0; --r) {
+            const Released& released = released_[static_cast<std::size_t>(r)];
+            if (apart(state_.y.data(), released) < 0 && gap(problem_, contact(released.contact), state_.y.data()).rate < 0)
+                engage(r);
+        }
         system_.begin(loads_, state_.t);
         load_system();
         const std::size_t n = system_.size(), clock = system_.time_index();

@@ -30,11 +30,11 @@ struct Series {
         for (int n = 0; n <= order; ++n) c[n] += weight * other.c[n];
     }
 
-    // Largest |second derivative - its value at 0| on [0, length].
-    real curvature_change(real length) const {
+    // A lower bound on the second derivative over [0, length].
+    real least_curvature(real length) const {
         real sum = 0;
-        for (int n = order; n >= 3; --n) sum = (sum + n * (n - 1) * std::fabs(c[n])) * length;
-        return sum;
+        for (int n = order; n >= 3; --n) sum = (sum + n * (n - 1) * std::fmin(c[n], 0.0)) * length;
+        return 2 * c[2] + sum;
     }
 };
 
