@@ -69,8 +69,8 @@ class Flights:
         return half + off, half - off
 
     def case(self, k: int) -> Any:
-        """Return flight k as a case; impacts are hard, and the first touch is the first line of the log."""
-        names = {"frequency": f"{self.omega[k]!r} rad/s", "phase": float(self.phase[k])}
+        """Return flight k as a case; the first touch is the first line of its log."""
+        names = {"frequency": f"{float(self.omega[k])!r} rad/s", "phase": float(self.phase[k])}
         load = (
             rb.Harmonic(amplitude=float(self.force[k]), point="tip", **names)
             if self.harmonic
@@ -98,7 +98,7 @@ class Flights:
             ),
             load=load,
             duration=DURATION,
-            method=rb.Newton(restitution=0.5),
+            method=rb.EventDriven(max_events=40),
             output=rb.Output(times=[0.0]),
         )
 
