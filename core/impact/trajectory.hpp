@@ -564,7 +564,7 @@ class Trajectory {
         const real overlap = -g.value - r.memory.offset;
         if (overlap <= 0) return 1;
         const real x = std::sqrt(std::sqrt(overlap));
-        return -contact(r.contact).normal.visit([&](const auto& law) { return law.boundary(r.memory, x, -g.rate); });
+        return -contact(r.contact).normal.visit([&](const auto& law) { return law.force(r.memory, x, -g.rate); });
     }
 
     enum class Event { none, boundary, touch, rest_touch, opened, engaged, unstuck };
