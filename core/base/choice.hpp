@@ -1,5 +1,6 @@
 // One of several laws, chosen when a case is packed: a tagged union of trivially copyable types.
-// std::variant would do on the CPU, but is not there when the same headers are compiled for a GPU at run time.
+// std::variant would do on the CPU, but is not there when the same headers are compiled for a GPU at run
+// time.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +38,7 @@ template <class... Types> class Choice {
         }
     }
 
-  public:
+public:
     template <class T> void set(const T& value) {
         static_assert(index_of<T>() >= 0, "not one of the choices");
         new (storage_) T(value);

@@ -1,4 +1,5 @@
-// Spectral integration on Gauss-Legendre nodes of [0, 1]: from values of f at the nodes to its integral up to any point.
+// Spectral integration on Gauss-Legendre nodes of [0, 1]: from values of f at the nodes to its integral up to
+// any point.
 #pragma once
 
 #include "base/real.hpp"

@@ -5,8 +5,9 @@
 //                             ln e = -2                             (zeta = 1)
 //                             ln e = -2 h coth h,  zeta = cosh h    (zeta > 1)
 //
-// zeta is the damping ratio of that oscillator. Holds for the linear spring-dashpot and, in Y = overlap^(5/4), for
-// Hertz contact with Tsuji's dashpot at every speed. Derived from the exact solution; see docs, contact laws.
+// zeta is the damping ratio of that oscillator. Holds for the linear spring-dashpot and, in Y =
+// overlap^(5/4), for Hertz contact with Tsuji's dashpot at every speed. Derived from the exact solution; see
+// docs, contact laws.
 #pragma once
 
 #include "base/real.hpp"

@@ -2,8 +2,9 @@
 //
 //     N = k d + c d'        c = 2 zeta sqrt(m k)
 //
-// k [N/m], m = reduced mass [kg], d = overlap [m], d' = approach rate [m/s]. Restitution follows from zeta alone
-// (contact/damping.hpp). The contact ends at zero overlap (the dashpot may pull before) or at zero force.
+// k [N/m], m = reduced mass [kg], d = overlap [m], d' = approach rate [m/s]. Restitution follows from zeta
+// alone (contact/damping.hpp). The contact ends at zero overlap (the dashpot may pull before) or at zero
+// force.
 #pragma once
 
 #include "base/field.hpp"
@@ -26,7 +27,8 @@ struct LinearDashpot {
 
     bool needs_restitution() const { return std::isnan(damping); }
     real zeta(real e) const {
-        return needs_restitution() ? damping_ratio(e, zero_overlap != 0) : 0.5 * damping / std::sqrt(mass * stiffness);
+        return needs_restitution() ? damping_ratio(e, zero_overlap != 0)
+                                   : 0.5 * damping / std::sqrt(mass * stiffness);
     }
 
     Memory begin(real e) const {
@@ -38,7 +40,9 @@ struct LinearDashpot {
 
     real overlap_scale(real speed) const { return speed * std::sqrt(mass / stiffness); }
 
-    real force(const Memory& m, real x, real rate) const { return stiffness * square(x * x) + m.damping * rate; }
+    real force(const Memory& m, real x, real rate) const {
+        return stiffness * square(x * x) + m.damping * rate;
+    }
     real lost_power(const Memory& m, real, real rate) const { return m.damping * rate * rate; }
     real stored(const Memory&, real x) const { return 0.5 * stiffness * square(square(x * x)); }
     real plastic(const Memory&, real) const { return 0; }

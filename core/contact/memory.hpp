@@ -1,7 +1,7 @@
 // What one contact remembers between its first touch and its end, and what happens when a phase of it ends.
 //
-// All laws use the coordinate x with d = offset + x^4: it makes Hertz contact polynomial in time transformed by
-// dt = x^3 dtau, so that an integrator of high order really has its order from first touch on.
+// All laws use the coordinate x with d = offset + x^4: it makes Hertz contact polynomial in time transformed
+// by dt = x^3 dtau, so that an integrator of high order really has its order from first touch on.
 #pragma once
 
 #include "base/real.hpp"

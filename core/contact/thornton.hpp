@@ -2,11 +2,13 @@
 //
 //     loading    F = A d^(3/2)                           to d_y = R (pi p_y / (2 E))^2
 //     yielding   F = F_y + pi p_y R (d - d_y)
-//     unloading  F = (4/3) E sqrt(R_p) (d - d_p)^(3/2)   R_p = 4 E / (3 F_max) ((2 F_max + F_y) / (2 pi p_y))^(3/2)
+//     unloading  F = (4/3) E sqrt(R_p) (d - d_p)^(3/2)   R_p = 4 E / (3 F_max) ((2 F_max + F_y) / (2 pi
+//     p_y))^(3/2)
 //
-// E = E* [Pa], R = R* [m], p_y = limiting contact pressure [Pa], d_p = d_max - (3 F_max / (4 E sqrt(R_p)))^(2/3) the dent
-// that remains. Reloading follows the unloading curve to d_max, then yields on. Rate independent.
-// C. Thornton, J. Appl. Mech. 64 (1997) 383, eqs 8 to 18; C. Thornton, Z. Ning, Powder Technology 99 (1998) 154.
+// E = E* [Pa], R = R* [m], p_y = limiting contact pressure [Pa], d_p = d_max - (3 F_max / (4 E
+// sqrt(R_p)))^(2/3) the dent that remains. Reloading follows the unloading curve to d_max, then yields on.
+// Rate independent. C. Thornton, J. Appl. Mech. 64 (1997) 383, eqs 8 to 18; C. Thornton, Z. Ning, Powder
+// Technology 99 (1998) 154.
 #pragma once
 
 #include "base/field.hpp"

@@ -1,9 +1,9 @@
 // Motion with no contact: modes and balls propagated exactly, the first touch found so that none is missed.
 //
-// Without load each mode is in closed form and each ball a parabola, to any horizon. Under a load the flight is a cell of
-// bounded length with Taylor series (structure/cell.hpp). Either way every gap has a lower bound L on g'', so that no touch
-// can come before the first root of g + g' s + L s^2 / 2: stepping from one such root to the next closes in on the first
-// touch quadratically and cannot jump over one.
+// Without load each mode is in closed form and each ball a parabola, to any horizon. Under a load the flight
+// is a cell of bounded length with Taylor series (structure/cell.hpp). Either way every gap has a lower bound
+// L on g'', so that no touch can come before the first root of g + g' s + L s^2 / 2: stepping from one such
+// root to the next closes in on the first touch quadratically and cannot jump over one.
 #pragma once
 
 #include <vector>
@@ -43,7 +43,8 @@ class Flight {
         if (contact.above != wall) g.add(1, ball_series_[static_cast<std::size_t>(contact.above)]);
         if (contact.below != wall) g.add(-1, ball_series_[static_cast<std::size_t>(contact.below)]);
         if (contact.below == wall || contact.above == wall) {
-            for (std::size_t k = 0; k < damper.shape.size(); ++k) g.add(-side * damper.shape[k], mode_series_[k]);
+            for (std::size_t k = 0; k < damper.shape.size(); ++k)
+                g.add(-side * damper.shape[k], mode_series_[k]);
             g.c[0] += 0.5 * damper.clearance;
         }
         return g;
@@ -66,9 +67,10 @@ class Flight {
         }
     }
 
-  public:
+public:
     explicit Flight(const Problem& problem)
-        : problem_(problem), load_series_(problem.loads.size()), curvature_(problem.contacts.size()), scratch_(problem) {
+        : problem_(problem), load_series_(problem.loads.size()), curvature_(problem.contacts.size()),
+          scratch_(problem) {
         free_.reserve(problem.modes.size());
         mode_series_.reserve(problem.modes.size());
         ball_series_.reserve(problem.ball_mass.size());
@@ -93,8 +95,10 @@ class Flight {
             mode_series_.clear();
             for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
                 Series force;
-                for (std::size_t l = 0; l < loads.size(); ++l) force.add(loads.load(l).shape[k], load_series_[l]);
-                mode_series_.push_back(forced_mode(problem_.modes[k], {start.y[2 * k], start.y[2 * k + 1]}, force));
+                for (std::size_t l = 0; l < loads.size(); ++l)
+                    force.add(loads.load(l).shape[k], load_series_[l]);
+                mode_series_.push_back(
+                    forced_mode(problem_.modes[k], {start.y[2 * k], start.y[2 * k + 1]}, force));
             }
             ball_series_.clear();
             for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) {
@@ -139,7 +143,8 @@ class Flight {
         }
     }
 
-    // Adds work and viscous loss over [0, s], by quadrature or in closed form, never as a difference of energies.
+    // Adds work and viscous loss over [0, s], by quadrature or in closed form, never as a difference of
+    // energies.
     void account(real s, Ledger& ledger) const {
         if (!series_) {
             for (const FreeMode& mode : free_) ledger.viscous += mode.dissipated(s);
@@ -147,8 +152,8 @@ class Flight {
         }
         for (std::size_t k = 0; k < problem_.modes.size(); ++k)
             if (problem_.modes[k].decay != 0)
-                ledger.viscous +=
-                    2 * problem_.modes[k].decay * integrate(s, [&](real r) { return square(mode_series_[k].slope(r)); });
+                ledger.viscous += 2 * problem_.modes[k].decay *
+                                  integrate(s, [&](real r) { return square(mode_series_[k].slope(r)); });
         for (std::size_t l = 0; l < loads_->size(); ++l) {
             if (loads_->piece(l).silent()) continue;
             const Load& load = loads_->load(l);
@@ -165,12 +170,13 @@ class Flight {
         }
     }
 
-    // How a contact that touches at rest goes on: -1 closing, +1 parting (the horizon is shortened so that it cannot come
-    // back), 0 no motion at all. Needs series.
+    // How a contact that touches at rest goes on: -1 closing, +1 parting (the horizon is shortened so that it
+    // cannot come back), 0 no motion at all. Needs series.
     int tendency(const Contact& contact) {
         const Series g = gap_series(contact);
         real scale = 0, power = 1;
-        for (int n = 1; n <= Series::order; ++n) scale = std::max(scale, std::fabs(g.c[n]) * (power *= horizon_));
+        for (int n = 1; n <= Series::order; ++n)
+            scale = std::max(scale, std::fabs(g.c[n]) * (power *= horizon_));
         power = horizon_;
         for (int n = 2; n <= Series::order; ++n) {
             power *= horizon_;
@@ -178,7 +184,8 @@ class Flight {
             if (g.c[n] < 0) return -1;
             for (;;) {
                 real rest = 0, later = 1;
-                for (int j = n + 1; j <= Series::order; ++j) rest += std::fmin(g.c[j], 0.0) * (later *= horizon_);
+                for (int j = n + 1; j <= Series::order; ++j)
+                    rest += std::fmin(g.c[j], 0.0) * (later *= horizon_);
                 if (g.c[n] + rest > 0) return 1;
                 horizon_ *= 0.5;
             }
@@ -190,7 +197,8 @@ class Flight {
     Touch first_touch(const std::vector<char>& watched) const {
         real s = 0;
         const State* now = start_;
-        constexpr int patience = 1000; // a flight that has not found its end by then starts afresh from where it is
+        constexpr int patience =
+            1000; // a flight that has not found its end by then starts afresh from where it is
         for (int iteration = 0; iteration < patience; ++iteration) {
             real step = infinity;
             int nearest = -1;
@@ -202,7 +210,8 @@ class Flight {
                 const int ball = contact.below == wall ? contact.above : contact.below;
                 const real blur = 4 * epsilon * (half + std::fabs(positions(problem_, now->y.data())[ball]));
                 real safe;
-                if (g.value < -blur && g.rate > 0) { // released, still recovering: when it is open at the latest
+                if (g.value < -blur &&
+                    g.rate > 0) { // released, still recovering: when it is open at the latest
                     const real room = g.rate * g.rate + 2 * curvature_[c] * -g.value;
                     safe = -2 * g.value / (g.rate + std::sqrt(std::fmax(room, 0.0)));
                 } else {

@@ -21,7 +21,8 @@ struct Impact {
 };
 
 struct Counts {
-    long events = 0, flights = 0, contact_steps = 0, rejected_steps = 0, collocated = 0, extrapolated = 0, sticks = 0;
+    long events = 0, flights = 0, contact_steps = 0, rejected_steps = 0, collocated = 0, extrapolated = 0,
+         sticks = 0;
 };
 
 struct Samples {

@@ -1,17 +1,19 @@
 // One Hertz-Tsuji contact on its own, solved whole by collocation in its phase angle.
 //
-// With P = (2/sqrt5) b d^(5/4), b^2 = A/m, w = d' and Y = (w + zeta P)/s, s^2 = 1 - zeta^2, the contact alone is a uniform
-// rotation: P = r sin(psi), Y = r cos(psi). Everything else (spring, load, gravity) is a small closing acceleration a:
+// With P = (2/sqrt5) b d^(5/4), b^2 = A/m, w = d' and Y = (w + zeta P)/s, s^2 = 1 - zeta^2, the contact alone
+// is a uniform rotation: P = r sin(psi), Y = r cos(psi). Everything else (spring, load, gravity) is a small
+// closing acceleration a:
 //
 //     dpsi/dt = s W - a sin(psi) / (s r)        W = (sqrt5/2) b d^(1/4)
 //     d ln r/dt = -zeta W + a cos(psi) / (s r)
 //
-// psi runs from 0 to pi whatever happens, so there is no event to look for: zero overlap is psi = pi, the deepest overlap
-// is tan(psi) = s/zeta, zero force psi = 2 acos(zeta). psi = pi I(x) with I the regularised incomplete beta function of
-// (5, 5) makes d^(1/4) analytic at both ends. Fixed-point sweeps over all nodes gain a factor a t_c / V each.
+// psi runs from 0 to pi whatever happens, so there is no event to look for: zero overlap is psi = pi, the
+// deepest overlap is tan(psi) = s/zeta, zero force psi = 2 acos(zeta). psi = pi I(x) with I the regularised
+// incomplete beta function of (5, 5) makes d^(1/4) analytic at both ends. Fixed-point sweeps over all nodes
+// gain a factor a t_c / V each.
 //
-// The energy balance, which the sweeps do not use, decides whether the result is taken; if not, or if the contact is slow,
-// strongly damped or has neighbours, impact/trajectory.hpp integrates it step by step.
+// The energy balance, which the sweeps do not use, decides whether the result is taken; if not, or if the
+// contact is slow, strongly damped or has neighbours, impact/trajectory.hpp integrates it step by step.
 #pragma once
 
 #include <array>
@@ -97,7 +99,8 @@ class LoneContact {
         const std::size_t m = problem_.modes.size();
         const bool both_balls = side_ == 0;
         for (std::size_t l = 0; loads_->active() && l < loads_->size(); ++l)
-            for (int i = 0; i < n; ++i) signals_[l * n + static_cast<std::size_t>(i)] = loads_->piece(l).value(start_->t + time_[i]);
+            for (int i = 0; i < n; ++i)
+                signals_[l * n + static_cast<std::size_t>(i)] = loads_->piece(l).value(start_->t + time_[i]);
         real constant = 0;
         if (!both_balls) constant = side_ * damper_->gravity;
         for (int i = 0; i < n; ++i) a_[i] = constant;
@@ -108,7 +111,8 @@ class LoneContact {
             const real two_decay = 2 * problem_.modes[k].decay, stiffness = problem_.modes[k].stiffness;
             for (int i = 0; i < n; ++i) f[i] = -two_decay * p[i] - stiffness * q[i];
             for (std::size_t l = 0; loads_->active() && l < loads_->size(); ++l)
-                for (int i = 0; i < n; ++i) f[i] += loads_->load(l).shape[k] * signals_[l * n + static_cast<std::size_t>(i)];
+                for (int i = 0; i < n; ++i)
+                    f[i] += loads_->load(l).shape[k] * signals_[l * n + static_cast<std::size_t>(i)];
             if (both_balls) continue;
             const real weight = -side_ * damper_->shape[k];
             for (int i = 0; i < n; ++i) a_[i] += weight * f[i];
@@ -116,7 +120,8 @@ class LoneContact {
         if (!both_balls && loads_->active())
             for (std::size_t l = 0; l < loads_->size(); ++l)
                 if (loads_->load(l).base)
-                    for (int i = 0; i < n; ++i) a_[i] -= side_ * signals_[l * n + static_cast<std::size_t>(i)];
+                    for (int i = 0; i < n; ++i)
+                        a_[i] -= side_ * signals_[l * n + static_cast<std::size_t>(i)];
     }
 
     // exp(y) for |y| < 0.7: Taylor, so that the loop over nodes vectorises.
@@ -124,7 +129,8 @@ class LoneContact {
         constexpr int order = 15;
         static constexpr auto inverse_factorial = [] {
             std::array<real, order + 1> c{1};
-            for (int k = 1; k <= order; ++k) c[static_cast<std::size_t>(k)] = c[static_cast<std::size_t>(k - 1)] / k;
+            for (int k = 1; k <= order; ++k)
+                c[static_cast<std::size_t>(k)] = c[static_cast<std::size_t>(k - 1)] / k;
             return c;
         }();
         real sum = inverse_factorial[order];
@@ -162,7 +168,8 @@ class LoneContact {
         g.rule().integrate(time_slope_, time_);
         g.rule().integrate(a_slope_, drift_);
         for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
-            real *f = mode(force_, k), *ps = mode(p_slope_, k), *qs = mode(q_slope_, k), *q = mode(q_, k), *p = mode(p_, k);
+            real *f = mode(force_, k), *ps = mode(p_slope_, k), *qs = mode(q_slope_, k), *q = mode(q_, k),
+                 *p = mode(p_, k);
             for (int i = 0; i < n; ++i) {
                 ps[i] = f[i] * time_slope_[i];
                 qs[i] = p[i] * time_slope_[i];
@@ -185,19 +192,20 @@ class LoneContact {
         return sum;
     }
 
-  public:
+public:
     // What the contact is at one instant of it.
     struct Instant {
         real time = 0, x = 0, rate = 0, force = 0, lost = 0;
     };
 
     explicit LoneContact(const Problem& problem)
-        : problem_(problem), q_(problem.modes.size() * n), p_(q_.size()), force_(q_.size()), p_slope_(q_.size()),
-          q_slope_(q_.size()), signals_(problem.loads.size() * n) {}
+        : problem_(problem), q_(problem.modes.size() * n), p_(q_.size()), force_(q_.size()),
+          p_slope_(q_.size()), q_slope_(q_.size()), signals_(problem.loads.size() * n) {}
 
-    // Prepares the contact c that touches in `start` at this speed; false where collocation is not the right tool.
-    bool prepare(const Contact& c, const HertzTsuji& law, const Loads& loads, const State& start, real speed, real zeta,
-                 real available, real psi_end = 0) {
+    // Prepares the contact c that touches in `start` at this speed; false where collocation is not the right
+    // tool.
+    bool prepare(const Contact& c, const HertzTsuji& law, const Loads& loads, const State& start, real speed,
+                 real zeta, real available, real psi_end = 0) {
         if (!(speed > 0) || zeta > 0.4) return false;
         law_ = law;
         contact_ = &c;
@@ -244,7 +252,8 @@ class LoneContact {
             const real change = sweep();
             external();
             // The next change would be below rounding, or it no longer falls because it is rounding.
-            if (change * change < 0.25 * epsilon * before || (change < 64 * epsilon && change > 0.1 * before)) {
+            if (change * change < 0.25 * epsilon * before ||
+                (change < 64 * epsilon && change > 0.1 * before)) {
                 rates();
                 return true;
             }
@@ -260,11 +269,14 @@ class LoneContact {
         const PhaseGrid& g = grid_;
         real psi, sine, cosine;
         g.phase(position, psi, sine, cosine);
-        if (position < 1) g.rule().row(position, row_);
-        else std::copy_n(g.rule().weight, n, row_);
+        if (position < 1)
+            g.rule().row(position, row_);
+        else
+            std::copy_n(g.rule().weight, n, row_);
         Instant now;
         now.time = dot(row_, time_slope_);
-        const real grow = std::exp(0.2 * (dot(row_, log_slope_) - zeta_ / s_ * psi)), r = r0_ * square(square(grow)) * grow;
+        const real grow = std::exp(0.2 * (dot(row_, log_slope_) - zeta_ / s_ * psi)),
+                   r = r0_ * square(square(grow)) * grow;
         now.x = depth0_ * std::pow(std::fmax(sine, 0.0), 0.2) * grow;
         now.rate = r * (s_ * cosine - zeta_ * sine);
         now.force = now.x * (law_.stiffness * now.x * square(now.x * now.x) + damping_ * now.rate);
@@ -283,7 +295,8 @@ class LoneContact {
                 dq += row_[i] * p[i] * time_slope_[i];
             }
             out->y[2 * k] = start_->y[2 * k] + dq;
-            out->y[2 * k + 1] = start_->y[2 * k + 1] + dp + side_ * damper_->shape[k] * contact_->mass * drift;
+            out->y[2 * k + 1] =
+                start_->y[2 * k + 1] + dp + side_ * damper_->shape[k] * contact_->mass * drift;
         }
         balls(now, drift, *out);
         if (ledger) account(*ledger, now);
@@ -302,7 +315,8 @@ class LoneContact {
     // dpsi/dt at an instant, but for the closing acceleration's small part.
     real turning(const Instant& now) const { return s_ * wave_ * now.x; }
 
-    // The largest force: a step of Newton in time from where it would be without the closing acceleration's help.
+    // The largest force: a step of Newton in time from where it would be without the closing acceleration's
+    // help.
     real peak_force() {
         const real b2 = law_.stiffness / contact_->mass, c = damping_ / contact_->mass;
         real position = deepest_position(), best = 0;
@@ -325,7 +339,7 @@ class LoneContact {
         return best;
     }
 
-  private:
+private:
     // Balls in flight but for the pair in contact; positions of the pair follow from momentum and overlap.
     void balls(const Instant& now, real drift, State& out) {
         const real t = now.time;
@@ -353,7 +367,8 @@ class LoneContact {
             s1[i] = side_ > 0 ? z.q + half + overlap : z.q - half - overlap;
             v1[i] -= side_ * impulse / problem_.ball_mass[i];
         } else {
-            const auto i = static_cast<std::size_t>(contact_->below), j = static_cast<std::size_t>(contact_->above);
+            const auto i = static_cast<std::size_t>(contact_->below),
+                       j = static_cast<std::size_t>(contact_->above);
             const real mi = problem_.ball_mass[i], mj = problem_.ball_mass[j];
             const real centre = (mi * s1[i] + mj * s1[j]) / (mi + mj);
             s1[i] = centre + overlap * mj / (mi + mj);
@@ -389,7 +404,8 @@ class LoneContact {
                     }
                     balls(node, drift_[i] - (w_[i] - speed_), probe);
                     const real* v = velocities(problem_, probe.y.data());
-                    for (std::size_t b = 0; b < problem_.ball_mass.size(); ++b) power[i] -= problem_.ball_mass[b] * v[b];
+                    for (std::size_t b = 0; b < problem_.ball_mass.size(); ++b)
+                        power[i] -= problem_.ball_mass[b] * v[b];
                 }
             }
             real sum = 0;

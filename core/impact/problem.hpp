@@ -1,7 +1,8 @@
 // One line of motion as the core sees it: modes, signals, balls in rows, contacts between neighbours.
 //
-// Frame: the base. Balls have reduced positions s: a row packed tight and centred has s = 0 for each ball, so every gap is
-// a difference. Contact 0 of a damper is its left wall, contact n its right wall, contact i lies between ball i and i + 1.
+// Frame: the base. Balls have reduced positions s: a row packed tight and centred has s = 0 for each ball, so
+// every gap is a difference. Contact 0 of a damper is its left wall, contact n its right wall, contact i lies
+// between ball i and i + 1.
 #pragma once
 
 #include <vector>
@@ -37,10 +38,10 @@ struct Settings {
     real duration = 0;
     real tolerance = 1e-12;
     long max_events = 10'000'000;
-    real stick = 1e-6;                              // newton: bounce shorter than this x the shortest period sticks
-    real dt_flight = 5e-6, dt_contact = 3e-8;       // two_step
-    bool adaptive_inner = false;                    // two_step: dopri5 instead of rk4
-    bool collocation = true;                        // event_driven: lone contacts by collocation in phase
+    real stick = 1e-6;                        // newton: bounce shorter than this x the shortest period sticks
+    real dt_flight = 5e-6, dt_contact = 3e-8; // two_step
+    bool adaptive_inner = false;              // two_step: dopri5 instead of rk4
+    bool collocation = true;                  // event_driven: lone contacts by collocation in phase
 };
 
 struct Problem {

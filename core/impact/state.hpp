@@ -1,6 +1,7 @@
 // Where everything is, and what has been done and lost so far.
 //
-// One flat vector y serves flights and contacts: q, p of each mode, then the positions of all balls, then their velocities.
+// One flat vector y serves flights and contacts: q, p of each mode, then the positions of all balls, then
+// their velocities.
 #pragma once
 
 #include <vector>
@@ -27,7 +28,9 @@ struct State {
 };
 
 inline const real* positions(const Problem& p, const real* y) { return y + 2 * p.modes.size(); }
-inline const real* velocities(const Problem& p, const real* y) { return y + 2 * p.modes.size() + p.ball_mass.size(); }
+inline const real* velocities(const Problem& p, const real* y) {
+    return y + 2 * p.modes.size() + p.ball_mass.size();
+}
 inline real* positions(const Problem& p, real* y) { return y + 2 * p.modes.size(); }
 inline real* velocities(const Problem& p, real* y) { return y + 2 * p.modes.size() + p.ball_mass.size(); }
 

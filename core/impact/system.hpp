@@ -1,11 +1,13 @@
 // The equations of motion while contacts are closed.
 //
-// State y: modes and balls as in impact/state.hpp; time since the start, work of loads, work of the base, viscous loss; then
-// for each soft contact x with overlap = offset + x^4, and the energy its dashpot has taken. The independent variable is
-// a transformed time, dt = dtau / sum(1 / x_j^3): it makes Hertz contact regular at first touch and at the end, for any
-// number of contacts at once. With no soft contact it is time itself.
+// State y: modes and balls as in impact/state.hpp; time since the start, work of loads, work of the base,
+// viscous loss; then for each soft contact x with overlap = offset + x^4, and the energy its dashpot has
+// taken. The independent variable is a transformed time, dt = dtau / sum(1 / x_j^3): it makes Hertz contact
+// regular at first touch and at the end, for any number of contacts at once. With no soft contact it is time
+// itself.
 //
-// Stuck contacts (hard impacts that have come to rest) are constraints: their forces are what keeps the rates zero.
+// Stuck contacts (hard impacts that have come to rest) are constraints: their forces are what keeps the rates
+// zero.
 #pragma once
 
 #include <vector>
@@ -44,7 +46,8 @@ class System {
     const Contact& contact(int c) const { return problem_.contacts[static_cast<std::size_t>(c)]; }
 
     void cavity_rates(const real* y) {
-        for (std::size_t d = 0; d < problem_.dampers.size(); ++d) cavity_rate_[d] = cavity(problem_.dampers[d], y).p;
+        for (std::size_t d = 0; d < problem_.dampers.size(); ++d)
+            cavity_rate_[d] = cavity(problem_.dampers[d], y).p;
     }
 
     // Rate at which the two sides approach, from any vector of ball speeds and cavity speeds.
@@ -103,7 +106,7 @@ class System {
         solve_definite(matrix_, forces_);
     }
 
-  public:
+public:
     std::vector<Active> active;
     std::vector<int> stuck;
 
@@ -128,7 +131,8 @@ class System {
             return (c.above == ball ? 1.0 : 0.0) - (c.below == ball ? 1.0 : 0.0);
         };
         for (int ball : {a.below, a.above})
-            if (ball != wall) sum -= side(a, ball) * side(b, ball) / problem_.ball_mass[static_cast<std::size_t>(ball)];
+            if (ball != wall)
+                sum -= side(a, ball) * side(b, ball) / problem_.ball_mass[static_cast<std::size_t>(ball)];
         const real wall_a = side(a, wall), wall_b = side(b, wall);
         if (wall_a != 0 && wall_b != 0) {
             const auto& shape_a = problem_.dampers[static_cast<std::size_t>(a.damper)].shape;
@@ -143,7 +147,8 @@ class System {
     real force(const real* y, std::size_t j) const {
         const Active& a = active[j];
         const real rate = approach(y, a.contact);
-        return contact(a.contact).normal.visit([&](const auto& l) { return l.force(a.memory, y[x_index(j)], rate); });
+        return contact(a.contact).normal.visit(
+            [&](const auto& l) { return l.force(a.memory, y[x_index(j)], rate); });
     }
 
     // Forces of the stuck contacts found by the last evaluation.
@@ -155,7 +160,8 @@ class System {
         cavity_rates(y);
         clear_pushes();
 
-        // Clock: with r_j = (x_min / x_j)^3 and R = sum r_j, dt/dtau = x_min^3 / R and x_j' = closing r_j / (4 R).
+        // Clock: with r_j = (x_min / x_j)^3 and R = sum r_j, dt/dtau = x_min^3 / R and x_j' = closing r_j /
+        // (4 R).
         real clock = 1, total = 1;
         if (n == 1) {
             clock = cube(y[x_index(0)]);

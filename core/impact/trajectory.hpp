@@ -1,7 +1,8 @@
 // One run from its start to its end: flights and contacts in turn, samples on the way.
 //
-// Soft contacts are integrated (impact/closed.hpp); with Method::newton an impact takes no time and a contact whose bounces
-// have become shorter than a stated part of the shortest period sticks until its force would have to pull.
+// Soft contacts are integrated (impact/closed.hpp); with Method::newton an impact takes no time and a contact
+// whose bounces have become shorter than a stated part of the shortest period sticks until its force would
+// have to pull.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 
 #include "base/dop853.hpp"
 #include "impact/flight.hpp"
-#include "impact/lone_contact.hpp"
 #include "impact/log.hpp"
+#include "impact/lone_contact.hpp"
 #include "impact/system.hpp"
 
 namespace rattlebox {
@@ -115,8 +116,10 @@ class Trajectory {
         std::swap(scratch_.y, state_.y);
         state_.t = end;
         settle_released(touch.contact);
-        if (pressing) begin_at_rest();
-        else if (touch.contact >= 0) meet(touch.contact);
+        if (pressing)
+            begin_at_rest();
+        else if (touch.contact >= 0)
+            meet(touch.contact);
     }
 
     // Released contacts that have opened: their stored energy is gone for good.
@@ -162,7 +165,8 @@ class Trajectory {
         const real *s = positions(problem_, state.y.data()), *v = velocities(problem_, state.y.data());
         for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i)
             sum += problem_.ball_mass[i] *
-                   (0.5 * v[i] * v[i] - problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity * s[i]);
+                   (0.5 * v[i] * v[i] -
+                    problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity * s[i]);
         return sum;
     }
 
@@ -179,7 +183,8 @@ class Trajectory {
         return true;
     }
 
-    // A sample inside a lone contact: the contact solved again up to the phase at that time, so that nothing is interpolated.
+    // A sample inside a lone contact: the contact solved again up to the phase at that time, so that nothing
+    // is interpolated.
     void sample_lone(int c, const HertzTsuji& law, real speed, real zeta) {
         const real t = problem_.sample_times[next_sample_++];
         State at(problem_);
@@ -206,17 +211,19 @@ class Trajectory {
         const HertzTsuji* law = contact(c).normal.get_if<HertzTsuji>();
         if (!law) return false;
         const real zeta = law->zeta(e);
-        if (!lone_.prepare(contact(c), *law, loads_, state_, speed, zeta, next_stop() - state_.t)) return false;
+        if (!lone_.prepare(contact(c), *law, loads_, state_, speed, zeta, next_stop() - state_.t))
+            return false;
         if (!alone(c, speed, lone_.longest_time()) || !lone_.solve()) return false;
         Ledger after = ledger_;
         const LoneContact::Instant end = lone_.at(1, &scratch_, &after);
         const real stored = law->stored({}, end.x);
         const std::size_t d = damper_of(c);
-        const real residual = energy(scratch_) + stored - energy(state_) + (after.normal[d] - ledger_.normal[d]) +
-                              (after.viscous - ledger_.viscous) - (after.load_work - ledger_.load_work) -
-                              (after.base_work - ledger_.base_work);
+        const real residual = energy(scratch_) + stored - energy(state_) +
+                              (after.normal[d] - ledger_.normal[d]) + (after.viscous - ledger_.viscous) -
+                              (after.load_work - ledger_.load_work) - (after.base_work - ledger_.base_work);
         const real size = contact(c).mass * speed * speed + energy(state_) * 1e-2;
-        if (!(std::fabs(residual) < std::fmax(problem_.settings.tolerance, 64 * epsilon) * size)) return false;
+        if (!(std::fabs(residual) < std::fmax(problem_.settings.tolerance, 64 * epsilon) * size))
+            return false;
 
         const LoneContact::Instant deepest = lone_.at(lone_.deepest_position(), nullptr, nullptr);
         Impact line;
@@ -278,14 +285,14 @@ class Trajectory {
         return length;
     }
 
-    // Is what the force of a contact that closes from rest does in `length` negligible: below 1e-8 of the closing rate
-    // itself, or within the tolerance of the speeds around it?
+    // Is what the force of a contact that closes from rest does in `length` negligible: below 1e-8 of the
+    // closing rate itself, or within the tolerance of the speeds around it?
     bool weak(int c, const real* y, real length, real speed) const {
         const Gap g = gap(problem_, contact(c), y);
         if (g.value >= 0) return true;
         const real e = rebound(contact(c).restitution, 0).e, x = std::sqrt(std::sqrt(-g.value));
-        const real f = contact(c).normal.visit(
-            [&](const auto& law) { return law.force(law.begin(e), x, -g.rate); });
+        const real f =
+            contact(c).normal.visit([&](const auto& law) { return law.force(law.begin(e), x, -g.rate); });
         return std::fabs(f) * length <=
                contact(c).mass * std::fmax(1e-8 * std::fabs(g.rate), problem_.settings.tolerance * speed);
     }
@@ -307,12 +314,17 @@ class Trajectory {
         const Contact& k = contact(c);
         real* v = velocities(problem_, state_.y.data());
         real on_cavity = 0;
-        if (k.below == wall) on_cavity -= j;
-        else v[k.below] -= j / problem_.ball_mass[static_cast<std::size_t>(k.below)];
-        if (k.above == wall) on_cavity += j;
-        else v[k.above] += j / problem_.ball_mass[static_cast<std::size_t>(k.above)];
+        if (k.below == wall)
+            on_cavity -= j;
+        else
+            v[k.below] -= j / problem_.ball_mass[static_cast<std::size_t>(k.below)];
+        if (k.above == wall)
+            on_cavity += j;
+        else
+            v[k.above] += j / problem_.ball_mass[static_cast<std::size_t>(k.above)];
         const Damper& damper = problem_.dampers[damper_of(c)];
-        for (std::size_t m = 0; m < damper.shape.size(); ++m) state_.y[2 * m + 1] += damper.shape[m] * on_cavity;
+        for (std::size_t m = 0; m < damper.shape.size(); ++m)
+            state_.y[2 * m + 1] += damper.shape[m] * on_cavity;
     }
 
     // Acceleration of the gap with the contacts that are stuck now.
@@ -358,8 +370,8 @@ class Trajectory {
                 phase(c) = Phase::open;
     }
 
-    // An impact of c. What rests on each other meanwhile holds without rebound, where it need not pull: the impulses of c
-    // and of the stuck contacts solve one linear system.
+    // An impact of c. What rests on each other meanwhile holds without rebound, where it need not pull: the
+    // impulses of c and of the stuck contacts solve one linear system.
     void strike(int c, real speed, real e) {
         // Impacts that shrink without a force that presses (a row that collapses) end like those that do.
         if (speed < problem_.settings.stick * largest_speed()) e = 0;
@@ -395,7 +407,8 @@ class Trajectory {
         wake_stuck();
         const real rebound_speed = std::fmax(-system_.approach(state_.y.data(), c), 0.0);
         const real acceleration = gap_acceleration(c);
-        if (acceleration < 0 && 2 * rebound_speed < -acceleration * problem_.settings.stick * shortest_period()) {
+        if (acceleration < 0 &&
+            2 * rebound_speed < -acceleration * problem_.settings.stick * shortest_period()) {
             result_.impacts.back().energy_lost += stick(c);
         } else if (e == 0) {
             phase(c) = Phase::touching;
@@ -523,15 +536,17 @@ class Trajectory {
         }
     }
 
-    // Where in a step of length h from y_ the function turns from `before` (>= 0) to <= 0: the far end of a bracket that has
-    // shrunk to rounding. Every probe is a step of the integrator itself.
+    // Where in a step of length h from y_ the function turns from `before` (>= 0) to <= 0: the far end of a
+    // bracket that has shrunk to rounding. Every probe is a step of the integrator itself.
     template <class F> real locate(real h, real before, real after, F&& f) {
         real low = 0, high = h, f_low = before, f_high = after;
         int side = 0;
         for (int iteration = 0; iteration < 80 && f_high != 0; ++iteration) {
             real next = (low * f_high - high * f_low) / (f_high - f_low);
-            const real width = high - low, edge = 1e-3 * width * std::fabs(f_high) / (std::fabs(f_high) + std::fabs(f_low));
-            if (iteration % 3 == 2) next += edge; // step over the root, so that the bracket shrinks from both ends
+            const real width = high - low,
+                       edge = 1e-3 * width * std::fabs(f_high) / (std::fabs(f_high) + std::fabs(f_low));
+            if (iteration % 3 == 2)
+                next += edge; // step over the root, so that the bracket shrinks from both ends
             if (!(next > low && next < high) || iteration > 20) next = low + 0.5 * width;
             if (width <= 4 * epsilon * h) break;
             integrator_.step(system_, y_.data(), next, partial_.data());
@@ -564,7 +579,8 @@ class Trajectory {
         const real overlap = -g.value - r.memory.offset;
         if (overlap <= 0) return 1;
         const real x = std::sqrt(std::sqrt(overlap));
-        return -contact(r.contact).normal.visit([&](const auto& law) { return law.force(r.memory, x, -g.rate); });
+        return -contact(r.contact).normal.visit(
+            [&](const auto& law) { return law.force(r.memory, x, -g.rate); });
     }
 
     enum class Event { none, boundary, touch, rest_touch, opened, engaged, unstuck };
@@ -573,7 +589,8 @@ class Trajectory {
         settle_released(-1);
         for (int r = static_cast<int>(released_.size()) - 1; r >= 0; --r) {
             const Released& released = released_[static_cast<std::size_t>(r)];
-            if (apart(state_.y.data(), released) < 0 && gap(problem_, contact(released.contact), state_.y.data()).rate < 0)
+            if (apart(state_.y.data(), released) < 0 &&
+                gap(problem_, contact(released.contact), state_.y.data()).rate < 0)
                 engage(r);
         }
         system_.begin(loads_, state_.t);
@@ -585,11 +602,13 @@ class Trajectory {
         set_scales();
         const real remaining = next_stop() - state_.t;
         real h = first_step(remaining);
-        // Without a soft contact errors can vanish, so that only this keeps a change of sign in a force from being jumped.
+        // Without a soft contact errors can vanish, so that only this keeps a change of sign in a force from
+        // being jumped.
         const real longest = system_.active.empty() ? 2.5 * h : infinity;
         for (;;) {
             if (stop_ && stop_->load(std::memory_order_relaxed)) fail(Status::interrupted);
-            if (result_.counts.contact_steps + result_.counts.rejected_steps > 200 * problem_.settings.max_events)
+            if (result_.counts.contact_steps + result_.counts.rejected_steps >
+                200 * problem_.settings.max_events)
                 fail(Status::too_many_events);
             if (!running()) return unload_system(y_);
             integrator_.start(system_, y_.data());
@@ -600,9 +619,11 @@ class Trajectory {
                 const real error = integrator_.error(h, scale_);
                 if (!(error <= 1)) {
                     ++result_.counts.rejected_steps;
-                    const real shrink = error < infinity ? std::fmax(0.2, 0.9 * std::pow(error, -0.125)) : 0.1;
+                    const real shrink =
+                        error < infinity ? std::fmax(0.2, 0.9 * std::pow(error, -0.125)) : 0.1;
                     h *= shrink;
-                    if (!(std::fabs(h) > 1e-300) || result_.counts.rejected_steps > 200 * problem_.settings.max_events)
+                    if (!(std::fabs(h) > 1e-300) ||
+                        result_.counts.rejected_steps > 200 * problem_.settings.max_events)
                         return fail(Status::step_too_small), unload_system(y_);
                     continue;
                 }
@@ -639,7 +660,8 @@ class Trajectory {
                          [&](const real* y) { return boundary(y, j); });
             for (std::size_t r = 0; r < released_.size(); ++r) {
                 const Released& released = released_[r];
-                consider(Event::opened, static_cast<int>(r), -gap(problem_, contact(released.contact), y_.data()).value,
+                consider(Event::opened, static_cast<int>(r),
+                         -gap(problem_, contact(released.contact), y_.data()).value,
                          [&](const real* y) { return -gap(problem_, contact(released.contact), y).value; });
                 consider(Event::engaged, static_cast<int>(r), apart(y_.data(), released),
                          [&](const real* y) { return apart(y, released); });
@@ -651,16 +673,20 @@ class Trajectory {
                         system_(y, work.data());
                         return system_.stuck_forces()[i];
                     };
-                    consider(Event::unstuck, static_cast<int>(i), std::fmax(holding(y_.data()), 0.0), holding);
+                    consider(Event::unstuck, static_cast<int>(i), std::fmax(holding(y_.data()), 0.0),
+                             holding);
                 }
             }
             bool retry = false;
             for (int c = 0; c < problem_.contact_count() && !retry; ++c) {
                 if (phase(c) != Phase::open && phase(c) != Phase::touching) continue;
                 const auto value = [&](const real* y) { return gap(problem_, contact(c), y).value; };
-                const Gap before = gap(problem_, contact(c), y_.data()), after = gap(problem_, contact(c), trial_.data());
-                const real blur = 8 * epsilon * (problem_.dampers[damper_of(c)].clearance + std::fabs(before.value));
-                if (phase(c) == Phase::touching || (std::fabs(before.value) <= blur && std::fabs(before.rate) <= blur)) {
+                const Gap before = gap(problem_, contact(c), y_.data()),
+                          after = gap(problem_, contact(c), trial_.data());
+                const real blur =
+                    8 * epsilon * (problem_.dampers[damper_of(c)].clearance + std::fabs(before.value));
+                if (phase(c) == Phase::touching ||
+                    (std::fabs(before.value) <= blur && std::fabs(before.rate) <= blur)) {
                     if (after.value > blur) phase(c) = Phase::open;
                     if (after.value >= -blur || hard()) continue;
                     if (weak(c, trial_.data(), trial_[clock], contact_speed())) {
@@ -675,8 +701,9 @@ class Trajectory {
                 } else if (before.rate < 0 && after.rate > 0 &&
                            std::fmin(before.value, after.value) <
                                2 * trial_[clock] * std::fmax(-before.rate, after.rate)) {
-                    const real lowest = locate(end, -before.rate, -after.rate,
-                                               [&](const real* y) { return -gap(problem_, contact(c), y).rate; });
+                    const real lowest = locate(end, -before.rate, -after.rate, [&](const real* y) {
+                        return -gap(problem_, contact(c), y).rate;
+                    });
                     integrator_.step(system_, y_.data(), lowest, partial_.data());
                     if (value(partial_.data()) <= 0) {
                         std::swap(trial_, partial_);
@@ -724,12 +751,18 @@ class Trajectory {
 
     void handle(Event event, int which) {
         switch (event) {
-        case Event::none: return;
-        case Event::boundary: return cross(static_cast<std::size_t>(which));
-        case Event::touch: return meet(which);
-        case Event::rest_touch: return begin_at_rest();
-        case Event::opened: return settle(which);
-        case Event::engaged: return engage(which);
+        case Event::none:
+            return;
+        case Event::boundary:
+            return cross(static_cast<std::size_t>(which));
+        case Event::touch:
+            return meet(which);
+        case Event::rest_touch:
+            return begin_at_rest();
+        case Event::opened:
+            return settle(which);
+        case Event::engaged:
+            return engage(which);
         case Event::unstuck: {
             const int c = system_.stuck[static_cast<std::size_t>(which)];
             system_.stuck.erase(system_.stuck.begin() + which);
@@ -783,8 +816,9 @@ class Trajectory {
         released_.erase(released_.begin() + r);
         const real left = recovering(released, state_.y.data());
         ledger_.normal[damper_of(released.contact)] += released.energy - left;
-        const real plastic =
-            contact(released.contact).normal.visit([&](const auto& law) { return law.plastic(released.memory, 0); });
+        const real plastic = contact(released.contact).normal.visit([&](const auto& law) {
+            return law.plastic(released.memory, 0);
+        });
         ledger_.plastic[damper_of(released.contact)] -= plastic;
         Impact& line = result_.impacts[static_cast<std::size_t>(released.impact)];
         line.energy_lost -= left + plastic;
@@ -806,7 +840,8 @@ class Trajectory {
         const Active& a = system_.active[j];
         Impact& line = result_.impacts[static_cast<std::size_t>(a.impact)];
         line.peak_force = std::fmax(line.peak_force, system_.force(y, j));
-        line.peak_overlap = std::fmax(line.peak_overlap, a.memory.offset + square(square(y[system_.x_index(j)])));
+        line.peak_overlap =
+            std::fmax(line.peak_overlap, a.memory.offset + square(square(y[system_.x_index(j)])));
     }
 
     void note_forces() {
@@ -820,7 +855,8 @@ class Trajectory {
             const int c = system_.active[j].contact;
             const real before = system_.approach(y_.data(), c), after = system_.approach(trial_.data(), c);
             if (before > 0 && after < 0) {
-                const real turn = locate(h, before, after, [&](const real* y) { return system_.approach(y, c); });
+                const real turn =
+                    locate(h, before, after, [&](const real* y) { return system_.approach(y, c); });
                 integrator_.step(system_, y_.data(), turn, partial_.data());
                 note(j, partial_.data());
             }
@@ -845,11 +881,12 @@ class Trajectory {
         }
     }
 
-  public:
+public:
     Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
-        : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem), ledger_(problem),
-          flight_(problem), system_(problem), lone_(problem), sampler_(problem), phase_(problem.contacts.size(), Phase::open),
-          watched_(problem.contacts.size()), stored_(problem.dampers.size()), force_(problem.dampers.size()) {}
+        : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem),
+          ledger_(problem), flight_(problem), system_(problem), lone_(problem), sampler_(problem),
+          phase_(problem.contacts.size(), Phase::open), watched_(problem.contacts.size()),
+          stored_(problem.dampers.size()), force_(problem.dampers.size()) {}
 
     Result run() {
         for (int c = 0; c < problem_.contact_count(); ++c) {
@@ -863,10 +900,14 @@ class Trajectory {
         }
         while (running() && state_.t < problem_.settings.duration) {
             if (state_.t >= loads_.next_knot()) loads_.advance(state_.t);
-            if (++result_.counts.events > problem_.settings.max_events) fail(Status::too_many_events);
-            else if (stop_ && stop_->load(std::memory_order_relaxed)) fail(Status::interrupted);
-            else if (system_.active.empty() && system_.stuck.empty() && released_only_open()) fly();
-            else integrate_closed();
+            if (++result_.counts.events > problem_.settings.max_events)
+                fail(Status::too_many_events);
+            else if (stop_ && stop_->load(std::memory_order_relaxed))
+                fail(Status::interrupted);
+            else if (system_.active.empty() && system_.stuck.empty() && released_only_open())
+                fly();
+            else
+                integrate_closed();
         }
         result_.stopped_at = state_.t;
         return std::move(result_);

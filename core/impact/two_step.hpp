@@ -1,9 +1,10 @@
-// The fixed-step scheme of the discrete-element literature, to compare with: a long step while nothing overlaps, a short one
-// while something does. Each step is one classical Runge-Kutta step, or an adaptive Dormand-Prince solution of its own with
-// relative tolerance 1e-3, absolute 1e-6 and at least ten substeps, which is what MATLAB's ode45 does by default.
+// The fixed-step scheme of the discrete-element literature, to compare with: a long step while nothing
+// overlaps, a short one while something does. Each step is one classical Runge-Kutta step, or an adaptive
+// Dormand-Prince solution of its own with relative tolerance 1e-3, absolute 1e-6 and at least ten substeps,
+// which is what MATLAB's ode45 does by default.
 //
-// What it misses: an overlap that begins and ends within one long step; the instant of first touch (known to a step), so the
-// speed that restitution is evaluated from too. Samples between steps are cubic (Hermite).
+// What it misses: an overlap that begins and ends within one long step; the instant of first touch (known to
+// a step), so the speed that restitution is evaluated from too. Samples between steps are cubic (Hermite).
 #pragma once
 
 #include <array>
@@ -32,7 +33,9 @@ class TwoStep {
     std::size_t next_sample_ = 0, n_ = 0;
     Result result_;
 
-    std::size_t extra() const { return state_.y.size(); } // load work, base work, viscous, then a loss by contact
+    std::size_t extra() const {
+        return state_.y.size();
+    } // load work, base work, viscous, then a loss by contact
 
     struct Push {
         real force = 0, lost = 0;
@@ -123,7 +126,8 @@ class TwoStep {
             {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
             {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
             {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-        static constexpr real e[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -0.025};
+        static constexpr real e[7] = {71.0 / 57600,      0,          -71.0 / 16695, 71.0 / 1920,
+                                      -17253.0 / 339200, 22.0 / 525, -0.025};
         const real from = t, longest = 0.1 * length;
         real h = longest;
         std::vector<real> start = y_;
@@ -226,7 +230,8 @@ class TwoStep {
         const real h = to - from;
         while (next_sample_ < problem_.sample_times.size() && problem_.sample_times[next_sample_] <= to) {
             const real t = problem_.sample_times[next_sample_++], s = (t - from) / h;
-            const real w0 = (1 + 2 * s) * square(1 - s), w1 = s * square(1 - s), w2 = s * s * (3 - 2 * s), w3 = s * s * (s - 1);
+            const real w0 = (1 + 2 * s) * square(1 - s), w1 = s * square(1 - s), w2 = s * s * (3 - 2 * s),
+                       w3 = s * s * (s - 1);
             for (std::size_t i = 0; i < n_; ++i)
                 work_[i] = w0 * y_[i] + w2 * next_[i] + h * (w1 * dy_[i] + w3 * dnext_[i]);
             put(t, work_.data());
@@ -258,11 +263,11 @@ class TwoStep {
         result_.record(t, state, ledger, stored, force);
     }
 
-  public:
+public:
     TwoStep(const Problem& problem, const std::atomic<bool>* stop = nullptr)
         : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), ledger_(problem),
-          slots_(problem.contacts.size()), push_ball_(problem.ball_mass.size()), push_cavity_(problem.dampers.size()),
-          n_(state_.y.size() + 3 + problem.contacts.size()) {
+          slots_(problem.contacts.size()), push_ball_(problem.ball_mass.size()),
+          push_cavity_(problem.dampers.size()), n_(state_.y.size() + 3 + problem.contacts.size()) {
         y_.assign(n_, 0);
         std::copy(state_.y.begin(), state_.y.end(), y_.begin());
         next_ = dy_ = dnext_ = work_ = y_;
@@ -287,8 +292,10 @@ class TwoStep {
                 end = stop;
                 h = stop - t;
             }
-            if (s.adaptive_inner) dopri5(t, h);
-            else rk4(t, h);
+            if (s.adaptive_inner)
+                dopri5(t, h);
+            else
+                rk4(t, h);
             sample(t, end);
             std::swap(y_, next_);
             t = end;

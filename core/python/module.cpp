@@ -37,10 +37,12 @@ void work(Job& job, const std::atomic<bool>& stop) {
     job.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
 }
 
-// Runs all problems on `threads` threads. Each result is computed by one thread alone: the same bits for any number.
+// Runs all problems on `threads` threads. Each result is computed by one thread alone: the same bits for any
+// number.
 nb::list simulate(const nb::list& problems, int threads) {
     std::vector<Job> jobs(problems.size());
-    for (std::size_t i = 0; i < jobs.size(); ++i) door::read(jobs[i].problem, nb::cast<nb::dict>(problems[i]));
+    for (std::size_t i = 0; i < jobs.size(); ++i)
+        door::read(jobs[i].problem, nb::cast<nb::dict>(problems[i]));
 
     std::atomic<bool> stop{false};
     std::atomic<std::size_t> next{0};

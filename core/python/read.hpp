@@ -69,7 +69,9 @@ inline Signal read_signal(const nb::dict& d, Problem& problem) {
 
 inline void read_settings(Settings& s, const nb::dict& d) {
     const auto method = nb::cast<std::string>(d["method"]);
-    s.method = method == "newton" ? Method::newton : method == "two_step" ? Method::two_step : Method::event_driven;
+    s.method = method == "newton"     ? Method::newton
+               : method == "two_step" ? Method::two_step
+                                      : Method::event_driven;
     s.duration = number(d, "duration");
     if (d.contains("tolerance")) s.tolerance = number(d, "tolerance");
     if (d.contains("max_events")) s.max_events = nb::cast<long>(d["max_events"]);

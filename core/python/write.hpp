@@ -39,7 +39,9 @@ inline nb::dict write(const Problem& problem, Result&& r, double seconds) {
     d["force"] = array(std::move(s.force));
     nb::dict i;
     const auto& log = r.impacts;
-    const auto damper = [&](const Impact& x) { return problem.contacts[static_cast<std::size_t>(x.contact)].damper; };
+    const auto damper = [&](const Impact& x) {
+        return problem.contacts[static_cast<std::size_t>(x.contact)].damper;
+    };
     i["damper"] = column<std::int64_t>(log, damper);
     i["contact"] = column<std::int64_t>(log, [&](const Impact& x) {
         return x.contact - problem.dampers[static_cast<std::size_t>(damper(x))].first_contact;

@@ -1,8 +1,9 @@
 // Motion under a load on a short interval, as Taylor series about its start.
 //
-// All loads are constants, slopes and sines between knots, so the series of the load is known to any order and the
-// mode's own follows by q'' = f - 2 a q' - k q, whatever the regime, resonance included. With (rate x length) <= 1 the
-// first term left out is below 1/19! = 8e-18 of the leading one: exact to the last digit, with one formula for all.
+// All loads are constants, slopes and sines between knots, so the series of the load is known to any order
+// and the mode's own follows by q'' = f - 2 a q' - k q, whatever the regime, resonance included. With (rate x
+// length) <= 1 the first term left out is below 1/19! = 8e-18 of the leading one: exact to the last digit,
+// with one formula for all.
 #pragma once
 
 #include "base/real.hpp"

@@ -11,8 +11,9 @@ namespace rattlebox {
 
 struct Load {
     Signal signal;
-    std::vector<real> shape; // force on each mode per unit of signal; for a base acceleration minus the participation
-    bool base = false;       // a base acceleration: acts on the balls too, as -m b''
+    std::vector<real>
+        shape; // force on each mode per unit of signal; for a base acceleration minus the participation
+    bool base = false; // a base acceleration: acts on the balls too, as -m b''
 };
 
 class Loads {
@@ -22,7 +23,7 @@ class Loads {
     real next_knot_ = infinity;
     real frequency_ = 0;
 
-  public:
+public:
     explicit Loads(const std::vector<Load>& loads) : loads_(loads), pieces_(loads.size()) { advance(0); }
 
     // Takes the pieces that hold from t on.

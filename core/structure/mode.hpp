@@ -3,8 +3,8 @@
 //     q(s) = C q0 + S (p0 + a q0)        p(s) = C p0 - S (k q0 + a p0)
 //     C = exp(-a s) cos(w s),  S = exp(-a s) sin(w s) / w,  w^2 = k - a^2
 //
-// with cosh and sinh for w^2 < 0 and their limit for w = 0, so that rigid-body, undamped, critical and overdamped
-// modes are all the same formula. Loads are added in structure/cell.hpp.
+// with cosh and sinh for w^2 < 0 and their limit for w = 0, so that rigid-body, undamped, critical and
+// overdamped modes are all the same formula. Loads are added in structure/cell.hpp.
 #pragma once
 
 #include "base/quadrature.hpp"
@@ -36,7 +36,7 @@ class FreeMode {
     real q_slope_, p_slope_; // what S multiplies in q and in p
     enum class Regime { oscillating, confluent, decaying } regime_;
 
-  public:
+public:
     FreeMode(const Mode& mode, const ModeState& start)
         : mode_(mode), start_(start), q_slope_(start.p + mode.decay * start.q),
           p_slope_(-(mode.stiffness * start.q + mode.decay * start.p)) {

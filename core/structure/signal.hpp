@@ -14,7 +14,8 @@
 
 namespace rattlebox {
 
-// A signal between two of its knots: constant + slope (t - origin) + amplitude sin(frequency (t - origin) + phase).
+// A signal between two of its knots: constant + slope (t - origin) + amplitude sin(frequency (t - origin) +
+// phase).
 struct Piece {
     real origin = 0, constant = 0, slope = 0, amplitude = 0, frequency = 0, phase = 0;
 

@@ -2,8 +2,8 @@
 //
 //     e = (V / V_0)^(-1/4), at most 1
 //
-// V_0 = speed scale [m/s], from the yield stress when the case is packed. K. L. Johnson, Contact Mechanics, Cambridge
-// University Press 1985, section 11.5, eq. 11.47. Meant for V >> V_0.
+// V_0 = speed scale [m/s], from the yield stress when the case is packed. K. L. Johnson, Contact Mechanics,
+// Cambridge University Press 1985, section 11.5, eq. 11.47. Meant for V >> V_0.
 #pragma once
 
 #include "base/field.hpp"
@@ -20,7 +20,9 @@ struct JohnsonRestitution {
 
     real limit() const { return infinity; }
     bool beyond() const { return true; }
-    real value(real speed) const { return speed <= speed_scale ? 1 : std::sqrt(std::sqrt(speed_scale / speed)); }
+    real value(real speed) const {
+        return speed <= speed_scale ? 1 : std::sqrt(std::sqrt(speed_scale / speed));
+    }
 };
 
 } // namespace rattlebox

@@ -1,6 +1,7 @@
 // Restitution of Thornton's elastic, perfectly plastic contact in closed form.
 //
-//     e = sqrt(6 sqrt(3)/5) sqrt(1 - r^2/6) [r / (r + 2 sqrt(6/5 - r^2/5))]^(1/4),  r = V_y / V;   e = 1 for V <= V_y
+//     e = sqrt(6 sqrt(3)/5) sqrt(1 - r^2/6) [r / (r + 2 sqrt(6/5 - r^2/5))]^(1/4),  r = V_y / V;   e = 1 for
+//     V <= V_y
 //
 // V_y = speed at which yield begins [m/s]. C. Thornton, J. Appl. Mech. 64 (1997) 383, eq. 19.
 #pragma once
@@ -14,8 +15,8 @@ struct ThorntonRestitution {
     real maximum = 1;
 
     static constexpr const char* name = "thornton";
-    static constexpr Field<ThorntonRestitution> fields[] = {{"yield_speed", &ThorntonRestitution::yield_speed},
-                                                            {"maximum", &ThorntonRestitution::maximum}};
+    static constexpr Field<ThorntonRestitution> fields[] = {
+        {"yield_speed", &ThorntonRestitution::yield_speed}, {"maximum", &ThorntonRestitution::maximum}};
 
     real limit() const { return infinity; }
     bool beyond() const { return true; }

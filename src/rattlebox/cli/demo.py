@@ -21,8 +21,8 @@ def demo_case(contact: Tsuji) -> Case:
     """Return the single-ball case: 1.2 kg of steel on 20 kg, hit by 5 kN for 1 ms."""
     return Case(
         structure=SDOF(mass="20 kg", stiffness="80 kN/m", damping="25.3 N s/m"),
-        damper=ImpactDamper(ball=Sphere(radius="33.17 mm", material="steel"), gap="0.4 mm", contact=contact),
-        load=HalfSine(amplitude="5 kN", duration="1 ms"),
+        dampers=(ImpactDamper(balls=(Sphere(radius="33.17 mm", material="steel"),), gap="0.4 mm", contact=contact),),
+        loads=(HalfSine(amplitude="5 kN", duration="1 ms"),),
         duration="5 s",
     )
 

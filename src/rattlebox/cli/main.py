@@ -11,7 +11,9 @@ import typer
 from rattlebox.model.errors import CaseError
 
 app = typer.Typer(
-    help="Simulate and design particle and impact dampers.", no_args_is_help=True, pretty_exceptions_enable=False
+    help="Simulate and design particle and impact dampers.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
 )
 
 
@@ -25,7 +27,9 @@ def _version(asked: bool) -> None:
 
 @app.callback()
 def _options(
-    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
 ) -> None:
     pass
 
@@ -45,7 +49,9 @@ def run(
 
 
 @app.command()
-def demo(out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo")) -> None:
+def demo(
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo"),
+) -> None:
     """Run a steel ball on a pulsed structure with two restitution models side by side."""
     from rattlebox.cli.demo import run_demo
 
@@ -53,7 +59,9 @@ def demo(out: Annotated[Path, typer.Option("--out", "-o", help="Folder for resul
 
 
 @app.command()
-def schema(out: Annotated[Path | None, typer.Option("--out", "-o", help="File; default the terminal.")] = None) -> None:
+def schema(
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="File; default the terminal.")] = None,
+) -> None:
     """Export the JSON Schema of case files, for editors."""
     import json
 

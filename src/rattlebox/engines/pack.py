@@ -68,8 +68,7 @@ def _loads(case: Case, modes: ModalModel) -> list[Packed]:
         {**signal.coefficients(), "shape": _array(modes.shape(signal.point)), "base": False} for signal in case.loads
     ]
     base = [
-        {**signal.coefficients(), "shape": -_participation(modes), "base": True}
-        for signal in case.base_acceleration()
+        {**signal.coefficients(), "shape": -_participation(modes), "base": True} for signal in case.base_acceleration()
     ]
     return loads + base
 

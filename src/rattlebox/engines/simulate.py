@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
 
-
 def simulate(case: Case) -> Run:
     """Run a case.
 
@@ -86,7 +85,9 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     base = _base_motion(case, time)
     stopped = raw["stopped_contact"]
-    name, message = describe(raw["status"], raw["stopped_at"], _contact_name(names, counts, stopped), raw["stopped_value"])
+    name, message = describe(
+        raw["status"], raw["stopped_at"], _contact_name(names, counts, stopped), raw["stopped_value"]
+    )
     by_damper = (time.size, d)
     impacts = {key: value for key, value in raw["impacts"].items() if key != "complete"}
     return RunArrays(
@@ -130,7 +131,13 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
 def _contact_name(names: list[str], counts: list[int], contact: int) -> str:
     for name, balls in zip(names, counts, strict=True):
         if contact <= balls:
-            place = "trailing wall" if contact == 0 else "leading wall" if contact == balls else f"ball {contact} - {contact + 1}"
+            place = (
+                "trailing wall"
+                if contact == 0
+                else "leading wall"
+                if contact == balls
+                else f"ball {contact} - {contact + 1}"
+            )
             return f"{name} ({place})"
         contact -= balls + 1
     return ""

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from .errors import translate
 
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass as _ModelType
+else:
+    _ModelType = type(BaseModel)
 
-class _Explaining(type(BaseModel)):  # type: ignore[misc]
+
+class _Explaining(_ModelType):
     """Makes wrong values raise CaseError at construction, and leaves validation inside a larger part to pydantic."""
 
     def __call__(cls, *args: Any, **values: Any) -> Any:
@@ -24,7 +29,11 @@ class Part(BaseModel, metaclass=_Explaining):
 
     held_as: ClassVar[tuple[str, ...]] = ()
     model_config = ConfigDict(
-        frozen=True, extra="forbid", arbitrary_types_allowed=True, allow_inf_nan=False, ser_json_inf_nan="constants"
+        frozen=True,
+        extra="forbid",
+        arbitrary_types_allowed=True,
+        allow_inf_nan=False,
+        ser_json_inf_nan="constants",
     )
 
 

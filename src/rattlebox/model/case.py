@@ -184,7 +184,9 @@ class Case(Part):
         except CaseError as error:
             raise CaseError(f"{source}: {error}") from None
         except Hint as error:
-            raise CaseError("\n  try: ".join(filter(None, [f"{source}: {error.complaint}", error.suggestion]))) from None
+            raise CaseError(
+                "\n  try: ".join(filter(None, [f"{source}: {error.complaint}", error.suggestion]))
+            ) from None
 
     def to_toml(self) -> str:
         """Return the case as the text of a case file that reads back equal."""
@@ -252,5 +254,3 @@ def _resolve_files(node: Any, folder: Path) -> Any:
             for key, item in node.items()
         }
     return [_resolve_files(item, folder) for item in node] if isinstance(node, list) else node
-
-

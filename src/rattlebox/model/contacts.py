@@ -192,7 +192,11 @@ def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray
         square = (1 - zeta) * (1 + zeta)
         sine = np.sqrt(np.abs(square))
         with np.errstate(invalid="ignore", divide="ignore"):
-            inner = np.where(square > 0, np.arccos(np.clip(zeta, 0, 1)) - zeta * sine, zeta * sine - np.arccosh(np.maximum(zeta, 1)))
+            inner = np.where(
+                square > 0,
+                np.arccos(np.clip(zeta, 0, 1)) - zeta * sine,
+                zeta * sine - np.arccosh(np.maximum(zeta, 1)),
+            )
             slope = np.where(sine < 1e-3, 4 / 3, 2 * inner / sine**3)
         change = (target + np.log(restitution_of_alpha(math.sqrt(5) * zeta, ending))) / slope
         zeta = zeta + change

@@ -12,9 +12,8 @@ from .base import Part
 from .contacts import AnyContact
 from .errors import Hint
 from .materials import AnyMaterial, Material, find_wall
-from .units import Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse
-
 from .modes import Vector
+from .units import Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse
 
 
 class Sphere(Part):
@@ -31,7 +30,7 @@ class Sphere(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("ball", "balls")
-    radius: PositiveLength | None = None  # type: ignore[assignment]
+    radius: PositiveLength | None = None
     diameter: PositiveLength | None = Field(default=None, exclude=True)
     material: AnyMaterial
     mass: PositiveMass | None = None
@@ -53,8 +52,6 @@ class Sphere(Part):
         """Mass [kg]."""
         assert self.radius is not None
         return self.mass if self.mass is not None else 4 / 3 * math.pi * self.radius**3 * self.material.density
-
-
 
 
 def _place(value: Any) -> Any:
@@ -112,7 +109,7 @@ class ImpactDamper(Part):
     kind: Literal["impact"] = "impact"
     name: str = ""
     balls: Annotated[tuple[Sphere, ...], BeforeValidator(_balls)]
-    gap: NotNegativeLength | None = None  # type: ignore[assignment]
+    gap: NotNegativeLength | None = None
     wall: Annotated[Material | Literal["rigid"] | None, BeforeValidator(find_wall)] = None
     start: Annotated[
         float | str | list[float | str],
@@ -171,12 +168,14 @@ class ImpactDamper(Part):
         for i, place in enumerate(places):
             if abs(place) > half:
                 raise Hint(
-                    f"ball {i + 1} would start {1e3 * (abs(place) - half):.4g} mm inside a wall", "start between -1 and 1"
+                    f"ball {i + 1} would start {1e3 * (abs(place) - half):.4g} mm inside a wall",
+                    "start between -1 and 1",
                 )
         for i in range(count - 1):
             if places[i + 1] < places[i]:
                 raise Hint(
-                    f"balls {i + 1} and {i + 2} overlap by {1e3 * (places[i] - places[i + 1]):.4g} mm", "rising start"
+                    f"balls {i + 1} and {i + 2} overlap by {1e3 * (places[i] - places[i + 1]):.4g} mm",
+                    "rising start",
                 )
         return self
 
@@ -200,7 +199,8 @@ class ImpactDamper(Part):
         """Places of the ball centres from the cavity's centre in the packed, centred row, (n,) [m]."""
         radii = np.array([ball.radius for ball in self.balls])
         edges = np.concatenate([[0.0], np.cumsum(2 * radii)])
-        return edges[:-1] + radii - radii.sum()
+        centres: Vector = edges[:-1] + radii - radii.sum()
+        return centres
 
     @property
     def positions0(self) -> Vector:

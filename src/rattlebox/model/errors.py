@@ -95,7 +95,16 @@ def translate(error: ValidationError, source: str | os.PathLike[str], fields: di
             complaint = str(raised)
         elif finding["type"] == "extra_forbidden":
             complaint = "there is no such field here"
-            suggestion = nearest(str(location[-1]), _fields_near(location, {"": fields.get(str(source), fields.get("", set())), **{k: v for k, v in fields.items() if k}}))
+            suggestion = nearest(
+                str(location[-1]),
+                _fields_near(
+                    location,
+                    {
+                        "": fields.get(str(source), fields.get("", set())),
+                        **{k: v for k, v in fields.items() if k},
+                    },
+                ),
+            )
         elif finding["type"] == "missing":
             complaint = "this field is needed"
         elif finding["type"] in ("union_tag_invalid", "union_tag_not_found"):

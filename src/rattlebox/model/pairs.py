@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from .errors import Hint
@@ -115,11 +116,13 @@ def contact_pairs(case: Case, index: int) -> list[Pair]:
     """
     damper = case.dampers[index]
     wall_mass = case.modes.effective_mass(damper.point)
-    balls = [Body(ball.material, ball.radius, mass) for ball, mass in zip(damper.balls, damper.masses, strict=True)]
+    balls = [
+        Body(ball.material, ball.radius or 0.0, mass) for ball, mass in zip(damper.balls, damper.masses, strict=True)
+    ]
 
     def wall(beside: Body) -> Body:
         material = beside.material if damper.wall is None else damper.wall
         return Body(None if isinstance(material, str) else material, mass=wall_mass)
 
     row = [wall(balls[0]), *balls, wall(balls[-1])]
-    return [Pair(below, above) for below, above in zip(row[:-1], row[1:], strict=True)]
+    return [Pair(below, above) for below, above in pairwise(row)]

@@ -62,7 +62,9 @@ def _from_mat(path: str) -> tuple[Column, Column]:
         return content["time"].ravel().astype(float), content["value"].ravel().astype(float)
     if len(content) == 1:
         return _two_columns(next(iter(content.values())), path)
-    raise Hint(f"{path} holds {', '.join(content)}; variables 'time' and 'value' are needed, or one array of two columns")
+    raise Hint(
+        f"{path} holds {', '.join(content)}; variables 'time' and 'value' are needed, or one array of two columns"
+    )
 
 
 def _from_csv(file: Path) -> tuple[Column, Column]:

@@ -23,7 +23,10 @@ def _restitution(value: Any) -> float:
     except (TypeError, ValueError):
         raise Hint("a number from 0 to 1 is needed", "0.8") from None
     if not 0 <= number <= 1:
-        raise Hint("restitution lies between 0 (no rebound) and 1 (no loss): above 1 an impact would create energy", "0.8")
+        raise Hint(
+            "restitution lies between 0 (no rebound) and 1 (no loss): above 1 an impact would create energy",
+            "0.8",
+        )
     return number
 
 
@@ -162,7 +165,7 @@ class ThorntonRestitution(Restitution):
     def yield_speed(self, pair: Pair) -> float:
         """Return V_y [m/s]."""
         pressure = yield_pressure(pair, self.yield_pressure, "Thornton's law")
-        return (
+        return float(
             (math.pi / (2 * pair.modulus)) ** 2
             * math.sqrt(8 * math.pi * pair.radius**3 / (15 * pair.mass))
             * pressure**2.5

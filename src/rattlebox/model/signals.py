@@ -349,7 +349,10 @@ def random_record(
     """
     corners = np.asarray(psd, dtype=float)
     if corners.ndim != 2 or corners.shape[1] != 2 or np.any(corners <= 0) or np.any(np.diff(corners[:, 0]) <= 0):
-        raise Hint("a PSD needs positive (frequency, density) pairs with rising frequencies", "[(10, 1e-3), (200, 1e-3)]")
+        raise Hint(
+            "a PSD needs positive (frequency, density) pairs with rising frequencies",
+            "[(10, 1e-3), (200, 1e-3)]",
+        )
     count = round(duration * rate)
     frequency = np.fft.rfftfreq(count, 1 / rate)
     inside = (frequency >= corners[0, 0]) & (frequency <= corners[-1, 0])
@@ -362,5 +365,3 @@ def random_record(
     values = np.fft.irfft(spectrum, count)
     times = np.arange(count + 1) / rate
     return Record(times=times, values=np.append(values, values[0]), unit=unit, point=point)
-
-

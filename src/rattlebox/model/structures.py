@@ -11,11 +11,11 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, mo
 from .base import Part
 from .errors import Hint
 from .modes import ModalModel, Vector
-from .signals import AnySignal, Signal, as_signals
+from .signals import AnySignal, Signal, Unit, as_signals
 from .units import Damping, Frequency, Length, PositiveMass, Stiffness, Velocity
 
 if TYPE_CHECKING:
-    from typing_extensions import Self
+    from typing import Self
 
 
 def _numbers(value: Any) -> Any:
@@ -113,7 +113,10 @@ class Modal(Part):
         rows |= {f"shapes.{name}": row for name, row in self.shapes.items()}
         for name, row in rows.items():
             if row is not None and len(row) != count:
-                raise Hint(f"{name} has {len(row)} numbers, but there are {count} frequencies", "one number for each mode")
+                raise Hint(
+                    f"{name} has {len(row)} numbers, but there are {count} frequencies",
+                    "one number for each mode",
+                )
         if not self.shapes:
             raise Hint("at least one named point is needed", "shapes = { tip = [...] }")
         return self
@@ -171,9 +174,15 @@ class Matrices(Part):
         n = len(self.M)
         for name, matrix in (("M", mass), ("C", damping), ("K", stiffness)):
             if matrix.shape != (n, n):
-                raise Hint(f"{name} has shape {matrix.shape}, but M has {n} rows", "three square matrices of one size")
+                raise Hint(
+                    f"{name} has shape {matrix.shape}, but M has {n} rows",
+                    "three square matrices of one size",
+                )
             if not np.allclose(matrix, matrix.T, rtol=1e-12, atol=1e-12 * np.abs(matrix).max(initial=0)):
-                raise Hint(f"{name} is not symmetric", f"{name} = ({name} + {name}^T) / 2, if the difference is rounding")
+                raise Hint(
+                    f"{name} is not symmetric",
+                    f"{name} = ({name} + {name}^T) / 2, if the difference is rounding",
+                )
         if np.linalg.eigvalsh(mass).min() <= 0:
             raise Hint("M is not positive definite: some motion would have no mass")
         for name, point in self.points.items():
@@ -268,7 +277,7 @@ class Shaker(Part):
     def _smooth(cls, motion: tuple[Signal, ...]) -> tuple[Signal, ...]:
         placed = []
         for signal in motion:
-            allowed = ("m", "m/s^2") if signal.kind == "harmonic" else ("m/s^2",)
+            allowed: tuple[Unit, ...] = ("m", "m/s^2") if signal.kind == "harmonic" else ("m/s^2",)
             placed.append(signal.placed(allowed, "the motion of a shaker"))
         return tuple(placed)
 

@@ -152,9 +152,7 @@ def _add_legend(figure: Figure, arrays: RunArrays) -> None:
         entries += _filled(dampers, columns)
     # Legends fill column by column.
     by_column = [entry for k in range(columns) for entry in entries[k::columns]]
-    figure.legend(
-        handles=by_column, loc="outside upper left", ncols=columns, handletextpad=0.2, handlelength=1.0
-    )
+    figure.legend(handles=by_column, loc="outside upper left", ncols=columns, handletextpad=0.2, handlelength=1.0)
 
 
 def _filled(entries: list[Line2D], columns: int) -> list[Line2D]:

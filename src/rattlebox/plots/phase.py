@@ -74,9 +74,7 @@ def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column
         if half is not None:
             wall = half / x_scale
             for side in (-1, 1):
-                axes.axvspan(
-                    side * wall, side * 2 * reach, facecolor=FAINT, alpha=0.45, linewidth=0, zorder=0
-                )
+                axes.axvspan(side * wall, side * 2 * reach, facecolor=FAINT, alpha=0.45, linewidth=0, zorder=0)
                 axes.axvline(side * wall, color=INK, linewidth=pen(0.7))
         label(axes, "x", texts[0], x_unit)
         label(axes, "y", texts[1], v_unit)

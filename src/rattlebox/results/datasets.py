@@ -41,9 +41,7 @@ def columns(arrays: RunArrays, ledger: Ledger, group: Group) -> dict[str, Any]:
         "residual": lambda: ledger.residual,
         "share": lambda: np.array(list(ledger.shares.values())),
     }
-    return {
-        v.name: derived[v.name]() if v.name in derived else getattr(arrays, v.name) for v in variables(group)
-    }
+    return {v.name: derived[v.name]() if v.name in derived else getattr(arrays, v.name) for v in variables(group)}
 
 
 def labels(arrays: RunArrays) -> dict[str, Any]:
@@ -65,9 +63,7 @@ def labels(arrays: RunArrays) -> dict[str, Any]:
     }
 
 
-def dataset(
-    arrays: RunArrays, ledger: Ledger, group: Group, provenance: Provenance, case: str
-) -> xarray.Dataset:
+def dataset(arrays: RunArrays, ledger: Ledger, group: Group, provenance: Provenance, case: str) -> xarray.Dataset:
     """Labelled dataset of one group; every variable has `units` and `long_name`.
 
     Parameters

@@ -217,10 +217,7 @@ def _read(file: Any) -> RunArrays:
                 found[_LABELS[dim]] = _texts(group.variables[dim][...])
     log = file.groups["impacts"].variables
     impacts = ImpactArrays(
-        **{
-            v.name: log[v.name][...].astype(bool) if v.kind == "bool" else log[v.name][...]
-            for v in IMPACT_VARIABLES
-        }
+        **{v.name: log[v.name][...].astype(bool) if v.kind == "bool" else log[v.name][...] for v in IMPACT_VARIABLES}
     )
     counts = file.groups["counts"].variables if "counts" in file.groups else {}
     return RunArrays(

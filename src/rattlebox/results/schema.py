@@ -82,9 +82,7 @@ RUN_VARIABLES: tuple[Variable, ...] = (
 
 IMPACT_VARIABLES: tuple[Variable, ...] = (
     Variable("damper", "impacts", _IMPACT, "1", "damper of the contact, from 0", "int"),
-    Variable(
-        "contact", "impacts", _IMPACT, "1", "contact in the row: 0 trailing wall, n leading wall", "int"
-    ),
+    Variable("contact", "impacts", _IMPACT, "1", "contact in the row: 0 trailing wall, n leading wall", "int"),
     Variable("time", "impacts", _IMPACT, "s", "time of first touch"),
     Variable("approach_speed", "impacts", _IMPACT, "m/s", "approach speed at first touch"),
     Variable("restitution", "impacts", _IMPACT, "1", "coefficient of restitution used"),

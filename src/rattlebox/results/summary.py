@@ -100,9 +100,7 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         _Row("peak_contact_force", "peak contact force", "N"),
         _Row("largest_approach_speed", "largest approach speed", "m/s"),
     ]
-    peaks = dict.fromkeys(
-        key for values in all_values for key in values if key.startswith("peak_displacement[")
-    )
+    peaks = dict.fromkeys(key for values in all_values for key in values if key.startswith("peak_displacement["))
     points = [key.partition("[")[2][:-1] for key in peaks]
     for point in points[:_MOST_POINTS]:
         where = f", {point}" if len(points) > 1 else ""
