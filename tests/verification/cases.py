@@ -92,9 +92,7 @@ def shaken_cavity(orbit: shaken.TwoImpacts, cycles: float) -> Any:
     begin = 0.5 * math.pi
     phase = begin + orbit.phase
     return rb.Case(
-        structure=rb.Shaker(
-            motion=rb.Harmonic(amplitude=f"{orbit.amplitude!r} m", frequency="1 rad/s", phase=phase)
-        ),
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{orbit.amplitude!r} m", frequency="1 rad/s", phase=phase)),
         damper=rb.ImpactDamper(
             ball=ball(1.0),
             gap=1.0,
@@ -131,9 +129,7 @@ def table(orbit: shaken.TableOrbit, bounces: float, shift: Sequence[float] = (0.
     phase = orbit.phase + half
     height = orbit.gamma * math.sin(orbit.phase) + 0.5 * orbit.launch**2 - orbit.gamma * math.sin(phase)
     return rb.Case(
-        structure=rb.Shaker(
-            motion=rb.Harmonic(amplitude=f"{orbit.gamma!r} m", frequency="1 rad/s", phase=phase)
-        ),
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{orbit.gamma!r} m", frequency="1 rad/s", phase=phase)),
         damper=rb.ImpactDamper(
             ball=ball(1.0),
             gap=TABLE_GAP,

@@ -110,9 +110,7 @@ def asked() -> Iterator[Line]:
 def jackson_green() -> Iterator[Line]:
     """Yield speeds of a ball in a fixed cavity after n hits, over the critical speed."""
     strain = cases.YIELD / cases.YOUNG
-    critical = restitution_laws.jackson_green_speed(
-        cases.RADIUS, cases.MASS, cases.MODULUS, cases.YIELD, cases.POISSON
-    )
+    critical = restitution_laws.jackson_green_speed(cases.RADIUS, cases.MASS, cases.MODULUS, cases.YIELD, cases.POISSON)
     contact = rb.Tsuji(restitution=rb.JacksonGreen())
     log = simulate(cases.still_cavity(contact, 10 * critical, 0.2)).arrays.impacts
     for hits in printed.JACKSON_GREEN_HITS:
@@ -133,9 +131,7 @@ def thornton() -> Iterator[Line]:
     critical = restitution_laws.thornton_speed(cases.RADIUS, cases.MASS, cases.MODULUS, pressure)
     for ratio in printed.THORNTON:
         case = cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4)
-        yield Line(
-            "3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10
-        )
+        yield Line("3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10)
 
 
 def stable(key: tuple[float, float, float]) -> masri_caughey.Orbit:
@@ -160,9 +156,7 @@ def damper_multiplier(orbit: masri_caughey.Orbit) -> float:
 
     def end(shift: NDArray[np.float64]) -> NDArray[np.float64]:
         a = simulate(cases.impact_damper(orbit, 1.0, shift=tuple(shift))).arrays
-        return np.array(
-            [a.displacement[-1, 0], a.velocity[-1, 0], a.ball_position[-1, 0], a.ball_velocity[-1, 0]]
-        )
+        return np.array([a.displacement[-1, 0], a.velocity[-1, 0], a.ball_position[-1, 0], a.ball_velocity[-1, 0]])
 
     size = 1e-3 * orbit.clearance
     return float(max(abs(np.linalg.eigvals(-differences(end, [size] * 4)))))
@@ -179,9 +173,7 @@ def impact_damper() -> Iterator[Line]:
         yield Line("4", f"{name}: multiplier", exact, damper_multiplier(orbit), 1e-7)
         if exact < 1:
             run = simulate(cases.impact_damper(orbit, 40.0))
-            yield Line(
-                "4", f"{name}: approach speed", orbit.approach, run.arrays.impacts.approach_speed[-1], 1e-10
-            )
+            yield Line("4", f"{name}: approach speed", orbit.approach, run.arrays.impacts.approach_speed[-1], 1e-10)
 
 
 SOFT_KEY = (0.1, 0.25, 20)

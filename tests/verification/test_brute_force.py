@@ -74,9 +74,7 @@ class Flights:
         load = (
             rb.Harmonic(amplitude=float(self.force[k]), point="tip", **names)
             if self.harmonic
-            else rb.HalfSine(
-                amplitude=float(self.force[k]), duration=float(np.pi / self.omega[k]), point="tip"
-            )
+            else rb.HalfSine(amplitude=float(self.force[k]), duration=float(np.pi / self.omega[k]), point="tip")
         )
         gap = float(0.5 * self.clearance[k])
         return rb.Case(
@@ -98,7 +96,7 @@ class Flights:
             ),
             load=load,
             duration=DURATION,
-            method=rb.EventDriven(max_events=40),
+            method=rb.EventDriven(max_events=1000),
             output=rb.Output(times=[0.0]),
         )
 
@@ -133,16 +131,12 @@ def random_flights(modes: int, harmonic: bool, count: int, seed: int) -> Flights
     k = np.arange(0, count, 2)
     t = np.linspace(0, DURATION, GRID)[None, :]
     for part in np.array_split(k, max(1, k.size // 250)):
-        off = np.abs(
-            flights.margin(part, np.broadcast_to(t, (part.size, GRID)))[0] - flights.clearance[part, None] / 2
-        )
+        off = np.abs(flights.margin(part, np.broadcast_to(t, (part.size, GRID)))[0] - flights.clearance[part, None] / 2)
         peak = (off[:, 1:-1] > off[:, :-2]) & (off[:, 1:-1] >= off[:, 2:])
         first = np.where(peak.any(axis=1), peak.argmax(axis=1) + 1, GRID // 2)
         top = off[np.arange(part.size), first]
         dip = 10 ** rng.uniform(-8, -3, part.size) * rng.choice([-1, 1], part.size)
-        flights.clearance[part] = np.maximum(
-            2 * top * (1 - dip), 4 * np.abs(flights.ball[part] - start[part]) + 1e-6
-        )
+        flights.clearance[part] = np.maximum(2 * top * (1 - dip), 4 * np.abs(flights.ball[part] - start[part]) + 1e-6)
     # The ball starts inside, by a share of the clearance, in the frame of the base as in that of the cavity.
     flights.clearance[:] = np.maximum(flights.clearance, 2.2 * (np.abs(flights.ball) + np.abs(start)))
     return flights

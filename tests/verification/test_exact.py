@@ -94,9 +94,7 @@ def test_masri_caughey_repeats_mirrored(key: tuple[float, float, float]) -> None
     for orbit in masri_caughey.orbits(*key):
         end = orbit.structure(orbit.half_period)
         assert end == pytest.approx((-orbit.position, -orbit.before), rel=1e-11, abs=1e-11)
-        assert orbit.ball(orbit.half_period)[0] == pytest.approx(
-            -orbit.position - orbit.clearance / 2, rel=1e-11
-        )
+        assert orbit.ball(orbit.half_period)[0] == pytest.approx(-orbit.position - orbit.clearance / 2, rel=1e-11)
 
 
 @pytest.mark.parametrize("e", printed.SLOW_MANIFOLD_THRESHOLD)

@@ -143,9 +143,7 @@ def test_other_process_gives_the_same_bits() -> None:
         "import sys, importlib; sys.path.insert(0, sys.argv[1]);"
         "print(importlib.import_module('verification.test_symmetries').fingerprint())"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == fingerprint()
 
 

@@ -22,9 +22,7 @@ class StopOrbit:
     def state(self, t: float) -> tuple[float, float]:
         """Position and velocity at 0 <= t <= 2 pi / omega."""
         steady = self._steady(0.0)
-        free = transition(self.zeta, t) @ np.array(
-            [self.stop - steady[0], -self.restitution * self.speed - steady[1]]
-        )
+        free = transition(self.zeta, t) @ np.array([self.stop - steady[0], -self.restitution * self.speed - steady[1]])
         steady = self._steady(t)
         return float(free[0] + steady[0]), float(free[1] + steady[1])
 

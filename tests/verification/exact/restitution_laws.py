@@ -20,9 +20,7 @@ def jackson_green_after(ratio: float, hits: int, yield_strain: float) -> float:
     return ratio
 
 
-def jackson_green_speed(
-    radius: float, mass: float, modulus: float, yield_stress: float, poisson: float
-) -> float:
+def jackson_green_speed(radius: float, mass: float, modulus: float, yield_stress: float, poisson: float) -> float:
     """Critical speed V_c [m/s] from R*, m*, E*, S_y and the Poisson ratio of the body that yields."""
     c = 1.295 * math.exp(0.736 * poisson)
     overlap = (math.pi * c * yield_stress / (2 * modulus)) ** 2 * radius
@@ -44,8 +42,4 @@ def thornton(ratio: float) -> float:
 
 def thornton_speed(radius: float, mass: float, modulus: float, yield_pressure: float) -> float:
     """Yield speed V_y [m/s] from R*, m*, E* and the contact pressure at yield."""
-    return (
-        (math.pi / (2 * modulus)) ** 2
-        * math.sqrt(8 * math.pi * radius**3 / (15 * mass))
-        * yield_pressure**2.5
-    )
+    return (math.pi / (2 * modulus)) ** 2 * math.sqrt(8 * math.pi * radius**3 / (15 * mass)) * yield_pressure**2.5

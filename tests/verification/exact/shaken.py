@@ -47,9 +47,7 @@ def two_impacts(restitution: float, amplitude: float) -> TwoImpacts:
 
 def collide_phase(ratio: float) -> float:
     """Phase after take-off at which a ball that sticks hits the other wall; ratio = A / clearance."""
-    return float(
-        brentq(lambda tau: tau - math.sin(tau) - 1 / ratio, 1e-9, 1 / ratio + 1, xtol=1e-15, rtol=1e-15)
-    )
+    return float(brentq(lambda tau: tau - math.sin(tau) - 1 / ratio, 1e-9, 1 / ratio + 1, xtol=1e-15, rtol=1e-15))
 
 
 def collect_and_collide(ratio: float) -> float:
