@@ -1,0 +1,270 @@
+"""Bad input: each wrong description is refused with one short message: where, what, what to try."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+GOOD = """\
+duration = "5 s"
+
+[structure]
+kind = "sdof"
+mass = "20 kg"
+stiffness = "80 kN/m"
+damping = "25.3 N s/m"
+
+[load]
+kind = "half_sine"
+amplitude = "5 kN"
+duration = "1 ms"
+
+[damper]
+gap = "0.4 mm"
+ball = { radius = "33.17 mm", material = "steel" }
+contact = { kind = "tsuji", restitution = 0.9 }
+"""
+
+SCREEN = 24
+"""Lines of a small terminal."""
+
+
+def refused(text: str) -> str:
+    """Return what is said of a case file, and check that it is short."""
+    with pytest.raises(rb.CaseError) as caught:
+        rb.Case.from_toml(text, source="case.toml")
+    message = str(caught.value)
+    assert message.startswith("case.toml: ")
+    assert len(message.splitlines()) <= SCREEN
+    return message
+
+
+def changed(old: str, new: str) -> str:
+    """Return the good case with one thing changed."""
+    assert GOOD.count(old) == 1
+    return GOOD.replace(old, new)
+
+
+def test_the_good_case_is_accepted() -> None:
+    """What the other tests spoil is right before they spoil it."""
+    assert rb.Case.from_toml(GOOD).structure.mass == 20.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('mass = "20 kg"', 'mass = "-20 kg"', ["structure.mass", "greater than zero"]),
+        ('mass = "20 kg"', "mass = 0", ["structure.mass", "greater than zero"]),
+        ('mass = "20 kg"', "", ["structure.mass", "needed"]),
+        ('stiffness = "80 kN/m"', 'stiffness = "-1 N/m"', ["structure.stiffness", "negative"]),
+        ('amplitude = "5 kN"', 'amplitude = "5 kg"', ["amplitude", "'5 kg'", "force", "not a mass", "5 kN"]),
+        ('amplitude = "5 kN"', 'amplitude = "5 mm"', ["needs a force (N)", "not a displacement"]),
+        ('amplitude = "5 kN"', 'amplitude = "5 kX"', ["amplitude", "unknown unit 'kX'"]),
+        ('gap = "0.4 mm"', 'gap = "0.4 mmm"', ["gap", "unknown unit 'mmm'", "did you mean 'mm'?"]),
+        ('gap = "0.4 mm"', 'gap = "-0.4 mm"', ["gap", "negative"]),
+        ('gap = "0.4 mm"', 'gap = "five mm"', ["gap", "length"]),
+        ('gap = "0.4 mm"', "gap = nan", ["gap", "finite"]),
+        ('duration = "5 s"', "duration = inf", ["duration", "finite"]),
+        ('duration = "5 s"', "duration = true", ["duration", "time"]),
+        ('duration = "5 s"', "duration = 1979-05-27", ["duration", "time"]),
+        ('duration = "5 s"', 'duration = "0 s"', ["duration", "greater than zero"]),
+        (
+            'stiffness = "80 kN/m"',
+            'stifness = "80 kN/m"',
+            ["structure.stifness", "did you mean 'stiffness'?"],
+        ),
+        ('kind = "sdof"', 'kind = "sdov"', ["structure", "did you mean 'sdof'?"]),
+        ('material = "steel"', 'material = "stel"', ["material", "did you mean 'steel'?"]),
+        ("restitution = 0.9", "restitution = 1.2", ["restitution", "1.2", "between 0", "and 1"]),
+        ("restitution = 0.9", "restitution = -0.1", ["restitution", "between 0"]),
+        ("restitution = 0.9", "restitution = 0.0", ["restitution", "Newton"]),
+        ("restitution = 0.9", "alpha = nan", ["alpha", "finite"]),
+        ("restitution = 0.9", "restitution = 0.9, alpha = 0.1", ["restitution", "alpha", "not both"]),
+        (
+            'gap = "0.4 mm"',
+            'cavity_length = "66 mm"',
+            ["cavity_length is 0.066 m", "balls alone are 0.06634 m"],
+        ),
+        ('gap = "0.4 mm"', 'gap = "70 mm"\ncavity_length = "67 mm"', ["gap", "cavity_length"]),
+        ('gap = "0.4 mm"', 'gap = "0.4 mm"\nstart = 1.5', ["inside a wall", "start"]),
+        ('gap = "0.4 mm"', 'gap = "0.4 mm"\nstart = "0.5 mm"', ["inside a wall", "start"]),
+        ('gap = "0.4 mm"', 'gap = "0.4 mm"\nvelocity = nan', ["velocity", "finite"]),
+        ('amplitude = "5 kN"', 'amplitude = "5 kN"\npoint = "tip"', ["no point 'tip'", "mass"]),
+        ('duration = "5 s"', 'duration = "5 s"\nseed = 1.5', ["seed", "integer"]),
+        ('duration = "5 s"', 'duration = "5 s', ["not TOML", "line 1"]),
+    ],
+)
+def test_one_wrong_thing_is_named(old: str, new: str, said: list[str]) -> None:
+    """The message of one mistake names its place and what is allowed."""
+    message = refused(changed(old, new))
+    for words in said:
+        assert words in message
+
+
+def test_overlapping_balls() -> None:
+    """Balls that start inside each other are refused with their numbers and the size of the overlap."""
+    with pytest.raises(rb.CaseError, match=r"balls 2 and 3 overlap by 0\.2 mm"):
+        rb.ImpactDamper(
+            balls=[rb.Sphere(radius="5 mm", material="steel")] * 3,
+            gap="1 mm",
+            start=[-0.5, 0.5, 0.3],
+            contact=rb.Tsuji(restitution=0.9),
+        )
+
+
+def test_positions_and_balls_must_be_as_many() -> None:
+    """Two positions for three balls are refused."""
+    with pytest.raises(rb.CaseError, match="2 positions, but there are 3 balls"):
+        rb.ImpactDamper(
+            balls=[rb.Sphere(radius="5 mm", material="steel")] * 3,
+            gap="1 mm",
+            start=[0.0, 0.3],
+            contact=rb.Tsuji(restitution=0.9),
+        )
+
+
+@pytest.mark.parametrize("poisson", [0.6, -1.0, math.nan])
+def test_poisson_ratio_of_no_solid(poisson: float) -> None:
+    """A Poisson ratio outside (-1, 0.5] is refused."""
+    with pytest.raises(rb.CaseError, match="poisson"):
+        rb.Material(name="odd", density=1000.0, young=1e9, poisson=poisson)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_record_with_a_number_that_is_none(value: float) -> None:
+    """A record that holds NaN or an infinity is refused with the number's place."""
+    with pytest.raises(rb.CaseError, match="number 2 of 3"):
+        rb.Record(times=[0.0, 1.0, 2.0], values=[0.0, value, 0.0])
+
+
+@pytest.mark.parametrize("times", [[0.0, 1.0, 1.0], [0.0, 2.0, 1.0]])
+def test_record_with_times_that_do_not_increase(times: list[float]) -> None:
+    """A record whose times stand still or go back is refused with the point."""
+    with pytest.raises(rb.CaseError, match="point 3"):
+        rb.Record(times=times, values=[0.0, 1.0, 2.0])
+
+
+def test_record_that_ends_before_the_run() -> None:
+    """A record shorter than the run is refused with both times."""
+    with pytest.raises(rb.CaseError, match=r"0 s to 1 s, the run 0 to 2 s"):
+        rb.Case(
+            structure=rb.SDOF(mass=1.0, stiffness=1.0),
+            load=rb.Record(times=[0.0, 1.0], values=[0.0, 1.0], unit="N"),
+            duration=2.0,
+        )
+
+
+@pytest.mark.parametrize(
+    ("rows", "line"),
+    [
+        ("time,force\n0,0\n1,soft\n2,0\n", 3),
+        ("0,0\n1,nan\n", 2),
+        ("0,0\n\n1,2,3\n", 3),
+        ("# recorded\n0;0\n1;1\n2;-\n", 4),
+    ],
+)
+def test_csv_with_something_else_than_numbers(tmp_path: Path, rows: str, line: int) -> None:
+    """Text, NaN or a third column in a CSV is refused with file and line."""
+    file = tmp_path / "push.csv"
+    file.write_text(rows, encoding="utf-8")
+    with pytest.raises(rb.CaseError, match=rf"push\.csv, line {line}:"):
+        rb.Record.from_file(file, unit="N")
+
+
+def test_csv_named_in_a_case_file(tmp_path: Path) -> None:
+    """A bad CSV that a case file names is told with both files."""
+    (tmp_path / "push.csv").write_text("0,0\n6,high\n", encoding="utf-8")
+    load = 'kind = "record"\nunit = "N"\nfile = "push.csv"\n'
+    case = tmp_path / "case.toml"
+    case.write_text(changed('kind = "half_sine"\namplitude = "5 kN"\nduration = "1 ms"\n', load), encoding="utf-8")
+    with pytest.raises(rb.CaseError, match=r"(?s)case\.toml: .*push\.csv, line 2:"):
+        rb.Case.from_file(case)
+
+
+@pytest.mark.parametrize("name", ["none.csv", "none.npy", "none.mat"])
+def test_record_file_that_is_not_there(tmp_path: Path, name: str) -> None:
+    """A record file that does not exist is refused by its name."""
+    with pytest.raises(rb.CaseError, match=name):
+        rb.Record.from_file(tmp_path / name, unit="N")
+
+
+@pytest.mark.parametrize("name", ["noise.npy", "noise.mat"])
+def test_record_file_of_rubbish(tmp_path: Path, name: str) -> None:
+    """Bytes that are no NPY or MAT file are refused by name."""
+    (tmp_path / name).write_bytes(bytes(range(256)))
+    with pytest.raises(rb.CaseError, match=name):
+        rb.Record.from_file(tmp_path / name, unit="N")
+
+
+def test_case_file_that_cannot_be_read(tmp_path: Path) -> None:
+    """A case file that is missing, or is not text, is refused by name."""
+    with pytest.raises(rb.CaseError, match=r"none\.toml"):
+        rb.Case.from_file(tmp_path / "none.toml")
+    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(rb.CaseError, match=r"bytes\.toml"):
+        rb.Case.from_file(tmp_path / "bytes.toml")
+
+
+@pytest.mark.parametrize("law", [rb.JacksonGreen(), rb.ThorntonRestitution(), rb.Johnson()])
+def test_elasto_plastic_law_of_what_does_not_yield(law: Any) -> None:
+    """A law that needs a yield stress is refused for glass against glass."""
+    with pytest.raises(rb.CaseError, match="yield stress"):
+        rb.Case(
+            structure=rb.Fixed(),
+            damper=rb.ImpactDamper(
+                ball=rb.Sphere(radius="5 mm", material="glass"), gap="1 mm", contact=rb.Tsuji(restitution=law)
+            ),
+            duration=1.0,
+        )
+
+
+def test_damping_that_is_not_proportional() -> None:
+    """Damping that couples two modes is refused with the size of the coupling."""
+    with pytest.raises(rb.CaseError, match=r"not proportional: between modes 1 and 2 .* = 1\b"):
+        rb.Matrices(M=np.eye(2), C=[[1.0, 0.0], [0.0, 0.0]], K=[[2.0, -1.0], [-1.0, 2.0]], points={"end": 1})
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"M": [[1.0, 0.0], [0.0, 0.0]]}, "M is not positive definite"),
+        ({"K": [[1.0, 0.0], [0.0, -1.0]]}, "K is not positive semidefinite"),
+        ({"K": [[1.0, 1.0], [0.0, 1.0]]}, "K is not symmetric"),
+        ({"points": {"end": 2}}, "no degree of freedom"),
+        ({"C": [[0.0]]}, "C has shape"),
+    ],
+)
+def test_matrices_of_no_structure(change: dict[str, Any], said: str) -> None:
+    """Matrices that describe no stable structure are refused with the matrix."""
+    zero = [[0.0, 0.0], [0.0, 0.0]]
+    good = {"M": np.eye(2), "C": zero, "K": [[2.0, -1.0], [-1.0, 2.0]], "points": {"end": 1}}
+    with pytest.raises(rb.CaseError, match=said):
+        rb.Matrices(**(good | change))
+
+
+def test_motion_that_jumps() -> None:
+    """A pulse as the displacement of a shaker is refused."""
+    with pytest.raises(rb.CaseError, match="acceleration"):
+        rb.Shaker(motion=rb.HalfSine(amplitude="1 mm", duration="1 ms"))
+
+
+def test_load_on_what_cannot_move() -> None:
+    """A force on a fixed cavity is refused."""
+    with pytest.raises(rb.CaseError, match="cannot move a fixed structure"):
+        rb.Case(structure=rb.Fixed(), load=rb.HalfSine(amplitude="1 N", duration="1 ms"), duration=1.0)
+
+
+def test_base_motion_of_modes_without_participation() -> None:
+    """Base motion of a modal structure without participation is refused."""
+    with pytest.raises(rb.CaseError, match="participation"):
+        rb.Case(
+            structure=rb.Modal(frequencies=[1.0], damping_ratios=[0.0], shapes={"tip": [1.0]}),
+            base=rb.Harmonic(amplitude="1 m/s^2", frequency="1 Hz"),
+            duration=1.0,
+        )
