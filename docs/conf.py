@@ -1,0 +1,11 @@
+project = "Rattlebox"
+author = "Rattlebox developers"
+release = "0.1.0"
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
+myst_enable_extensions = ["dollarmath"]
+exclude_patterns = ["_build", "verification_table.md"]
+html_theme = "furo"
+html_static_path = ["_static"]
+html_title = "Rattlebox"
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"
