@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 import rattlebox as rb
@@ -59,6 +60,17 @@ def test_ledger_of_a_row_of_balls_closes() -> None:
     assert len(run.arrays.impacts) > 100
     assert set(run.arrays.impacts.contact) == set(range(6))
     assert run.closure <= 1e-8
+
+
+def test_row_of_balls_stays_in_order() -> None:
+    """Balls of a crowded row never pass through each other or a wall: gaps stay above the largest overlap logged."""
+    run = measures.simulate(cases.five_balls())
+    a = run.arrays
+    place = a.relative_position - a.ball_centre
+    half = 0.5 * a.clearance[0]
+    gaps = np.hstack([place[:, :1] + half, np.diff(place, axis=1), half - place[:, -1:]])
+    assert gaps.min() >= -a.impacts.peak_overlap.max() * (1 + 1e-9)
+    assert abs(a.contact_energy).max() < a.load_work.max()
 
 
 @pytest.mark.parametrize("method", ["newton", "event_driven"])
