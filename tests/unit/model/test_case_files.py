@@ -1,0 +1,123 @@
+"""Case files: what is written reads back equal; the examples and the schema hold."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+EXAMPLES = sorted((Path(__file__).parents[3] / "examples").glob("*.toml"))
+BALL = rb.Sphere(radius="5 mm", material="steel")
+MINE = rb.Material(name="mine", density=1234.5, young=1e9, poisson=0.1, yield_stress=2e7, source="measured")
+CASES = {
+    "free body on a moving base": rb.Case(
+        structure=rb.SDOF(mass=1.0, stiffness=0.0, velocity=0.1),
+        base=rb.HalfSine(amplitude="10 g_0", duration="10 ms"),
+        duration=1.0,
+        output=rb.Output(times=[0.1, 0.3]),
+    ),
+    "two loads": rb.Case(
+        structure=rb.SDOF(mass=1.0, stiffness=3.0, damping_ratio=1.5),
+        load=[rb.chirp("1 N", 1.0, 5.0, 1.0, rate=50), rb.Harmonic(amplitude=1 / 3, frequency="2 rad/s", stop=0.5)],
+        duration=1.0,
+        output=rb.Output(rate="1 kHz"),
+    ),
+    "two balls in a fixed cavity": rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ImpactDamper(
+            balls=[rb.Sphere(diameter="1 mm", material=MINE), rb.Sphere(radius="1 mm", material="glass", mass=0.1)],
+            cavity_length="4 mm",
+            start=[-0.5, 0.2],
+            velocity=[0.1, -0.2],
+            wall="rigid",
+            gravity=-9.81,
+            contact=rb.Linear(contact_time="1 ms", restitution=rb.Tabulated(speeds=[0.1, 1.0], values=[0.9, 0.5])),
+            ball_contact=rb.Thornton(yield_pressure="1 GPa"),
+        ),
+        duration=1.0,
+    ),
+    "shaker": rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="30 Hz", phase="90 deg")),
+        damper=rb.ImpactDamper(ball=BALL, gap="1 mm", start="0.2 mm", contact=rb.Tsuji(restitution=rb.Johnson())),
+        duration=1.0,
+        method=rb.Newton(restitution=0.0),
+    ),
+    "modes": rb.Case(
+        structure=rb.Modal(frequencies=["0 Hz", "1 kHz"], damping_ratios=[0.0, 0.1], shapes={"a": [1, 2], "b": [0, 1]}),
+        duration=0.1,
+        method=rb.TwoStep(inner="dopri5"),
+    ),
+    "matrices": rb.Case(
+        structure=rb.Matrices(
+            M=np.diag([1.0, 2.0]), C=np.zeros((2, 2)), K=[[2, -1], [-1, 2]], points={"end": 1, "mean": [0.5, 0.5]}
+        ),
+        duration=1.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_written_case_reads_back_equal(name: str, tmp_path: Path) -> None:
+    """A case equals itself after a trip through a file, to the last bit."""
+    file = tmp_path / "case.toml"
+    CASES[name].to_file(file)
+    back = rb.Case.from_file(file)
+    assert back.to_toml() == CASES[name].to_toml()
+    assert back == CASES[name]
+
+
+@pytest.mark.parametrize("left", CASES)
+@pytest.mark.parametrize("right", CASES)
+def test_cases_are_equal_to_themselves_only(left: str, right: str) -> None:
+    """Cases compare by what they describe, also after their modes have been asked for."""
+    assert (CASES[left] == CASES[right]) is (left == right)
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_read_and_read_back(path: Path) -> None:
+    """Each example file is a case that survives a trip through a file."""
+    case = rb.Case.from_file(path)
+    assert case.name
+    assert rb.Case.from_toml(case.to_toml()).to_toml() == case.to_toml()
+
+
+def test_two_start_positions_may_be_lengths() -> None:
+    """Two balls may start at lengths, or at a fraction and a length, from Python and from a file."""
+    for start in (["-0.5 mm", "0.2 mm"], [-0.5, "0.2 mm"]):
+        damper = rb.ImpactDamper(balls=[BALL, BALL], gap="1 mm", start=start, contact=rb.Tsuji(restitution=0.9))
+        np.testing.assert_allclose(damper.positions0, [-5e-4, 2e-4], rtol=1e-14)
+
+
+def test_materials_of_a_case_file() -> None:
+    """A material of the file's own is used by name for balls and walls."""
+    case = rb.Case.from_toml(
+        'duration = "1 s"\nstructure = { kind = "fixed" }\n'
+        '[damper]\ngap = "1 mm"\nwall = "mine"\nball = { radius = "1 mm", material = "mine" }\n'
+        'contact = { kind = "tsuji", restitution = 0.9 }\n'
+        '[materials.mine]\ndensity = "2 g/cm^3"\nyoung = "3 GPa"\npoisson = 0.4\n'
+    )
+    assert case.dampers[0].balls[0].material.density == 2000.0
+    assert isinstance(case.dampers[0].wall, rb.Material)
+    assert case.dampers[0].wall.young == 3e9
+
+
+def test_one_and_several_may_be_written_alike() -> None:
+    """A load alone and a list of that load describe the same case."""
+    load = rb.HalfSine(amplitude="1 N", duration="1 ms")
+    structure = rb.SDOF(mass=1.0, stiffness=1.0)
+    one = rb.Case(structure=structure, load=load, duration=1.0)
+    assert one == rb.Case(structure=structure, loads=[load], duration=1.0)
+
+
+def test_schema_names_every_field_and_its_units() -> None:
+    """The JSON Schema is JSON, lists the kinds, and tells the unit of a quantity."""
+    schema = json.loads(json.dumps(rb.Case.json_schema()))
+    mass = schema["$defs"]["SDOF"]["properties"]["mass"]
+    assert {option["type"] for option in mass["anyOf"]} == {"number", "string"}
+    assert "kg" in mass["description"]
+    assert {"damper", "load", "base", "structure", "materials"} <= set(schema["properties"])
+    assert {"SDOF", "Modal", "Matrices", "Fixed", "Shaker"} <= set(schema["$defs"])

@@ -1,0 +1,207 @@
+"""Units, structures, signals, dampers and materials."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pint
+import pytest
+
+import rattlebox as rb
+
+BALL = rb.Sphere(radius="5 mm", material="steel")
+
+
+@pytest.mark.parametrize(
+    "mass", [20.0, 20, "20 kg", "20000 g", " 2e1 kg ", (20, "kg"), np.float64(20), pint.UnitRegistry()("20 kg")]
+)
+def test_ways_to_write_a_quantity(mass: object) -> None:
+    """Numbers, texts, pairs and pint quantities of the same mass are the same mass."""
+    assert rb.SDOF(mass=mass, stiffness=0.0).mass == 20.0
+
+
+def test_units_that_only_pint_knows() -> None:
+    """Inches, pounds of force and revolutions per minute are converted."""
+    assert rb.Sphere(diameter="1 inch", material="steel").radius == pytest.approx(0.0127, rel=1e-14)
+    assert rb.HalfSine(amplitude="1 lbf", duration=1.0).amplitude == pytest.approx(4.4482216152605, rel=1e-14)
+    assert rb.Harmonic(amplitude=1.0, frequency="120 rpm").frequency == pytest.approx(2.0, rel=1e-14)
+    assert rb.Harmonic(amplitude=1.0, frequency="2 rad/s").frequency == pytest.approx(1 / math.pi, rel=1e-14)
+
+
+def test_import_leaves_the_heavy_parts_alone() -> None:
+    """Importing rattlebox and building a case in plain and common units loads neither pint, xarray nor matplotlib."""
+    program = (
+        "import sys, rattlebox as rb; rb.SDOF(mass='20 kg', stiffness='80 kN/m');"
+        "print([m for m in ('pint', 'xarray', 'matplotlib', 'scipy', 'h5netcdf', 'tomlkit') if m in sys.modules])"
+    )
+    shown = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert shown.stdout.strip() == "[]"
+
+
+def test_modes_of_one_degree_of_freedom() -> None:
+    """One degree of freedom becomes one mode of its own frequency, decay, mass and start."""
+    modes = rb.SDOF(mass=4.0, stiffness=36.0, damping=2.0, displacement=0.5, velocity=-1.0).modes()
+    assert modes.stiffness == pytest.approx([9.0])
+    assert modes.decay == pytest.approx([0.25])
+    assert modes.effective_mass("mass") == pytest.approx(4.0)
+    assert modes.participation == pytest.approx([2.0])
+    assert (modes.q0 * modes.shape(None), modes.p0 * modes.shape(None)) == (pytest.approx([0.5]), pytest.approx([-1.0]))
+
+
+def test_damping_ratio_and_coefficient_agree() -> None:
+    """A damping ratio decays as its coefficient 2 zeta sqrt(K M) does."""
+    ratio = rb.SDOF(mass=4.0, stiffness=36.0, damping_ratio=0.1).modes()
+    coefficient = rb.SDOF(mass=4.0, stiffness=36.0, damping=2.4).modes()
+    assert ratio.decay == pytest.approx(coefficient.decay, rel=1e-14)
+
+
+def test_matrices_reduce_to_modes() -> None:
+    """A free chain of three masses with Rayleigh damping: one rigid-body mode, exact frequencies, decay and inertia."""
+    K = 100.0 * np.array([[1, -1, 0], [-1, 2, -1], [0, -1, 1]])
+    M = 2.0 * np.eye(3)
+    modes = rb.Matrices(M=M, C=0.1 * M + 0.002 * K, K=K, points={"end": 2, "mean": [1 / 3] * 3}).modes()
+    np.testing.assert_allclose(modes.stiffness, [0.0, 50.0, 150.0], atol=1e-12)
+    np.testing.assert_allclose(modes.decay, 0.05 + 0.001 * modes.stiffness, rtol=1e-12)
+    assert modes.effective_mass("end") == pytest.approx(2.0)
+    assert modes.participation is not None
+    assert np.sum(modes.participation**2) == pytest.approx(6.0)
+    np.testing.assert_allclose(np.abs(modes.shape("mean")), [1 / math.sqrt(6), 0, 0], atol=1e-12)
+
+
+def test_damping_of_a_repeated_frequency() -> None:
+    """Two equal frequencies whose damping is coupled only among themselves count as proportional."""
+    modes = rb.Matrices(
+        M=np.eye(2), C=[[0.3, 0.1], [0.1, 0.3]], K=4.0 * np.eye(2), points={"first": 0, "second": 1}
+    ).modes()
+    np.testing.assert_allclose(np.sort(modes.decay), [0.1, 0.2], rtol=1e-12)
+
+
+def test_start_of_matrices() -> None:
+    """Initial displacements and velocities of the degrees of freedom come back from the modes."""
+    modes = rb.Matrices(
+        M=np.diag([1.0, 3.0]),
+        C=np.zeros((2, 2)),
+        K=[[2.0, -1.0], [-1.0, 1.0]],
+        points={"a": 0, "b": 1},
+        displacement=[0.1, -0.2],
+        velocity=[3.0, 4.0],
+    ).modes()
+    assert [modes.shape(p) @ modes.q0 for p in "ab"] == pytest.approx([0.1, -0.2])
+    assert [modes.shape(p) @ modes.p0 for p in "ab"] == pytest.approx([3.0, 4.0])
+
+
+def test_motion_of_a_shaker_becomes_acceleration() -> None:
+    """A harmonic displacement accelerates the base by -omega^2 times itself."""
+    motion = rb.Harmonic(amplitude="2 mm", frequency="10 Hz", phase=0.3)
+    case = rb.Case(structure=rb.Shaker(motion=motion), duration=1.0)
+    (acceleration,) = case.base_acceleration()
+    t = np.linspace(0.0, 0.5, 7)
+    assert acceleration.unit == "m/s^2"
+    np.testing.assert_allclose(acceleration.evaluate(t), -((20 * math.pi) ** 2) * motion.evaluate(t), rtol=1e-13)
+
+
+def test_values_of_signals() -> None:
+    """Pulse, harmonic and record have their values inside their time and none outside."""
+    t = np.array([-0.5, 0.0, 0.5, 1.0, 2.0])
+    np.testing.assert_allclose(rb.HalfSine(amplitude=3.0, duration=1.0).evaluate(t), [0, 0, 3, 0, 0], atol=1e-15)
+    np.testing.assert_allclose(
+        rb.Harmonic(amplitude=2.0, frequency=0.25, phase="90 deg", stop=2.0).evaluate(t),
+        [0, 2, math.sqrt(2), 0, 0],
+        atol=1e-15,
+    )
+    np.testing.assert_allclose(
+        rb.Record(times=[0, 1, 2], values=[0, 1, 5], scale=2.0).evaluate(t), [0, 0, 1, 2, 10], atol=1e-15
+    )
+
+
+@pytest.mark.parametrize("method", ["linear", "logarithmic"])
+def test_chirp_sweeps_its_frequencies(method: str) -> None:
+    """The periods at both ends of a chirp are those of its first and last frequency."""
+    record = rb.chirp("2 N", 2.0, 10.0, 20.0, method=method)
+    t, x = np.array(record.times), np.array(record.values)
+    rises = t[1:][(x[:-1] < 0) & (x[1:] >= 0)]
+    assert record.unit == "N"
+    assert np.abs(x).max() == pytest.approx(2.0, rel=1e-3)
+    assert rises[0] == pytest.approx(0.5, rel=0.05)
+    assert 1 / (rises[-1] - rises[-2]) == pytest.approx(10.0, rel=0.02)
+
+
+def test_random_record_has_its_density() -> None:
+    """The mean square of a random record is the integral of its density, it covers the run, and its seed fixes it."""
+    make = [rb.random_record([(10.0, 2e-3), (100.0, 2e-3)], 100.0, 500.0, seed=s) for s in (1, 1, 2)]
+    values = np.array(make[0].values)
+    assert make[0] == make[1]
+    assert make[0].values != make[2].values
+    assert make[0].times[-1] == 100.0
+    assert np.mean(values**2) == pytest.approx(2e-3 * 90.0, rel=0.05)
+
+
+@pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.mat"])
+def test_record_files(tmp_path: Path, name: str) -> None:
+    """A record read from CSV, NPY or MAT holds the numbers that were written."""
+    from scipy.io import savemat
+
+    table = np.array([[0.0, 1.0], [0.5, 1 / 3], [2.0, -4.0]])
+    path = tmp_path / name
+    if path.suffix == ".csv":
+        path.write_text("time;force\n" + "".join(f"{a!r};{b!r}\n" for a, b in table.tolist()), encoding="utf-8")
+    elif path.suffix == ".npy":
+        np.save(path, table)
+    else:
+        savemat(path, {"time": table[:, 0], "value": table[:, 1]})
+    record = rb.Record.from_file(path, unit="N", scale=2.0)
+    assert (record.times, record.values) == (tuple(table[:, 0]), tuple(table[:, 1]))
+    np.testing.assert_allclose(record.evaluate([0.5]), 2 / 3, rtol=1e-15)
+
+
+def test_row_of_balls() -> None:
+    """Centres of a packed row touch each other and are centred; clearance and masses follow."""
+    balls = [rb.Sphere(radius=r, material="steel") for r in (1e-3, 2e-3, 3e-3)]
+    damper = rb.ImpactDamper(balls=balls, cavity_length="14 mm", start=[-1, 0, 0.5], contact=rb.Tsuji(restitution=0.9))
+    np.testing.assert_allclose(damper.centres, [-5e-3, -2e-3, 3e-3], rtol=1e-12)
+    assert damper.clearance == pytest.approx(2e-3, rel=1e-12)
+    np.testing.assert_allclose(damper.positions0, [-1e-3, 0.0, 5e-4], rtol=1e-11)
+    np.testing.assert_allclose(damper.masses, 7850 * 4 / 3 * math.pi * np.array([1, 8, 27]) * 1e-9, rtol=1e-12)
+
+
+def test_pairs_of_a_row() -> None:
+    """A row has one contact more than balls, in order, with the effective mass and radius of each."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=2.0, stiffness=1.0),
+        damper=rb.ImpactDamper(
+            balls=[BALL, rb.Sphere(radius="10 mm", material="brass", mass=1.0)],
+            gap="1 mm",
+            wall="rigid",
+            contact=rb.Tsuji(restitution=0.9),
+        ),
+        duration=1.0,
+    )
+    left, middle, right = rb.contact_pairs(case, 0)
+    small = case.dampers[0].masses[0]
+    assert (left.is_wall, middle.is_wall, right.is_wall) == (True, False, True)
+    assert right.mass == pytest.approx(2 / 3)
+    assert middle.mass == pytest.approx(small / (1 + small))
+    assert middle.radius == pytest.approx(1 / 300)
+    assert left.modulus == pytest.approx(200e9 / 0.91)
+
+
+def test_every_material_is_physical_and_has_a_source() -> None:
+    """The library holds the promised materials, each with a source, brittle ones without a yield stress."""
+    library = rb.materials()
+    assert {"steel", "stainless_steel", "tungsten_carbide", "lead", "brass", "aluminium"} <= set(library)
+    assert {"glass", "alumina", "pmma", "nylon"} <= set(library)
+    assert all(material.source for material in library.values())
+    brittle = {name for name, material in library.items() if material.yield_stress is None}
+    assert brittle == {"tungsten_carbide", "glass", "alumina"}
+    steel = library["steel"]
+    assert (steel.young, steel.poisson, steel.density, steel.yield_stress) == (200e9, 0.3, 7850.0, 1030e6)
+
+
+def test_parts_do_not_change() -> None:
+    """A part of a case cannot be assigned to."""
+    with pytest.raises(ValueError, match="frozen"):
+        BALL.radius = 1.0  # type: ignore[misc]
