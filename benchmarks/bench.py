@@ -19,7 +19,6 @@ from pathlib import Path
 import numpy as np
 
 import rattlebox as rb
-from rattlebox.cli.demo import demo_case
 from rattlebox.engines.core import choice, core
 from rattlebox.engines.pack import pack
 
@@ -38,8 +37,19 @@ def errors(times: np.ndarray, z_at_1: float | None) -> tuple[float, float]:
 
 def ours(name: str, method: object, repeat: int) -> dict[str, object]:
     """Time one method of ours inside the core."""
-    case = demo_case(rb.Tsuji(alpha=0.006313, ending="zero_overlap")).model_copy(
-        update={"method": method, "output": rb.Output(times=[1.0])}
+    case = rb.Case(
+        structure=rb.SDOF(mass=20.0, stiffness=8e4, damping=25.3),
+        dampers=(
+            rb.ImpactDamper(
+                balls=(rb.Sphere(radius=0.03317, material="steel", mass=1.2),),
+                gap=4e-4,
+                contact=rb.Tsuji(alpha=0.006313, ending="zero_overlap"),
+            ),
+        ),
+        loads=(rb.HalfSine(amplitude=5000.0, duration=1e-3),),
+        duration=5.0,
+        method=method,
+        output=rb.Output(times=[1.0]),
     )
     packed = pack(case)
     seconds = min(core().simulate([packed], 1)[0]["seconds"] for _ in range(repeat))

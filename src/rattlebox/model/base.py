@@ -17,7 +17,7 @@ else:
 class _Explaining(_ModelType):
     """Makes wrong values raise CaseError at construction, and leaves validation inside a larger part to pydantic."""
 
-    def __call__(cls, *args: Any, **values: Any) -> Any:
+    def __call__(cls, *args: Any, **values: Any) -> Any:  # noqa: N805
         try:
             return super().__call__(*args, **values)
         except ValidationError as error:

@@ -95,6 +95,15 @@ class Case(Part):
             if damper.label(index) in names:
                 raise Hint(f"two dampers are called {damper.label(index)!r}", "different names")
             names.add(damper.label(index))
+            cavity = float(modes.shape(damper.point) @ modes.q0)
+            half = 0.5 * damper.clearance
+            for number, place in enumerate(damper.positions0, start=1):
+                depth = abs(place - cavity) - half
+                if depth > 4e-16 * (half + abs(cavity)):
+                    raise Hint(
+                        f"ball {number} of {damper.label(index)} would start {1e3 * depth:.4g} mm inside a wall",
+                        "start between -1 and 1, or where the cavity is",
+                    )
             for place, pair in enumerate(contact_pairs(self, index)):
                 between = 0 < place < len(damper.balls)
                 law = damper.ball_contact if between and damper.ball_contact is not None else damper.contact
@@ -172,7 +181,7 @@ class Case(Part):
         """
         try:
             values: Any = tomllib.loads(content)
-        except (tomllib.TOMLDecodeError, RecursionError) as error:
+        except (ValueError, RecursionError) as error:  # ValueError: also an integer of thousands of digits
             raise CaseError(f"{source}: not TOML: {error}") from None
         try:
             values = _insert_materials(values)

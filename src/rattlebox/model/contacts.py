@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from .base import Part
 from .errors import Hint
 from .pairs import Pair
-from .restitutions import AnyRestitution, Constant, yield_pressure
+from .restitutions import AnyRestitution, Constant, Restitution, ThorntonRestitution, yield_pressure
 from .units import Damping, Modulus, PositiveStiffness, PositiveTime
 
 Ending = Literal["zero_force", "zero_overlap"]
@@ -26,6 +26,10 @@ class Contact(Part):
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return the core's name of the law and its coefficients for a pair of bodies."""
+        raise NotImplementedError
+
+    def equivalent_restitution(self, pair: Pair) -> Restitution:
+        """Return the restitution law that hard impacts of the same loss obey."""
         raise NotImplementedError
 
 
@@ -74,6 +78,13 @@ class Tsuji(Contact):
         if self.alpha is not None:
             values["alpha"] = self.alpha
         return "hertz_tsuji", values
+
+    def equivalent_restitution(self, pair: Pair) -> Restitution:
+        """Return the law itself, or the constant that alpha amounts to."""
+        if self.restitution is not None:
+            return self.restitution
+        assert self.alpha is not None
+        return Constant(float(restitution_of_alpha(self.alpha, self.ending)))
 
 
 class Linear(Contact):
@@ -125,6 +136,14 @@ class Linear(Contact):
                 raise Hint("with this damping an overlap never returns to zero", 'ending = "zero_force"')
         return "linear", values
 
+    def equivalent_restitution(self, pair: Pair) -> Restitution:
+        """Return the law itself, or the constant that the dashpot amounts to."""
+        if self.restitution is not None:
+            return self.restitution
+        _, values = self.coefficients(pair)
+        zeta = values["damping"] / (2 * math.sqrt(values["stiffness"] * pair.mass))
+        return Constant(float(restitution_of_alpha(math.sqrt(5) * zeta, self.ending)))
+
 
 class Thornton(Contact):
     """Elastic, perfectly plastic contact with hysteresis: it dissipates by yielding.
@@ -148,6 +167,10 @@ class Thornton(Contact):
             "modulus": pair.modulus,
             "yield_pressure": yield_pressure(pair, self.yield_pressure, "Thornton's contact"),
         }
+
+    def equivalent_restitution(self, pair: Pair) -> Restitution:
+        """Return the closed form of this contact's restitution."""
+        return ThorntonRestitution(yield_pressure=self.yield_pressure)
 
 
 AnyContact = Annotated[Tsuji | Linear | Thornton, Field(discriminator="kind")]

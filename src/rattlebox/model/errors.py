@@ -58,6 +58,10 @@ _TAGS = {
 
 
 def _shown(value: Any) -> str:
+    try:
+        repr(value)
+    except ValueError:  # an integer of thousands of digits
+        return "a number of thousands of digits"
     text = repr(value) if not isinstance(value, dict) else "{" + ", ".join(map(str, value)) + "}"
     return text if len(text) <= 60 else text[:57] + "..."
 

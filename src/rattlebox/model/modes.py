@@ -12,7 +12,7 @@ from .errors import CaseError, nearest
 Vector = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ModalModel:
     """Modes of a linear structure, q'' + 2 decay q' + stiffness q = shape . F, with unit modal mass.
 

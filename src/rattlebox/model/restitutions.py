@@ -20,7 +20,7 @@ _fraction = WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})
 def _restitution(value: Any) -> float:
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise Hint("a number from 0 to 1 is needed", "0.8") from None
     if not 0 <= number <= 1:
         raise Hint(

@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, m
 from .base import Part
 from .errors import Hint
 from .records import read_columns
-from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime, parse
+from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime, numbers, parse
 
 Unit = Literal["N", "m/s^2", "m"]
 _UNITS: tuple[Unit, ...] = ("N", "m/s^2", "m")
@@ -193,12 +193,9 @@ class Harmonic(Signal):
 
 
 def _column(value: Any) -> tuple[float, ...]:
-    array = np.asarray(value, dtype=float)
+    array = numbers(value)
     if array.ndim != 1:
         raise Hint(f"one row of numbers is needed, not shape {array.shape}")
-    bad = np.flatnonzero(~np.isfinite(array))
-    if bad.size:
-        raise Hint(f"number {int(bad[0]) + 1} of {array.size} is not finite")
     return tuple(array.tolist())
 
 

@@ -12,17 +12,14 @@ from .base import Part
 from .errors import Hint
 from .modes import ModalModel, Vector
 from .signals import AnySignal, Signal, Unit, as_signals
-from .units import Damping, Frequency, Length, PositiveMass, Stiffness, Velocity
+from .units import Damping, Frequency, Length, PositiveMass, Stiffness, Velocity, numbers
 
 if TYPE_CHECKING:
     from typing import Self
 
 
 def _numbers(value: Any) -> Any:
-    array = np.asarray(value, dtype=float)
-    if not np.all(np.isfinite(array)):
-        raise Hint("all numbers must be finite")
-    return array.tolist()
+    return numbers(value).tolist()
 
 
 Numbers = Annotated[list[float], BeforeValidator(_numbers)]

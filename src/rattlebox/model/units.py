@@ -7,6 +7,8 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema
 
 from .errors import Hint, nearest
@@ -88,7 +90,10 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     if isinstance(value, bool):
         raise Hint(_wanted(units), _example(units))
     if isinstance(value, (int, float)):
-        return _finite(float(value)), None
+        try:
+            return _finite(float(value)), None
+        except OverflowError:
+            raise Hint("a finite number is needed") from None
     if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str):
         value = f"{value[0]!r} {value[1]}"
     if isinstance(value, str):
@@ -106,7 +111,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     if hasattr(value, "is_compatible_with") and hasattr(value, "to"):
         for unit in units:
             if value.is_compatible_with(_pint_unit(unit)) and (unit == "rad" or not value.dimensionless):
-                if unit == "Hz" and "radian" in str(value.units):
+                if unit == "Hz" and any(word in str(value.units) for word in ("radian", "rev", "turn", "degree")):
                     return _finite(float(value.to("rad/s").magnitude) / (2 * math.pi)), unit
                 return _finite(float(value.to(_pint_unit(unit)).magnitude)), unit
         raise Hint(f"{_wanted(units)}, not {_described(value)}", _example(units))
@@ -137,6 +142,24 @@ def _wanted(units: tuple[str, ...]) -> str:
 
 def _example(units: tuple[str, ...]) -> str:
     return " or ".join(f'"{_EXAMPLES[unit]}"' for unit in units if unit in _EXAMPLES)
+
+
+def numbers(value: Any) -> NDArray[np.float64]:
+    """Read an array of finite numbers.
+
+    Raises
+    ------
+    Hint
+        When something in it is no finite number.
+    """
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise Hint("finite numbers are needed, in rows of one length") from None
+    bad = np.flatnonzero(~np.isfinite(array))
+    if bad.size:
+        raise Hint(f"number {int(bad[0]) + 1} of {array.size} is not finite")
+    return array
 
 
 def text(value: float, unit: str) -> str:

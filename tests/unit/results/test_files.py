@@ -164,9 +164,7 @@ def test_matlab_round_trip(any_run: Run, tmp_path: Path) -> None:
             if wanted.dtype.kind == "U":
                 assert [str(cell[0][0]) for cell in read] == wanted.tolist()
             else:
-                np.testing.assert_array_equal(
-                    read, wanted[:, None] if wanted.ndim == 1 else wanted, err_msg=name
-                )
+                np.testing.assert_array_equal(read, wanted[:, None] if wanted.ndim == 1 else wanted, err_msg=name)
             assert content["units"][0, 0][group][0, 0][name].size or wanted.dtype.kind == "U", name
             assert name.isidentifier()
             assert len(name) < 32
