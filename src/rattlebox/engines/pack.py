@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from rattlebox.model.case import Case
     from rattlebox.model.modes import ModalModel
+    from rattlebox.model.restitutions import Restitution
 
 Packed = dict[str, Any]
 
@@ -82,7 +83,7 @@ def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> Packed:
     between_balls = 0 < place < len(damper.masses)
     law = damper.ball_contact if between_balls and damper.ball_contact is not None else damper.contact
     if isinstance(case.method, Newton):
-        restitution = case.method.restitution or law.equivalent_restitution(pair)
+        restitution: Restitution | None = case.method.restitution or law.equivalent_restitution(pair)
         normal: Packed = {"law": "linear", "stiffness": 1.0, "mass": pair.mass, "damping": 0.0}
     else:
         restitution = law.restitution
