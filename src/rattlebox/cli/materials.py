@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 
 from rattlebox.model.materials import materials
 
 
 def show_materials() -> None:
     """Print the library as a table."""
-    table = Table("name", "what", "density\nkg/m³", "E\nGPa", "ν", "yield\nMPa", "source")
+    table = Table(Column("name", no_wrap=True), "what", "density\nkg/m³", "E\nGPa", "ν", "yield\nMPa", "source")
     for name, m in materials().items():
         strength = "" if m.yield_stress is None else f"{m.yield_stress / 1e6:g}"
         table.add_row(name, m.title, f"{m.density:g}", f"{m.young / 1e9:g}", f"{m.poisson:g}", strength, m.source)

@@ -1,0 +1,119 @@
+"""The commands, run as a user runs them."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import rattlebox as rb
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+def rattlebox(*arguments: object) -> subprocess.CompletedProcess[str]:
+    """Run the command in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "rattlebox.cli", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def test_run_writes_what_it_says(tmp_path: Path) -> None:
+    """A case file gives a summary, a netCDF file that loads equal in size, CSV, MAT and figures."""
+    done = rattlebox("run", EXAMPLES / "steel_ball.toml", "-o", tmp_path, "--csv", "--mat")
+    assert done.returncode == 0, done.stderr
+    assert "impacts" in done.stdout
+    run = rb.load(tmp_path / "run.nc")
+    assert run.ok
+    assert run.closure < 1e-10
+    for name in ("run.mat", "motion.csv", "energy.csv", "impacts.csv", "motion.png", "energy.png", "impacts.png"):
+        assert (tmp_path / name).stat().st_size > 0
+
+
+def test_demo_sets_both_models_side_by_side(tmp_path: Path) -> None:
+    """The demo prints one column a model and leaves a figure and netCDF and case files that reproduce its runs."""
+    done = rattlebox("demo", "-o", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "constant alpha" in done.stdout
+    assert "Jackson-Green" in done.stdout
+    assert (tmp_path / "demo.png").stat().st_size > 10_000
+    again = rb.simulate(rb.Case.from_file(tmp_path / "jackson_green.toml"))
+    assert again.arrays.impacts == rb.load(tmp_path / "jackson_green.nc").arrays.impacts
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("duration = 1\n[structure]\nkind = 'sdof'\nmass = '-1 kg'\nstiffness = 1\n", "greater than zero"),
+        ("duration = 1\n[structure]\nkind = 'sdof'\nmas = '1 kg'\nstiffness = 1\n", "did you mean 'mass'"),
+        ("duration = \n", "not TOML"),
+    ],
+)
+def test_bad_case_is_told_on_one_screen(tmp_path: Path, text: str, said: str) -> None:
+    """Bad input names the file and what is wrong, with exit code 2 and no traceback."""
+    path = tmp_path / "bad.toml"
+    path.write_text(text)
+    done = rattlebox("run", path)
+    assert done.returncode == 2
+    assert "bad.toml" in done.stderr
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr.splitlines()) < 24
+
+
+def test_missing_file_and_unknown_option_are_told() -> None:
+    """A file that is not there and an option that does not exist end with exit code 2 and no traceback."""
+    for arguments in (("run", "nowhere.toml"), ("run", "--sideways"), ("fly",)):
+        done = rattlebox(*arguments)
+        assert done.returncode == 2
+        assert "Traceback" not in done.stderr
+
+
+def test_schema_is_a_schema(tmp_path: Path) -> None:
+    """The exported schema is JSON and knows the structures."""
+    done = rattlebox("schema", "-o", tmp_path / "schema.json")
+    assert done.returncode == 0
+    schema = json.loads((tmp_path / "schema.json").read_text())
+    assert {"SDOF", "Modal", "Matrices"} <= set(schema["$defs"])
+
+
+def test_doctor_and_materials_say_what_they_have() -> None:
+    """Doctor names the core and why; materials lists the library."""
+    assert "core" in rattlebox("doctor").stdout
+    assert "tungsten_carbide" in rattlebox("materials").stdout
+
+
+def test_speed_beyond_a_law_ends_with_a_status() -> None:
+    """An impact above the last speed of Jackson-Green keeps what was computed and says what to try."""
+    case = rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius=0.01, material="lead"),
+            gap=1e-3,
+            velocity=100.0,
+            contact=rb.Tsuji(restitution=rb.JacksonGreen()),
+        ),
+        duration=0.1,
+    )
+    run = rb.simulate(case)
+    assert run.status == "law_domain"
+    assert "extrapol" in run.message
+    freely = rb.JacksonGreen(extrapolate=True)
+    damper = case.dampers[0].model_copy(update={"contact": rb.Tsuji(restitution=freely)})
+    assert (
+        rb.simulate(case.model_copy(update={"dampers": (damper,), "duration": 1.2e-5})).arrays.counts["extrapolated"]
+        == 1
+    )
+
+
+def test_budget_of_events_ends_with_a_status() -> None:
+    """A run that spends its events keeps what it has and says so."""
+    case = rb.Case.from_file(EXAMPLES / "steel_ball.toml").model_copy(update={"method": rb.EventDriven(max_events=20)})
+    run = rb.simulate(case)
+    assert run.status == "too_many_events"
+    assert 0 < len(run.arrays.impacts) < 20
