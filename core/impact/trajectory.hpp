@@ -614,7 +614,7 @@ class Trajectory {
             integrator_.start(system_, y_.data());
             note_forces();
             // One step whose error is within the bound, not beyond the next stop.
-            for (;;) {
+            for (int tries = 0;; ++tries) {
                 integrator_.step(system_, y_.data(), h, trial_.data());
                 const real error = integrator_.error(h, scale_);
                 if (!(error <= 1)) {
@@ -622,9 +622,7 @@ class Trajectory {
                     const real shrink =
                         error < infinity ? std::fmax(0.2, 0.9 * std::pow(error, -0.125)) : 0.1;
                     h *= shrink;
-                    if (!(std::fabs(h) > 1e-300) ||
-                        result_.counts.rejected_steps > 200 * problem_.settings.max_events)
-                        return fail(Status::step_too_small), unload_system(y_);
+                    if (tries > 200) return fail(Status::step_too_small), unload_system(y_);
                     continue;
                 }
                 break;
@@ -663,7 +661,7 @@ class Trajectory {
                 consider(Event::opened, static_cast<int>(r),
                          -gap(problem_, contact(released.contact), y_.data()).value,
                          [&](const real* y) { return -gap(problem_, contact(released.contact), y).value; });
-                consider(Event::engaged, static_cast<int>(r), apart(y_.data(), released),
+                consider(Event::engaged, static_cast<int>(r), std::fmax(apart(y_.data(), released), 0.0),
                          [&](const real* y) { return apart(y, released); });
             }
             if (!system_.stuck.empty()) {
