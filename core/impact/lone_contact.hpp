@@ -13,7 +13,7 @@
 // gain a factor a t_c / V each.
 //
 // The energy balance, which the sweeps do not use, decides whether the result is taken; if not, or if the
-// contact is slow, strongly damped or has neighbours, impact/trajectory.hpp integrates it step by step.
+// contact is slow, strongly damped or has neighbours, impact/closed.hpp integrates it step by step.
 #pragma once
 
 #include <array>

@@ -1,0 +1,459 @@
+// Closed contacts integrated step by step, their events, and the peaks of force and overlap.
+#pragma once
+
+#include "base/dop853.hpp"
+#include "impact/touch.hpp"
+
+namespace rattlebox {
+
+class ClosedContacts : protected Touching {
+    Dop853 integrator_;
+    std::vector<real> partial_, scale_;
+
+protected:
+    // ---- closed contacts
+
+    // Takes over the integrated state y; what the dashpots have taken goes to the ledger and to the log.
+    void unload_system(const std::vector<real>& y) {
+        std::copy_n(y.begin(), state_.y.size(), state_.y.begin());
+        const std::size_t at = system_.time_index();
+        state_.t += y[at];
+        ledger_.load_work += y[at + 1];
+        ledger_.base_work += y[at + 2];
+        ledger_.viscous += y[at + 3];
+        for (std::size_t j = 0; j < system_.active.size(); ++j) {
+            Active& a = system_.active[j];
+            a.x = y[system_.x_index(j)];
+            const real lost = y[system_.x_index(j) + 1];
+            ledger_.normal[damper_of(a.contact)] += lost;
+            result_.impacts[static_cast<std::size_t>(a.impact)].energy_lost += lost;
+        }
+    }
+
+    void sample_closed(const std::vector<real>& y) {
+        std::copy_n(y.begin(), state_.y.size(), scratch_.y.begin());
+        Ledger ledger = ledger_;
+        const std::size_t at = system_.time_index();
+        ledger.load_work += y[at + 1];
+        ledger.base_work += y[at + 2];
+        ledger.viscous += y[at + 3];
+        clear_contact_samples();
+        for (std::size_t j = 0; j < system_.active.size(); ++j) {
+            const Active& a = system_.active[j];
+            const std::size_t d = damper_of(a.contact);
+            const real x = y[system_.x_index(j)];
+            ledger.normal[d] += y[system_.x_index(j) + 1];
+            contact(a.contact).normal.visit([&](const auto& law) {
+                ledger.plastic[d] += law.plastic(a.memory, x);
+                stored_[d] += law.stored(a.memory, x);
+            });
+            add_wall_force(a.contact, system_.force(y.data(), j));
+        }
+        if (!system_.stuck.empty()) {
+            partial_.resize(system_.size());
+            system_(y.data(), partial_.data());
+            for (std::size_t i = 0; i < system_.stuck.size(); ++i)
+                add_wall_force(system_.stuck[i], system_.stuck_forces()[i]);
+        }
+        record(problem_.sample_times[next_sample_++], scratch_, std::move(ledger));
+    }
+
+    // First step in transformed time: a tenth of the way through the contact that is soonest over.
+    real first_step(real remaining) const {
+        if (system_.active.empty()) {
+            real rate = loads_.frequency();
+            for (const Mode& mode : problem_.modes) rate = std::max(rate, mode.rate());
+            real h = std::min(remaining, rate > 0 ? 0.1 / rate : remaining);
+            for (const Released& r : released_) {
+                const Gap g = gap(problem_, contact(r.contact), state_.y.data());
+                if (g.value != 0 && g.rate != 0) h = std::min(h, 0.1 * std::fabs(g.value / g.rate));
+            }
+            return h;
+        }
+        real h = infinity;
+        for (const Active& a : system_.active) {
+            const real depth = contact(a.contact).normal.visit(
+                [&](const auto& law) { return std::sqrt(std::sqrt(law.overlap_scale(a.speed))); });
+            h = std::min(h, 0.4 * (a.x > 0 ? std::min(a.x, depth) : depth) / a.speed);
+        }
+        return h;
+    }
+
+    real contact_speed() const {
+        real speed = 0;
+        for (const Active& a : system_.active) speed = std::max(speed, a.speed);
+        return speed;
+    }
+
+    // Errors are measured against the speeds and overlaps of the contacts themselves.
+    void set_scales() {
+        const real tolerance = problem_.settings.tolerance;
+        scale_.assign(system_.size(), infinity);
+        real speed = 0;
+        for (std::size_t j = 0; j < system_.active.size(); ++j) {
+            const Active& a = system_.active[j];
+            speed = std::max(speed, a.speed);
+            const real depth = contact(a.contact).normal.visit(
+                [&](const auto& law) { return std::sqrt(std::sqrt(law.overlap_scale(a.speed))); });
+            scale_[system_.x_index(j)] = tolerance * std::max(depth, std::fabs(a.x));
+        }
+        if (system_.active.empty())
+            for (real y : state_.y) speed = std::max(speed, std::fabs(y));
+        if (speed == 0) speed = 1;
+        real* ball = scale_.data() + 2 * problem_.modes.size() + problem_.ball_mass.size();
+        for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) ball[i] = tolerance * speed;
+        for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
+            real shape = 0;
+            for (const Damper& damper : problem_.dampers) shape = std::max(shape, std::fabs(damper.shape[k]));
+            scale_[2 * k + 1] = shape > 0 ? tolerance * speed / shape : tolerance * speed;
+        }
+    }
+
+    // Where in a step of length h from y_ the function turns from `before` (>= 0) to <= 0: the far end of a
+    // bracket that has shrunk to rounding. Every probe is a step of the integrator itself.
+    template <class F> real locate(real h, real before, real after, F&& f) {
+        real low = 0, high = h, f_low = before, f_high = after;
+        int side = 0;
+        for (int iteration = 0; iteration < 80 && f_high != 0; ++iteration) {
+            real next = (low * f_high - high * f_low) / (f_high - f_low);
+            const real width = high - low,
+                       edge = 1e-3 * width * std::fabs(f_high) / (std::fabs(f_high) + std::fabs(f_low));
+            if (iteration % 3 == 2)
+                next += edge; // step over the root, so that the bracket shrinks from both ends
+            if (!(next > low && next < high) || iteration > 20) next = low + 0.5 * width;
+            if (width <= 4 * epsilon * h) break;
+            integrator_.step(system_, y_.data(), next, partial_.data());
+            const real value = f(partial_.data());
+            if (value > 0) {
+                low = next;
+                f_low = value;
+                if (side == 1) f_high *= 0.5;
+                side = 1;
+            } else {
+                high = next;
+                f_high = value;
+                if (side == -1) f_low *= 0.5;
+                side = -1;
+            }
+        }
+        return high;
+    }
+
+    real boundary(const real* y, std::size_t j) const {
+        const Active& a = system_.active[j];
+        const real rate = system_.approach(y, a.contact);
+        return contact(a.contact).normal.visit(
+            [&](const auto& law) { return law.boundary(a.memory, y[system_.x_index(j)], rate); });
+    }
+
+    // Positive while a released contact's law would not push.
+    real apart(const real* y, const Released& r) const {
+        const Gap g = gap(problem_, contact(r.contact), y);
+        const real overlap = -g.value - r.memory.offset;
+        if (overlap <= 0) return 1;
+        const real x = std::sqrt(std::sqrt(overlap));
+        return -contact(r.contact).normal.visit(
+            [&](const auto& law) { return law.force(r.memory, x, -g.rate); });
+    }
+
+    enum class Event { none, boundary, touch, rest_touch, opened, engaged, unstuck };
+
+    void integrate_closed() {
+        settle_released(-1);
+        for (int r = static_cast<int>(released_.size()) - 1; r >= 0; --r) {
+            const Released& released = released_[static_cast<std::size_t>(r)];
+            if (apart(state_.y.data(), released) < 0 &&
+                gap(problem_, contact(released.contact), state_.y.data()).rate < 0)
+                engage(r);
+        }
+        system_.begin(loads_, state_.t);
+        load_system();
+        const std::size_t n = system_.size(), clock = system_.time_index();
+        trial_.resize(n);
+        partial_.resize(n);
+        integrator_.resize(static_cast<int>(n));
+        set_scales();
+        const real remaining = next_stop() - state_.t;
+        real h = first_step(remaining);
+        // Without a soft contact errors can vanish, so that only this keeps a change of sign in a force from
+        // being jumped.
+        const real longest = system_.active.empty() ? 2.5 * h : infinity;
+        for (;;) {
+            if (stop_ && stop_->load(std::memory_order_relaxed)) fail(Status::interrupted);
+            if (result_.counts.contact_steps + result_.counts.rejected_steps >
+                200 * problem_.settings.max_events)
+                fail(Status::too_many_events);
+            if (!running()) return unload_system(y_);
+            integrator_.start(system_, y_.data());
+            note_forces();
+            // One step whose error is within the bound, not beyond the next stop.
+            for (int tries = 0;; ++tries) {
+                integrator_.step(system_, y_.data(), h, trial_.data());
+                const real error = integrator_.error(h, scale_);
+                if (!(error <= 1)) {
+                    ++result_.counts.rejected_steps;
+                    const real shrink =
+                        error < infinity ? std::fmax(0.2, 0.9 * std::pow(error, -0.125)) : 0.1;
+                    h *= shrink;
+                    if (tries > 200) return fail(Status::step_too_small), unload_system(y_);
+                    continue;
+                }
+                break;
+            }
+            ++result_.counts.contact_steps;
+            const real error = integrator_.error(h, scale_);
+            const real grow = error > 0 ? std::fmin(4.0, 0.9 * std::pow(error, -0.125)) : 4.0;
+
+            real end = h;
+            bool at_stop = false;
+            if (trial_[clock] >= remaining) {
+                at_stop = true;
+                end = locate(h, remaining, remaining - trial_[clock],
+                             [&](const real* y) { return remaining - y[clock]; });
+                integrator_.step(system_, y_.data(), end, trial_.data());
+            }
+            // The earliest event of the step.
+            Event event = Event::none;
+            int which = -1;
+            const auto consider = [&](Event kind, int index, real before, auto&& f) {
+                const real after = f(trial_.data());
+                if (after > 0 || before < 0) return;
+                const real where = locate(end, before, after, f);
+                if (where < end || event == Event::none) {
+                    end = where;
+                    event = kind;
+                    which = index;
+                    integrator_.step(system_, y_.data(), end, trial_.data());
+                }
+            };
+            for (std::size_t j = 0; j < system_.active.size(); ++j)
+                consider(Event::boundary, static_cast<int>(j), boundary(y_.data(), j),
+                         [&](const real* y) { return boundary(y, j); });
+            for (std::size_t r = 0; r < released_.size(); ++r) {
+                const Released& released = released_[r];
+                consider(Event::opened, static_cast<int>(r),
+                         -gap(problem_, contact(released.contact), y_.data()).value,
+                         [&](const real* y) { return -gap(problem_, contact(released.contact), y).value; });
+                consider(Event::engaged, static_cast<int>(r), std::fmax(apart(y_.data(), released), 0.0),
+                         [&](const real* y) { return apart(y, released); });
+            }
+            if (!system_.stuck.empty()) {
+                std::vector<real> work(n);
+                for (std::size_t i = 0; i < system_.stuck.size(); ++i) {
+                    const auto holding = [&](const real* y) {
+                        system_(y, work.data());
+                        return system_.stuck_forces()[i];
+                    };
+                    consider(Event::unstuck, static_cast<int>(i), std::fmax(holding(y_.data()), 0.0),
+                             holding);
+                }
+            }
+            bool retry = false;
+            for (int c = 0; c < problem_.contact_count() && !retry; ++c) {
+                if (phase(c) != Phase::open && phase(c) != Phase::touching) continue;
+                const auto value = [&](const real* y) { return gap(problem_, contact(c), y).value; };
+                const Gap before = gap(problem_, contact(c), y_.data()),
+                          after = gap(problem_, contact(c), trial_.data());
+                const real blur =
+                    8 * epsilon * (problem_.dampers[damper_of(c)].clearance + std::fabs(before.value));
+                if (phase(c) == Phase::touching ||
+                    (std::fabs(before.value) <= blur && std::fabs(before.rate) <= blur)) {
+                    if (after.value > blur) phase(c) = Phase::open;
+                    if (after.value >= -blur || hard()) continue;
+                    if (weak(c, trial_.data(), trial_[clock], contact_speed())) {
+                        phase(c) = Phase::touching;
+                        event = Event::rest_touch;
+                    } else {
+                        retry = true;
+                    }
+                } else if (after.value <= 0) {
+                    if (after.rate >= 0) continue; // parting, by less than rounding can tell
+                    consider(Event::touch, c, std::fmax(before.value, 0.0), value);
+                } else if (before.rate < 0 && after.rate > 0 &&
+                           std::fmin(before.value, after.value) <
+                               2 * trial_[clock] * std::fmax(-before.rate, after.rate)) {
+                    const real lowest = locate(end, -before.rate, -after.rate, [&](const real* y) {
+                        return -gap(problem_, contact(c), y).rate;
+                    });
+                    integrator_.step(system_, y_.data(), lowest, partial_.data());
+                    if (value(partial_.data()) <= 0) {
+                        std::swap(trial_, partial_);
+                        end = lowest;
+                        event = Event::none;
+                        consider(Event::touch, c, std::fmax(before.value, 0.0), value);
+                    }
+                }
+            }
+            if (retry) {
+                h *= 0.25;
+                continue;
+            }
+            note_peaks(end);
+            while (sample_due(state_.t + trial_[clock])) {
+                const real due = problem_.sample_times[next_sample_] - state_.t;
+                if (due < trial_[clock]) {
+                    const real where = locate(end, due - y_[clock], due - trial_[clock],
+                                              [&](const real* y) { return due - y[clock]; });
+                    std::vector<real> at(n);
+                    integrator_.step(system_, y_.data(), where, at.data());
+                    sample_closed(at);
+                } else {
+                    sample_closed(trial_);
+                }
+            }
+            std::swap(y_, trial_);
+            for (std::size_t j = 0; j < system_.active.size(); ++j) {
+                Active& a = system_.active[j];
+                const real speed = std::fabs(system_.approach(y_.data(), a.contact));
+                if (speed > 2 * a.speed) {
+                    a.speed = speed;
+                    set_scales();
+                }
+            }
+            if (event != Event::none || at_stop) {
+                const real start = state_.t;
+                unload_system(y_);
+                if (at_stop && event == Event::none) state_.t = start + remaining;
+                return handle(event, which);
+            }
+            h = std::min(h * grow, longest);
+        }
+    }
+
+    void handle(Event event, int which) {
+        switch (event) {
+        case Event::none:
+            return;
+        case Event::boundary:
+            return cross(static_cast<std::size_t>(which));
+        case Event::touch:
+            return meet(which);
+        case Event::rest_touch:
+            return begin_at_rest();
+        case Event::opened:
+            return settle(which);
+        case Event::engaged:
+            return engage(which);
+        case Event::unstuck: {
+            const int c = system_.stuck[static_cast<std::size_t>(which)];
+            system_.stuck.erase(system_.stuck.begin() + which);
+            phase(c) = Phase::touching;
+            return;
+        }
+        }
+    }
+
+    void cross(std::size_t j) {
+        Active& a = system_.active[j];
+        const Contact& k = contact(a.contact);
+        const real rate = system_.approach(state_.y.data(), a.contact);
+        const real overlap = a.memory.offset + square(a.x * a.x);
+        real plastic = 0, stored = 0;
+        Next next{};
+        k.normal.visit([&](const auto& law) {
+            next = law.cross(a.memory, a.x, rate);
+            a.x = std::sqrt(std::sqrt(std::fmax(overlap - a.memory.offset, 0.0)));
+            plastic = law.plastic(a.memory, a.x);
+            stored = law.stored(a.memory, a.x);
+        });
+        if (next == Next::stay) return;
+        Impact& line = result_.impacts[static_cast<std::size_t>(a.impact)];
+        const std::size_t d = damper_of(a.contact);
+        ledger_.plastic[d] += plastic;
+        line.energy_lost += plastic;
+        line.duration = state_.t - line.time;
+        line.separation_speed = -rate;
+        line.complete = true;
+        if (next == Next::release && overlap > 0) {
+            line.energy_lost += stored;
+            released_.push_back({a.contact, a.memory, a.impact, stored});
+            phase(a.contact) = Phase::released;
+        } else {
+            phase(a.contact) = Phase::open;
+        }
+        system_.active.erase(system_.active.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+
+    void settle(int r) {
+        const Released& released = released_[static_cast<std::size_t>(r)];
+        ledger_.normal[damper_of(released.contact)] += released.energy;
+        phase(released.contact) = Phase::open;
+        released_.erase(released_.begin() + r);
+    }
+
+    // A released contact takes hold again: the same impact goes on, what it had lost meanwhile stays lost.
+    void engage(int r) {
+        const Released released = released_[static_cast<std::size_t>(r)];
+        released_.erase(released_.begin() + r);
+        const real left = recovering(released, state_.y.data());
+        ledger_.normal[damper_of(released.contact)] += released.energy - left;
+        const real plastic = contact(released.contact).normal.visit([&](const auto& law) {
+            return law.plastic(released.memory, 0);
+        });
+        ledger_.plastic[damper_of(released.contact)] -= plastic;
+        Impact& line = result_.impacts[static_cast<std::size_t>(released.impact)];
+        line.energy_lost -= left + plastic;
+        line.complete = false;
+        Active a;
+        a.contact = released.contact;
+        a.memory = released.memory;
+        a.impact = released.impact;
+        const Gap g = gap(problem_, contact(a.contact), state_.y.data());
+        a.x = std::sqrt(std::sqrt(std::fmax(-g.value - a.memory.offset, 0.0)));
+        a.speed = std::fmax(line.approach_speed, std::fabs(g.rate));
+        system_.active.push_back(a);
+        phase(a.contact) = Phase::closed;
+    }
+
+    // ---- peaks of force and overlap
+
+    void note(std::size_t j, const real* y) {
+        const Active& a = system_.active[j];
+        Impact& line = result_.impacts[static_cast<std::size_t>(a.impact)];
+        line.peak_force = std::fmax(line.peak_force, system_.force(y, j));
+        line.peak_overlap =
+            std::fmax(line.peak_overlap, a.memory.offset + square(square(y[system_.x_index(j)])));
+    }
+
+    void note_forces() {
+        for (std::size_t j = 0; j < system_.active.size(); ++j) note(j, y_.data());
+    }
+
+    // Peaks inside the step from y_ to trial_.
+    void note_peaks(real h) {
+        for (std::size_t j = 0; j < system_.active.size(); ++j) {
+            note(j, trial_.data());
+            const int c = system_.active[j].contact;
+            const real before = system_.approach(y_.data(), c), after = system_.approach(trial_.data(), c);
+            if (before > 0 && after < 0) {
+                const real turn =
+                    locate(h, before, after, [&](const real* y) { return system_.approach(y, c); });
+                integrator_.step(system_, y_.data(), turn, partial_.data());
+                note(j, partial_.data());
+            }
+            // A maximum inside: the force rises at the step's start and falls at its end.
+            const auto force_at = [&](real where) {
+                integrator_.step(system_, y_.data(), where, partial_.data());
+                return system_.force(partial_.data(), j);
+            };
+            const real probe = 1e-3 * h;
+            const auto rise = [&](real where) { return force_at(where + probe) - force_at(where - probe); };
+            real low = probe, high = h - probe, f_low = rise(low), f_high = rise(high);
+            if (!(f_low > 0 && f_high < 0)) continue;
+            for (int pass = 0; pass < 8; ++pass) {
+                real next = (low * f_high - high * f_low) / (f_high - f_low);
+                if (pass % 3 == 2) next = 0.5 * (low + high);
+                const real value = rise(next);
+                (value > 0 ? low : high) = next;
+                (value > 0 ? f_low : f_high) = value;
+            }
+            force_at((low * f_high - high * f_low) / (f_high - f_low));
+            note(j, partial_.data());
+        }
+    }
+
+public:
+    using Touching::Touching;
+};
+
+} // namespace rattlebox

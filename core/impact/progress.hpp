@@ -1,0 +1,101 @@
+// What every part of a trajectory works on: the state of things, the log, and the samples taken on the way.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+
+#include "impact/flight.hpp"
+#include "impact/log.hpp"
+#include "impact/system.hpp"
+
+namespace rattlebox {
+
+class Progress {
+protected:
+    enum class Phase : char { open, touching, closed, released };
+
+    const Problem& problem_;
+    const std::atomic<bool>* stop_;
+    Loads loads_;
+    State state_, scratch_;
+    Ledger ledger_;
+    Flight flight_;
+    System system_;
+    std::vector<Phase> phase_;
+    std::vector<Released> released_;
+    std::size_t next_sample_ = 0;
+    Result result_;
+    std::vector<real> y_, trial_, stored_, force_;
+
+    const Contact& contact(int c) const { return problem_.contacts[static_cast<std::size_t>(c)]; }
+    std::size_t damper_of(int c) const { return static_cast<std::size_t>(contact(c).damper); }
+    Phase& phase(int c) { return phase_[static_cast<std::size_t>(c)]; }
+    bool hard() const { return problem_.settings.method == Method::newton; }
+    bool running() const { return result_.status == Status::finished; }
+    real next_stop() const { return std::min(loads_.next_knot(), problem_.settings.duration); }
+
+    void fail(Status status, int c = -1, real value = 0) {
+        result_.status = status;
+        result_.stopped_contact = c;
+        result_.stopped_value = value;
+    }
+
+    // ---- recording
+
+    // Stored energy of a released contact that still overlaps in state y.
+    real recovering(const Released& r, const real* y) const {
+        const real overlap = -gap(problem_, contact(r.contact), y).value - r.memory.offset;
+        if (overlap <= 0) return 0;
+        const real x = std::sqrt(std::sqrt(overlap));
+        return contact(r.contact).normal.visit([&](const auto& law) { return law.stored(r.memory, x); });
+    }
+
+    void record(real t, const State& state, Ledger ledger) {
+        for (const Released& r : released_) {
+            const real left = recovering(r, state.y.data());
+            stored_[damper_of(r.contact)] += left;
+            ledger.normal[damper_of(r.contact)] += r.energy - left;
+        }
+        result_.record(t, state, ledger, stored_, force_);
+    }
+
+    void clear_contact_samples() {
+        std::fill(stored_.begin(), stored_.end(), 0.0);
+        std::fill(force_.begin(), force_.end(), 0.0);
+    }
+
+    bool sample_due(real until) const {
+        return next_sample_ < problem_.sample_times.size() && problem_.sample_times[next_sample_] <= until;
+    }
+
+    // Released contacts that have opened: their stored energy is gone for good.
+    void settle_released(int touched) {
+        for (std::size_t i = released_.size(); i-- > 0;) {
+            const int c = released_[i].contact;
+            const real blur = 8 * epsilon * problem_.dampers[damper_of(c)].clearance;
+            if (c != touched && gap(problem_, contact(c), state_.y.data()).value < -blur) continue;
+            ledger_.normal[damper_of(released_[i].contact)] += released_[i].energy;
+            phase(released_[i].contact) = Phase::open;
+            released_.erase(released_.begin() + static_cast<std::ptrdiff_t>(i));
+        }
+    }
+
+    void load_system() {
+        y_.assign(system_.size(), 0.0);
+        std::copy(state_.y.begin(), state_.y.end(), y_.begin());
+        for (std::size_t j = 0; j < system_.active.size(); ++j) y_[system_.x_index(j)] = system_.active[j].x;
+    }
+
+    void add_wall_force(int c, real force) {
+        if (contact(c).above == wall) force_[damper_of(c)] += force;
+        if (contact(c).below == wall) force_[damper_of(c)] -= force;
+    }
+
+public:
+    Progress(const Problem& problem, const std::atomic<bool>* stop)
+        : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem),
+          ledger_(problem), flight_(problem), system_(problem), phase_(problem.contacts.size(), Phase::open),
+          stored_(problem.dampers.size()), force_(problem.dampers.size()) {}
+};
+
+} // namespace rattlebox

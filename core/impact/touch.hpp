@@ -1,0 +1,300 @@
+// What happens at a first touch: a lone contact solved whole, a soft contact that begins, or a hard impact.
+#pragma once
+
+#include "base/solve.hpp"
+#include "impact/lone_contact.hpp"
+#include "impact/progress.hpp"
+
+namespace rattlebox {
+
+class Touching : protected Progress {
+    LoneContact lone_, sampler_;
+
+protected:
+    // ---- first touch
+
+    void meet(int c) {
+        const real speed = std::fmax(system_.approach(state_.y.data(), c), 0.0);
+        const Rebound r = rebound(contact(c).restitution, speed);
+        if (r.outside) return fail(Status::law_domain, c, speed);
+        result_.counts.extrapolated += r.extrapolated;
+        if (hard()) return strike(c, speed, r.e);
+        if (problem_.settings.collocation && collocate(c, speed, r.e)) return;
+        begin_contact(c, speed, r.e, 0);
+    }
+
+    real energy(const State& state) const {
+        real sum = 0;
+        for (std::size_t k = 0; k < problem_.modes.size(); ++k)
+            sum += ModeState{state.y[2 * k], state.y[2 * k + 1]}.energy(problem_.modes[k]);
+        const real *s = positions(problem_, state.y.data()), *v = velocities(problem_, state.y.data());
+        for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i)
+            sum += problem_.ball_mass[i] *
+                   (0.5 * v[i] * v[i] -
+                    problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity * s[i]);
+        return sum;
+    }
+
+    // Can nothing else touch while this contact lasts?
+    bool alone(int c, real speed, real longest) const {
+        if (!system_.active.empty() || !system_.stuck.empty() || !released_.empty()) return false;
+        for (int other = 0; other < problem_.contact_count(); ++other) {
+            if (other == c) continue;
+            const Damper& damper = problem_.dampers[damper_of(other)];
+            if (damper.balls == 1 && contact(other).damper == contact(c).damper) continue;
+            const Gap g = gap(problem_, contact(other), state_.y.data());
+            if (!(g.value > longest * (std::fabs(g.rate) + 4 * speed))) return false;
+        }
+        return true;
+    }
+
+    // A sample inside a lone contact: the contact solved again up to the phase at that time, so that nothing
+    // is interpolated.
+    void sample_lone(int c, const HertzTsuji& law, real speed, real zeta) {
+        const real t = problem_.sample_times[next_sample_++];
+        State at(problem_);
+        Ledger ledger = ledger_;
+        LoneContact::Instant now;
+        real psi = lone_.psi_at(t - state_.t);
+        for (int pass = 0; pass < 8; ++pass) {
+            sampler_.prepare(contact(c), law, loads_, state_, speed, zeta, infinity, psi);
+            sampler_.solve();
+            now = sampler_.at(1, nullptr, nullptr);
+            const real late = t - state_.t - now.time;
+            if (std::fabs(late) <= 2 * epsilon * t) break;
+            psi = std::fmax(psi + late * sampler_.turning(now), 0.5 * psi);
+        }
+        now = sampler_.at(1, &at, &ledger);
+        clear_contact_samples();
+        stored_[damper_of(c)] = law.stored({}, now.x);
+        add_wall_force(c, now.force);
+        record(t, at, std::move(ledger));
+    }
+
+    // The whole contact at once, where that is possible and its energy balance agrees.
+    bool collocate(int c, real speed, real e) {
+        const HertzTsuji* law = contact(c).normal.get_if<HertzTsuji>();
+        if (!law) return false;
+        const real zeta = law->zeta(e);
+        if (!lone_.prepare(contact(c), *law, loads_, state_, speed, zeta, next_stop() - state_.t))
+            return false;
+        if (!alone(c, speed, lone_.longest_time()) || !lone_.solve()) return false;
+        Ledger after = ledger_;
+        const LoneContact::Instant end = lone_.at(1, &scratch_, &after);
+        const real stored = law->stored({}, end.x);
+        const std::size_t d = damper_of(c);
+        const real residual = energy(scratch_) + stored - energy(state_) +
+                              (after.normal[d] - ledger_.normal[d]) + (after.viscous - ledger_.viscous) -
+                              (after.load_work - ledger_.load_work) - (after.base_work - ledger_.base_work);
+        const real size = contact(c).mass * speed * speed + energy(state_) * 1e-2;
+        if (!(std::fabs(residual) < std::fmax(problem_.settings.tolerance, 64 * epsilon) * size))
+            return false;
+
+        const LoneContact::Instant deepest = lone_.at(lone_.deepest_position(), nullptr, nullptr);
+        Impact line;
+        line.contact = c;
+        line.time = state_.t;
+        line.approach_speed = speed;
+        if (law->needs_restitution()) line.restitution = e;
+        line.separation_speed = -end.rate;
+        line.duration = end.time;
+        line.peak_overlap = square(square(deepest.x));
+        line.peak_force = lone_.peak_force();
+        line.energy_lost = end.lost + stored;
+        line.complete = true;
+        result_.impacts.push_back(line);
+        ++result_.counts.collocated;
+        while (sample_due(state_.t + end.time)) sample_lone(c, *law, speed, zeta);
+        std::swap(state_.y, scratch_.y);
+        state_.t += end.time;
+        ledger_ = after;
+        if (stored > 0) {
+            Memory memory = law->begin(e);
+            released_.push_back({c, memory, static_cast<int>(result_.impacts.size()) - 1, stored});
+            phase(c) = Phase::released;
+        }
+        return true;
+    }
+
+    void begin_contact(int c, real speed, real e, real x) {
+        Active a;
+        a.contact = c;
+        bool asked = false;
+        contact(c).normal.visit([&](const auto& law) {
+            a.memory = law.begin(e);
+            asked = law.needs_restitution();
+        });
+        a.impact = static_cast<int>(result_.impacts.size());
+        a.x = x;
+        a.speed = speed;
+        system_.active.push_back(a);
+        phase(c) = Phase::closed;
+        Impact line;
+        line.contact = c;
+        line.time = state_.t;
+        line.approach_speed = speed;
+        if (asked) line.restitution = e;
+        result_.impacts.push_back(line);
+    }
+
+    // Length of a flight after which the contacts that close from rest still exert a negligible force.
+    real rest_start_length(real length) {
+        for (int halving = 0; halving < 400; ++halving, length *= 0.5) {
+            flight_.at(length, scratch_);
+            bool negligible = true;
+            for (std::size_t c = 0; c < phase_.size(); ++c)
+                if (phase_[c] == Phase::touching)
+                    negligible = negligible && weak(static_cast<int>(c), scratch_.y.data(), length, 0);
+            if (negligible) break;
+        }
+        return length;
+    }
+
+    // Is what the force of a contact that closes from rest does in `length` negligible: below 1e-8 of the
+    // closing rate itself, or within the tolerance of the speeds around it?
+    bool weak(int c, const real* y, real length, real speed) const {
+        const Gap g = gap(problem_, contact(c), y);
+        if (g.value >= 0) return true;
+        const real e = rebound(contact(c).restitution, 0).e, x = std::sqrt(std::sqrt(-g.value));
+        const real f =
+            contact(c).normal.visit([&](const auto& law) { return law.force(law.begin(e), x, -g.rate); });
+        return std::fabs(f) * length <=
+               contact(c).mass * std::fmax(1e-8 * std::fabs(g.rate), problem_.settings.tolerance * speed);
+    }
+
+    void begin_at_rest() {
+        for (int c = 0; c < problem_.contact_count(); ++c) {
+            if (phase(c) != Phase::touching) continue;
+            const Gap g = gap(problem_, contact(c), state_.y.data());
+            if (g.value >= 0 || g.rate >= 0) continue;
+            begin_contact(c, 0, rebound(contact(c).restitution, 0).e, std::sqrt(std::sqrt(-g.value)));
+            system_.active.back().speed = -g.rate;
+        }
+    }
+
+    // ---- hard impacts
+
+    // Pushes the two sides of c apart with the impulse j.
+    void impulse(int c, real j) {
+        const Contact& k = contact(c);
+        real* v = velocities(problem_, state_.y.data());
+        real on_cavity = 0;
+        if (k.below == wall)
+            on_cavity -= j;
+        else
+            v[k.below] -= j / problem_.ball_mass[static_cast<std::size_t>(k.below)];
+        if (k.above == wall)
+            on_cavity += j;
+        else
+            v[k.above] += j / problem_.ball_mass[static_cast<std::size_t>(k.above)];
+        const Damper& damper = problem_.dampers[damper_of(c)];
+        for (std::size_t m = 0; m < damper.shape.size(); ++m)
+            state_.y[2 * m + 1] += damper.shape[m] * on_cavity;
+    }
+
+    // Acceleration of the gap with the contacts that are stuck now.
+    real gap_acceleration(int c) {
+        system_.begin(loads_, state_.t);
+        load_system();
+        trial_.resize(system_.size());
+        system_(y_.data(), trial_.data());
+        const Contact& k = contact(c);
+        const real* dv = velocities(problem_, trial_.data());
+        const real z = cavity(problem_.dampers[damper_of(c)], trial_.data()).p;
+        return (k.above == wall ? z : dv[k.above]) - (k.below == wall ? z : dv[k.below]);
+    }
+
+    real shortest_period() const {
+        real rate = 2 * pi / problem_.settings.duration;
+        for (const Mode& mode : problem_.modes) rate = std::max(rate, std::sqrt(mode.stiffness));
+        rate = std::max(rate, loads_.frequency());
+        return 2 * pi / rate;
+    }
+
+    // The largest speed of a ball relative to its cavity.
+    real largest_speed() const {
+        const real* v = velocities(problem_, state_.y.data());
+        real largest = 0;
+        for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) {
+            const Damper& damper = problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])];
+            largest = std::max(largest, std::fabs(v[i] - cavity(damper, state_.y.data()).p));
+        }
+        return largest;
+    }
+
+    // An impact elsewhere has moved what was at rest on something: it is struck in its turn, or it parts.
+    void wake_stuck() {
+        const real blur = 16 * epsilon * largest_speed();
+        std::erase_if(system_.stuck, [&](int c) {
+            if (std::fabs(system_.approach(state_.y.data(), c)) <= blur) return false;
+            phase(c) = Phase::open;
+            return true;
+        });
+        for (int c = 0; c < problem_.contact_count(); ++c)
+            if (phase(c) == Phase::touching && std::fabs(system_.approach(state_.y.data(), c)) > blur)
+                phase(c) = Phase::open;
+    }
+
+    // An impact of c. What rests on each other meanwhile holds without rebound, where it need not pull: the
+    // impulses of c and of the stuck contacts solve one linear system.
+    void strike(int c, real speed, real e) {
+        // Impacts that shrink without a force that presses (a row that collapses) end like those that do.
+        if (speed < problem_.settings.stick * largest_speed()) e = 0;
+        std::vector<int> held = system_.stuck;
+        held.push_back(c);
+        std::vector<real> matrix, impulses;
+        for (;;) {
+            const std::size_t n = held.size();
+            matrix.resize(n * n);
+            impulses.assign(n, 0.0);
+            impulses[n - 1] = -(1 + e) * speed;
+            for (std::size_t i = 0; i < n; ++i)
+                for (std::size_t j = 0; j < n; ++j)
+                    matrix[i * n + j] = system_.coupling(contact(held[i]), contact(held[j]));
+            solve_definite(matrix, impulses);
+            const auto weakest = std::min_element(impulses.begin(), impulses.end() - 1);
+            if (n == 1 || !(*weakest < 0)) break;
+            held.erase(held.begin() + (weakest - impulses.begin()));
+        }
+        for (std::size_t i = 0; i < held.size(); ++i) impulse(held[i], impulses[i]);
+        Impact line;
+        line.contact = c;
+        line.time = state_.t;
+        line.approach_speed = speed;
+        line.restitution = e;
+        line.separation_speed = e * speed;
+        line.duration = 0;
+        line.peak_force = infinity;
+        line.energy_lost = 0.5 * impulses.back() * (1 - e) * speed;
+        line.complete = true;
+        ledger_.normal[damper_of(c)] += line.energy_lost;
+        result_.impacts.push_back(line);
+        wake_stuck();
+        const real rebound_speed = std::fmax(-system_.approach(state_.y.data(), c), 0.0);
+        const real acceleration = gap_acceleration(c);
+        if (acceleration < 0 &&
+            2 * rebound_speed < -acceleration * problem_.settings.stick * shortest_period()) {
+            result_.impacts.back().energy_lost += stick(c);
+        } else if (e == 0) {
+            phase(c) = Phase::touching;
+        }
+    }
+
+    // Holds c at rest from now on; returns the energy that was left in its rebound.
+    real stick(int c) {
+        const Contact& k = contact(c);
+        const real rest = system_.approach(state_.y.data(), c), mass = 1 / -system_.coupling(k, k);
+        impulse(c, mass * rest);
+        ledger_.normal[damper_of(c)] += 0.5 * mass * rest * rest;
+        ++result_.counts.sticks;
+        system_.stuck.push_back(c);
+        phase(c) = Phase::closed;
+        return 0.5 * mass * rest * rest;
+    }
+
+public:
+    Touching(const Problem& problem, const std::atomic<bool>* stop)
+        : Progress(problem, stop), lone_(problem), sampler_(problem) {}
+};
+
+} // namespace rattlebox

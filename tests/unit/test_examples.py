@@ -1,0 +1,46 @@
+"""Every example is run and checked on a number."""
+
+from pathlib import Path
+
+import pytest
+
+import rattlebox as rb
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def test_all_examples_are_checked_here() -> None:
+    """No example escapes the checks below."""
+    assert {path.stem for path in EXAMPLES.glob("*.toml")} == {
+        "steel_ball",
+        "steel_ball_jackson_green",
+        "row_on_beam",
+        "shaker",
+    }
+
+
+@pytest.mark.parametrize(("name", "speed"), [("steel_ball", 0.17887), ("steel_ball_jackson_green", 0.1826)])
+def test_steel_balls(name: str, speed: float) -> None:
+    """The steel ball's fastest impact has the known approach speed, and the ledger closes."""
+    run = rb.simulate(rb.Case.from_file(EXAMPLES / f"{name}.toml"))
+    assert run.ok
+    assert run.closure < 1e-12
+    assert run.arrays.impacts.approach_speed.max() == pytest.approx(speed, rel=2e-3)
+
+
+def test_row_on_a_beam_keeps_its_order() -> None:
+    """Five balls on a beam stay in their cavity and in their order, and the ledger closes."""
+    run = rb.simulate(rb.Case.from_file(EXAMPLES / "row_on_beam.toml"))
+    assert run.ok
+    assert run.closure < 1e-8
+    gaps = run.arrays.ball_position[:, 1:] - run.arrays.ball_position[:, :-1]
+    radii_apart = run.arrays.ball_centre[1:] - run.arrays.ball_centre[:-1]
+    assert (gaps > radii_apart - run.arrays.impacts.peak_overlap.max()).all()
+
+
+def test_ball_on_a_shaker_is_thrown() -> None:
+    """The ball on a vibrating table is struck again and again, and the ledger with the table's work closes."""
+    run = rb.simulate(rb.Case.from_file(EXAMPLES / "shaker.toml"))
+    assert run.ok
+    assert len(run.arrays.impacts) > 5
+    assert run.closure < 1e-10
