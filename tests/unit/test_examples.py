@@ -19,13 +19,13 @@ def test_all_examples_are_checked_here() -> None:
     }
 
 
-@pytest.mark.parametrize(("name", "speed"), [("steel_ball", 0.17887), ("steel_ball_jackson_green", 0.1826)])
-def test_steel_balls(name: str, speed: float) -> None:
-    """The steel ball's fastest impact has the known approach speed, and the ledger closes."""
+@pytest.mark.parametrize("name", ["steel_ball", "steel_ball_jackson_green"])
+def test_steel_balls(name: str) -> None:
+    """The first impact has the approach speed of the exact free motion, and the ledger closes."""
     run = rb.simulate(rb.Case.from_file(EXAMPLES / f"{name}.toml"))
     assert run.ok
-    assert run.closure < 1e-12
-    assert run.arrays.impacts.approach_speed.max() == pytest.approx(speed, rel=2e-3)
+    assert run.closure < 1e-10
+    assert run.arrays.impacts.approach_speed[0] == pytest.approx(0.1566058315137885, rel=1e-12)
 
 
 def test_row_on_a_beam_keeps_its_order() -> None:
