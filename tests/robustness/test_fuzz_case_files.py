@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import tomlkit
+import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -135,7 +135,7 @@ def mutated(draw: st.DrawFn) -> str:
             container[draw(st.sampled_from(KEYS))] = draw(anything)
         if not places(data):
             break
-    return tomlkit.dumps(data)
+    return tomli_w.dumps(data)
 
 
 def case_or_case_error(text: str) -> rb.Case | None:

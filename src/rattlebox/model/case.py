@@ -199,10 +199,10 @@ class Case(Part):
 
     def to_toml(self) -> str:
         """Return the case as the text of a case file that reads back equal."""
-        import tomlkit
+        import tomli_w
 
         data = self.model_dump(mode="json", exclude_none=True, exclude_defaults=False)
-        return tomlkit.dumps(_tidy(data))
+        return tomli_w.dumps(_tidy(data))
 
     def to_file(self, path: str | os.PathLike[str]) -> None:
         """Write a case file that reads back equal."""

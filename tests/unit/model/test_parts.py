@@ -36,7 +36,7 @@ def test_import_leaves_the_heavy_parts_alone() -> None:
     """Importing rattlebox and building a case in plain and common units loads neither pint, xarray nor matplotlib."""
     program = (
         "import sys, rattlebox as rb; rb.SDOF(mass='20 kg', stiffness='80 kN/m');"
-        "print([m for m in ('pint', 'xarray', 'matplotlib', 'scipy', 'h5netcdf', 'tomlkit') if m in sys.modules])"
+        "print([m for m in ('pint', 'xarray', 'matplotlib', 'scipy', 'h5netcdf', 'tomli_w') if m in sys.modules])"
     )
     shown = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert shown.stdout.strip() == "[]"
