@@ -112,7 +112,7 @@ class JacksonGreen(Restitution):
     extrapolate: bool = False
 
     def critical_speed(self, pair: Pair) -> float:
-        """Return V_c [m/s], the speed at which yield begins (PHYSICS: seed eqs 13 to 16)."""
+        """Return V_c [m/s], the speed at which yield begins."""
         pair = pair.against(self.wall)
         strength, _ = self._strength(pair)
         pressure = math.pi * strength / 2
