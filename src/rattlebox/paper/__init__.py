@@ -1,0 +1,1 @@
+"""The seed paper, reproduced and judged: one figure a file."""
