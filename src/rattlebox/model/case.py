@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
+from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -186,7 +187,7 @@ class Case(Part):
         try:
             values = _insert_materials(values)
             if folder is not None:
-                values = _resolve_files(values, folder)
+                values = _with_files(values, lambda file: str(folder / file))
             return cls.model_validate(values)
         except ValidationError as error:
             raise translate(error, source, known_fields()) from None
@@ -198,15 +199,19 @@ class Case(Part):
             ) from None
 
     def to_toml(self) -> str:
-        """Return the case as the text of a case file that reads back equal."""
+        """Return the case as the text of a case file that reads back equal; files in it are named by their full path."""
+        return self._toml(str)
+
+    def to_file(self, path: str | os.PathLike[str]) -> None:
+        """Write a case file that reads back equal; files in it are named as seen from its folder."""
+        folder = Path(path).absolute().parent
+        Path(path).write_text(self._toml(lambda file: _relative(file, folder)), encoding="utf-8")
+
+    def _toml(self, name_of: Callable[[str], str]) -> str:
         import tomli_w
 
         data = self.model_dump(mode="json", exclude_none=True, exclude_defaults=False)
-        return tomli_w.dumps(_tidy(data))
-
-    def to_file(self, path: str | os.PathLike[str]) -> None:
-        """Write a case file that reads back equal."""
-        Path(path).write_text(self.to_toml(), encoding="utf-8")
+        return tomli_w.dumps(_tidy(_with_files(data, name_of)))
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
@@ -256,10 +261,18 @@ def _insert_materials(values: dict[str, Any]) -> dict[str, Any]:
     return dict(insert(values))
 
 
-def _resolve_files(node: Any, folder: Path) -> Any:
+def _with_files(node: Any, name_of: Callable[[str], str]) -> Any:
+    """The same with other names of files."""
     if isinstance(node, dict):
         return {
-            key: str(folder / item) if key == "file" and isinstance(item, str) else _resolve_files(item, folder)
+            key: name_of(item) if key == "file" and isinstance(item, str) else _with_files(item, name_of)
             for key, item in node.items()
         }
-    return [_resolve_files(item, folder) for item in node] if isinstance(node, list) else node
+    return [_with_files(item, name_of) for item in node] if isinstance(node, list) else node
+
+
+def _relative(file: str, folder: Path) -> str:
+    try:
+        return Path(os.path.relpath(file, folder)).as_posix()
+    except ValueError:  # another drive
+        return file

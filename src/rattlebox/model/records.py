@@ -1,25 +1,32 @@
-"""Reads records from files: two columns, time and value."""
+"""Reads records from files: a column of times and one of values."""
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .errors import Hint
+from .errors import Hint, nearest
+from .files import BINARY, Array, check_finite, existing, read_arrays
 
-Column = NDArray[np.float64]
+Column = int | str
+"""Number of a column, counted from 1, or its name."""
 
 
-def read_columns(path: str) -> tuple[Column, Column]:
-    """Read time and value from a CSV, NPY or MAT file.
+def read_columns(path: str, columns: Sequence[Column] | None = None) -> tuple[Array, Array]:
+    """Read times and values from a file.
 
     Parameters
     ----------
     path
-        CSV: one header line allowed, comma, semicolon or blank between columns. NPY: array (n, 2) or (2, n). MAT: variables
-        `time` and `value`, or a single array (n, 2).
+        CSV and other text: comma, semicolon, tab or blank between columns; lines above the numbers and lines that begin
+        with # or % are no data. NPY, NPZ, MAT: an array of columns, or one variable for each.
+    columns
+        Which column or variable holds times and which values; may be left out where there are two columns, or variables
+        called time and value.
 
     Returns
     -------
@@ -28,68 +35,137 @@ def read_columns(path: str) -> tuple[Column, Column]:
     Raises
     ------
     Hint
-        When the file cannot be read, naming the line that is wrong.
+        When the file cannot be read, naming the line that is wrong, or the columns that there are.
     """
-    file = Path(path)
-    if not file.is_file():
-        raise Hint(f"there is no file {path}")
-    if file.suffix == ".npy":
-        try:
-            return _two_columns(np.load(file, allow_pickle=False), path)
-        except (ValueError, OSError) as error:
-            raise Hint(f"{path} is not a NumPy array of numbers: {error}") from None
-    if file.suffix == ".mat":
-        return _from_mat(path)
-    return _from_csv(file)
+    file = existing(path)
+    if file.suffix in BINARY:
+        times, values = _pick(file, read_arrays(file), columns)
+    else:
+        times, values = _from_text(file, columns)
+    return times, values
 
 
-def _two_columns(array: Column, path: str) -> tuple[Column, Column]:
-    if array.ndim == 2 and array.shape[1] != 2 and array.shape[0] == 2:
-        array = array.T
-    if array.ndim != 2 or array.shape[1] != 2:
-        raise Hint(f"{path} holds an array of shape {array.shape}; two columns are needed, time and value")
-    return array[:, 0].astype(float), array[:, 1].astype(float)
+def as_columns(value: Any) -> tuple[Column, Column] | None:
+    """Return a pair of columns as it is given.
+
+    Raises
+    ------
+    Hint
+        When it is no pair of numbers and names.
+    """
+    if value is None:
+        return None
+    good = isinstance(value, (list, tuple)) and len(value) == 2
+    if not good or not all(isinstance(item, (int, str)) and not isinstance(item, bool) for item in value):
+        raise Hint("columns are two numbers or names: that of times, that of values", 'columns = ["time", "force"]')
+    return value[0], value[1]
 
 
-def _from_mat(path: str) -> tuple[Column, Column]:
-    from scipy.io import loadmat
+def _pick(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> tuple[Array, Array]:
+    """Two of the variables, or two columns of the only one."""
+    there = ", ".join(f"{name or 'an array'} {array.shape}" for name, array in arrays.items()) or "no numbers"
+    if columns is None and {"time", "value"} <= set(arrays):
+        columns = ("time", "value")
+    if len(arrays) == 1 and (columns is None or all(isinstance(column, int) for column in columns)):
+        ((_, table),) = arrays.items()
+        if table.ndim == 2 and table.shape[0] == 2 != table.shape[1]:
+            table = table.T
+        if table.ndim == 2:
+            names = [str(k + 1) for k in range(table.shape[1])]
+            first, second = (table[:, k] for k in _numbers(file, columns, names))
+            return check_finite(first, f"{file}: the times"), check_finite(second, f"{file}: the values")
+    if columns is None:
+        raise Hint(f"{file} holds {there}; which is which?", 'columns = ["time", "value"]')
+    pair = []
+    for column in columns:
+        if column not in arrays:
+            raise Hint(f"{file} holds {there}; no {column!r}", nearest(str(column), arrays))
+        pair.append(check_finite(arrays[str(column)].ravel(), f"{file}: {column}"))
+    if pair[0].size != pair[1].size:
+        raise Hint(f"{file}: {columns[0]} holds {pair[0].size} numbers, {columns[1]} {pair[1].size}")
+    return pair[0], pair[1]
 
-    try:
-        content = {k: v for k, v in loadmat(path).items() if not k.startswith("__")}
-    except Exception as error:
-        raise Hint(f"{path} cannot be read as a MAT file (version 7 or earlier): {error}") from None
-    if {"time", "value"} <= set(content):
-        return content["time"].ravel().astype(float), content["value"].ravel().astype(float)
-    if len(content) == 1:
-        return _two_columns(next(iter(content.values())), path)
-    raise Hint(
-        f"{path} holds {', '.join(content)}; variables 'time' and 'value' are needed, or one array of two columns"
-    )
+
+def _numbers(file: Path, columns: Sequence[Column] | None, names: list[str]) -> list[int]:
+    """Places of the two columns, counted from 0."""
+    available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in enumerate(names, start=1))
+    if columns is None:
+        if len(names) != 2:
+            raise Hint(
+                f"{file} has {len(names)} columns ({available}), two are needed",
+                "columns = [1, 2]" if len(names) > 2 else "",
+            )
+        columns = (1, 2)
+    places = []
+    for column in columns:
+        if isinstance(column, str) and column in names:
+            places.append(names.index(column))
+        elif isinstance(column, int) and 1 <= column <= len(names):
+            places.append(column - 1)
+        else:
+            suggestion = nearest(column, names) if isinstance(column, str) else "columns count from 1"
+            raise Hint(f"{file} has no column {column!r}; it has {available}", suggestion)
+    return places
 
 
-def _from_csv(file: Path) -> tuple[Column, Column]:
-    rows: list[tuple[float, float]] = []
-    try:
-        lines = file.read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError:
-        raise Hint(f"{file} is not text") from None
-    for number, line in enumerate(lines, start=1):
-        cells = line.replace(";", ",").replace("\t", ",").split(",") if any(c in line for c in ";,\t") else line.split()
-        cells = [cell.strip() for cell in cells if cell.strip()]
-        if not cells or line.lstrip().startswith("#"):
-            continue
-        try:
-            values = [float(cell) for cell in cells]
-        except ValueError:
-            if not rows and number == 1:
-                continue
-            raise Hint(f"{file}, line {number}: {line.strip()!r} is not two numbers") from None
-        if len(values) != 2:
-            raise Hint(f"{file}, line {number}: {len(values)} numbers, two are needed (time, value)")
-        if not all(np.isfinite(values)):
-            raise Hint(f"{file}, line {number}: {line.strip()!r} is not finite")
-        rows.append((values[0], values[1]))
-    if not rows:
+def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[Array, Array]:
+    lines = _lines(file)
+    start = next((k for k, (_, cells, marked) in enumerate(lines) if not marked and any(map(_is_number, cells))), None)
+    if start is None:
         raise Hint(f"{file} holds no numbers")
-    array = np.array(rows)
-    return array[:, 0], array[:, 1]
+    width = len(lines[start][1])
+    heads = [cells for _, cells, _ in lines[:start] if len(cells) == width]
+    names = heads[0] if heads else [str(k + 1) for k in range(width)]
+    places = _numbers(file, columns, names)
+    rows: list[list[float]] = []
+    for number, cells, marked in lines[start:]:
+        if marked:
+            continue
+        if len(cells) != width:
+            raise Hint(f"{file}, line {number}: {len(cells)} columns, but {width} in line {lines[start][0]}")
+        try:
+            rows.append([float(cells[k]) for k in places])
+        except ValueError:
+            _complain(file, number, [cells[k] for k in places])
+        if not np.isfinite(rows[-1]).all():
+            raise Hint(f"{file}, line {number}: {', '.join(cells[k] for k in places)} is not finite")
+    table = np.array(rows)
+    return table[:, 0], table[:, 1]
+
+
+def _lines(file: Path) -> list[tuple[int, list[str], bool]]:
+    """Number, cells, and whether it is marked as a comment, of each line with something in it."""
+    try:
+        text = file.read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise Hint(f"{file} is not text", "CSV, or a file that ends in .npy, .npz or .mat") from None
+    last = next((line for line in reversed(text) if line.strip() and line.lstrip()[0] not in "#%"), "")
+    delimiter = next((mark for mark in ";\t," if mark in last), None)
+    lines = []
+    for number, line in enumerate(text, start=1):
+        marked = line.lstrip()[:1] in ("#", "%")
+        bare = line.lstrip("#% \t") if marked and delimiter != "\t" else line.strip(" ").lstrip("#%")
+        try:
+            cells = bare.split() if delimiter is None else next(csv.reader([bare], delimiter=delimiter), [])
+        except csv.Error as error:
+            raise Hint(f"{file}, line {number}: {error}") from None
+        cells = [cell.strip() for cell in cells]
+        while cells and not cells[-1]:
+            cells.pop()
+        if cells:
+            lines.append((number, cells, marked))
+    return lines
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _complain(file: Path, number: int, cells: list[str]) -> NoReturn:
+    bad = next(cell for cell in cells if not _is_number(cell))
+    comma = _is_number(bad.replace(",", ".", 1))
+    raise Hint(f"{file}, line {number}: {bad!r} is not a number", "a decimal point, not a comma" if comma else "")

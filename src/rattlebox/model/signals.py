@@ -13,7 +13,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, m
 
 from .base import Part
 from .errors import Hint
-from .records import read_columns
+from .files import absolute
+from .records import Column, as_columns, read_columns
 from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime, numbers, parse
 
 Unit = Literal["N", "m/s^2", "m"]
@@ -208,34 +209,53 @@ class Record(Signal):
         Strictly increasing [s].
     values
         As many, in `unit`, multiplied by `scale`.
-    file
-        Instead of both: a CSV, NPY or MAT file with time in the first and values in the second column.
+    file, columns
+        Instead of both: a CSV, NPY, NPZ or MAT file, and its columns of times and values, by number counted from 1 or by
+        name: `columns=(1, 3)`, `columns=("t", "a")`. They may be left out where there are only two.
     """
 
     kind: Literal["record"] = "record"
     times: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
     values: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
     file: str | None = None
+    columns: tuple[Column, Column] | None = None
     scale: float = 1.0
 
     @model_validator(mode="before")
     @classmethod
     def _from_file(cls, values: Any) -> Any:
-        if isinstance(values, dict) and values.get("file") is not None and "times" not in values:
-            times, numbers = read_columns(os.fspath(values["file"]))
-            return {**values, "times": times, "values": numbers}
-        return values
+        if not isinstance(values, dict):
+            return values
+        if values.get("file") is None:
+            if values.get("columns") is not None:
+                raise Hint("columns are those of a file", 'file = "push.csv"')
+            return values
+        if "times" in values or "values" in values:
+            raise Hint(
+                "give times and values, or a file, not both", 'columns = ["time", "force"] names those of the file'
+            )
+        path = absolute(values["file"])
+        times, numbers = read_columns(path, as_columns(values.get("columns")))
+        return {**values, "file": path, "times": times, "values": numbers}
 
     @model_validator(mode="after")
     def _sound(self) -> Record:
         if len(self.times) != len(self.values):
-            raise Hint(f"{len(self.times)} times, but {len(self.values)} values")
+            raise Hint(f"{self.label}: {len(self.times)} times, but {len(self.values)} values")
         if len(self.times) < 2:
-            raise Hint("a record needs at least two points")
+            raise Hint(f"{self.label}: a record needs at least two points")
         steps = np.flatnonzero(np.diff(self.times) <= 0)
         if steps.size:
-            raise Hint(f"times must increase, but point {int(steps[0]) + 2} is not later than the one before")
+            raise Hint(
+                f"{self.label}: times must increase, but point {int(steps[0]) + 2} is not later than the one before",
+                "columns = [2, 1], if times and values are swapped" if self.file else "",
+            )
         return self
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+        return self.file or "the record"
 
     @model_serializer(mode="wrap")
     def _file_stands_for_numbers(self, handler: Any) -> Any:
@@ -247,14 +267,19 @@ class Record(Signal):
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Record:
-        """Read a record from a CSV, NPY or MAT file.
+        """Read a record from a CSV, NPY, NPZ or MAT file.
 
         Parameters
         ----------
         path
-            The file; time in the first column [s], values in the second.
+            The file; times in seconds.
         **options
-            unit, scale, point.
+            columns, unit, scale, point.
+
+        Raises
+        ------
+        CaseError
+            When the file cannot be read, naming the line that is wrong or the columns that there are.
         """
         return cls(file=os.fspath(path), **options)
 

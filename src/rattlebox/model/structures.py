@@ -6,10 +6,11 @@ import os
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_serializer, model_validator
 
 from .base import Part
-from .errors import Hint
+from .errors import Hint, nearest
+from .files import absolute, check_finite, existing, read_arrays
 from .modes import ModalModel, Vector
 from .signals import AnySignal, Signal, Unit, as_signals
 from .units import Damping, Frequency, Length, PositiveMass, Stiffness, Velocity, numbers
@@ -132,10 +133,7 @@ class Modal(Part):
         )
 
 
-def _load_matrix(value: Any) -> Any:
-    if isinstance(value, (str, os.PathLike)):
-        raise Hint("give the matrix itself, or 'file' for all three", 'file = "structure.npz"')
-    return _numbers(value)
+Square = Annotated[list[list[float]], BeforeValidator(_numbers)]
 
 
 class Matrices(Part):
@@ -146,9 +144,13 @@ class Matrices(Part):
     Parameters
     ----------
     M, C, K
-        Mass, damping and stiffness, (n, n), SI units.
+        Mass, damping and stiffness, (n, n), SI units; C is left out for a structure without damping.
     points
         Named points: number of the degree of freedom, counted from 0, or a vector of n weights.
+    file
+        Instead of M, C, K: a NPZ or MAT file that holds them under these names, full or sparse, and, if it likes, points as
+        vectors of n weights: `point_tip` for a point "tip", or the fields of a struct `points`. Points given beside
+        the file come before those in it.
     influence
         Motion of each degree of freedom with the base; default 1 for all.
     displacement, velocity
@@ -157,44 +159,98 @@ class Matrices(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("structure",)
     kind: Literal["matrices"] = "matrices"
-    M: Annotated[list[list[float]], BeforeValidator(_load_matrix)]
-    C: Annotated[list[list[float]], BeforeValidator(_load_matrix)]
-    K: Annotated[list[list[float]], BeforeValidator(_load_matrix)]
+    M: Square
+    C: Square | None = None
+    K: Square
     points: dict[str, int | Numbers]
+    file: str | None = None
     influence: Numbers | None = None
     displacement: Numbers | None = None
     velocity: Numbers | None = None
 
+    @model_validator(mode="before")
+    @classmethod
+    def _from_file(cls, values: Any) -> Any:
+        if not isinstance(values, dict) or values.get("file") is None:
+            return values
+        twice = sorted({"M", "C", "K"} & set(values))
+        if twice:
+            raise Hint(f"give {twice[0]} or a file, not both")
+        path = absolute(values["file"])
+        matrices, points = _read_matrices(path)
+        own = values.get("points")
+        if own is not None and not isinstance(own, dict):
+            return values
+        return {**values, **matrices, "points": points | (own or {}), "file": path}
+
     @model_validator(mode="after")
     def _sound(self) -> Self:
-        mass, damping, stiffness = (np.array(x) for x in (self.M, self.C, self.K))
+        mass, damping, stiffness = self.matrices()
         n = len(self.M)
+        of = f"{self.file}: " if self.file else ""
         for name, matrix in (("M", mass), ("C", damping), ("K", stiffness)):
-            if matrix.shape != (n, n):
+            if matrix.shape != (n, n) or n == 0:
                 raise Hint(
-                    f"{name} has shape {matrix.shape}, but M has {n} rows",
+                    f"{of}{name} has shape {matrix.shape}" + (f", but M has {n} rows" if name != "M" else ""),
                     "three square matrices of one size",
                 )
             if not np.allclose(matrix, matrix.T, rtol=1e-12, atol=1e-12 * np.abs(matrix).max(initial=0)):
                 raise Hint(
-                    f"{name} is not symmetric",
+                    f"{of}{name} is not symmetric",
                     f"{name} = ({name} + {name}^T) / 2, if the difference is rounding",
                 )
         if np.linalg.eigvalsh(mass).min() <= 0:
-            raise Hint("M is not positive definite: some motion would have no mass")
+            raise Hint(f"{of}M is not positive definite: some motion would have no mass")
+        if not self.points:
+            raise Hint(f"{of}at least one named point is needed", "points = { tip = 0 }")
         for name, point in self.points.items():
             if isinstance(point, int) and not 0 <= point < n:
                 raise Hint(f"points.{name} = {point} is no degree of freedom", f"0 to {n - 1}")
             if not isinstance(point, int) and len(point) != n:
-                raise Hint(f"points.{name} has {len(point)} numbers, but there are {n} degrees of freedom")
+                raise Hint(f"{of}point {name} has {len(point)} numbers, but there are {n} degrees of freedom")
+        for name in ("influence", "displacement", "velocity"):
+            row = getattr(self, name)
+            if row is not None and len(row) != n:
+                raise Hint(f"{name} has {len(row)} numbers, but there are {n} degrees of freedom")
         self.modes()
         return self
+
+    @model_serializer(mode="wrap")
+    def _file_stands_for_matrices(self, handler: Any) -> Any:
+        data = handler(self)
+        if self.file is not None:
+            for name in ("M", "C", "K"):
+                data.pop(name, None)
+        return data
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Matrices:
+        """Read a structure from a NPZ or MAT file.
+
+        Parameters
+        ----------
+        path
+            The file; it holds M, K, C unless there is no damping, and points as `point_<name>` or in a struct `points`.
+        **options
+            points, influence, displacement, velocity.
+
+        Raises
+        ------
+        CaseError
+            When a matrix is missing or describes no structure, naming the file and what it holds.
+        """
+        return cls.model_validate({"file": path, **options})
+
+    def matrices(self) -> tuple[Vector, Vector, Vector]:
+        """Return mass, damping and stiffness, (n, n) each."""
+        mass, stiffness = np.array(self.M), np.array(self.K)
+        return mass, np.zeros_like(mass) if self.C is None else np.array(self.C), stiffness
 
     def modes(self) -> ModalModel:
         """Reduce to modes; raises when damping is not proportional."""
         from scipy.linalg import eigh
 
-        mass, damping, stiffness = (np.array(x) for x in (self.M, self.C, self.K))
+        mass, damping, stiffness = self.matrices()
         values, vectors = eigh(stiffness, mass)
         largest = np.abs(values).max()
         if values.min() < -1e-9 * largest:
@@ -223,6 +279,31 @@ class Matrices(Part):
             q0=zero if self.displacement is None else projection @ np.array(self.displacement),
             p0=zero if self.velocity is None else projection @ np.array(self.velocity),
         )
+
+
+def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
+    """Matrices and points in a file, by name."""
+    file = existing(path)
+    if file.suffix not in (".npz", ".mat"):
+        raise Hint(f"{path} is neither NPZ nor MAT", "numpy.savez('beam.npz', M=M, C=C, K=K, point_tip=weights)")
+    arrays = read_arrays(file)
+    for name in ("M", "K"):
+        if name not in arrays:
+            raise Hint(f"{path} holds no {name}, but {', '.join(arrays) or 'no numbers'}", nearest(name, arrays))
+    matrices = {name: np.atleast_2d(arrays[name]) for name in ("M", "C", "K") if name in arrays}
+    points = {}
+    for name, array in arrays.items():
+        mark = next((mark for mark in ("point_", "points.") if name.startswith(mark)), None)
+        if mark is not None:
+            if array.size != len(matrices["M"]):
+                raise Hint(
+                    f"{path}: {name} has {array.size} numbers, but there are {len(matrices['M'])} degrees of freedom",
+                    f"a vector of weights, or points = {{ {name.removeprefix(mark)} = 0 }} beside the file",
+                )
+            points[name.removeprefix(mark)] = array.ravel()
+    for name, array in (matrices | points).items():
+        check_finite(array, f"{path}: {name}")
+    return matrices, points
 
 
 def _align(vectors: Vector, values: Vector, damping: Vector, tolerance: float) -> Vector:

@@ -1,3 +1,5 @@
+"""Ensembles of start positions and their bands."""
+
 import numpy as np
 import pytest
 

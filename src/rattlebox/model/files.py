@@ -1,0 +1,111 @@
+"""Reads named arrays from NPY, NPZ and MAT files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import Hint
+
+Array = NDArray[np.float64]
+BINARY = (".npy", ".npz", ".mat")
+
+
+def absolute(path: Any) -> str:
+    """Return a path that means the same from any folder.
+
+    Raises
+    ------
+    Hint
+        When it is no path.
+    """
+    if not isinstance(path, (str, os.PathLike)):
+        raise Hint("a file is named by text", 'file = "push.csv"')
+    return os.path.abspath(os.fspath(path))
+
+
+def existing(path: str) -> Path:
+    """Return the file at a path.
+
+    Raises
+    ------
+    Hint
+        When there is none.
+    """
+    if not Path(path).is_file():
+        raise Hint(f"there is no file {path}")
+    return Path(path)
+
+
+def read_arrays(file: Path) -> dict[str, Array]:
+    """Read everything numeric in a NPY, NPZ or MAT file.
+
+    Parameters
+    ----------
+    file
+        Path of an existing file.
+
+    Returns
+    -------
+    dict of str to float array
+        By name; fields of a MATLAB struct as "struct.field", the only array of a NPY file as "".
+
+    Raises
+    ------
+    Hint
+        When the file cannot be read.
+    """
+    try:
+        content = dict(_flat(_from_mat(file) if file.suffix == ".mat" else _from_numpy(file)))
+    except NotImplementedError:
+        raise Hint(f"{file} is a MAT file of version 7.3", "save('...', '-v7') in MATLAB") from None
+    except Exception as error:
+        raise Hint(f"{file} cannot be read as {file.suffix[1:].upper()}: {error}") from None
+    return {name: np.asarray(value, dtype=float) for name, value in content.items() if _is_real(value)}
+
+
+def _from_numpy(file: Path) -> Mapping[str, Any]:
+    loaded = np.load(file, allow_pickle=False)
+    if not isinstance(loaded, np.ndarray):
+        with loaded:
+            return dict(loaded)
+    return {"": loaded} if loaded.dtype.names is None else {name: loaded[name] for name in loaded.dtype.names}
+
+
+def _from_mat(file: Path) -> Mapping[str, Any]:
+    from scipy.io import loadmat
+
+    content: Mapping[str, Any] = loadmat(file, simplify_cells=True)
+    return content
+
+
+def _flat(content: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in content.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{above}{name}.")
+        elif not name.startswith("__"):
+            yield above + name, value.toarray() if hasattr(value, "toarray") else np.asarray(value)
+
+
+def _is_real(value: NDArray[Any]) -> bool:
+    return value.dtype.kind in "fiub"
+
+
+def check_finite(array: Array, where: str) -> Array:
+    """Return the array.
+
+    Raises
+    ------
+    Hint
+        When a number in it is not finite; `where` says what is read.
+    """
+    bad = np.argwhere(~np.isfinite(array))
+    if len(bad):
+        place = ", ".join(f"{word} {i + 1}" for word, i in zip(("row", "column"), bad[0], strict=False))
+        raise Hint(f"{where} holds {array[tuple(bad[0])]} in {place or 'it'}")
+    return array
