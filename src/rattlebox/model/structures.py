@@ -290,8 +290,8 @@ def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
     for name in ("M", "K"):
         if name not in arrays:
             raise Hint(f"{path} holds no {name}, but {', '.join(arrays) or 'no numbers'}", nearest(name, arrays))
-    matrices = {name: np.atleast_2d(arrays[name]) for name in ("M", "C", "K") if name in arrays}
-    points = {}
+    matrices: dict[str, Vector] = {name: np.atleast_2d(arrays[name]) for name in ("M", "C", "K") if name in arrays}
+    points: dict[str, Vector] = {}
     for name, array in arrays.items():
         mark = next((mark for mark in ("point_", "points.") if name.startswith(mark)), None)
         if mark is not None:
