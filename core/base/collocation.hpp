@@ -1,34 +1,57 @@
-// Spectral integration on Gauss-Legendre nodes of [0, 1]: from values of f at the nodes to its integral up to
-// any point.
+// Spectral integration and interpolation on Gauss-Legendre nodes of [0, 1], from values of f at the nodes.
 #pragma once
 
-#include "base/real.hpp"
+#include <cstddef>
+
+#include "base/lanes.hpp"
 
 namespace rattlebox {
 
 template <int n> struct Collocation {
-    real node[n], weight[n];
-    real legendre[n][n + 1];        // P_k at the nodes (as points of [-1, 1]), k = 0..n
-    alignas(64) real columns[n][n]; // columns[j][i]: weight of f(node j) in the integral from 0 to node i
+    static_assert(n % 16 == 0, "halves are worked through in blocks of eight");
+    static constexpr int half = n / 2, block = lane_count;
+    struct alignas(64) Row { // a function's values at the nodes
+        real at[n];
+        real& operator[](int i) { return at[i]; }
+        const real& operator[](int i) const { return at[i]; }
+        Lanes& eight(int i) { return lanes(at + i); }
+        const Lanes& eight(int i) const { return lanes(at + i); }
+    };
+    alignas(64) real node[n], weight[n], barycentric[n]; // the last: weights of interpolation
+    // Nodes and weights are symmetric, so f splits into an odd and an even part and the work into halves:
+    // [j][i] is the weight of f(1 - node j) - f(node j), and of their sum, in integrals up to and around node
+    // i.
+    alignas(64) real odd[half][half], even[half][half];
 
     Collocation() {
+        real p[n + 1], legendre[n][n + 1]; // P_k at the nodes (as points of [-1, 1])
         for (int i = 0; i < n; ++i) {
             real x = -std::cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
             for (int iteration = 0; iteration < 100; ++iteration) {
-                fill(x, legendre[i]);
-                slope = n * (x * legendre[i][n] - legendre[i][n - 1]) / (x * x - 1);
-                const real change = legendre[i][n] / slope;
+                fill(x, p);
+                slope = n * (x * p[n] - p[n - 1]) / (x * x - 1);
+                const real change = p[n] / slope;
                 x -= change;
                 if (std::fabs(change) < epsilon) break;
             }
             fill(x, legendre[i]);
             node[i] = 0.5 * (1 + x);
             weight[i] = 1 / ((1 - x * x) * slope * slope);
+            barycentric[i] = (i % 2 ? -1 : 1) * std::sqrt((1 - x * x) * weight[i]);
         }
-        for (int i = 0; i < n; ++i) {
-            real part[n];
-            row(node[i], part);
-            for (int j = 0; j < n; ++j) columns[j][i] = part[j];
+        for (int i = 0; i < half; ++i) {
+            real integral[n]; // of P_k from -1 to node i, times (2 k + 1)
+            integral[0] = 2 * node[i];
+            for (int k = 1; k < n; ++k) integral[k] = legendre[i][k + 1] - legendre[i][k - 1];
+            const auto part = [&](int j) {
+                real sum = 0;
+                for (int k = 0; k < n; ++k) sum += legendre[j][k] * integral[k];
+                return 0.5 * weight[j] * sum;
+            };
+            for (int j = 0; j < half; ++j) {
+                odd[j][i] = 0.5 * (part(j) - part(n - 1 - j));
+                even[j][i] = 0.5 * (weight[j] - part(j) - part(n - 1 - j));
+            }
         }
     }
 
@@ -38,26 +61,66 @@ template <int n> struct Collocation {
         for (int k = 2; k <= n; ++k) p[k] = ((2 * k - 1) * x * p[k - 1] - (k - 1) * p[k - 2]) / k;
     }
 
-    // Weights of the values at the nodes in the integral from 0 to s.
-    void row(real s, real* out) const {
-        real p[n + 1], integral[n]; // of P_k from -1 to x, times (2 k + 1)
-        const real x = 2 * s - 1;
-        fill(x, p);
-        integral[0] = x + 1;
-        for (int k = 1; k < n; ++k) integral[k] = p[k + 1] - p[k - 1];
-        for (int j = 0; j < n; ++j) {
-            real sum = 0;
-            for (int k = 0; k < n; ++k) sum += legendre[j][k] * integral[k];
-            out[j] = 0.5 * weight[j] * sum;
+    // out[r][i] = integral of f[r] from 0 to node i, for several functions at once.
+    template <int count> void integrate(const Row* f, Row* out) const {
+        alignas(64) real difference[count][half], sum[count][half];
+        real whole[count];
+        for (int r = 0; r < count; ++r) {
+            for (int j = 0; j < half; ++j) {
+                difference[r][j] = f[r][j] - f[r][n - 1 - j];
+                sum[r][j] = f[r][j] + f[r][n - 1 - j];
+            }
+            whole[r] = 0.5 * dot<half>(weight, sum[r]);
+        }
+        using Register = Pack<register_width>; // one for each running sum: they all stay in registers
+        constexpr int width = register_width;
+        for (int i0 = 0; i0 < half; i0 += width) {
+            Register a[count] = {}, b[count] = {};
+            for (int j = 0; j < half; ++j) {
+                const Register odd_j = pack<width>(&odd[j][i0]), even_j = pack<width>(&even[j][i0]);
+                for (int r = 0; r < count; ++r) {
+                    a[r] = a[r] + Register::all(difference[r][j]) * odd_j;
+                    b[r] = b[r] + Register::all(sum[r][j]) * even_j;
+                }
+            }
+            for (int r = 0; r < count; ++r) {
+                const Register middle = Register::all(whole[r]) + a[r];
+                alignas(64) real mirrored[width];
+                pack<width>(out[r].at + i0) = middle - b[r];
+                pack<width>(mirrored) = middle + b[r];
+                for (int i = 0; i < width; ++i) out[r][n - 1 - i0 - i] = mirrored[i];
+            }
         }
     }
 
-    // out[i] = integral of f from 0 to node i.
-    void integrate(const real* f, real* out) const {
-        real sum[n] = {};
-        for (int j = 0; j < n; ++j)
-            for (int i = 0; i < n; ++i) sum[i] += columns[j][i] * f[j];
-        for (int i = 0; i < n; ++i) out[i] = sum[i];
+    // Sum of products, in eight partial sums whatever the instruction set.
+    template <int length> static real dot(const real* a, const real* b) {
+        static_assert(length % block == 0);
+        Lanes sum = {};
+        for (int j = 0; j < length; j += block) sum += lanes(a + j) * lanes(b + j);
+        return total(sum);
+    }
+
+    // The same for any number of functions.
+    void integrate(const Row* f, Row* out, std::size_t count) const {
+        for (; count >= 4; f += 4, out += 4, count -= 4) integrate<4>(f, out);
+        if (count == 3) integrate<3>(f, out);
+        if (count == 2) integrate<2>(f, out);
+        if (count == 1) integrate<1>(f, out);
+    }
+
+    // Integral of f from 0 to 1.
+    real whole(const Row& f) const { return dot<n>(weight, f.at); }
+
+    // f at any point that is not a node, from its values at the nodes.
+    real interpolate(const Row& f, real x) const {
+        Lanes above = {}, below = {};
+        for (int i = 0; i < n; i += block) {
+            const Lanes part = lanes(barycentric + i) / (Lanes::all(x) - lanes(node + i));
+            above += part * f.eight(i);
+            below += part;
+        }
+        return total(above) / total(below);
     }
 };
 

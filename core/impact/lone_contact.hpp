@@ -29,7 +29,7 @@ struct PhaseGrid {
     static constexpr int n = 32;
     using Rule = Collocation<n>;
     real end = 0;
-    alignas(64) real psi[n], slope[n], sine[n], cosine[n], root[n]; // slope = dpsi/dx, root = sin(psi)^(1/5)
+    Rule::Row psi, slope, sine, cosine, root; // slope = dpsi/dx, root = sin(psi)^(1/5)
 
     static const Rule& rule() {
         static const Rule rule;
@@ -77,119 +77,150 @@ struct PhaseGrid {
 
 class LoneContact {
     static constexpr int n = PhaseGrid::n;
-    static constexpr int most_sweeps = 16;
-    using Values = real[n];
+    static constexpr int most_sweeps = 24;
+    using Row = PhaseGrid::Rule::Row;
+    enum : std::size_t {
+        logarithm,
+        clock,
+        first_mode
+    }; // rows that are integrated; then each q, then the base
 
     const Problem& problem_;
+    const std::size_t modes_;
     const Loads* loads_ = nullptr;
     const Contact* contact_ = nullptr;
     const Damper* damper_ = nullptr;
     const State* start_ = nullptr;
     HertzTsuji law_;
     real zeta_ = 0, s_ = 1, r0_ = 0, depth0_ = 0, wave_ = 0, damping_ = 0, speed_ = 0, side_ = 0;
+    real constant_ = 0; // part of the closing acceleration
+    bool base_moves_ = false;
     PhaseGrid grid_;
-    alignas(64) Values time_slope_, log_r_, time_, a_, w_, x_, drift_, log_slope_, a_slope_;
-    std::vector<real> q_, p_, force_, p_slope_, q_slope_, signals_; // by mode or load, then node
-    real row_[n];
+    Row x0_, r1_, turn_; // without closing acceleration: x and r; w = r turn in any case
+    Row a_, base_, x_, w_;
+    std::vector<Row> slope_, integral_;
+    std::vector<Row> q_, p_, u_, force_, signal_; // by mode or load
 
-    real* mode(std::vector<real>& v, std::size_t k) { return v.data() + k * n; }
+    std::size_t q_row() const { return first_mode + modes_; }
+    std::size_t base_row() const { return q_row() + modes_; }
+    real weight(std::size_t k) const {
+        return -side_ * damper_->shape[k];
+    } // of a mode in what closes the gap
+    // Of the structure's velocity, from that of the gap.
+    real kick(std::size_t k) const { return side_ * damper_->shape[k] * contact_->mass; }
 
     // External closing acceleration at the nodes, with the balls' share constant but for the base.
     void external() {
-        const std::size_t m = problem_.modes.size();
-        const bool both_balls = side_ == 0;
-        for (std::size_t l = 0; loads_->active() && l < loads_->size(); ++l)
-            for (int i = 0; i < n; ++i)
-                signals_[l * n + static_cast<std::size_t>(i)] = loads_->piece(l).value(start_->t + time_[i]);
-        real constant = 0;
-        if (!both_balls) constant = side_ * damper_->gravity;
-        for (int i = 0; i < n; ++i) a_[i] = constant;
-        for (std::size_t k = 0; k < m; ++k) {
-            real* f = mode(force_, k);
-            const real* q = mode(q_, k);
-            const real* p = mode(p_, k);
-            const real two_decay = 2 * problem_.modes[k].decay, stiffness = problem_.modes[k].stiffness;
-            for (int i = 0; i < n; ++i) f[i] = -two_decay * p[i] - stiffness * q[i];
-            for (std::size_t l = 0; loads_->active() && l < loads_->size(); ++l)
-                for (int i = 0; i < n; ++i)
-                    f[i] += loads_->load(l).shape[k] * signals_[l * n + static_cast<std::size_t>(i)];
-            if (both_balls) continue;
-            const real weight = -side_ * damper_->shape[k];
-            for (int i = 0; i < n; ++i) a_[i] += weight * f[i];
-        }
-        if (!both_balls && loads_->active())
+        for (int i = 0; i < n; ++i) a_[i] = constant_;
+        if (loads_->active())
             for (std::size_t l = 0; l < loads_->size(); ++l)
-                if (loads_->load(l).base)
-                    for (int i = 0; i < n; ++i)
-                        a_[i] -= side_ * signals_[l * n + static_cast<std::size_t>(i)];
+                for (int i = 0; i < n; ++i)
+                    signal_[l][i] = loads_->piece(l).value(start_->t + integral_[clock][i]);
+        for (std::size_t k = 0; k < modes_; ++k) {
+            Row& f = force_[k];
+            const real two_decay = 2 * problem_.modes[k].decay, stiffness = problem_.modes[k].stiffness;
+            for (int i = 0; i < n; ++i) f[i] = -two_decay * p_[k][i] - stiffness * q_[k][i];
+            if (loads_->active())
+                for (std::size_t l = 0; l < loads_->size(); ++l)
+                    for (int i = 0; i < n; ++i) f[i] += loads_->load(l).shape[k] * signal_[l][i];
+            const real part = weight(k);
+            for (int i = 0; i < n; ++i) a_[i] += part * f[i];
+        }
+        if (!base_moves_) return;
+        for (int i = 0; i < n; ++i) base_[i] = 0;
+        for (std::size_t l = 0; l < loads_->size(); ++l)
+            if (loads_->load(l).base)
+                for (int i = 0; i < n; ++i) base_[i] -= side_ * signal_[l][i];
+        for (int i = 0; i < n; ++i) a_[i] += base_[i];
     }
 
-    // exp(y) for |y| < 0.7: Taylor, so that the loop over nodes vectorises.
-    static real short_exp(real y) {
-        constexpr int order = 15;
-        static constexpr auto inverse_factorial = [] {
-            std::array<real, order + 1> c{1};
-            for (int k = 1; k <= order; ++k)
-                c[static_cast<std::size_t>(k)] = c[static_cast<std::size_t>(k - 1)] / k;
-            return c;
-        }();
-        real sum = inverse_factorial[order];
-        for (int k = order - 1; k >= 0; --k) sum = inverse_factorial[static_cast<std::size_t>(k)] + y * sum;
+    template <class T> static T fifth_power(T v) {
+        const T v2 = v * v;
+        return v2 * v2 * v;
+    }
+
+    // exp(y) for small |y|: Taylor.
+    template <int order> static Lanes short_exp(const Lanes& y) {
+        const Lanes one = Lanes::all(1);
+        Lanes sum = one;
+        for (int k = order; k >= 1; --k) sum = one + 1.0 / k * y * sum;
         return sum;
     }
 
-    // Rates at the nodes for the present guess.
+    // x, w and the slopes of the logarithm and the clock for the present guess.
     void rates() {
         const PhaseGrid& g = grid_;
-        for (int i = 0; i < n; ++i) {
-            const real grow = short_exp(0.2 * log_r_[i]);
-            const real r = r0_ * square(square(grow)) * grow;
-            x_[i] = depth0_ * g.root[i] * grow;
-            w_[i] = r * (s_ * g.cosine[i] - zeta_ * g.sine[i]);
-            const real pull = a_[i] / (s_ * r);
-            time_slope_[i] = g.slope[i] / (s_ * wave_ * x_[i] - pull * g.sine[i]);
-            log_slope_[i] = pull * (g.cosine[i] - zeta_ / s_ * g.sine[i]) * time_slope_[i];
-            a_slope_[i] = a_[i] * time_slope_[i];
+        const real per_s = 1 / s_, turning = s_ * s_ * wave_;
+        for (int i = 0; i < n; i += lane_count) {
+            const Lanes grow = short_exp<9>(0.2 * integral_[logarithm].eight(i));
+            const Lanes r = r1_.eight(i) * fifth_power(grow);
+            const Lanes x = x0_.eight(i) * grow, a = a_.eight(i), turn = turn_.eight(i);
+            const Lanes rate = g.slope.eight(i) / (turning * x * r - a * g.sine.eight(i));
+            x_.eight(i) = x;
+            w_.eight(i) = r * turn;
+            slope_[clock].eight(i) = s_ * r * rate;
+            slope_[logarithm].eight(i) = per_s * a * turn * rate;
+        }
+    }
+
+    // A first guess of the modes: forces as at the start, the contact as if on its own.
+    void foresee() {
+        rates();
+        grid_.rule().integrate(&slope_[clock], &integral_[clock], 1);
+        const Row& time = integral_[clock];
+        for (std::size_t k = 0; k < modes_; ++k) {
+            const real f = force_[k][0], u = start_->y[2 * k + 1] + kick(k) * speed_;
+            for (int i = 0; i < n; ++i) {
+                u_[k][i] = u + f * time[i];
+                integral_[q_row() + k][i] = time[i] * (u + 0.5 * f * time[i]);
+            }
+        }
+        place_modes();
+        external();
+    }
+
+    // p and q at the nodes, from u = p + kick w, which the contact force leaves alone.
+    void place_modes() {
+        for (std::size_t k = 0; k < modes_; ++k) {
+            const real q0 = start_->y[2 * k], share = kick(k);
+            const Row& path = integral_[q_row() + k];
+            for (int i = 0; i < n; ++i) {
+                p_[k][i] = u_[k][i] - share * w_[i];
+                q_[k][i] = q0 + path[i] - share * square(square(x_[i]));
+            }
         }
     }
 
     // One sweep; returns the largest relative change.
     real sweep() {
-        const PhaseGrid& g = grid_;
         rates();
-        Values next;
-        real change = 0;
-        g.rule().integrate(log_slope_, next);
-        for (int i = 0; i < n; ++i) {
-            const real value = next[i] - zeta_ / s_ * g.psi[i];
-            change = std::fmax(change, std::fabs(value - log_r_[i]));
-            log_r_[i] = value;
-        }
-        g.rule().integrate(time_slope_, time_);
-        g.rule().integrate(a_slope_, drift_);
-        for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
-            real *f = mode(force_, k), *ps = mode(p_slope_, k), *qs = mode(q_slope_, k), *q = mode(q_, k),
-                 *p = mode(p_, k);
+        const Row& slope = slope_[clock];
+        for (std::size_t k = 0; k < modes_; ++k)
             for (int i = 0; i < n; ++i) {
-                ps[i] = f[i] * time_slope_[i];
-                qs[i] = p[i] * time_slope_[i];
+                slope_[first_mode + k][i] = force_[k][i] * slope[i];
+                slope_[q_row() + k][i] = u_[k][i] * slope[i];
             }
-            g.rule().integrate(ps, p);
-            g.rule().integrate(qs, q);
-            const real kick = side_ * damper_->shape[k] * contact_->mass;
-            const real q0 = start_->y[2 * k], p0 = start_->y[2 * k + 1];
-            for (int i = 0; i < n; ++i) {
-                q[i] += q0;
-                p[i] += p0 + kick * (drift_[i] - (w_[i] - speed_));
-            }
+        if (base_moves_)
+            for (int i = 0; i < n; ++i) slope_[base_row()][i] = base_[i] * slope[i];
+        const Row before = integral_[logarithm];
+        grid_.rule().integrate(slope_.data(), integral_.data(), base_row() + base_moves_);
+        Lanes change = {};
+        for (int i = 0; i < n; i += lane_count)
+            change = larger(change, absolute(integral_[logarithm].eight(i) - before.eight(i)));
+        Row drift; // what the closing acceleration has added to the speed
+        for (int i = 0; i < n; ++i) drift[i] = constant_ * integral_[clock][i];
+        if (base_moves_)
+            for (int i = 0; i < n; ++i) drift[i] += integral_[base_row()][i];
+        for (std::size_t k = 0; k < modes_; ++k)
+            for (int i = 0; i < n; ++i) drift[i] += weight(k) * integral_[first_mode + k][i];
+        for (std::size_t k = 0; k < modes_; ++k) {
+            const real share = kick(k), p0 = start_->y[2 * k + 1];
+            for (int i = 0; i < n; ++i)
+                u_[k][i] = p0 + integral_[first_mode + k][i] + share * (speed_ + drift[i]);
         }
-        return change;
-    }
-
-    real dot(const real* row, const real* f) const {
-        real sum = 0;
-        for (int i = 0; i < n; ++i) sum += row[i] * f[i];
-        return sum;
+        place_modes();
+        external();
+        return largest(change);
     }
 
 public:
@@ -199,8 +230,9 @@ public:
     };
 
     explicit LoneContact(const Problem& problem)
-        : problem_(problem), q_(problem.modes.size() * n), p_(q_.size()), force_(q_.size()),
-          p_slope_(q_.size()), q_slope_(q_.size()), signals_(problem.loads.size() * n) {}
+        : problem_(problem), modes_(problem.modes.size()), slope_(first_mode + 2 * modes_ + 1),
+          integral_(slope_.size()), q_(modes_), p_(modes_), u_(modes_), force_(modes_),
+          signal_(problem.loads.size()) {}
 
     // Prepares the contact c that touches in `start` at this speed; false where collocation is not the right
     // tool.
@@ -223,37 +255,45 @@ public:
         depth0_ = std::pow(r0_ * 0.5 * std::sqrt(5.0) / b, 0.2);
         const real longest = longest_time();
         if (longest > available) return false;
-        for (std::size_t k = 0; k < problem_.modes.size(); ++k)
+        for (std::size_t k = 0; k < modes_; ++k)
             if (damper_->shape[k] != 0 && problem_.modes[k].rate() * longest > 1) return false;
         if (loads.active() && loads.frequency() * longest > 1) return false;
+        constant_ = side_ * damper_->gravity;
+        base_moves_ = false;
+        if (loads.active() && side_ != 0)
+            for (std::size_t l = 0; l < loads.size(); ++l) base_moves_ = base_moves_ || loads.load(l).base;
         const real natural_end = law.zero_overlap != 0 || zeta == 0 ? pi : 2 * std::acos(zeta);
         grid_.build(psi_end > 0 ? psi_end : natural_end);
-        const PhaseGrid& g = grid_;
-        for (std::size_t k = 0; k < problem_.modes.size(); ++k)
+        for (int i = 0; i < n; ++i) integral_[clock][i] = 0;
+        for (std::size_t k = 0; k < modes_; ++k)
             for (int i = 0; i < n; ++i) {
-                mode(q_, k)[i] = start.y[2 * k];
-                mode(p_, k)[i] = start.y[2 * k + 1];
+                q_[k][i] = start.y[2 * k];
+                p_[k][i] = start.y[2 * k + 1];
             }
-        for (int i = 0; i < n; ++i) {
-            time_[i] = 0;
-            log_r_[i] = -zeta_ / s_ * g.psi[i];
-        }
         external();
-        return std::fabs(a_[0]) * longest < 0.25 * speed;
+        return std::fabs(a_[0]) * longest < speed;
     }
 
     // A bound on the duration: 5/2.94 of the undamped contact.
     real longest_time() const { return 5 * square(square(depth0_)) / speed_; }
 
-    // Sweeps to convergence.
+    // Sweeps to convergence, from the contact in which the external forces keep their first values.
     bool solve() {
+        const PhaseGrid& g = grid_;
+        for (int i = 0; i < n; i += lane_count) {
+            const Lanes shrink = short_exp<15>(-0.2 * zeta_ / s_ * g.psi.eight(i));
+            x0_.eight(i) = depth0_ * g.root.eight(i) * shrink;
+            r1_.eight(i) = r0_ * fifth_power(shrink);
+            turn_.eight(i) = s_ * g.cosine.eight(i) - zeta_ * g.sine.eight(i);
+            integral_[logarithm].eight(i) = Lanes{};
+        }
+        foresee();
         real before = 1;
         for (int pass = 0; pass < most_sweeps; ++pass) {
             const real change = sweep();
-            external();
-            // The next change would be below rounding, or it no longer falls because it is rounding.
-            if (change * change < 0.25 * epsilon * before ||
-                (change < 64 * epsilon && change > 0.1 * before)) {
+            if (!(change < 1)) return false;
+            // The next change would be near rounding, or it no longer falls because it is rounding.
+            if (change * change < 16 * epsilon * before || (change < 64 * epsilon && change > 0.1 * before)) {
                 rates();
                 return true;
             }
@@ -264,84 +304,98 @@ public:
 
     real deepest_position() const { return grid_.position(std::acos(zeta_)); }
 
-    // State and ledger at position x of the phase; `ledger` and `out` may be null.
-    Instant at(real position, State* out, Ledger* ledger) {
-        const PhaseGrid& g = grid_;
+    // The contact itself at position x of the phase.
+    Instant look(real position) const {
         real psi, sine, cosine;
-        g.phase(position, psi, sine, cosine);
-        if (position < 1)
-            g.rule().row(position, row_);
-        else
-            std::copy_n(g.rule().weight, n, row_);
+        grid_.phase(position, psi, sine, cosine);
+        const real correction = grid_.rule().interpolate(integral_[logarithm], position);
+        return look(sine, cosine, correction - zeta_ / s_ * psi);
+    }
+
+    Instant look(real sine, real cosine, real log_r) const {
         Instant now;
-        now.time = dot(row_, time_slope_);
-        const real grow = std::exp(0.2 * (dot(row_, log_slope_) - zeta_ / s_ * psi)),
-                   r = r0_ * square(square(grow)) * grow;
+        const real grow = std::exp(0.2 * log_r), r = r0_ * fifth_power(grow);
         now.x = depth0_ * std::pow(std::fmax(sine, 0.0), 0.2) * grow;
         now.rate = r * (s_ * cosine - zeta_ * sine);
         now.force = now.x * (law_.stiffness * now.x * square(now.x * now.x) + damping_ * now.rate);
-        Values loss;
-        for (int i = 0; i < n; ++i) loss[i] = damping_ * x_[i] * square(w_[i]) * time_slope_[i];
-        now.lost = dot(row_, loss);
-        if (!out) return now;
-
-        const real drift = dot(row_, a_slope_) - (now.rate - speed_); // impulse per reduced mass
-        out->t = start_->t + now.time;
-        for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
-            real *f = mode(force_, k), *p = mode(p_, k);
-            real dp = 0, dq = 0;
-            for (int i = 0; i < n; ++i) {
-                dp += row_[i] * f[i] * time_slope_[i];
-                dq += row_[i] * p[i] * time_slope_[i];
-            }
-            out->y[2 * k] = start_->y[2 * k] + dq;
-            out->y[2 * k + 1] =
-                start_->y[2 * k + 1] + dp + side_ * damper_->shape[k] * contact_->mass * drift;
-        }
-        balls(now, drift, *out);
-        if (ledger) account(*ledger, now);
         return now;
+    }
+
+    // The end of the contact, or of the part of it that is solved.
+    Instant end() const {
+        const auto& rule = grid_.rule();
+        real psi, sine, cosine;
+        grid_.phase(1, psi, sine, cosine);
+        Instant now = look(sine, cosine, rule.whole(slope_[logarithm]) - zeta_ / s_ * psi);
+        now.time = rule.whole(slope_[clock]);
+        Row loss;
+        for (int i = 0; i < n; ++i) loss[i] = x_[i] * square(w_[i]) * slope_[clock][i];
+        now.lost = damping_ * rule.whole(loss);
+        return now;
+    }
+
+    // State and ledger at that end.
+    void finish(const Instant& now, State& out, Ledger& ledger) const {
+        const auto& rule = grid_.rule();
+        Row part;
+        const auto total = [&](const Row& f) {
+            for (int i = 0; i < n; ++i) part[i] = f[i] * slope_[clock][i];
+            return rule.whole(part);
+        };
+        real drift = constant_ * now.time - (now.rate - speed_); // impulse per reduced mass
+        if (base_moves_) drift += total(base_);
+        for (std::size_t k = 0; k < modes_; ++k) {
+            out.y[2 * k] = start_->y[2 * k] + total(p_[k]);
+            const real gain = total(force_[k]);
+            out.y[2 * k + 1] = start_->y[2 * k + 1] + gain;
+            drift += weight(k) * gain;
+        }
+        for (std::size_t k = 0; k < modes_; ++k) out.y[2 * k + 1] += kick(k) * drift;
+        out.t = start_->t + now.time;
+        balls(now, drift, out);
+        account(now, ledger);
     }
 
     // The phase at a time after first touch, roughly: between nodes.
     real psi_at(real time) const {
         const PhaseGrid& g = grid_;
+        const Row& at = integral_[clock];
         int i = 0;
-        while (i + 1 < n - 1 && time_[i + 1] < time) ++i;
-        const real part = (time - time_[i]) / (time_[i + 1] - time_[i]);
+        while (i + 1 < n - 1 && at[i + 1] < time) ++i;
+        const real part = (time - at[i]) / (at[i + 1] - at[i]);
         return std::fmin(std::fmax(g.psi[i] + part * (g.psi[i + 1] - g.psi[i]), 1e-3), g.end);
     }
 
     // dpsi/dt at an instant, but for the closing acceleration's small part.
     real turning(const Instant& now) const { return s_ * wave_ * now.x; }
 
-    // The largest force: a step of Newton in time from where it would be without the closing acceleration's
-    // help.
-    real peak_force() {
+    // The largest force: a step of Newton in time from the deepest point, and again.
+    real peak_force(const Instant& deepest) const {
+        if (damping_ == 0) return deepest.force;
         const real b2 = law_.stiffness / contact_->mass, c = damping_ / contact_->mass;
-        real position = deepest_position(), best = 0;
+        real psi = std::acos(zeta_), best = 0;
+        Instant at = deepest;
         for (int pass = 0; pass < 6; ++pass) {
-            const Instant i = at(position, nullptr, nullptr);
-            const real x = i.x, w = i.rate, x3 = cube(x), dx = w / (4 * x3), dw = -i.force / contact_->mass;
+            const real x = at.x, w = at.rate, x3 = cube(x), dx = w / (4 * x3),
+                       dw = -at.force / contact_->mass;
             const real slope = 1.5 * b2 * x * x * w + c * (w * dx + x * dw);
             const real curve = 1.5 * b2 * (2 * x * dx * w + x * x * dw) +
                                c * (w * dw / (2 * x3) - 3 * w * w * dx / (4 * x3 * x) + dx * dw - x * slope);
-            best = i.force;
-            if (!(curve < 0) || damping_ == 0) break;
+            best = at.force;
+            if (!(curve < 0)) break;
             const real shift = -slope / curve; // in time; psi turns at the rate s W
             best += contact_->mass * 0.5 * slope * shift;
-            real psi, sine, cosine;
-            grid_.phase(position, psi, sine, cosine);
-            const real turned = psi + shift * s_ * wave_ * x;
-            if (std::fabs(turned - psi) < 1e-6 || turned < 0.2 || turned > grid_.end - 0.2) break;
-            position = grid_.position(turned);
+            const real turned = psi + shift * turning(at);
+            if (std::fabs(turned - psi) < 1e-4 || turned < 0.2 || turned > grid_.end - 0.2) break;
+            psi = turned;
+            at = look(grid_.position(psi));
         }
         return best;
     }
 
 private:
     // Balls in flight but for the pair in contact; positions of the pair follow from momentum and overlap.
-    void balls(const Instant& now, real drift, State& out) {
+    void balls(const Instant& now, real drift, State& out) const {
         const real t = now.time;
         real base_speed = 0, base_shift = 0; // what a base acceleration does to every ball
         for (std::size_t l = 0; loads_->active() && l < loads_->size(); ++l) {
@@ -378,40 +432,47 @@ private:
         }
     }
 
-    void account(Ledger& ledger, const Instant& now) {
+    void account(const Instant& now, Ledger& ledger) const {
+        const auto& rule = grid_.rule();
         ledger.normal[static_cast<std::size_t>(contact_->damper)] += now.lost;
-        for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
+        Row power;
+        for (std::size_t k = 0; k < modes_; ++k) {
             if (problem_.modes[k].decay == 0) continue;
-            const real* p = mode(p_, k);
-            real sum = 0;
-            for (int i = 0; i < n; ++i) sum += row_[i] * square(p[i]) * time_slope_[i];
-            ledger.viscous += 2 * problem_.modes[k].decay * sum;
+            for (int i = 0; i < n; ++i) power[i] = square(p_[k][i]) * slope_[clock][i];
+            ledger.viscous += 2 * problem_.modes[k].decay * rule.whole(power);
         }
         if (!loads_->active()) return;
         for (std::size_t l = 0; l < loads_->size(); ++l) {
             const Load& load = loads_->load(l);
             if (loads_->piece(l).silent()) continue;
-            Values power = {};
-            for (std::size_t k = 0; k < problem_.modes.size(); ++k)
-                for (int i = 0; i < n; ++i) power[i] += load.shape[k] * mode(p_, k)[i];
-            if (load.base) {
-                State probe(problem_);
-                for (int i = 0; i < n; ++i) {
-                    Instant node{time_[i], x_[i], w_[i], 0, 0};
-                    for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
-                        probe.y[2 * k] = mode(q_, k)[i];
-                        probe.y[2 * k + 1] = mode(p_, k)[i];
-                    }
-                    balls(node, drift_[i] - (w_[i] - speed_), probe);
-                    const real* v = velocities(problem_, probe.y.data());
-                    for (std::size_t b = 0; b < problem_.ball_mass.size(); ++b)
-                        power[i] -= problem_.ball_mass[b] * v[b];
-                }
+            for (int i = 0; i < n; ++i) power[i] = 0;
+            for (std::size_t k = 0; k < modes_; ++k)
+                for (int i = 0; i < n; ++i) power[i] += load.shape[k] * p_[k][i];
+            if (load.base) subtract_balls(power);
+            for (int i = 0; i < n; ++i) power[i] *= signal_[l][i] * slope_[clock][i];
+            (load.base ? ledger.base_work : ledger.load_work) += rule.whole(power);
+        }
+    }
+
+    // The balls' momentum at the nodes, which the base works on.
+    void subtract_balls(Row& power) const {
+        State probe(problem_);
+        for (int i = 0; i < n; ++i) {
+            Instant node;
+            node.time = integral_[clock][i];
+            node.x = x_[i];
+            node.rate = w_[i];
+            real drift = constant_ * node.time - (w_[i] - speed_);
+            if (base_moves_) drift += integral_[base_row()][i];
+            for (std::size_t k = 0; k < modes_; ++k) {
+                drift += weight(k) * integral_[first_mode + k][i];
+                probe.y[2 * k] = q_[k][i];
+                probe.y[2 * k + 1] = p_[k][i];
             }
-            real sum = 0;
-            for (int i = 0; i < n; ++i)
-                sum += row_[i] * power[i] * signals_[l * n + static_cast<std::size_t>(i)] * time_slope_[i];
-            (load.base ? ledger.base_work : ledger.load_work) += sum;
+            balls(node, drift, probe);
+            const real* v = velocities(problem_, probe.y.data());
+            for (std::size_t b = 0; b < problem_.ball_mass.size(); ++b)
+                power[i] -= problem_.ball_mass[b] * v[b];
         }
     }
 };

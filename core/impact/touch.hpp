@@ -59,12 +59,12 @@ protected:
         for (int pass = 0; pass < 8; ++pass) {
             sampler_.prepare(contact(c), law, loads_, state_, speed, zeta, infinity, psi);
             sampler_.solve();
-            now = sampler_.at(1, nullptr, nullptr);
+            now = sampler_.end();
             const real late = t - state_.t - now.time;
             if (std::fabs(late) <= 2 * epsilon * t) break;
             psi = std::fmax(psi + late * sampler_.turning(now), 0.5 * psi);
         }
-        now = sampler_.at(1, &at, &ledger);
+        sampler_.finish(now, at, ledger);
         clear_contact_samples();
         stored_[damper_of(c)] = law.stored({}, now.x);
         add_wall_force(c, now.force);
@@ -80,7 +80,8 @@ protected:
             return false;
         if (!alone(c, speed, lone_.longest_time()) || !lone_.solve()) return false;
         Ledger after = ledger_;
-        const LoneContact::Instant end = lone_.at(1, &scratch_, &after);
+        const LoneContact::Instant end = lone_.end();
+        lone_.finish(end, scratch_, after);
         const real stored = law->stored({}, end.x);
         const std::size_t d = damper_of(c);
         const real residual = energy(scratch_) + stored - energy(state_) +
@@ -90,7 +91,7 @@ protected:
         if (!(std::fabs(residual) < std::fmax(problem_.settings.tolerance, 64 * epsilon) * size))
             return false;
 
-        const LoneContact::Instant deepest = lone_.at(lone_.deepest_position(), nullptr, nullptr);
+        const LoneContact::Instant deepest = lone_.look(lone_.deepest_position());
         Impact line;
         line.contact = c;
         line.time = state_.t;
@@ -99,7 +100,7 @@ protected:
         line.separation_speed = -end.rate;
         line.duration = end.time;
         line.peak_overlap = square(square(deepest.x));
-        line.peak_force = lone_.peak_force();
+        line.peak_force = lone_.peak_force(deepest);
         line.energy_lost = end.lost + stored;
         line.complete = true;
         result_.impacts.push_back(line);

@@ -1,0 +1,71 @@
+// Eight numbers at once, in registers as wide as the machine has them. Halves within halves, and not an array
+// of registers: so the compiler keeps them out of memory, and a sum has the same order on every machine.
+#pragma once
+
+#include "base/real.hpp"
+
+namespace rattlebox {
+
+inline constexpr int lane_count = 8;
+
+#if defined(__AVX512F__)
+inline constexpr int register_width = 8;
+#elif defined(__AVX__)
+inline constexpr int register_width = 4;
+#else
+inline constexpr int register_width = 2;
+#endif
+
+template <int n> struct Pack {
+    Pack<n / 2> low, high;
+
+    static Pack all(real v) { return {Pack<n / 2>::all(v), Pack<n / 2>::all(v)}; }
+    friend Pack operator+(const Pack& a, const Pack& b) { return {a.low + b.low, a.high + b.high}; }
+    friend Pack operator-(const Pack& a, const Pack& b) { return {a.low - b.low, a.high - b.high}; }
+    friend Pack operator*(const Pack& a, const Pack& b) { return {a.low * b.low, a.high * b.high}; }
+    friend Pack operator/(const Pack& a, const Pack& b) { return {a.low / b.low, a.high / b.high}; }
+    friend Pack absolute(const Pack& a) { return {absolute(a.low), absolute(a.high)}; }
+    friend Pack larger(const Pack& a, const Pack& b) {
+        return {larger(a.low, b.low), larger(a.high, b.high)};
+    }
+    friend real total(const Pack& a) { return total(a.low + a.high); }
+    friend real largest(const Pack& a) { return largest(larger(a.low, a.high)); }
+};
+
+template <> struct Pack<register_width> {
+    typedef real Register __attribute__((vector_size(register_width * sizeof(real))));
+    Register v;
+
+    static Pack all(real v) { return {Register{} + v}; }
+    friend Pack operator+(const Pack& a, const Pack& b) { return {a.v + b.v}; }
+    friend Pack operator-(const Pack& a, const Pack& b) { return {a.v - b.v}; }
+    friend Pack operator*(const Pack& a, const Pack& b) { return {a.v * b.v}; }
+    friend Pack operator/(const Pack& a, const Pack& b) { return {a.v / b.v}; }
+    friend Pack absolute(const Pack& a) { return {a.v < 0 ? -a.v : a.v}; }
+    friend Pack larger(const Pack& a, const Pack& b) { return {a.v > b.v ? a.v : b.v}; }
+    friend real total(const Pack& a) {
+        real part[register_width];
+        for (int i = 0; i < register_width; ++i) part[i] = a.v[i];
+        for (int half = register_width / 2; half > 0; half /= 2)
+            for (int i = 0; i < half; ++i) part[i] += part[i + half];
+        return part[0];
+    }
+    friend real largest(const Pack& a) {
+        real most = a.v[0];
+        for (int i = 1; i < register_width; ++i) most = std::fmax(most, a.v[i]);
+        return most;
+    }
+};
+
+using Lanes = Pack<lane_count>;
+
+inline Lanes operator*(real a, const Lanes& b) { return Lanes::all(a) * b; }
+inline Lanes& operator+=(Lanes& a, const Lanes& b) { return a = a + b; }
+
+// Neighbours in memory, at an address that is a multiple of their size.
+template <int n> const Pack<n>& pack(const real* p) { return *reinterpret_cast<const Pack<n>*>(p); }
+template <int n> Pack<n>& pack(real* p) { return *reinterpret_cast<Pack<n>*>(p); }
+inline const Lanes& lanes(const real* p) { return pack<lane_count>(p); }
+inline Lanes& lanes(real* p) { return pack<lane_count>(p); }
+
+} // namespace rattlebox
