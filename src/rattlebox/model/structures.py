@@ -239,7 +239,7 @@ class Matrices(Part):
         CaseError
             When a matrix is missing or describes no structure, naming the file and what it holds.
         """
-        return cls.model_validate({"file": path, **options})
+        return cls(**{"file": path, **options})
 
     def matrices(self) -> tuple[Vector, Vector, Vector]:
         """Return mass, damping and stiffness, (n, n) each."""

@@ -1,0 +1,243 @@
+"""Structures and records read from files."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+from scipy.sparse import csc_matrix
+
+import rattlebox as rb
+
+K = 1e4 * np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
+M = np.diag([1.0, 2.0, 3.0])
+C = 0.1 * M + 2e-5 * K
+TIP = np.array([0.0, 0.0, 1.0])
+MIDDLE = np.array([0.25, 0.5, 0.25])
+DIRECT = rb.Matrices(M=M, C=C, K=K, points={"tip": TIP, "middle": MIDDLE})
+
+TIMES = np.array([0.0, 0.5, 2.0])
+FORCE = np.array([1.0, 1 / 3, -4.0])
+NUMBERS = (tuple(TIMES), tuple(FORCE))
+
+
+def beam(folder: Path, name: str) -> Path:
+    """Write the three masses to a file of one kind."""
+    path = folder / name
+    if path.suffix == ".npz":
+        np.savez(path, M=M, C=C, K=K, point_tip=TIP, point_middle=MIDDLE)
+    elif "sparse" in name:
+        parts = {key: csc_matrix(value) for key, value in {"M": M, "C": C, "K": K}.items()}
+        savemat(path, {**parts, "points": {"tip": TIP, "middle": MIDDLE}})
+    else:
+        savemat(path, {"M": M, "C": C, "K": K, "point_tip": TIP[:, None], "point_middle": MIDDLE})
+    return path
+
+
+@pytest.mark.parametrize("name", ["beam.npz", "beam.mat", "sparse.mat"])
+def test_matrices_of_a_file(tmp_path: Path, name: str) -> None:
+    """Matrices and points from NPZ, MAT and sparse MAT with a struct of points are those that were written."""
+    read = rb.Matrices.from_file(beam(tmp_path, name))
+    for mine, given in zip(read.matrices(), (M, C, K), strict=True):
+        np.testing.assert_array_equal(mine, given)
+    assert read.points == DIRECT.points
+    np.testing.assert_array_equal(read.modes().shape("middle"), DIRECT.modes().shape("middle"))
+
+
+def test_points_beside_the_file(tmp_path: Path) -> None:
+    """Points given beside a file are added to those in it, and win over them."""
+    read = rb.Matrices.from_file(beam(tmp_path, "beam.npz"), points={"foot": 0, "tip": 1})
+    assert read.points == {"foot": 0, "tip": 1, "middle": MIDDLE.tolist()}
+
+
+def test_a_structure_without_damping(tmp_path: Path) -> None:
+    """A file without C describes an undamped structure."""
+    np.savez(tmp_path / "beam.npz", M=M, K=K)
+    modes = rb.Matrices.from_file(tmp_path / "beam.npz", points={"tip": 2}).modes()
+    np.testing.assert_array_equal(modes.decay, np.zeros(3))
+
+
+@pytest.mark.parametrize(
+    ("arrays", "options", "said"),
+    [
+        ({"M": M, "C": C}, {}, r"beam\.npz holds no K, but M, C"),
+        ({"M": M, "stiffness": K}, {}, r"holds no K, but M, stiffness"),
+        ({"M": M, "K": K}, {}, r"beam\.npz: at least one named point"),
+        ({"M": M, "K": K[:2]}, {"points": {"tip": 2}}, r"beam\.npz: K has shape \(2, 3\), but M has 3 rows"),
+        ({"M": M, "K": np.triu(K)}, {"points": {"tip": 2}}, r"beam\.npz: K is not symmetric"),
+        ({"M": 0 * M, "K": K}, {"points": {"tip": 2}}, r"beam\.npz: M is not positive definite"),
+        ({"M": M, "K": K * [1, np.nan, 1]}, {"points": {"tip": 2}}, r"beam\.npz: K holds nan in row 1, column 2"),
+        ({"M": M, "K": K, "point_tip": [1.0, 0.0]}, {}, r"point_tip has 2 numbers, but there are 3 degrees"),
+        ({"M": M, "K": K}, {"points": {"tip": 2}, "M": M}, "give M or a file, not both"),
+        ({"M": M, "K": K}, {"points": {"tip": 3}}, r"tip = 3 is no degree of freedom"),
+    ],
+)
+def test_files_of_no_structure(tmp_path: Path, arrays: dict[str, Any], options: dict[str, Any], said: str) -> None:
+    """A file whose matrices describe no structure is refused with its name and what is wrong in it."""
+    np.savez(tmp_path / "beam.npz", **arrays)
+    with pytest.raises(rb.CaseError, match=said):
+        rb.Matrices.from_file(tmp_path / "beam.npz", **options)
+
+
+def record_file(folder: Path, name: str) -> Path:
+    """Write times, a column that is not asked for, and forces."""
+    path = folder / name
+    other = np.array([7.0, 8.0, 9.0])
+    table = np.column_stack([TIMES, other, FORCE])
+    if path.suffix == ".csv":
+        path.write_text("t,speed,force\n" + "".join(f"{a!r},{b!r},{c!r}\n" for a, b, c in table.tolist()))
+    elif path.suffix == ".npy":
+        np.save(path, np.rec.fromarrays(table.T, names="t,speed,force"))
+    elif path.suffix == ".npz":
+        np.savez(path, t=TIMES, speed=other, force=FORCE)
+    elif "struct" in name:
+        savemat(path, {"run": {"t": TIMES, "speed": other, "force": FORCE}, "note": "by hand"})
+    else:
+        savemat(path, {"t": TIMES, "speed": other[:, None], "force": FORCE})
+    return path
+
+
+@pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.npz", "push.mat"])
+def test_columns_by_name(tmp_path: Path, name: str) -> None:
+    """Columns of CSV and NPY and variables of NPZ and MAT are picked by name."""
+    record = rb.Record.from_file(record_file(tmp_path, name), columns=("t", "force"), unit="N")
+    assert (record.times, record.values) == NUMBERS
+
+
+def test_columns_by_number(tmp_path: Path) -> None:
+    """Columns of a table are picked by number, counted from 1, in the order times, values."""
+    record = rb.Record.from_file(record_file(tmp_path, "push.csv"), columns=(1, 3), unit="N")
+    assert (record.times, record.values) == NUMBERS
+    np.save(tmp_path / "swapped.npy", np.column_stack([FORCE, TIMES]))
+    record = rb.Record.from_file(tmp_path / "swapped.npy", columns=(2, 1), unit="N")
+    assert (record.times, record.values) == NUMBERS
+
+
+def test_fields_of_a_matlab_struct(tmp_path: Path) -> None:
+    """Fields of a struct are named with a dot; text beside them is passed over."""
+    record = rb.Record.from_file(record_file(tmp_path, "struct.mat"), columns=("run.t", "run.force"), unit="N")
+    assert (record.times, record.values) == NUMBERS
+
+
+@pytest.mark.parametrize("name", ["push.csv", "push.npz", "push.mat"])
+def test_a_column_that_is_not_there(tmp_path: Path, name: str) -> None:
+    """A misspelt column is refused with what the file holds and the nearest name."""
+    with pytest.raises(rb.CaseError, match=r"(?s)push\.\w+ .*speed.*did you mean 'force'\?"):
+        rb.Record.from_file(record_file(tmp_path, name), columns=("t", "forces"), unit="N")
+
+
+@pytest.mark.parametrize("name", ["push.csv", "push.npz", "push.mat"])
+def test_which_columns_must_be_said_among_three(tmp_path: Path, name: str) -> None:
+    """Three columns without a choice are refused with how to choose."""
+    with pytest.raises(rb.CaseError, match=r"(?s)speed.*try: columns = "):
+        rb.Record.from_file(record_file(tmp_path, name), unit="N")
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+@pytest.mark.parametrize("name", ["push.npy", "push.npz", "push.mat"])
+def test_numbers_that_are_none(tmp_path: Path, name: str, bad: float) -> None:
+    """NaN or infinity in a binary record is refused with the file and the row."""
+    values = np.array([0.0, bad, 1.0])
+    if name.endswith("npy"):
+        np.save(tmp_path / name, np.column_stack([TIMES, values]))
+    elif name.endswith("npz"):
+        np.savez(tmp_path / name, time=TIMES, value=values)
+    else:
+        savemat(tmp_path / name, {"time": TIMES, "value": values})
+    with pytest.raises(rb.CaseError, match=rf"push\.\w+: .*value.* holds {bad} in row 2"):
+        rb.Record.from_file(tmp_path / name, unit="N")
+
+
+def test_columns_of_unequal_length(tmp_path: Path) -> None:
+    """Times and values of different number are refused with both numbers."""
+    np.savez(tmp_path / "push.npz", time=TIMES, value=FORCE[:2])
+    with pytest.raises(rb.CaseError, match="time holds 3 numbers, value 2"):
+        rb.Record.from_file(tmp_path / "push.npz", unit="N")
+
+
+@pytest.mark.parametrize("part", [rb.Record, rb.Matrices])
+def test_a_mat_file_of_version_7_3(tmp_path: Path, part: type[rb.Record] | type[rb.Matrices]) -> None:
+    """A MAT file of version 7.3, which is HDF5, is refused with the way to save it that works."""
+    head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + (0x0200).to_bytes(2, "little") + b"IM"
+    (tmp_path / "new.mat").write_bytes(head.ljust(512, b"\0"))
+    with pytest.raises(rb.CaseError, match=r"(?s)new\.mat.*version 7\.3.*-v7"):
+        part.from_file(tmp_path / "new.mat")
+
+
+def test_pickles_are_not_opened(tmp_path: Path) -> None:
+    """A NPY file of Python objects, which could run code when read, is refused."""
+    np.save(tmp_path / "evil.npy", np.array([{"a": 1}], dtype=object), allow_pickle=True)
+    (tmp_path / "bare.npy").write_bytes(pickle.dumps([1.0, 2.0]))
+    for name in ("evil.npy", "bare.npy"):
+        with pytest.raises(rb.CaseError, match=name):
+            rb.Record.from_file(tmp_path / name, unit="N")
+
+
+@pytest.mark.parametrize("name", ["none.npz", "none.mat", "none.txt"])
+def test_a_structure_file_that_is_not_there(tmp_path: Path, name: str) -> None:
+    """A missing file of matrices is refused by its name."""
+    with pytest.raises(rb.CaseError, match=name):
+        rb.Matrices.from_file(tmp_path / name)
+
+
+CASE = """\
+duration = 1.5
+
+[structure]
+kind = "matrices"
+file = "parts/beam.npz"
+
+[[loads]]
+kind = "record"
+file = "parts/push.csv"
+columns = ["t", "force"]
+point = "tip"
+"""
+
+
+def test_a_case_file_names_files_from_its_own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Relative names in a case file count from its folder, wherever the program runs."""
+    (tmp_path / "parts").mkdir()
+    beam(tmp_path / "parts", "beam.npz")
+    record_file(tmp_path / "parts", "push.csv")
+    (tmp_path / "case.toml").write_text(CASE)
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    case = rb.Case.from_file(tmp_path / "case.toml")
+    assert case.loads[0].values == NUMBERS[1]  # type: ignore[union-attr]
+    assert set(case.modes.shapes) == {"tip", "middle"}
+
+
+def test_files_named_in_a_case_survive_a_round_trip(tmp_path: Path) -> None:
+    """A case that names files writes their names, relative to the new file, and reads back equal."""
+    folder = tmp_path / "parts"
+    folder.mkdir()
+    structure = rb.Matrices.from_file(beam(folder, "beam.mat"))
+    push = rb.Record.from_file(record_file(folder, "push.npz"), columns=("t", "force"), scale=2.0, point="tip")
+    case = rb.Case(structure=structure, load=push, duration=1.5)
+    (tmp_path / "cases").mkdir()
+    case.to_file(tmp_path / "cases" / "case.toml")
+    text = (tmp_path / "cases" / "case.toml").read_text()
+    assert 'file = "../parts/beam.mat"' in text
+    assert "times" not in text
+    assert "M =" not in text
+    assert rb.Case.from_file(tmp_path / "cases" / "case.toml") == case
+    assert rb.Case.from_toml(case.to_toml()) == case
+
+
+def test_a_case_from_files_runs_like_one_from_numbers(tmp_path: Path) -> None:
+    """Matrices and a record from files give the same bits as the same numbers given directly."""
+    push = rb.Record.from_file(record_file(tmp_path, "push.mat"), columns=("t", "force"), point="tip")
+    plain = rb.Record(times=TIMES, values=FORCE, point="tip")
+    cases = [
+        rb.Case(structure=rb.Matrices.from_file(beam(tmp_path, "beam.mat")), load=push, duration=1.5),
+        rb.Case(structure=DIRECT, load=plain, duration=1.5),
+    ]
+    first, second = rb.simulate_many(cases)
+    np.testing.assert_array_equal(first.arrays.displacement, second.arrays.displacement)
+    assert first.closure < 1e-12
