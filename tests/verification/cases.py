@@ -18,9 +18,9 @@ MASS = DENSITY * 4 / 3 * math.pi * RADIUS**3
 STIFFNESS = 4 / 3 * MODULUS * math.sqrt(RADIUS)
 
 
-def ball(mass: float | None = None) -> Any:
-    """Return the small steel ball, of a given mass where theory asks for one."""
-    return rb.Sphere(radius=RADIUS, material="steel", mass=mass)
+def ball(mass: float | None = None, material: Any = "steel") -> Any:
+    """Return the small ball, of a given mass where theory asks for one."""
+    return rb.Sphere(radius=RADIUS, material=material, mass=mass)
 
 
 def single_impact(contact: Any, speed: float, duration: float) -> Any:
@@ -50,10 +50,12 @@ def impact_damper(
     *,
     method: Any = None,
     contact: Any = None,
+    soft: Any = None,
     shift: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
 ) -> Any:
     """Return the damper of Masri and Caughey on its orbit, begun where the structure passes through rest.
 
+    The ball is of a `soft` material against rigid walls, or of steel against steel.
     `shift` disturbs the start: displacement and velocity of the structure, position and velocity of the ball.
     """
     begin = orbit.zero_crossing()
@@ -70,7 +72,8 @@ def impact_damper(
             velocity=v + shift[1],
         ),
         damper=rb.ImpactDamper(
-            ball=ball(orbit.mass_ratio),
+            ball=ball(orbit.mass_ratio, soft or "steel"),
+            wall="rigid" if soft else None,
             gap=gap,
             start=(y + shift[2]) / gap,
             velocity=w + shift[3],

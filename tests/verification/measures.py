@@ -180,42 +180,60 @@ SOFT_KEY = (0.1, 0.25, 20)
 SOFT_TIMES = (1 / 80, 1 / 160, 1 / 320, 1 / 640)
 
 
-def soft_errors(law: str = "linear") -> tuple[list[float], list[float]]:
+def linear_damper(orbit: masri_caughey.Orbit, time: float) -> Any:
+    """Return the damper with linear springs of a contact time."""
+    law = rb.Linear(contact_time=time, restitution=orbit.restitution, ending="zero_force")
+    return cases.impact_damper(orbit, SOFT_HALF_CYCLES, method=rb.EventDriven(), contact=law)
+
+
+def hertz_damper(orbit: masri_caughey.Orbit, time: float) -> Any:
+    """Return the damper with Hertz-Tsuji contacts that, undamped, would last a time at the exact approach speed."""
+    mass = orbit.mass_ratio / (1 + orbit.mass_ratio)
+    stiffness = mass * (3.2180655 / time) ** 2.5 / math.sqrt(orbit.approach)
+    young = 0.75 * stiffness / math.sqrt(cases.RADIUS)
+    soft = rb.Material(density=1.0, young=young, poisson=0.0)
+    law = rb.Tsuji(restitution=orbit.restitution)
+    return cases.impact_damper(orbit, SOFT_HALF_CYCLES, method=rb.EventDriven(), contact=law, soft=soft)
+
+
+SOFT_HALF_CYCLES = 160.0
+SOFT_DAMPERS = {"linear": linear_damper, "Hertz-Tsuji": hertz_damper}
+
+
+def soft_errors(law: str) -> tuple[list[float], list[float]]:
     """Return contact times over the period, and relative errors of the approach speed of soft dampers."""
     orbit = stable(SOFT_KEY)
     error = []
     for fraction in SOFT_TIMES:
-        time = fraction * 2 * orbit.half_period
-        contact = rb.Linear(contact_time=time, restitution=orbit.restitution, ending="zero_force")
-        run = simulate(cases.impact_damper(orbit, 160.0, method=rb.EventDriven(), contact=contact))
-        log = run.arrays.impacts
+        log = simulate(SOFT_DAMPERS[law](orbit, fraction * 2 * orbit.half_period)).arrays.impacts
         speeds = log.approach_speed[log.complete][-2:]
         error.append(float(speeds.mean() / orbit.approach - 1))
     return list(SOFT_TIMES), error
 
 
-def soft_order() -> float:
+def soft_order(law: str) -> float:
     """Return the order at which soft impacts approach hard ones as the contact time goes to zero."""
-    times, error = soft_errors()
+    times, error = soft_errors(law)
     return math.log(error[-2] / error[-1]) / math.log(times[-2] / times[-1])
 
 
 def soft_limit() -> Iterator[Line]:
     """Yield the approach speed of soft impacts extrapolated to no contact time."""
-    times, error = soft_errors()
     orbit = stable(SOFT_KEY)
-    # Polynomial through the four runs; what is left is of fourth order in the contact time, at most 1e-5.
-    limit = sum(
-        e * math.prod(t / (t - own) for j, t in enumerate(times) if j != i)
-        for i, (own, e) in enumerate(zip(times, error, strict=True))
-    )
-    yield Line(
-        "4",
-        "soft contact extrapolated to contact time 0: approach speed",
-        orbit.approach,
-        orbit.approach * (1 + limit),
-        1e-5,
-    )
+    for law in SOFT_DAMPERS:
+        times, error = soft_errors(law)
+        # Polynomial through the four runs; what is left is of fourth order in the contact time, at most 1e-5.
+        limit = sum(
+            e * math.prod(t / (t - own) for j, t in enumerate(times) if j != i)
+            for i, (own, e) in enumerate(zip(times, error, strict=True))
+        )
+        yield Line(
+            "4",
+            f"{law} contact extrapolated to contact time 0: approach speed",
+            orbit.approach,
+            orbit.approach * (1 + limit),
+            1e-5,
+        )
 
 
 def slow_manifold() -> Iterator[Line]:
