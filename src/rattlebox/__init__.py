@@ -21,6 +21,7 @@ from rattlebox.model.signals import HalfSine, Harmonic, Record, chirp, random_re
 from rattlebox.model.structures import SDOF, Fixed, Matrices, Modal, Shaker
 
 if TYPE_CHECKING:
+    from rattlebox import analysis
     from rattlebox.engines.curves import restitution_curve
     from rattlebox.engines.simulate import simulate, simulate_many
     from rattlebox.results import Run, load
@@ -65,6 +66,7 @@ __all__ = [
     "Tsuji",
     "TwoStep",
     "alpha_of_restitution",
+    "analysis",
     "chirp",
     "contact_pairs",
     "load",
@@ -78,6 +80,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name == "analysis":
+        return import_module("rattlebox.analysis")
     if name in _LATER:
         value = getattr(import_module(_LATER[name]), name)
         globals()[name] = value

@@ -1,0 +1,138 @@
+"""Where the energy went, and what a damper takes from each cycle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .signals import FloatArray, labelled, positive, sampled
+
+if TYPE_CHECKING:
+    import xarray
+
+    from rattlebox.results import Run
+
+T = TypeVar("T", float, FloatArray, "xarray.DataArray")
+
+
+def energy_shares(run: Run) -> xarray.DataArray:
+    """Shares of the energy put in, by where it is at the end of the run.
+
+    Parameters
+    ----------
+    run
+        Any run.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over `channel`: lost in the structure ("viscous"), in impacts ("impact"), in plastic flow ("plastic"), and left
+        in "motion". They add up to one, to the closure of the ledger; NaN when nothing was put in.
+    """
+    shares = run.ledger.shares
+    channel = ("channel", list(shares), {"units": "", "long_name": "channel of the energy"})
+    return labelled("share", list(shares.values()), "1", "share of the energy put in", channel=channel)
+
+
+def specific_damping_capacity(dissipated: T, stored: T) -> T:
+    """Energy dissipated in a cycle over the largest energy stored in it.
+
+    Parameters
+    ----------
+    dissipated, stored
+        Energies [J], numbers or arrays that broadcast.
+
+    Raises
+    ------
+    ValueError
+        When an energy is not finite, or the stored energy is not above zero.
+    """
+    if not np.all(np.isfinite(dissipated)) or not np.all(np.isfinite(stored)):
+        raise ValueError("dissipated and stored energies must be finite; drop cycles that are not")
+    if not np.all(np.asarray(stored) > 0):
+        raise ValueError(f"stored energy goes down to {np.min(stored):g} J, but it must be above zero")
+    return dissipated / stored
+
+
+def loss_factor(dissipated: T, stored: T) -> T:
+    """Loss factor: the specific damping capacity over 2 pi.
+
+    Parameters
+    ----------
+    dissipated, stored
+        Energies [J], as for `specific_damping_capacity`.
+
+    Raises
+    ------
+    ValueError
+        When an energy is not finite, or the stored energy is not above zero.
+    """
+    return specific_damping_capacity(dissipated, stored) / (2 * np.pi)
+
+
+def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, frequency: float) -> xarray.Dataset:
+    """What a damper under a harmonic motion takes up and how heavy it seems.
+
+    P = F* v / 2 with the complex amplitudes of force and velocity at the given frequency, over the last whole number of
+    cycles. Its real part is the power taken up, its imaginary part -omega times the kinetic energy of the mass that
+    the damper seems to have.
+
+    Parameters
+    ----------
+    time : (N,) array_like
+        Increasing times [s] that cover at least one cycle; best so that whole cycles end on samples.
+    force : (N,) array_like
+        Force that drives the damper [N]: the force of the balls on their cavity with its sign reversed.
+    velocity : (N,) array_like
+        Velocity of the point where it acts [m/s].
+    frequency
+        Frequency of the motion [Hz].
+
+    Returns
+    -------
+    xarray.Dataset
+        `active_power` [W], `reactive_power` [W], `effective_mass` [kg] and `loss_factor`, the ratio of active power to
+        the magnitude of reactive power.
+
+    Raises
+    ------
+    ValueError
+        When less than one cycle is covered, or a sample is not finite.
+    """
+    import xarray
+    from scipy.integrate import trapezoid
+
+    t, f, v = sampled(time, 3, force=force, velocity=velocity)
+    positive("frequency", frequency, "Hz")
+    cycles = np.floor((t[-1] - t[0]) * frequency + 1e-9)
+    if cycles < 1:
+        raise ValueError(
+            f"time covers {(t[-1] - t[0]) * frequency:.3g} cycles of {frequency:g} Hz, at least 1 is needed"
+        )
+    begin = max(t[-1] - cycles / frequency, t[0])
+    kept = np.concatenate(([begin], t[t > begin + 1e-9 / frequency]))
+    turn = np.exp(-2j * np.pi * frequency * kept)
+
+    def amplitude(x: FloatArray) -> complex:
+        return complex(2 * frequency / cycles * trapezoid(np.interp(kept, t, x) * turn, kept))
+
+    v_amplitude = amplitude(v)
+    if v_amplitude == 0:
+        raise ValueError(f"velocity has no part at {frequency:g} Hz")
+    power = amplitude(f).conjugate() * v_amplitude / 2
+    mass = -2 * power.imag / (2 * np.pi * frequency * abs(v_amplitude) ** 2)
+
+    def scalar(value: float, units: str, long_name: str) -> Any:
+        return (), value, {"units": units, "long_name": long_name}
+
+    return xarray.Dataset(
+        {
+            "active_power": scalar(power.real, "W", "power taken up"),
+            "reactive_power": scalar(power.imag, "W", "reactive power"),
+            "effective_mass": scalar(mass, "kg", "effective mass"),
+            "loss_factor": scalar(float(np.divide(power.real, abs(power.imag))), "1", "loss factor"),
+        },
+        attrs={"frequency": frequency, "cycles": int(cycles)},
+    )

@@ -1,0 +1,73 @@
+"""What every function asks of a sampled signal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    import xarray
+
+FloatArray = NDArray[np.float64]
+TIME = {"units": "s", "long_name": "time"}
+
+
+def finite(name: str, values: ArrayLike, least: int = 1) -> FloatArray:
+    """Return a signal as (N,) floats; refuse NaN, infinity, other shapes and fewer than `least` samples."""
+    array = np.asarray(values, dtype=np.float64)
+    if array.ndim != 1:
+        raise ValueError(f"{name} has shape {array.shape}, but one signal (N,) is needed; pick one point or ball")
+    if array.size < least:
+        raise ValueError(f"{name} has {array.size} samples, but at least {least} are needed")
+    bad = np.flatnonzero(~np.isfinite(array))
+    if bad.size:
+        raise ValueError(f"{name}[{bad[0]}] is {array[bad[0]]}, but all samples must be finite; drop or repair them")
+    return array
+
+
+def sampled(time: ArrayLike, least: int = 2, **signals: ArrayLike) -> tuple[FloatArray, ...]:
+    """Return increasing times and signals of the same length."""
+    t = finite("time", time, least)
+    if np.any(np.diff(t) <= 0):
+        k = int(np.flatnonzero(np.diff(t) <= 0)[0])
+        raise ValueError(f"time must increase, but time[{k + 1}] = {t[k + 1]:g} s follows time[{k}] = {t[k]:g} s")
+    arrays = [finite(name, values) for name, values in signals.items()]
+    for name, array in zip(signals, arrays, strict=True):
+        if array.size != t.size:
+            raise ValueError(f"{name} has {array.size} samples, but time has {t.size}")
+    return t, *arrays
+
+
+def step_of(time: FloatArray) -> float:
+    """Return the sampling interval; refuse times that are not evenly spaced."""
+    steps = np.diff(time)
+    step = float(time[-1] - time[0]) / steps.size
+    # Times of 17 digits far from zero are uneven by their own rounding.
+    if np.max(np.abs(steps - step)) > 1e-6 * step + 4 * np.spacing(np.max(np.abs(time))):
+        raise ValueError(
+            f"time must be evenly spaced, but its steps range from {steps.min():g} s to {steps.max():g} s; "
+            "ask the run for Output(rate=...), or interpolate"
+        )
+    return step
+
+
+def positive(name: str, value: float, unit: str) -> float:
+    """Return a number above zero."""
+    if not (np.isfinite(value) and value > 0):
+        raise ValueError(f"{name} is {value} {unit}".rstrip() + ", but it must be finite and above zero")
+    return float(value)
+
+
+def units_of(values: Any) -> str:
+    """Return the unit that labelled values carry; a plain array has none."""
+    return str(getattr(values, "attrs", {}).get("units", ""))
+
+
+def labelled(name: str, values: ArrayLike, units: str, long_name: str, **coords: Any) -> xarray.DataArray:
+    """Return a named array; a coordinate is a time axis, or given as (dim, values, attrs)."""
+    import xarray
+
+    coords = {dim: c if isinstance(c, tuple) else (dim, c, TIME) for dim, c in coords.items()}
+    return xarray.DataArray(values, coords, list(coords), name, {"units": units, "long_name": long_name})
