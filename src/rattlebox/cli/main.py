@@ -59,6 +59,22 @@ def demo(
 
 
 @app.command()
+def paper(
+    out: Annotated[Path, typer.Option("--out", "-o", help="New folder, or that of an earlier report.")] = Path(
+        "report"
+    ),
+    only: Annotated[
+        list[str] | None, typer.Option(help='Figure to make, as "4", "7c" or "A1"; repeat for more.')
+    ] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; default one for each core.")] = None,
+) -> None:
+    """Reproduce and judge the reference study of a single-ball damper: every figure and claim on one page."""
+    from rattlebox.cli.paper import make_report
+
+    make_report(out, only or (), workers)
+
+
+@app.command()
 def schema(
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File; default the terminal.")] = None,
 ) -> None:

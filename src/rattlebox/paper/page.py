@@ -1,0 +1,190 @@
+"""The page of the report, made of figures that are computed and drawn."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import sqrt
+from pathlib import Path
+from typing import NamedTuple, get_args
+
+from .figure import Claim, Verdict
+
+GENERATOR = '<meta name="generator" content="Rattlebox">'
+"""Marks a page as ours."""
+PAPER = "Energy Dissipation in Particle-based Impact Damper Systems: Investigation based on Elasto-plastic impact model"
+
+
+class Column(NamedTuple):
+    """A column of a table: its name, unit and meaning."""
+
+    name: str
+    units: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Table:
+    """A CSV file; its path is relative to the page."""
+
+    path: str
+    rows: int
+    columns: tuple[Column, ...]
+
+
+@dataclass(frozen=True)
+class Made:
+    """A figure that is computed, drawn and written; paths are relative to the page.
+
+    Attributes
+    ----------
+    number, title, name, caption, claims
+        As in `Reproduction`, for the data computed.
+    picture
+        Address of the drawing that holds all of it, for the page.
+    svg, png, tables
+        Files.
+    cases
+        Case files by name.
+    computing, drawing
+        Time taken [s].
+    """
+
+    number: str
+    title: str
+    name: str
+    caption: str
+    claims: tuple[Claim, ...]
+    picture: str
+    svg: str
+    png: str
+    tables: tuple[Table, ...]
+    cases: Mapping[str, str]
+    computing: float
+    drawing: float
+
+    @property
+    def label(self) -> str:
+        """How the page calls the figure."""
+        return f"Figure {self.number}"
+
+
+def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float) -> str:
+    """Return the page as HTML that needs nothing from elsewhere.
+
+    Parameters
+    ----------
+    figures
+        In the order of the page.
+    cores, workers
+        Of the machine, and processes that were used.
+    seconds
+        Time that the whole took.
+    """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from markupsafe import Markup
+
+    from rattlebox.model.methods import EventDriven
+    from rattlebox.results.provenance import Provenance
+
+    claims = sorted(((claim, figure) for figure in figures for claim in figure.claims), key=lambda x: place(x[0].where))
+    counts = Counter(claim.verdict for claim, _ in claims)
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).with_name("templates")),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+    )
+    return environment.get_template("report.html").render(
+        generator=Markup(GENERATOR),
+        title="A particle damper, reproduced and judged",
+        paper=PAPER,
+        figures=figures,
+        groups=(
+            ("Figures of the paper", [figure for figure in figures if figure.number[0].isdigit()]),
+            ("Where the paper can be read in more than one way", [f for f in figures if f.number.startswith("R")]),
+            ("What the paper left for later", [figure for figure in figures if figure.number.startswith("A")]),
+        ),
+        claims=claims,
+        counts=[(verdict, counts[verdict]) for verdict in get_args(Verdict)],
+        system=system(),
+        provenance=Provenance.now(),
+        cores=cores,
+        workers=workers,
+        tolerance=EventDriven().tolerance,
+        seconds=seconds,
+    )
+
+
+_SECTION_OF_FIGURE = {1: (3.0,), 2: (3.1,), 3: (4.1,), 4: (4.2,), 5: (4.3,), 6: (5.0,)}
+_SECTION_OF_ELSE = {"abstract": (0.0,), "table": (4.25,), "conclusion": (6.0,)}
+
+
+def place(where: str) -> tuple[float, ...]:
+    """Return a key that sorts what `Claim.where` says as in the paper: by section, then by figure.
+
+    Parameters
+    ----------
+    where
+        Such as "section 5.1, figure 7c", "table 1" or "conclusion 3".
+    """
+    section = re.search(r"section (\d+(?:\.\d+)?)", where.lower())
+    figure = re.search(r"fig(?:ure|\.) (\d+)([a-z]?)", where.lower())
+    told = (float(figure[1]), ord(figure[2] or "a")) if figure else ()
+    if section:
+        return float(section[1]), *told
+    if figure:
+        return *_SECTION_OF_FIGURE.get(int(figure[1]), (5.1,)), *told
+    return next((key for word, key in _SECTION_OF_ELSE.items() if word in where.lower()), (9.0,))
+
+
+class Quantity(NamedTuple):
+    """A line of the table of numbers."""
+
+    name: str
+    symbol: str
+    value: str
+    unit: str
+
+
+def system() -> tuple[Quantity, ...]:
+    """Return the numbers of the paper's system."""
+    from rattlebox.model.contacts import restitution_of_alpha
+    from rattlebox.model.pairs import contact_pairs
+    from rattlebox.model.restitutions import JacksonGreen
+    from rattlebox.model.signals import HalfSine
+
+    from .seed import ALPHA, DAMPING, GAP, MASS, PULSE, RADIUS, STIFFNESS, seed_case
+
+    case = seed_case()
+    pair, pulse = contact_pairs(case, 0)[0], case.loads[0]
+    ball = pair.above
+    assert ball.material is not None and isinstance(pulse, HalfSine)
+    steel, rigid = JacksonGreen(), JacksonGreen(wall="rigid")
+    together = MASS + ball.mass
+    return (
+        Quantity("Mass of the structure", "M", f"{MASS:g}", "kg"),
+        Quantity("Stiffness", "K", f"{STIFFNESS / 1e3:g}", "kN/m"),
+        Quantity("Viscous damping", "C", f"{DAMPING:g}", "N s/m"),
+        Quantity("Damping ratio", "C / 2√(KM)", f"{100 * DAMPING / (2 * sqrt(STIFFNESS * MASS)):.4f}", "%"),
+        Quantity("Natural frequency, ball in flight", "√(K/M)", f"{sqrt(STIFFNESS / MASS):.4f}", "rad/s"),
+        Quantity("Natural frequency, ball riding along", "√(K/(M+m))", f"{sqrt(STIFFNESS / together):.4f}", "rad/s"),
+        Quantity("Radius of the ball", "R", f"{1e3 * RADIUS:g}", "mm"),
+        Quantity("Mass of the ball", "m", f"{ball.mass:.6f}", "kg"),
+        Quantity("Mass ratio", "m/M", f"{100 * ball.mass / MASS:.4f}", "%"),
+        Quantity("Clearance on each side of the centred ball", "d₀", f"{1e3 * GAP:g}", "mm"),
+        Quantity("Young's modulus of steel", "E", f"{ball.material.young / 1e9:g}", "GPa"),
+        Quantity("Poisson's ratio", "ν", f"{ball.material.poisson:g}", ""),
+        Quantity("Yield stress", "S_y", f"{(ball.material.yield_stress or 0) / 1e6:g}", "MPa"),
+        Quantity("Density", "ρ", f"{ball.material.density:g}", "kg/m³"),
+        Quantity("Hertz stiffness, ball on steel wall", "A", f"{pair.hertz_stiffness / 1e9:.5f}", "GN/m^1.5"),
+        Quantity("Damping coefficient of the constant model", "α", f"{ALPHA:g}", ""),
+        Quantity("Its restitution", "e", f"{restitution_of_alpha(ALPHA, 'zero_overlap'):.6f}", ""),
+        Quantity("Speed of first yield, steel wall", "V_c", f"{steel.critical_speed(pair):.5f}", "m/s"),
+        Quantity("Speed of first yield, rigid wall", "V_c", f"{rigid.critical_speed(pair):.5f}", "m/s"),
+        Quantity("Amplitude of the pulse", "F₀", f"{pulse.amplitude:g}", "N"),
+        Quantity("Duration of the pulse", "t_f", f"{1e3 * PULSE:g}", "ms"),
+    )
