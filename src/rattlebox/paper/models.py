@@ -1,0 +1,36 @@
+"""The paper's two contact models, the second under its two readings, and how figures show them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from rattlebox.model.contacts import Tsuji
+from rattlebox.plots.style import SERIES_COLOURS, SERIES_STYLES
+
+from .seed import CONSTANT, PLASTIC, PLASTIC_RIGID
+
+CONSTANT_E, STEEL, RIGID = "constant restitution", "elasto-plastic, steel wall", "elasto-plastic, rigid wall"
+
+MODELS: Mapping[str, Tsuji] = {CONSTANT_E: CONSTANT, STEEL: PLASTIC, RIGID: PLASTIC_RIGID}
+"""Contact law by the name of the model."""
+
+COLOURS: Mapping[str, str] = dict(zip(MODELS, SERIES_COLOURS, strict=False))
+STYLES: Mapping[str, Any] = dict(zip(MODELS, SERIES_STYLES, strict=False))
+
+
+def described(dims: Any, values: Any, units: str, long_name: str) -> tuple[Any, ...]:
+    """Return a variable of a dataset with its unit and meaning.
+
+    Parameters
+    ----------
+    dims
+        Name or names of the dimensions; () for a single number.
+    values
+        Numbers or text.
+    units, long_name
+        Attributes.
+    """
+    return dims, np.asarray(values), {"units": units, "long_name": long_name}
