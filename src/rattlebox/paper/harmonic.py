@@ -3,13 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from rattlebox.model.case import Case
 from rattlebox.model.contacts import Contact
-from rattlebox.model.methods import EventDriven, Newton
+from rattlebox.model.dampers import ImpactDamper, Sphere
+from rattlebox.model.methods import EventDriven, Newton, Output
 from rattlebox.model.signals import Harmonic
+from rattlebox.model.structures import SDOF
 
-from .seed import CONSTANT, seed_case
+from .seed import CONSTANT, DAMPING, GAP, MASS, RADIUS, STIFFNESS
+
+
+class State(NamedTuple):
+    """Where everything is when the sine begins."""
+
+    displacement: float = 0.0
+    """Of the structure [m]."""
+    velocity: float = 0.0
+    """Of the structure [m/s]."""
+    ball_position: float = 0.0
+    """Of the ball in its cavity, from the centre [m]."""
+    ball_velocity: float = 0.0
+    """Of the ball over ground [m/s]."""
 
 
 def harmonic_case(
@@ -17,8 +33,7 @@ def harmonic_case(
     *,
     amplitude: float,
     frequency: float,
-    start: float = 0.0,
-    gravity: float = 0.0,
+    state: State | None = None,
     duration: float = 10.0,
     times: Sequence[float] | None = None,
     rate: float | None = None,
@@ -26,7 +41,7 @@ def harmonic_case(
     ball: bool = True,
     name: str = "",
 ) -> Case:
-    """Return the paper's system, at rest until a sine pulls at the structure.
+    """Return the paper's system while a sine, begun at zero, pulls at the structure.
 
     Parameters
     ----------
@@ -34,10 +49,8 @@ def harmonic_case(
         Contact law: CONSTANT, PLASTIC, PLASTIC_RIGID, or any other.
     amplitude, frequency
         Of the load [N], [Hz].
-    start
-        Reduced start position of the ball, -1 to 1.
-    gravity
-        Along the line, with sign [m/s^2].
+    state
+        At the start; default everything at rest, the ball centred.
     duration
         Of the run [s].
     times, rate
@@ -49,11 +62,20 @@ def harmonic_case(
     name
         Of the case.
     """
-    case = seed_case(
-        contact, start=start, duration=duration, times=times, rate=rate, method=method, ball=ball, name=name
+    z, v, y, w = state or State()
+    damper = ImpactDamper(
+        balls=(Sphere(radius=RADIUS, material="steel"),),
+        gap=GAP,
+        start=(z + y) / GAP,  # counts from the cavity's place at rest
+        velocity=(w,),
+        contact=contact,
     )
-    changes = {
-        "loads": (Harmonic(amplitude=amplitude, frequency=frequency, unit="N"),),
-        "dampers": tuple(damper.model_copy(update={"gravity": gravity}) for damper in case.dampers),
-    }
-    return case.model_copy(update=changes)
+    return Case(
+        name=name,
+        structure=SDOF(mass=MASS, stiffness=STIFFNESS, damping=DAMPING, displacement=z, velocity=v),
+        dampers=(damper,) if ball else (),
+        loads=(Harmonic(amplitude=amplitude, frequency=frequency),),
+        duration=duration,
+        method=method or EventDriven(),
+        output=Output(rate=rate) if times is None else Output(times=times),
+    )
