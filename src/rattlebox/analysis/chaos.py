@@ -43,7 +43,6 @@ def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: fl
         When a separation is not finite and above zero, or fewer than 3 samples come before saturation.
     """
     import xarray
-    from scipy.stats import linregress
 
     rows = np.atleast_2d(np.asarray(separations, dtype=np.float64))
     if rows.ndim != 2 or not rows.shape[0]:
@@ -64,18 +63,15 @@ def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: fl
             "closer or sample more densely"
         )
     growth = logs - logs[:, :1]
-    mean = growth.mean(axis=0)
-    line = linregress(t[:size], mean[:size])
-    error = float(line.stderr)
-    if len(pairs) > 1:
-        slopes = np.polynomial.polynomial.polyfit(t[:size] - t[0], growth[:, :size].T, 1)[1]
-        error = float(slopes.std(ddof=1)) / len(pairs) ** 0.5
-    fit = np.where(np.arange(t.size) < size, line.intercept + line.slope * t, np.nan)
+    (slopes, offsets), covariance = np.polyfit(t[:size] - t[0], growth[:, :size].T, 1, cov=True)
+    exponent = float(slopes.mean())
+    error = slopes.std(ddof=1) / slopes.size**0.5 if slopes.size > 1 else covariance[0, 0, 0] ** 0.5
+    fit = np.where(np.arange(t.size) < size, offsets.mean() + exponent * (t - t[0]), np.nan)
     return xarray.Dataset(
         {
-            "growth": labelled("growth", mean, "1", "mean logarithmic growth of the separation", time=t),
+            "growth": labelled("growth", growth.mean(axis=0), "1", "mean logarithmic growth of the separation", time=t),
             "fit": labelled("fit", fit, "1", "fitted line", time=t),
-            "exponent": labelled("exponent", line.slope, "1/s", "finite-time Lyapunov exponent"),
-            "standard_error": labelled("standard_error", error, "1/s", "standard error of the exponent"),
+            "exponent": labelled("exponent", exponent, "1/s", "finite-time Lyapunov exponent"),
+            "standard_error": labelled("standard_error", float(error), "1/s", "standard error of the exponent"),
         }
     )
