@@ -60,8 +60,8 @@ def damping_ratio(
         Free decay about zero of one mode. A DataArray passes its unit on.
     method
         "hilbert": slope of the logarithmic envelope over the instantaneous frequency, both from a cubic through two
-        cycles about each sample; three cycles are lost at each end. "decrement": logarithmic decrement between extremes
-        one cycle apart, a value every half cycle, at the time of the extreme between them.
+        cycles about each sample; resolves ratios to 1e-6 and loses three cycles at each end. "decrement": logarithmic
+        decrement between extremes one cycle apart, a value every half cycle, at the time of the extreme between them.
 
     Returns
     -------
@@ -95,8 +95,9 @@ def _by_hilbert(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatAr
     from scipy.signal import oaconvolve, savgol_coeffs
 
     t, signal, cycle = _analytic(time, values)
-    if not np.all(signal):
-        raise ValueError(f"values have died out by {t[signal == 0][0]:g} s; cut the record before")
+    dead = np.abs(signal) < 1e-15 * np.max(np.abs(signal))
+    if dead.any():
+        raise ValueError(f"values have died out by {t[dead][0]:.4g} s; cut the record before")
     half = round(cycle)
     slope = savgol_coeffs(2 * half + 1, 3, deriv=1, delta=step_of(t))
     decay = -oaconvolve(np.log(np.abs(signal)), slope, mode="valid")
