@@ -1,0 +1,102 @@
+"""The exact motion with two impacts a cycle: S. F. Masri and T. K. Caughey, J. Appl. Mech. 33 (1966) 586."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class TwoImpacts(NamedTuple):
+    """A steady motion in which hard impacts alternate between the walls, half a cycle apart."""
+
+    approach_speed: float
+    """Of every impact [m/s]."""
+    ball_speed: float
+    """Over ground, between impacts [m/s]."""
+    multiplier: float
+    """Factor by which the most persistent disturbance grows in half a cycle; the motion is stable below 1."""
+
+
+def two_impacts(
+    *,
+    mass: float,
+    stiffness: float,
+    damping: float,
+    ball: float,
+    clearance: float,
+    restitution: float,
+    amplitude: float,
+    frequency: float,
+) -> tuple[TwoImpacts, ...]:
+    """Return the motions with two impacts a cycle of a ball in a cavity on an oscillator that a sine pulls at.
+
+    Parameters
+    ----------
+    mass, stiffness, damping
+        Of the oscillator [kg], [N/m], [N s/m].
+    ball
+        Mass of the ball [kg].
+    clearance
+        Total clearance of the cavity [m].
+    restitution
+        Of both walls.
+    amplitude, frequency
+        Of the sine [N], [Hz].
+
+    Returns
+    -------
+    tuple of TwoImpacts
+        Those in which the ball stays inside the cavity, by falling speed; none, one or two.
+    """
+    omega, e, ratio = 2 * pi * frequency, restitution, ball / mass
+    half = pi / omega
+    flow = np.array([[0.0, 1.0], [-stiffness / mass, -damping / mass]])
+    # At the impact on the leading wall, over the ball's velocity w after it: the structure's before and after.
+    before, after = (1 - e + 2 * ratio) / (1 + e), (1 - e - 2 * ratio * e) / (1 + e)
+    # The free part of the motion repeats mirrored but for the jump at impact; so it is w times this.
+    free = np.linalg.solve(_decay(flow, half) + np.eye(2), [0.0, after - before])
+    # The rest is the steady response, of known amplitude: at impact (-clearance/2 + shift w, slope w).
+    shift, slope = -half / 2 - free[0], after - free[1]
+    size = amplitude / abs(stiffness - mass * omega**2 + 1j * damping * omega)
+    times = np.linspace(0.0, half, 200)[1:-1]
+    decay = _decay(flow, times) @ free
+    found = []
+    for w in np.roots([shift**2 + (slope / omega) ** 2, -clearance * shift, clearance**2 / 4 - size**2]):
+        place, speed = -clearance / 2 + shift * w, slope * w
+        structure = decay[:, 0] * w + place * np.cos(omega * times) + speed / omega * np.sin(omega * times)
+        # The ball leaves the leading wall at the structure's -(half w + clearance)/2 and half a clearance beyond.
+        inside = np.abs(w * (times - half / 2) - structure) < clearance / 2
+        if np.isreal(w) and w < after * w and inside.all():
+            pull = w * (flow @ free)[1] - omega**2 * place
+            pulls = pull + damping / mass * w * (after - before), pull
+            jump = _jump(ratio, e, (before * w, -w), (after * w, w), pulls)
+            flight = np.eye(4)
+            flight[:2, :2], flight[2, 3] = _decay(flow, half), half
+            multiplier = np.abs(np.linalg.eigvals(jump @ flight)).max()
+            found.append(TwoImpacts(float(-w * (1 + before)), float(-w), float(multiplier)))
+    return tuple(sorted(found, reverse=True))
+
+
+def _decay(flow: Array, time: float | Array) -> Array:
+    """Matrix that carries free motion over a time, (..., 2, 2)."""
+    rates, shapes = np.linalg.eig(flow)
+    grown = np.exp(np.multiply.outer(time, rates))
+    return np.asarray(((shapes * grown[..., None, :]) @ np.linalg.inv(shapes)).real)
+
+
+def _jump(
+    ratio: float, e: float, before: tuple[float, float], after: tuple[float, float], pulls: tuple[float, float]
+) -> Array:
+    """How an impact on the leading wall passes on a disturbance of (x, x', y, y'), also in its time."""
+    reset = np.eye(4)
+    reset[1, 1::2] = (1 - ratio * e) / (1 + ratio), ratio * (1 + e) / (1 + ratio)
+    reset[3, 1::2] = (1 + e) / (1 + ratio), (ratio - e) / (1 + ratio)
+    normal = np.array([-1.0, 0.0, 1.0, 0.0])
+    rate_before = np.array([before[0], pulls[0], before[1], 0.0])
+    rate_after = np.array([after[0], pulls[1], after[1], 0.0])
+    return np.asarray(reset + np.outer(rate_after - reset @ rate_before, normal) / (normal @ rate_before))
