@@ -6,6 +6,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from rattlebox.cli.run import make_folder
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.case import Case
 from rattlebox.model.contacts import Tsuji
@@ -39,8 +40,8 @@ def run_demo(out: Path) -> None:
         "constant alpha": demo_case(Tsuji(alpha=0.006313, ending="zero_overlap")),
         "Jackson-Green": demo_case(Tsuji(restitution=JacksonGreen(), ending="zero_overlap")),
     }
+    make_folder(out)
     runs = dict(zip(cases, simulate_many(list(cases.values())), strict=True))
-    out.mkdir(parents=True, exist_ok=True)
     console = Console()
     console.print(compare(runs))
     for name, run in runs.items():

@@ -116,6 +116,12 @@ def main() -> None:
     except OSError as error:
         typer.echo(f"error: {error.filename or ''}: {error.strerror or error}", err=True)
         sys.exit(2)
+    except MemoryError:
+        typer.echo("error: there is not enough memory\n  try: a lower output rate", err=True)
+        sys.exit(2)
+    except typer.Abort:
+        typer.echo("stopped", err=True)
+        sys.exit(130)
     except typer.Exit as stop:
         sys.exit(stop.exit_code)
     except Exception as error:

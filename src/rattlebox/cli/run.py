@@ -9,6 +9,23 @@ from rich.console import Console
 
 from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
+from rattlebox.model.errors import CaseError
+
+
+def make_folder(out: Path) -> None:
+    """Make a folder for results.
+
+    Raises
+    ------
+    CaseError
+        When it cannot be made.
+    """
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise CaseError(f"{out} is a file; results need a folder\n  try: --out results") from None
+    except OSError as error:
+        raise CaseError(f"the folder {out} cannot be made: {error.strerror}\n  try: --out results") from None
 
 
 def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool) -> None:
@@ -23,8 +40,9 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool) -> N
     csv, mat, figures
         What to write besides run.nc.
     """
-    run = simulate(Case.from_file(path))
-    out.mkdir(parents=True, exist_ok=True)
+    case = Case.from_file(path)
+    make_folder(out)
+    run = simulate(case)
     console = Console()
     console.print(run.summary())
     run.save(out / "run.nc")

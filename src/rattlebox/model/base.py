@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from .errors import translate
 
@@ -14,20 +17,38 @@ else:
     _ModelType = type(BaseModel)
 
 
+@dataclass(frozen=True)
+class AlsoTakes:
+    """Adds to the JSON Schema of a field what a validator takes besides; None stands for one instead of a list."""
+
+    schema: dict[str, Any] | None = None
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        schema = handler(core)
+        return {"anyOf": [schema, self.schema or schema["items"]]}
+
+    __hash__ = object.__hash__
+
+
 class _Explaining(_ModelType):
     """Makes wrong values raise CaseError at construction, and leaves validation inside a larger part to pydantic."""
 
     def __call__(cls, *args: Any, **values: Any) -> Any:  # noqa: N805
+        if args:
+            names: tuple[str, ...] = getattr(cls, "unnamed", ())
+            values = dict(zip(names, args, strict=True)) | values
         try:
-            return super().__call__(*args, **values)
+            return super().__call__(**values)
         except ValidationError as error:
-            raise translate(error, cls.__name__, known_fields()) from None
+            raise translate(error, cls.__name__, vocabulary(), values) from None
 
 
 class Part(BaseModel, metaclass=_Explaining):
     """A frozen part of a case. Wrong values raise CaseError, whoever gives them."""
 
     held_as: ClassVar[tuple[str, ...]] = ()
+    spellings: ClassVar[tuple[str, ...]] = ()  # names that are taken beside those of the fields
+    unnamed: ClassVar[tuple[str, ...]] = ()  # fields that may be given without their names
     model_config = ConfigDict(
         frozen=True,
         extra="forbid",
@@ -37,18 +58,17 @@ class Part(BaseModel, metaclass=_Explaining):
     )
 
 
-def known_fields() -> dict[str, set[str]]:
-    """Return the field names of every part, by the tag of its kind and by the fields that hold it."""
-    fields: dict[str, set[str]] = {}
-    stack: list[type[BaseModel]] = [Part]
+def vocabulary() -> dict[str, dict[str, set[str]]]:
+    """Return the names of fields, by the field that holds a part or the name of its class, and by its kind."""
+    known: dict[str, dict[str, set[str]]] = {}
+    stack: list[type[Part]] = [Part]
     while stack:
         part = stack.pop()
-        stack.extend(part.__subclasses__())
-        names = set(part.model_fields)
+        stack.extend(reversed(part.__subclasses__()))
         kind = part.model_fields.get("kind")
-        if kind is not None:
-            fields.setdefault(str(kind.default), set()).update(names)
-        for holder in getattr(part, "held_as", ()):
-            fields.setdefault(holder, set()).update(names)
-        fields.setdefault(part.__name__, set()).update(names)
-    return fields
+        if kind is not None and kind.is_required():
+            continue  # what several kinds share
+        for holder in (*part.held_as, part.__name__):
+            tag = "" if kind is None else str(kind.default)
+            known.setdefault(holder, {})[tag] = {*part.model_fields, *part.spellings}
+    return known

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
 
-from .base import Part, known_fields
+from .base import AlsoTakes, Part, vocabulary
 from .dampers import ImpactDamper
-from .errors import CaseError, Hint, translate
-from .materials import materials
+from .errors import CaseError, Hint, at, translate
+from .files import existing, read_toml
+from .materials import Material, materials
 from .methods import AnyMethod, EventDriven, Output
 from .modes import ModalModel, Vector
 from .pairs import contact_pairs
-from .signals import AnySignal, Harmonic, Record, Signal, as_signals
+from .signals import AnySignal, Harmonic, Record, Signal, Unit, as_several, signals_in
 from .structures import AnyStructure, Shaker
 from .units import PositiveTime
+
+_MEMORY = 16e9  # bytes
 
 
 class Case(Part):
@@ -50,11 +52,12 @@ class Case(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("",)
+    spellings: ClassVar[tuple[str, ...]] = ("load", "damper", "materials")
     name: str = ""
     structure: AnyStructure
-    dampers: Annotated[tuple[ImpactDamper, ...], BeforeValidator(as_signals)] = ()
-    loads: Annotated[tuple[AnySignal, ...], BeforeValidator(as_signals)] = ()
-    base: Annotated[tuple[AnySignal, ...], BeforeValidator(as_signals)] = ()
+    dampers: Annotated[tuple[ImpactDamper, ...], BeforeValidator(as_several), AlsoTakes()] = ()
+    loads: Annotated[tuple[AnySignal, ...], signals_in("N"), AlsoTakes()] = ()
+    base: Annotated[tuple[AnySignal, ...], signals_in("m/s^2"), AlsoTakes()] = ()
     duration: PositiveTime
     method: AnyMethod = Field(default_factory=EventDriven)
     output: Output = Field(default_factory=Output)
@@ -76,52 +79,101 @@ class Case(Part):
     @model_validator(mode="after")
     def _fits_together(self) -> Case:
         put = object.__setattr__
-        put(self, "loads", tuple(signal.placed(("N",), "a load") for signal in self.loads))
-        put(self, "base", tuple(signal.placed(("m/s^2",), "the base") for signal in self.base))
-        modes = self.modes
-        for signal in (*self.loads, *self.base, *self._motion()):
-            if isinstance(signal, Record):
-                self._check_record(signal)
-        if self.loads and not modes.decay.size:
-            raise Hint(f"a load cannot move a {self.structure.kind} structure", "put motion into Shaker or base")
-        for signal in self.loads:
-            modes.point(signal.point)
-        if self.base and modes.participation is None:
-            raise Hint("base motion needs the participation of each mode", "participation = [...] in the structure")
-        if self.base and isinstance(self.structure, Shaker):
-            raise Hint("a shaker is its own base", "add the signal to its motion")
+        put(self, "loads", self._placed("loads", "N", "a load"))
+        put(self, "base", self._placed("base", "m/s^2", "the base"))
+        self._check_signals()
+        self._check_size()
         names: set[str] = set()
         for index, damper in enumerate(self.dampers):
-            modes.point(damper.point)
-            if damper.label(index) in names:
-                raise Hint(f"two dampers are called {damper.label(index)!r}", "different names")
-            names.add(damper.label(index))
-            cavity = float(modes.shape(damper.point) @ modes.q0)
-            half = 0.5 * damper.clearance
-            for number, place in enumerate(damper.positions0, start=1):
-                depth = abs(place - cavity) - half
-                if depth > 4e-16 * (half + abs(cavity)):
-                    raise Hint(
-                        f"ball {number} of {damper.label(index)} would start {1e3 * depth:.4g} mm inside a wall",
-                        "start between -1 and 1, or where the cavity is",
-                    )
-            for place, pair in enumerate(contact_pairs(self, index)):
-                between = 0 < place < len(damper.balls)
-                law = damper.ball_contact if between and damper.ball_contact is not None else damper.contact
-                law.coefficients(pair)
-                if law.restitution is not None:
-                    law.restitution.coefficients(pair)
+            with at("dampers", index):
+                if damper.label(index) in names:
+                    raise Hint(f"two dampers are called {damper.label(index)!r}", "different names")
+                names.add(damper.label(index))
+                self._check_places(damper)
+                self._check_laws(damper, index)
         return self
+
+    def _placed(self, field: str, unit: Unit, place: str) -> tuple[Signal, ...]:
+        """The signals of a field in the unit that it takes."""
+        signals = []
+        for index, signal in enumerate(getattr(self, field)):
+            with at(field, index):
+                signals.append(signal.placed((unit,), place))
+        return tuple(signals)
+
+    def _check_signals(self) -> None:
+        modes = self.modes
+        motion = self.structure.motion if isinstance(self.structure, Shaker) else ()
+        for field, signals in (("loads", self.loads), ("base", self.base), ("motion", motion)):
+            for index, signal in enumerate(signals):
+                with at(*(("structure",) if field == "motion" else ()), field, index):
+                    if isinstance(signal, Record):
+                        self._check_record(signal)
+                    if field != "loads" and signal.point is not None:
+                        raise Hint("the base moves as a whole and has no point", "leave point out", ["point"])
+        if self.loads and not modes.decay.size:
+            raise Hint(
+                f"a load cannot move a {self.structure.kind} structure", "motion of a shaker, or base", ["loads", 0]
+            )
+        for index, signal in enumerate(self.loads):
+            with at("loads", index, "point"):
+                modes.point(signal.point)
+        if self.base and modes.participation is None:
+            raise Hint(
+                "base motion needs the participation of each mode", "one number each", ["structure", "participation"]
+            )
+        if self.base and isinstance(self.structure, Shaker):
+            raise Hint("a shaker is its own base", "add the signal to its motion", ["base"])
+
+    def _check_size(self) -> None:
+        """Refuse an output that no memory holds."""
+        samples = self.duration * (self.output.rate or 0.0)
+        columns = 20 + 6 * self.modes.decay.size + 10 * sum(len(damper.balls) for damper in self.dampers)
+        if 8 * samples * columns > _MEMORY:
+            raise Hint(
+                f"{samples:.3g} samples would take {8e-9 * samples * columns:.0f} GB",
+                f'rate = "{_MEMORY / (80 * columns * self.duration):.1g} Hz", or times',
+                ["output", "rate"],
+            )
 
     def _check_record(self, record: Record) -> None:
         if record.times[0] > 0 or record.times[-1] < self.duration:
             raise Hint(
                 f"the record covers {record.times[0]:.6g} s to {record.times[-1]:.6g} s, the run 0 to {self.duration:.6g} s",
-                f'duration = "{record.times[-1]:.6g} s", or a longer record',
+                f'duration = "{record.times[-1]:.6g} s", or a longer record'
+                if record.times[-1] > 0
+                else "a longer record",
+                record.where,
             )
 
-    def _motion(self) -> tuple[Signal, ...]:
-        return self.structure.motion if isinstance(self.structure, Shaker) else ()
+    def _check_places(self, damper: ImpactDamper) -> None:
+        """Refuse balls that start inside a wall of the cavity, which may be displaced at the start."""
+        with at("point"):
+            shape = self.modes.shape(damper.point)
+        cavity = float(shape @ self.modes.q0)
+        half = 0.5 * damper.clearance
+        for number, place in enumerate(damper.positions0, start=1):
+            depth = abs(place - cavity) - half
+            if depth > 4e-16 * (half + abs(cavity)):
+                where = "" if cavity == 0 else f", which is displaced by {1e3 * cavity:.4g} mm at the start"
+                raise Hint(
+                    f"ball {number} would start {1e3 * depth:.4g} mm inside a wall of the cavity" + where,
+                    "start between -1 and 1"
+                    if cavity == 0
+                    else f'start = "{1e3 * cavity:.6g} mm" is its centre, with {1e3 * half:.6g} mm on each side',
+                    ["start"],
+                )
+
+    def _check_laws(self, damper: ImpactDamper, index: int) -> None:
+        """Let every law look at the pair of bodies that it is used for."""
+        for number, pair in enumerate(contact_pairs(self, index)):
+            between = 0 < number < len(damper.balls) and damper.ball_contact is not None
+            law = damper.ball_contact if between and damper.ball_contact is not None else damper.contact
+            with at("ball_contact" if between else "contact"):
+                law.coefficients(pair)
+                if law.restitution is not None:
+                    with at("restitution"):
+                        law.restitution.coefficients(pair)
 
     @cached_property
     def modes(self) -> ModalModel:
@@ -131,7 +183,8 @@ class Case(Part):
     def base_acceleration(self) -> tuple[Signal, ...]:
         """Return the signals that accelerate the base [m/s^2]."""
         signals = []
-        for signal in (*self.base, *self._motion()):
+        motion = self.structure.motion if isinstance(self.structure, Shaker) else ()
+        for signal in (*self.base, *motion):
             signals.append(signal.acceleration() if isinstance(signal, Harmonic) and signal.unit == "m" else signal)
         return tuple(signals)
 
@@ -157,10 +210,15 @@ class Case(Part):
         """
         file = Path(path)
         try:
-            content = file.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise CaseError(f"{file}: cannot be read: {error}") from None
-        return cls.from_toml(content, source=file.name, folder=file.parent)
+            existing(file)
+            content = file.read_text(encoding="utf-8-sig")
+        except Hint as hint:
+            raise CaseError(str(hint)) from None
+        except OSError as error:
+            raise CaseError(f"{file}: cannot be read: {error.strerror}") from None
+        except UnicodeDecodeError:
+            raise CaseError(f"{file}: not text in UTF-8\n  try: a TOML file, saved as UTF-8") from None
+        return cls.from_toml(content, source=str(file), folder=file.parent)
 
     @classmethod
     def from_toml(cls, content: str, *, source: str = "case", folder: Path | None = None) -> Case:
@@ -180,23 +238,19 @@ class Case(Part):
         CaseError
             When the case does not fit.
         """
+        given = read_toml(content, source)
+        if not given:
+            raise CaseError(
+                f"{source}: there is nothing in it\n  try: rattlebox demo, which writes two case files"
+            )
         try:
-            values: Any = tomllib.loads(content)
-        except (ValueError, RecursionError) as error:  # ValueError: also an integer of thousands of digits
-            raise CaseError(f"{source}: not TOML: {error}") from None
-        try:
-            values = _insert_materials(values)
+            library = _Library.model_validate({"materials": given.get("materials", {})})
+            values = {key: value for key, value in given.items() if key != "materials"}
             if folder is not None:
                 values = _with_files(values, lambda file: str(folder / file))
-            return cls.model_validate(values)
+            return cls.model_validate(values, context=library.materials)
         except ValidationError as error:
-            raise translate(error, source, known_fields()) from None
-        except CaseError as error:
-            raise CaseError(f"{source}: {error}") from None
-        except Hint as error:
-            raise CaseError(
-                "\n  try: ".join(filter(None, [f"{source}: {error.complaint}", error.suggestion]))
-            ) from None
+            raise translate(error, source, vocabulary(), given) from None
 
     def to_toml(self) -> str:
         """Return the case as the text of a case file that reads back equal; files in it are named by their full path."""
@@ -237,28 +291,20 @@ def _tidy(value: Any) -> Any:
     return value
 
 
-def _insert_materials(values: dict[str, Any]) -> dict[str, Any]:
-    """Replace names from the file's own [materials] by their content."""
-    own = values.pop("materials", None)
-    if own is None:
-        return values
-    if not isinstance(own, dict) or not all(isinstance(m, dict) for m in own.values()):
-        raise Hint("materials must be tables", "[materials.mine]")
-    clash = set(own) & set(materials())
-    if clash:
-        raise Hint(f"material {sorted(clash)[0]!r} is in the library already", "another name")
+class _Library(Part):
+    """The materials of a case file."""
 
-    def insert(node: Any) -> Any:
-        if isinstance(node, dict):
-            return {
-                key: {"name": item, **own[item]}
-                if key in ("material", "wall") and isinstance(item, str) and item in own
-                else insert(item)
-                for key, item in node.items()
-            }
-        return [insert(item) for item in node] if isinstance(node, list) else node
+    materials: dict[str, Material] = Field(default_factory=dict)
 
-    return dict(insert(values))
+    @field_validator("materials", mode="before")
+    @classmethod
+    def _named(cls, own: Any) -> Any:
+        if not isinstance(own, dict):
+            return own
+        for name in own:
+            if name in materials():
+                raise Hint("a material of this name is in the library", "another name", [name])
+        return {name: {"name": name, **item} if isinstance(item, dict) else item for name, item in own.items()}
 
 
 def _with_files(node: Any, name_of: Callable[[str], str]) -> Any:

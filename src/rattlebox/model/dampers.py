@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from .base import Part
+from .base import AlsoTakes, Part
 from .contacts import AnyContact
-from .errors import Hint
-from .materials import AnyMaterial, Material, find_wall
+from .errors import Hint, at
+from .materials import AnyMaterial, AnyWall
 from .modes import Vector
+from .signals import as_several
 from .units import Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse
 
 
@@ -42,7 +44,8 @@ class Sphere(Part):
             if (values.get("radius") is None) == (values.get("diameter") is None):
                 raise Hint("either radius or diameter is needed, not both", 'radius = "10 mm"')
             if values.get("radius") is None:
-                diameter = parse(values["diameter"], ("m",))[0]
+                with at("diameter"):
+                    diameter = parse(values["diameter"], ("m",))[0]
                 rest = {key: value for key, value in values.items() if key != "diameter"}
                 return {**rest, "radius": diameter / 2}
         return values
@@ -54,9 +57,18 @@ class Sphere(Part):
         return self.mass if self.mass is not None else 4 / 3 * math.pi * self.radius**3 * self.material.density
 
 
-def _is_pair(value: Any) -> bool:
-    """Tell one quantity (number, unit) from a list of two."""
-    return (
+def _each(values: Sequence[Any], read: Callable[[Any], Any]) -> list[Any]:
+    """Read a list; a complaint tells the number in it."""
+    result = []
+    for index, value in enumerate(values):
+        with at(index):
+            result.append(read(value))
+    return result
+
+
+def _are_several(value: Any) -> bool:
+    """Tell a list from one quantity (number, unit)."""
+    return isinstance(value, (list, tuple)) and not (
         len(value) == 2
         and isinstance(value[0], (int, float))
         and isinstance(value[1], str)
@@ -65,9 +77,7 @@ def _is_pair(value: Any) -> bool:
 
 
 def _place(value: Any) -> Any:
-    if isinstance(value, (list, tuple)) and not _is_pair(value):
-        return [_one_place(item) for item in value]
-    return _one_place(value)
+    return _each(value, _one_place) if _are_several(value) else _one_place(value)
 
 
 def _one_place(value: Any) -> float | str:
@@ -80,13 +90,7 @@ def _one_place(value: Any) -> float | str:
 
 
 def _speeds(value: Any) -> Any:
-    if isinstance(value, (list, tuple)) and not _is_pair(value):
-        return tuple(parse(item, ("m/s",))[0] for item in value)
-    return (parse(value, ("m/s",))[0],)
-
-
-def _balls(value: Any) -> Any:
-    return tuple(value) if isinstance(value, (list, tuple)) else (value,)
+    return tuple(_each(value if _are_several(value) else [value], lambda item: parse(item, ("m/s",))[0]))
 
 
 class ImpactDamper(Part):
@@ -114,11 +118,13 @@ class ImpactDamper(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")
+    spellings: ClassVar[tuple[str, ...]] = ("ball",)
     kind: Literal["impact"] = "impact"
     name: str = ""
-    balls: Annotated[tuple[Sphere, ...], BeforeValidator(_balls)]
+    balls: Annotated[tuple[Sphere, ...], BeforeValidator(as_several), AlsoTakes()]
     gap: NotNegativeLength | None = None
-    wall: Annotated[Material | Literal["rigid"] | None, BeforeValidator(find_wall)] = None
+    cavity_length: PositiveLength | None = Field(default=None, exclude=True)
+    wall: AnyWall | None = None
     start: Annotated[
         float | str | list[float | str],
         BeforeValidator(_place),
@@ -144,39 +150,43 @@ class ImpactDamper(Part):
             if "balls" in values:
                 raise Hint("give ball or balls, not both")
             values["balls"] = values.pop("ball")
-        length = values.pop("cavity_length", None)
-        if (length is None) == (values.get("gap") is None):
+        if (values.get("cavity_length") is None) == (values.get("gap") is None):
             raise Hint("either gap or cavity_length is needed, not both", 'gap = "0.4 mm"')
-        if length is not None:
-            total = 0.0
-            for ball in _balls(values.get("balls", ())):
-                sphere = ball if isinstance(ball, Sphere) else Sphere.model_validate(ball)
-                assert sphere.radius is not None
-                total += 2 * sphere.radius
-            inner = parse(length, ("m",))[0]
-            if inner < total:
-                raise Hint(
-                    f"cavity_length is {inner:.6g} m, but the balls alone are {total:.6g} m long",
-                    f'cavity_length = "{1e3 * total * 1.01:.4g} mm"',
-                )
-            values["gap"] = (inner - total) / 2
         return values
+
+    @model_validator(mode="after")
+    def _gap_of_cavity(self) -> ImpactDamper:
+        if self.cavity_length is not None:
+            row = sum(2 * (ball.radius or 0.0) for ball in self.balls)
+            if self.cavity_length < row:
+                raise Hint(
+                    f"the balls alone are {row:.6g} m long",
+                    f'cavity_length = "{1e3 * row * 1.01:.4g} mm"',
+                    ["cavity_length"],
+                )
+            put = object.__setattr__
+            put(self, "gap", (self.cavity_length - row) / 2)
+            put(self, "cavity_length", None)  # equal to a damper that is given by its gap
+        return self
 
     @model_validator(mode="after")
     def _row_fits(self) -> ImpactDamper:
         count = len(self.balls)
         if count == 0:
-            raise Hint("a damper needs at least one ball")
+            raise Hint("a damper needs at least one ball", place=["balls"])
         if isinstance(self.start, list) and len(self.start) != count:
-            raise Hint(f"start has {len(self.start)} positions, but there are {count} balls", "one for each ball")
+            raise Hint(f"{len(self.start)} positions, but there are {count} balls", "one for each ball", ["start"])
         if len(self.velocity) not in (1, count):
-            raise Hint(f"velocity has {len(self.velocity)} numbers, but there are {count} balls", "one for each ball")
+            raise Hint(
+                f"{len(self.velocity)} velocities, but there are {count} balls", "one for each ball", ["velocity"]
+            )
         places = self.positions0
         for i in range(count - 1):
             if places[i + 1] < places[i]:
                 raise Hint(
                     f"balls {i + 1} and {i + 2} overlap by {1e3 * (places[i] - places[i + 1]):.4g} mm",
-                    "rising start",
+                    "a start that rises from ball to ball",
+                    ["start"],
                 )
         return self
 

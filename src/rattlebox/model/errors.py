@@ -4,18 +4,26 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
+
+Vocabulary = Mapping[str, Mapping[str, set[str]]]
+"""Names of fields, by the field that holds the part and by the part's kind."""
+
+_LIMIT = 4  # findings that are told
+_SPELLINGS = {"loads": "load", "dampers": "damper", "balls": "ball", "radius": "diameter"}
+_NOTHING = object()
 
 
 class CaseError(ValueError):
     """A case that cannot be run, with a message that fits one screen."""
 
 
-class Hint(ValueError):
+class Hint(CaseError):
     """A complaint from a validator with a suggestion on its own line.
 
     Parameters
@@ -24,12 +32,24 @@ class Hint(ValueError):
         What is wrong and what is allowed.
     suggestion
         What to try.
+    place
+        Where, as seen from the part that complains: names of fields, numbers in lists.
     """
 
-    def __init__(self, complaint: str, suggestion: str = "") -> None:
-        super().__init__(complaint)
+    def __init__(self, complaint: str, suggestion: str = "", place: Sequence[str | int] = ()) -> None:
+        super().__init__(_lines(complaint, suggestion))
         self.complaint = complaint
         self.suggestion = suggestion
+        self.place = tuple(place)
+
+
+@contextmanager
+def at(*place: str | int) -> Iterator[None]:
+    """Add to a complaint raised inside where it belongs."""
+    try:
+        yield
+    except Hint as hint:
+        raise Hint(hint.complaint, hint.suggestion, (*place, *hint.place)) from None
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -41,40 +61,9 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return "known: " + ", ".join(known)
 
 
-def _place(location: tuple[Any, ...]) -> str:
-    words: list[str] = []
-    for part in location:
-        if isinstance(part, int):
-            words[-1:] = [f"{words[-1] if words else ''}[{part}]"]
-        elif part not in _TAGS and not str(part).startswith(("function-", "tagged-")):
-            words.append(str(part))
-    return ".".join(words)
-
-
-_TAGS = {
-    "sdof", "modal", "matrices", "fixed", "shaker", "half_sine", "harmonic", "record", "tsuji", "linear", "thornton",
-    "constant", "table", "jackson_green", "johnson", "event_driven", "two_step", "newton", "float", "str",
-}  # fmt: skip
-
-
-def _shown(value: Any) -> str:
-    try:
-        repr(value)
-    except ValueError:  # an integer of thousands of digits
-        return "a number of thousands of digits"
-    text = repr(value) if not isinstance(value, dict) else "{" + ", ".join(map(str, value)) + "}"
-    return text if len(text) <= 60 else text[:57] + "..."
-
-
-def _fields_near(location: tuple[Any, ...], fields: dict[str, set[str]]) -> set[str]:
-    parts = [str(part) for part in location[:-1]]
-    for part in reversed(parts):
-        if part in fields:
-            return fields[part]
-    return fields.get("", set())
-
-
-def translate(error: ValidationError, source: str | os.PathLike[str], fields: dict[str, set[str]]) -> CaseError:
+def translate(
+    error: ValidationError, source: str | os.PathLike[str], vocabulary: Vocabulary, given: Any = None
+) -> CaseError:
     """Turn pydantic's findings into one message.
 
     Parameters
@@ -83,44 +72,165 @@ def translate(error: ValidationError, source: str | os.PathLike[str], fields: di
         What pydantic found.
     source
         The file or the class that was read.
-    fields
-        Known field names by the tag or field that holds them, for "did you mean".
+    vocabulary
+        Known fields.
+    given
+        What was read, as it was written: messages speak in its names and values.
     """
+    findings = _without_echoes(_spelt(error.errors(include_url=False), str(source), vocabulary), vocabulary)
     blocks: list[str] = []
-    findings = error.errors(include_url=False)
-    for finding in findings[:4]:
-        location = finding["loc"]
-        place = _place(location) or "the case"
-        raised = (finding.get("ctx") or {}).get("error")
-        complaint, suggestion = finding["msg"], ""
-        if isinstance(raised, Hint):
-            complaint, suggestion = raised.complaint, raised.suggestion
-        elif isinstance(raised, ValueError):
-            complaint = str(raised)
-        elif finding["type"] == "extra_forbidden":
-            complaint = "there is no such field here"
-            suggestion = nearest(
-                str(location[-1]),
-                _fields_near(
-                    location,
-                    {
-                        "": fields.get(str(source), fields.get("", set())),
-                        **{k: v for k, v in fields.items() if k},
-                    },
-                ),
-            )
-        elif finding["type"] == "missing":
-            complaint = "this field is needed"
-        elif finding["type"] in ("union_tag_invalid", "union_tag_not_found"):
-            context = finding.get("ctx") or {}
-            complaint = f"'kind' must be one of {context.get('expected_tags', '')}"
-            if "tag" in context:
-                tags = [tag.strip(" '") for tag in str(context.get("expected_tags", "")).split(",")]
-                suggestion = nearest(str(context["tag"]), tags)
-        head = f"{source}: {place}"
-        if finding["type"] not in ("missing", "extra_forbidden") and not isinstance(finding["input"], dict):
-            head += f" = {_shown(finding['input'])}"
-        blocks.append("\n".join([head, f"  {complaint}", *([f"  try: {suggestion}"] if suggestion else [])]))
-    if len(findings) > 4:
-        blocks.append(f"and {len(findings) - 4} more")
+    for finding in findings:
+        location = (*finding["loc"], *getattr(_raised(finding), "place", ()))
+        if finding["type"] == "union_tag_invalid":
+            location += ("kind",)
+        missing = finding["type"] == "missing"
+        place, value = _as_written(given, location, len(finding["loc"]) - missing)
+        head = f"{source}: {place}" if place else f"{source}:"
+        if not missing and value is not _NOTHING and not isinstance(value, Mapping):
+            head += f" = {_shown(value)}"
+        block = _lines(head, *_said(finding, value, str(source), vocabulary))
+        if block not in blocks:
+            blocks.append(block)
+    if len(blocks) > _LIMIT:
+        blocks[_LIMIT:] = [f"and {len(blocks) - _LIMIT} more"]
     return CaseError("\n".join(blocks))
+
+
+def _lines(head: str, *rest: str) -> str:
+    """The head, a complaint below it unless the head says it, and a suggestion."""
+    *complaint, suggestion = rest
+    return "\n".join([head, *(f"  {line}" for line in complaint), *([f"  try: {suggestion}"] if suggestion else [])])
+
+
+def _raised(finding: Any) -> Any:
+    return (finding.get("ctx") or {}).get("error")
+
+
+def _spelt(findings: Sequence[Any], source: str, vocabulary: Vocabulary) -> list[Any]:
+    """Where a part as a whole is refused, look for misspelt fields in it first: they are the likelier cause."""
+    result: list[Any] = []
+    for finding in findings:
+        values = finding["input"]
+        whole = isinstance(_raised(finding), Hint) and not _raised(finding).place and isinstance(values, dict)
+        known = _fields(finding["loc"], source, vocabulary) if whole else set()
+        wrong = [name for name in values if name not in known] if known else []
+        result += [
+            {"type": "extra_forbidden", "loc": (*finding["loc"], name), "input": values[name]} for name in wrong
+        ] or [finding]
+    return result
+
+
+def _without_echoes(findings: Sequence[Any], vocabulary: Vocabulary) -> list[Any]:
+    """Leave out that a field is missing where it is there, but misspelt."""
+    extra = [finding["loc"] for finding in findings if finding["type"] == "extra_forbidden"]
+    return [
+        finding
+        for finding in findings
+        if finding["type"] != "missing"
+        or not any(
+            loc[:-1] == finding["loc"][:-1] and difflib.get_close_matches(str(loc[-1]), [str(finding["loc"][-1])])
+            for loc in extra
+        )
+    ]
+
+
+def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[str, Any]:
+    """The place under the names that the user gave it, and the value that stands there.
+
+    Of the names that are not there, those before number `sure` are pydantic's own and left out.
+    """
+    words: list[str] = []
+    node, tag = given, None
+    for number, part in enumerate(location):
+        if isinstance(part, int):
+            if isinstance(node, (list, tuple)) and part < len(node):
+                node, tag = node[part], None
+                words[-1:] = [f"{words[-1] if words else ''}[{part}]"]
+            continue  # one stands for a list of one
+        if part == _get(node, "kind") and part != tag:
+            tag = part
+            continue
+        name = next((name for name in (part, _SPELLINGS.get(part, part)) if _get(node, name) is not None), None)
+        if name is not None:
+            words.append(name)
+            node, tag = _get(node, name), None
+        elif number >= sure:
+            words.append(str(part))
+            node = _NOTHING
+    return ".".join(words), node if words else _NOTHING
+
+
+def _get(node: Any, name: Any) -> Any:
+    if isinstance(node, Mapping):
+        return node.get(name)
+    return getattr(node, name, None) if hasattr(type(node), "model_fields") and isinstance(name, str) else None
+
+
+def _shown(value: Any) -> str:
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of thousands of digits
+        return "a number of thousands of digits"
+    return text if len(text) <= 60 else f"{text[:28]}...{text[-28:]}"
+
+
+def _kinds(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> Mapping[str, set[str]]:
+    """Kinds that a place takes, with their fields; only the one that is written there, if it is known."""
+    for number in range(len(location) - 1, -1, -1):
+        if location[number] in vocabulary:
+            kinds = vocabulary[location[number]]
+            below = location[number + 1 :]
+            return next(({part: kinds[part]} for part in below if part in kinds), kinds)
+    return vocabulary.get(source, vocabulary.get("", {}))
+
+
+def _fields(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> set[str]:
+    return set().union(*_kinds(location, source, vocabulary).values())
+
+
+_PLAIN = {
+    "missing": "this field is needed",
+    "float_type": "a number is needed",
+    "float_parsing": "a number is needed",
+    "int_type": "an integer is needed",
+    "int_parsing": "an integer is needed",
+    "int_from_float": "an integer is needed",
+    "string_type": "text is needed",
+    "bool_type": "true or false is needed",
+    "bool_parsing": "true or false is needed",
+    "finite_number": "a finite number is needed",
+    "greater_than_equal": "must be at least {ge:g}",
+    "less_than_equal": "must be at most {le:g}",
+    "literal_error": "must be {expected}",
+}
+_TABLES = ("model_type", "model_attributes_type", "dict_type")
+_TAGS = ("union_tag_not_found", "union_tag_invalid")
+
+
+def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary) -> tuple[str, str]:
+    """Complaint and suggestion."""
+    raised, what, context = _raised(finding), finding["type"], finding.get("ctx") or {}
+    if isinstance(raised, Hint):
+        return raised.complaint, raised.suggestion
+    if isinstance(raised, ValueError):
+        return str(raised), ""
+    location = finding["loc"]
+    if what == "extra_forbidden":
+        return "there is no such field here", nearest(str(location[-1]), _fields(location[:-1], source, vocabulary))
+    kinds = [kind for kind in _kinds(location, source, vocabulary) if kind]
+    if what in _TAGS:
+        if what == "union_tag_not_found":
+            return f"'kind' is needed: {', '.join(kinds)}", f'kind = "{kinds[0]}"' if kinds else ""
+        return "there is no such kind here", nearest(str(value), kinds)
+    if what in _TABLES:
+        kind = value if isinstance(value, str) and value in kinds else next(iter(kinds), None)
+        name = next((str(part) for part in reversed(location) if isinstance(part, str)), "")
+        name = _SPELLINGS.get(name, name)
+        if isinstance(value, (list, tuple)):
+            return "one table is needed, not a list", f"[{name}] in single brackets"
+        return "a table is needed", f'{name} = {{ kind = "{kind}", ... }}' if kind else f"{name} = {{ ... }}"
+    if what == "literal_error" and isinstance(value, str):
+        expected = str(context.get("expected", "")).replace(" or ", ", ").split(", ")
+        close = difflib.get_close_matches(value, [word.strip("'") for word in expected], n=1)
+        return _PLAIN[what].format(**context), f'"{close[0]}"' if close else ""
+    return _PLAIN[what].format(**context) if what in _PLAIN else finding["msg"], ""

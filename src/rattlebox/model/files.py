@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+import re
+import tomllib
 from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import Hint
+from .errors import CaseError, Hint
 
 Array = NDArray[np.float64]
 BINARY = (".npy", ".npz", ".mat")
@@ -29,17 +32,46 @@ def absolute(path: Any) -> str:
     return os.path.abspath(os.fspath(path))
 
 
-def existing(path: str) -> Path:
+def existing(path: str | os.PathLike[str]) -> Path:
     """Return the file at a path.
 
     Raises
     ------
     Hint
-        When there is none.
+        When there is none, with files of similar name.
     """
-    if not Path(path).is_file():
-        raise Hint(f"there is no file {path}")
-    return Path(path)
+    file = Path(path)
+    if file.is_file():
+        return file
+    if file.is_dir():
+        raise Hint(f"{file} is a folder, not a file")
+    folder = file.parent
+    if not folder.is_dir():
+        raise Hint(f"there is no file {file}: there is no folder {folder}")
+    like = get_close_matches(file.name, [other.name for other in folder.iterdir() if other.is_file()], n=2)
+    raise Hint(f"there is no file {file}", " or ".join(str(folder / name) for name in like))
+
+
+def read_toml(content: str, source: str) -> dict[str, Any]:
+    """Parse the text of a case file.
+
+    Raises
+    ------
+    CaseError
+        When it is not TOML, with the line.
+    """
+    try:
+        return tomllib.loads(content)
+    except (ValueError, RecursionError) as error:  # ValueError: also an integer of thousands of digits
+        complaint = [f"{source}: not TOML: {error or 'nested too deep'}"]
+        place = re.search(r"at line (\d+), column (\d+)", str(error))
+        line = content.splitlines()[int(place[1]) - 1] if place and int(place[1]) <= len(content.splitlines()) else ""
+        if line.strip():
+            complaint.append("  " + "".join(mark if mark.isprintable() else " " for mark in line[:100]))
+        bare = re.match(r"\s*([\w.-]+)\s*=\s*([-+\d.eE_]+\s*[A-Za-z%µ°][^#,\"']*)", line)
+        if bare:
+            complaint.append(f'  try: quotes around a number with a unit: {bare[1]} = "{bare[2].strip()}"')
+        raise CaseError("\n".join(complaint)) from None
 
 
 def read_arrays(file: Path) -> dict[str, Array]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import tomllib
 from functools import cache
 from importlib import resources
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, field_validator
+from pydantic import BeforeValidator, Discriminator, Tag, ValidationInfo, field_validator
 
-from .base import Part
+from .base import AlsoTakes, Part
 from .errors import Hint, nearest
 from .units import Density, Modulus
 
@@ -36,7 +36,7 @@ class Material(Part):
         When a value is not physical.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("material", "wall")
+    held_as: ClassVar[tuple[str, ...]] = ("material", "wall", "materials")
     name: str = ""
     title: str = ""
     density: Density
@@ -66,19 +66,18 @@ def materials() -> dict[str, Material]:
     return {name: Material(name=name, **values) for name, values in tomllib.loads(text).items()}
 
 
-def find_material(value: Any) -> Any:
-    """Look a name up in the library; anything else passes."""
+def find_material(value: Any, info: ValidationInfo) -> Any:
+    """Look a name up in the library and among the case file's own; anything else passes."""
     if isinstance(value, str):
-        library = materials()
+        library = materials() | (info.context or {})
         if value not in library:
             raise Hint("no material of that name", nearest(value, library))
         return library[value]
     return value
 
 
-def find_wall(value: Any) -> Any:
-    """Like find_material, but "rigid" passes."""
-    return value if value == "rigid" else find_material(value)
-
-
-AnyMaterial = Annotated[Material, BeforeValidator(find_material)]
+AnyMaterial = Annotated[Material, BeforeValidator(find_material), AlsoTakes({"type": "string"})]
+AnyWall = Annotated[
+    Annotated[AnyMaterial, Tag("of a material")] | Annotated[Literal["rigid"], Tag("rigid")],
+    Discriminator(lambda value: "rigid" if value == "rigid" else "of a material"),
+]

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from .base import Part
-from .errors import Hint
+from .errors import Hint, at
 from .modes import Vector
 from .restitutions import AnyRestitution
 from .units import PositiveFrequency, PositiveTime, parse
@@ -78,7 +78,11 @@ AnyMethod = Annotated[EventDriven | TwoStep | Newton, Field(discriminator="kind"
 def _times(value: Any) -> Any:
     if value is None:
         return None
-    return tuple(sorted({parse(item, ("s",))[0] for item in np.asarray(value, dtype=object).ravel().tolist()}))
+    times = set()
+    for index, item in enumerate(np.asarray(value, dtype=object).ravel().tolist()):
+        with at(index):
+            times.add(parse(item, ("s",))[0])
+    return tuple(sorted(times))
 
 
 class Output(Part):

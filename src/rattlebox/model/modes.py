@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import CaseError, nearest
+from .errors import Hint, nearest
 
 Vector = NDArray[np.float64]
 
@@ -45,10 +45,10 @@ class ModalModel:
         """
         if name is None:
             if len(self.shapes) != 1:
-                raise CaseError(f"a point must be named: {', '.join(self.shapes)}")
+                raise Hint("a point must be named", " or ".join(f'point = "{known}"' for known in self.shapes))
             return next(iter(self.shapes))
         if name not in self.shapes:
-            raise CaseError(f"the structure has no point {name!r}\n  try: {nearest(name, self.shapes)}")
+            raise Hint(f"the structure has no point {name!r}", nearest(name, self.shapes))
         return name
 
     def shape(self, name: str | None) -> Vector:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from .base import Part
+from .base import AlsoTakes, Part
 from .errors import Hint
-from .materials import Material, find_wall
+from .materials import AnyWall
 from .pairs import Pair
 from .units import Modulus, PositiveVelocity
 
@@ -24,8 +24,7 @@ def _restitution(value: Any) -> float:
         raise Hint("a number from 0 to 1 is needed", "0.8") from None
     if not 0 <= number <= 1:
         raise Hint(
-            "restitution lies between 0 (no rebound) and 1 (no loss): above 1 an impact would create energy",
-            "0.8",
+            "restitution lies between 0 (no rebound) and 1 (no loss): above 1 an impact would create energy", "0.8"
         )
     return number
 
@@ -54,11 +53,13 @@ class Restitution(Part):
 class Constant(Restitution):
     """The same restitution at every speed."""
 
+    unnamed: ClassVar[tuple[str, ...]] = ("e",)
     kind: Literal["constant"] = "constant"
     e: Fraction
 
-    def __init__(self, e: Any = None, **values: Any) -> None:
-        super().__init__(**({"e": e} if e is not None else {}), **values)
+    if TYPE_CHECKING:  # the first field may be given without its name
+
+        def __init__(self, e: Any = ..., **values: Any) -> None: ...
 
     def coefficients(self, pair: Pair) -> Coefficients:
         """Return e."""
@@ -83,9 +84,9 @@ class Tabulated(Restitution):
     @model_validator(mode="after")
     def _sound(self) -> Tabulated:
         if len(self.speeds) != len(self.values) or not self.speeds:
-            raise Hint(f"{len(self.speeds)} speeds, but {len(self.values)} values")
+            raise Hint(f"{len(self.speeds)} speeds, but {len(self.values)} values", "as many of both, at least one")
         if any(b <= a for a, b in zip(self.speeds, self.speeds[1:], strict=False)):
-            raise Hint("speeds must increase")
+            raise Hint("speeds must increase", place=["speeds"])
         return self
 
     def coefficients(self, pair: Pair) -> Coefficients:
@@ -107,7 +108,7 @@ class JacksonGreen(Restitution):
     """
 
     kind: Literal["jackson_green"] = "jackson_green"
-    wall: Annotated[Material | Literal["rigid"] | None, BeforeValidator(find_wall)] = None
+    wall: AnyWall | None = None
     yield_stress: Modulus | None = None
     extrapolate: bool = False
 
@@ -202,10 +203,13 @@ def as_restitution(value: Any) -> Any:
     """Let a bare number stand for Constant."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return {"kind": "constant", "e": value}
+    if isinstance(value, str):
+        raise Hint("a number from 0 to 1 is needed, or a table", '0.9, or { kind = "jackson_green" }')
     return value
 
 
 AnyRestitution = Annotated[
     Annotated[Constant | Tabulated | JacksonGreen | ThorntonRestitution | Johnson, Field(discriminator="kind")],
     BeforeValidator(as_restitution),
+    AlsoTakes({"type": "number", "minimum": 0, "maximum": 1}),
 ]

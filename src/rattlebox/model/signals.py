@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, model_validator
 
 from .base import Part
-from .errors import Hint
+from .errors import Hint, at
 from .files import absolute
 from .records import Column, as_columns, read_columns
 from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime, numbers, parse
@@ -74,7 +74,7 @@ class Signal(Part):
                 return values
             if unit is not None:
                 if values.get("unit") not in (None, unit):
-                    raise Hint(f"unit is {values['unit']}, but the amplitude is in {unit}", "leave unit out")
+                    raise Hint(f"the amplitude is in {unit}", "leave unit out", ["unit"])
                 return {**values, "unit": unit}
         return values
 
@@ -96,7 +96,8 @@ class Signal(Part):
         unit = allowed[0] if self.unit is None else self.unit
         if unit not in allowed:
             wanted = " or ".join(f"{_NAMES[a]} ({a})" for a in allowed)
-            raise Hint(f"{place} needs {wanted}, not {_NAMES[unit]}", f'amplitude = "1 {allowed[0]}"')
+            where, amount = ("unit", "") if self.kind == "record" else ("amplitude", "1 ")
+            raise Hint(f"{place} needs {wanted}, not {_NAMES[unit]}", f'{where} = "{amount}{allowed[0]}"', [where])
         return self if self.unit == unit else self.model_copy(update={"unit": unit})
 
     def evaluate(self, time: Any) -> NDArray[np.float64]:
@@ -167,7 +168,7 @@ class Harmonic(Signal):
     @model_validator(mode="after")
     def _in_order(self) -> Harmonic:
         if self.stop is not None and self.stop <= self.start:
-            raise Hint("stop must be later than start")
+            raise Hint(f"must be later than start, {self.start:g} s", place=["stop"])
         return self
 
     def evaluate(self, time: Any) -> NDArray[np.float64]:
@@ -228,34 +229,38 @@ class Record(Signal):
             return values
         if values.get("file") is None:
             if values.get("columns") is not None:
-                raise Hint("columns are those of a file", 'file = "push.csv"')
+                raise Hint("columns are those of a file", 'file = "push.csv"', ["columns"])
             return values
         if "times" in values or "values" in values:
             raise Hint(
                 "give times and values, or a file, not both", 'columns = ["time", "force"] names those of the file'
             )
-        path = absolute(values["file"])
-        times, numbers = read_columns(path, as_columns(values.get("columns")))
+        with at("columns"):
+            columns = as_columns(values.get("columns"))
+        with at("file"):
+            path = absolute(values["file"])
+            times, numbers = read_columns(path, columns)
         return {**values, "file": path, "times": times, "values": numbers}
 
     @model_validator(mode="after")
     def _sound(self) -> Record:
         if len(self.times) != len(self.values):
-            raise Hint(f"{self.label}: {len(self.times)} times, but {len(self.values)} values")
+            raise Hint(f"{len(self.times)} times, but {len(self.values)} values", "as many of both")
         if len(self.times) < 2:
-            raise Hint(f"{self.label}: a record needs at least two points")
+            raise Hint("a record needs at least two points", place=self.where)
         steps = np.flatnonzero(np.diff(self.times) <= 0)
         if steps.size:
             raise Hint(
-                f"{self.label}: times must increase, but point {int(steps[0]) + 2} is not later than the one before",
+                f"times must increase, but point {int(steps[0]) + 2} is not later than the one before",
                 "columns = [2, 1], if times and values are swapped" if self.file else "",
+                self.where,
             )
         return self
 
     @property
-    def label(self) -> str:
-        """What messages call it."""
-        return self.file or "the record"
+    def where(self) -> tuple[str, ...]:
+        """The field that gives the numbers, for messages."""
+        return ("file",) if self.file else ("times",)
 
     @model_serializer(mode="wrap")
     def _file_stands_for_numbers(self, handler: Any) -> Any:
@@ -300,11 +305,25 @@ class Record(Signal):
 AnySignal = Annotated[HalfSine | Harmonic | Record, Field(discriminator="kind")]
 
 
-def as_signals(value: Any) -> Any:
-    """Let one signal stand for a list of one, None for none."""
+def as_several(value: Any) -> Any:
+    """Let one stand for a list of one, None for none."""
     if value is None:
         return ()
     return tuple(value) if isinstance(value, (list, tuple)) else (value,)
+
+
+def signals_in(*units: Unit) -> BeforeValidator:
+    """Return a validator that lets one signal stand for a list of one, and looks at the units of amplitudes."""
+
+    def read(value: Any) -> Any:
+        signals = as_several(value)
+        for index, signal in enumerate(signals):
+            if isinstance(signal, dict) and "amplitude" in signal:
+                with at(index, "amplitude"):
+                    parse(signal["amplitude"], units)
+        return signals
+
+    return BeforeValidator(read)
 
 
 def chirp(

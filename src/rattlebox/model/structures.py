@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_serializer, model_validator
 
-from .base import Part
-from .errors import Hint, nearest
+from .base import AlsoTakes, Part
+from .errors import Hint, at, nearest
 from .files import absolute, check_finite, existing, read_arrays
 from .modes import ModalModel, Vector
-from .signals import AnySignal, Signal, Unit, as_signals
+from .signals import AnySignal, Signal, Unit, signals_in
 from .units import Damping, Frequency, Length, PositiveMass, Stiffness, Velocity, numbers
 
 if TYPE_CHECKING:
@@ -20,11 +21,31 @@ if TYPE_CHECKING:
 
 
 def _numbers(value: Any) -> Any:
-    return numbers(value).tolist()
+    return _of_shape(numbers(value), 1, "a list of numbers")
+
+
+def _matrix(value: Any) -> Any:
+    return _of_shape(numbers(value), 2, "a list of rows of numbers")
+
+
+def _of_shape(array: Vector, dimensions: int, wanted: str) -> Any:
+    if array.ndim != dimensions:
+        raise Hint(f"{wanted} is needed")
+    return array.tolist()
+
+
+def _point(value: Any) -> Any:
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return _numbers(value)
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise Hint("the number of a degree of freedom is needed, counted from 0, or a list of weights") from None
 
 
 Numbers = Annotated[list[float], BeforeValidator(_numbers)]
-Matrix = Annotated[list[list[float]], BeforeValidator(_numbers)]
+Matrix = Annotated[list[list[float]], BeforeValidator(_matrix)]
+Point = Annotated[int | list[float], BeforeValidator(_point)]
 _ratio_schema = WithJsonSchema({"type": "number", "minimum": 0, "description": "damping ratio"})
 Ratio = Annotated[float, Field(ge=0), _ratio_schema]
 
@@ -112,11 +133,12 @@ class Modal(Part):
         for name, row in rows.items():
             if row is not None and len(row) != count:
                 raise Hint(
-                    f"{name} has {len(row)} numbers, but there are {count} frequencies",
+                    f"{len(row)} numbers, but there are {count} frequencies",
                     "one number for each mode",
+                    name.split(".", 1),
                 )
         if not self.shapes:
-            raise Hint("at least one named point is needed", "shapes = { tip = [...] }")
+            raise Hint("at least one named point is needed", "shapes = { tip = [...] }", ["shapes"])
         return self
 
     def modes(self) -> ModalModel:
@@ -131,9 +153,6 @@ class Modal(Part):
             q0=zero if self.displacement is None else np.array(self.displacement),
             p0=zero if self.velocity is None else np.array(self.velocity),
         )
-
-
-Square = Annotated[list[list[float]], BeforeValidator(_numbers)]
 
 
 class Matrices(Part):
@@ -159,10 +178,10 @@ class Matrices(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("structure",)
     kind: Literal["matrices"] = "matrices"
-    M: Square
-    C: Square | None = None
-    K: Square
-    points: dict[str, int | Numbers]
+    M: Matrix
+    C: Matrix | None = None
+    K: Matrix
+    points: dict[str, Point]
     file: str | None = None
     influence: Numbers | None = None
     displacement: Numbers | None = None
@@ -176,8 +195,9 @@ class Matrices(Part):
         twice = sorted({"M", "C", "K"} & set(values))
         if twice:
             raise Hint(f"give {twice[0]} or a file, not both")
-        path = absolute(values["file"])
-        matrices, points = _read_matrices(path)
+        with at("file"):
+            path = absolute(values["file"])
+            matrices, points = _read_matrices(path)
         own = values.get("points")
         if own is not None and not isinstance(own, dict):
             return values
@@ -187,33 +207,38 @@ class Matrices(Part):
     def _sound(self) -> Self:
         mass, damping, stiffness = self.matrices()
         n = len(self.M)
-        of = f"{self.file}: " if self.file else ""
         for name, matrix in (("M", mass), ("C", damping), ("K", stiffness)):
             if matrix.shape != (n, n) or n == 0:
                 raise Hint(
-                    f"{of}{name} has shape {matrix.shape}" + (f", but M has {n} rows" if name != "M" else ""),
+                    f"{name} has shape {matrix.shape}" + (f", but M has {n} rows" if name != "M" else ""),
                     "three square matrices of one size",
+                    self._where(name),
                 )
             if not np.allclose(matrix, matrix.T, rtol=1e-12, atol=1e-12 * np.abs(matrix).max(initial=0)):
                 raise Hint(
-                    f"{of}{name} is not symmetric",
+                    f"{name} is not symmetric",
                     f"{name} = ({name} + {name}^T) / 2, if the difference is rounding",
+                    self._where(name),
                 )
         if np.linalg.eigvalsh(mass).min() <= 0:
-            raise Hint(f"{of}M is not positive definite: some motion would have no mass")
+            raise Hint("M is not positive definite: some motion would have no mass", place=self._where("M"))
         if not self.points:
-            raise Hint(f"{of}at least one named point is needed", "points = { tip = 0 }")
+            raise Hint("at least one named point is needed", "points = { tip = 0 }", ["points"])
         for name, point in self.points.items():
             if isinstance(point, int) and not 0 <= point < n:
-                raise Hint(f"points.{name} = {point} is no degree of freedom", f"0 to {n - 1}")
+                raise Hint("there is no such degree of freedom", f"0 to {n - 1}", ["points", name])
             if not isinstance(point, int) and len(point) != n:
-                raise Hint(f"{of}point {name} has {len(point)} numbers, but there are {n} degrees of freedom")
+                raise Hint(f"{len(point)} weights, but there are {n} degrees of freedom", place=["points", name])
         for name in ("influence", "displacement", "velocity"):
             row = getattr(self, name)
             if row is not None and len(row) != n:
-                raise Hint(f"{name} has {len(row)} numbers, but there are {n} degrees of freedom")
+                raise Hint(f"{len(row)} numbers, but there are {n} degrees of freedom", place=[name])
         self.modes()
         return self
+
+    def _where(self, name: str) -> list[str]:
+        """The field that gives a matrix, for messages."""
+        return ["file"] if self.file else [name]
 
     @model_serializer(mode="wrap")
     def _file_stands_for_matrices(self, handler: Any) -> Any:
@@ -239,7 +264,7 @@ class Matrices(Part):
         CaseError
             When a matrix is missing or describes no structure, naming the file and what it holds.
         """
-        return cls(**{"file": path, **options})
+        return cls(**{"file": os.fspath(path), **options})
 
     def matrices(self) -> tuple[Vector, Vector, Vector]:
         """Return mass, damping and stiffness, (n, n) each."""
@@ -254,7 +279,7 @@ class Matrices(Part):
         values, vectors = eigh(stiffness, mass)
         largest = np.abs(values).max()
         if values.min() < -1e-9 * largest:
-            raise Hint("K is not positive semidefinite: the structure would be unstable")
+            raise Hint("K is not positive semidefinite: the structure would be unstable", place=self._where("K"))
         values = np.where(np.abs(values) < 1e-12 * largest, 0.0, values)
         vectors = _align(vectors, values, damping, 1e-9 * largest)
         modal = vectors.T @ damping @ vectors
@@ -266,6 +291,7 @@ class Matrices(Part):
             raise Hint(
                 f"damping is not proportional: between modes {i + 1} and {j + 1} |C_ij|/sqrt(C_ii C_jj) = {off[i, j]:.3g}",
                 "Rayleigh damping C = a M + b K, or Modal with damping ratios",
+                self._where("C"),
             )
         n = len(values)
         weights = {name: np.eye(n)[p] if isinstance(p, int) else np.array(p) for name, p in self.points.items()}
@@ -348,15 +374,16 @@ class Shaker(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("structure",)
     kind: Literal["shaker"] = "shaker"
-    motion: Annotated[tuple[AnySignal, ...], BeforeValidator(as_signals)]
+    motion: Annotated[tuple[AnySignal, ...], signals_in("m", "m/s^2"), AlsoTakes()]
 
     @field_validator("motion")
     @classmethod
     def _smooth(cls, motion: tuple[Signal, ...]) -> tuple[Signal, ...]:
         placed = []
-        for signal in motion:
+        for index, signal in enumerate(motion):
             allowed: tuple[Unit, ...] = ("m", "m/s^2") if signal.kind == "harmonic" else ("m/s^2",)
-            placed.append(signal.placed(allowed, "the motion of a shaker"))
+            with at(index):
+                placed.append(signal.placed(allowed, f"a {signal.kind} that moves a shaker"))
         return tuple(placed)
 
     def modes(self) -> ModalModel:

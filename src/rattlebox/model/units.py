@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema
 
-from .errors import Hint, nearest
+from .errors import Hint, at, nearest
 
 if TYPE_CHECKING:
     import pint
@@ -60,10 +60,14 @@ def _pint_unit(unit: str) -> str:
     return unit.replace("N s/m", "N*s/m").replace("kg^-0.5", "kg**-0.5")
 
 
+def _article(name: str) -> str:
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+
+
 def _described(quantity: Any) -> str:
     for unit, name in _NAMES.items():
         if quantity.is_compatible_with(_pint_unit(unit)):
-            return f"a {name}"
+            return _article(name)
     return f"a quantity in {quantity.units:~}"
 
 
@@ -137,7 +141,7 @@ def _finite(value: float) -> float:
 
 
 def _wanted(units: tuple[str, ...]) -> str:
-    return "a " + " or ".join(f"{_NAMES.get(unit, 'number')} is needed ({unit})" for unit in units)
+    return " or ".join(f"{_article(_NAMES[unit])} ({unit})" for unit in units) + " is needed"
 
 
 def _example(units: tuple[str, ...]) -> str:
@@ -155,11 +159,24 @@ def numbers(value: Any) -> NDArray[np.float64]:
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        raise Hint("finite numbers are needed, in rows of one length") from None
+        _find_what_is_no_number(value)
+        raise Hint("rows of numbers of one length are needed") from None
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
         raise Hint(f"number {int(bad[0]) + 1} of {array.size} is not finite")
     return array
+
+
+def _find_what_is_no_number(value: Any) -> None:
+    if isinstance(value, (list, tuple)):
+        for index, item in enumerate(value):
+            with at(index):
+                _find_what_is_no_number(item)
+        return
+    try:
+        float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise Hint("a finite number is needed") from None
 
 
 def text(value: float, unit: str) -> str:

@@ -66,14 +66,18 @@ def test_a_structure_without_damping(tmp_path: Path) -> None:
     [
         ({"M": M, "C": C}, {}, r"beam\.npz holds no K, but M, C"),
         ({"M": M, "stiffness": K}, {}, r"holds no K, but M, stiffness"),
-        ({"M": M, "K": K}, {}, r"beam\.npz: at least one named point"),
-        ({"M": M, "K": K[:2]}, {"points": {"tip": 2}}, r"beam\.npz: K has shape \(2, 3\), but M has 3 rows"),
-        ({"M": M, "K": np.triu(K)}, {"points": {"tip": 2}}, r"beam\.npz: K is not symmetric"),
-        ({"M": 0 * M, "K": K}, {"points": {"tip": 2}}, r"beam\.npz: M is not positive definite"),
+        ({"M": M, "K": K}, {}, r"points.*\n  at least one named point"),
+        ({"M": M, "K": K[:2]}, {"points": {"tip": 2}}, r"beam\.npz\'\n  K has shape \(2, 3\), but M has 3 rows"),
+        ({"M": M, "K": np.triu(K)}, {"points": {"tip": 2}}, r"beam\.npz\'\n  K is not symmetric"),
+        ({"M": 0 * M, "K": K}, {"points": {"tip": 2}}, r"beam\.npz\'\n  M is not positive definite"),
         ({"M": M, "K": K * [1, np.nan, 1]}, {"points": {"tip": 2}}, r"beam\.npz: K holds nan in row 1, column 2"),
         ({"M": M, "K": K, "point_tip": [1.0, 0.0]}, {}, r"point_tip has 2 numbers, but there are 3 degrees"),
         ({"M": M, "K": K}, {"points": {"tip": 2}, "M": M}, "give M or a file, not both"),
-        ({"M": M, "K": K}, {"points": {"tip": 3}}, r"tip = 3 is no degree of freedom"),
+        (
+            {"M": M, "K": K},
+            {"points": {"tip": 3}},
+            r"points\.tip = 3\n  there is no such degree of freedom\n  try: 0 to 2",
+        ),
     ],
 )
 def test_files_of_no_structure(tmp_path: Path, arrays: dict[str, Any], options: dict[str, Any], said: str) -> None:
