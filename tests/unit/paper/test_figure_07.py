@@ -2,8 +2,9 @@
 
 import pytest
 
-from rattlebox.paper import figure_07a, figure_07b
-from rattlebox.paper.seed import DAMPING, MASS
+import rattlebox as rb
+from rattlebox.paper import figure_07a, figure_07b, figure_07c
+from rattlebox.paper.seed import DAMPING, MASS, PLASTIC_RIGID, seed_case
 
 PULSE_WORK = 0.2532  # J, of 5000 N
 
@@ -40,3 +41,37 @@ def test_smoothness_is_judged_by_the_data():
     smooth = data.assign(rises=data.rises.where(data.judged == "constant restitution", 0.0))
     (claim,) = figure_07a.FIGURE.claims(smooth)
     assert claim.verdict == "reproduced"
+
+
+@pytest.fixture(scope="module")
+def losses():
+    """Return the data of figure 7c."""
+    return figure_07c.FIGURE.data()
+
+
+@pytest.mark.parametrize(
+    ("model", "share", "scatter"),
+    [
+        ("constant restitution", 0.054, 0.0015),
+        ("elasto-plastic, steel wall", 0.0032, 0.0001),
+        ("elasto-plastic, rigid wall", 0.069, 0.003),
+    ],
+)
+def test_shares_of_the_centred_ball(losses, model, share, scatter):
+    """The damper takes the known part of the pulse's work, in each reading."""
+    lost = losses.lost.sel(model=model, quantile=0.5).isel(time=-1) / losses.work.sel(model=model)
+    assert float(lost) == pytest.approx(share, abs=scatter)
+
+
+def test_losses_only_grow(losses):
+    """No model gives lost energy back."""
+    assert (losses.single.diff("time") >= 0).all()
+
+
+def test_first_contact_has_the_ratio_of_the_two_laws(losses):
+    """After one contact with the same approach the losses differ as 1 - e^2 of the two laws."""
+    ratio = losses.ratio.sel(plastic="elasto-plastic, rigid wall", quantile=0.5).isel(time=1)
+    (pair, *_) = rb.contact_pairs(seed_case(PLASTIC_RIGID), 0)
+    approach = rb.simulate(seed_case(PLASTIC_RIGID, duration=4e-3)).arrays.impacts.approach_speed[0]
+    e = rb.restitution_curve(PLASTIC_RIGID.restitution, pair, approach)
+    assert float(ratio) == pytest.approx((1 - e**2) / (1 - 0.991170**2), rel=1e-3)
