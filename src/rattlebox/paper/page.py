@@ -175,7 +175,7 @@ def system() -> tuple[Quantity, ...]:
         Quantity("Radius of the ball", "R", f"{1e3 * RADIUS:g}", "mm"),
         Quantity("Mass of the ball", "m", f"{ball.mass:.6f}", "kg"),
         Quantity("Mass ratio", "m/M", f"{100 * ball.mass / MASS:.4f}", "%"),
-        Quantity("Clearance on each side of the centred ball", "d₀", f"{1e3 * GAP:g}", "mm"),
+        Quantity("Clearance on each side of the centred ball", "d_0", f"{1e3 * GAP:g}", "mm"),
         Quantity("Young's modulus of steel", "E", f"{ball.material.young / 1e9:g}", "GPa"),
         Quantity("Poisson's ratio", "ν", f"{ball.material.poisson:g}", ""),
         Quantity("Yield stress", "S_y", f"{(ball.material.yield_stress or 0) / 1e6:g}", "MPa"),
@@ -185,6 +185,6 @@ def system() -> tuple[Quantity, ...]:
         Quantity("Its restitution", "e", f"{restitution_of_alpha(ALPHA, 'zero_overlap'):.6f}", ""),
         Quantity("Speed of first yield, steel wall", "V_c", f"{steel.critical_speed(pair):.5f}", "m/s"),
         Quantity("Speed of first yield, rigid wall", "V_c", f"{rigid.critical_speed(pair):.5f}", "m/s"),
-        Quantity("Amplitude of the pulse", "F₀", f"{pulse.amplitude:g}", "N"),
+        Quantity("Amplitude of the pulse", "F_0", f"{pulse.amplitude:g}", "N"),
         Quantity("Duration of the pulse", "t_f", f"{1e3 * PULSE:g}", "ms"),
     )

@@ -21,7 +21,7 @@ from .tables import write_tables
 if TYPE_CHECKING:
     import xarray as xr
 
-FIGURES = ("figure_02",)
+FIGURES = ("figure_02", "figure_05", "figure_07a", "figure_07b", "figure_09a", "figure_09b")
 """Modules of the figures, in the order of the page."""
 
 _FIGURE_FOLDER, _CASE_FOLDER = "figures", "cases"
@@ -211,8 +211,8 @@ def _described(path: Path, table: xr.Dataset) -> Table:
         path=path.as_posix(),
         rows=max(variable.size for variable in table.variables.values()),
         columns=tuple(
-            Column(str(name), variable.attrs.get("units", ""), variable.attrs.get("long_name", ""))
-            for name, variable in table.variables.items()
+            Column(str(name), table[name].attrs.get("units", ""), table[name].attrs.get("long_name", ""))
+            for name in (*table.dims, *table.data_vars)
         ),
     )
 

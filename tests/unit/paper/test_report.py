@@ -1,0 +1,238 @@
+"""The report: its figures, its files and its page."""
+
+import base64
+import csv
+import html.parser
+import re
+from itertools import pairwise
+from pathlib import Path
+from urllib.parse import unquote
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rattlebox as rb
+from rattlebox.paper import write_report
+from rattlebox.paper.figure import Claim
+from rattlebox.paper.page import GENERATOR, Made, place, render, system
+from rattlebox.paper.report import FIGURES, choose, reproduction
+from rattlebox.paper.tables import write_tables
+
+FIGURE = "2"
+
+
+class Page(html.parser.HTMLParser):
+    """Collects ids, addresses and headings, and checks that tags close."""
+
+    VOID = frozenset({"meta", "img", "br", "link"})
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.ids: list[str] = []
+        self.addresses: list[str] = []
+        self.headings: list[str] = []
+        self.pictures: list[dict[str, str | None]] = []
+        self.tags: list[str] = []
+        self.handle_starttag, self.handle_endtag = self._open, self._shut
+        self.feed(text)
+        self.close()
+        assert self.tags == []
+
+    def _open(self, tag, attrs):
+        told = dict(attrs)
+        if tag not in self.VOID:
+            self.tags.append(tag)
+        if "id" in told:
+            self.ids.append(told["id"])
+        self.addresses += [told[key] for key in ("href", "src") if key in told]
+        if re.fullmatch(r"h\d", tag):
+            self.headings.append(tag)
+        if tag == "img":
+            self.pictures.append(told)
+
+    def _shut(self, tag):
+        assert self.tags.pop() == tag
+
+
+def read_back(data, tables):
+    """Return the dataset with all values taken from its CSV files."""
+    found = {}
+    for path in tables:
+        with path.open(newline="", encoding="utf-8") as file:
+            headers, *rows = csv.reader(file)
+        names = [re.sub(r" \[.*\]$", "", header) for header in headers]
+        dims = [name for name in names if name in data.dims]
+        for name, column in zip(names, zip(*rows, strict=True), strict=True):
+            if name not in data.variables or name in found:
+                continue
+            kind = data[name].dtype
+            values = np.array(column) == "True" if kind.kind == "b" else np.array(column).astype(kind)
+            values = values.reshape([data.sizes[dim] for dim in dims])
+            if name in data.dims:
+                values = np.moveaxis(values, dims.index(name), 0).reshape(data.sizes[name], -1)[:, 0]
+            found[name] = (data[name].dims, values, data[name].attrs)
+    return xr.Dataset(
+        {name: found[name] for name in data.data_vars}, {name: found[name] for name in data.coords}, data.attrs
+    )
+
+
+@pytest.mark.parametrize("module", FIGURES)
+def test_data_of_a_figure_reads_back_from_csv(module, tmp_path):
+    """All that a figure draws has unit and meaning, and stands in its CSV files without a digit lost."""
+    data = reproduction(module).data()
+    for name, variable in data.variables.items():
+        assert {"units", "long_name"} <= variable.attrs.keys(), name
+    xr.testing.assert_identical(read_back(data, write_tables(data, tmp_path, module)), data)
+
+
+@pytest.mark.parametrize("module", FIGURES)
+def test_cases_of_a_figure_can_be_run_again(module, tmp_path):
+    """Each case of a figure reads back equal from its file."""
+    for case in reproduction(module).cases().values():
+        case.to_file(tmp_path / "case.toml")
+        assert rb.Case.from_file(tmp_path / "case.toml") == case
+
+
+def test_figures_have_numbers_and_files_of_their_own():
+    """No two figures share a number or the name of their files."""
+    figures = [reproduction(module) for module in FIGURES]
+    assert len({figure.number for figure in figures}) == len(figures)
+    assert len({figure.name for figure in figures}) == len(figures)
+    assert all(re.fullmatch(r"figure_\w+", figure.name) for figure in figures)
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """Return the page of a report on one figure, and what was told on the way."""
+    told = []
+    folder = tmp_path_factory.mktemp("reports") / "report"
+    page = write_report(folder, only=[FIGURE], progress=lambda *news: told.append(news))
+    return page, told
+
+
+def test_page_holds_together(report):
+    """The page is sound HTML without repeated ids, its headings do not skip a level, its links lead somewhere."""
+    page, _ = report
+    read = Page(page.read_text(encoding="utf-8"))
+    assert len(set(read.ids)) == len(read.ids)
+    levels = [int(heading[1]) for heading in read.headings]
+    assert levels[0] == 1 and levels.count(1) == 1
+    assert all(after - before <= 1 for before, after in pairwise(levels))
+    for address in read.addresses:
+        if address.startswith("#"):
+            assert address[1:] in read.ids
+        elif not address.startswith("data:"):
+            assert (page.parent / unquote(address)).stat().st_size > 0
+
+
+def test_page_needs_nothing_from_elsewhere(report):
+    """Neither the page nor its pictures load anything from a network."""
+    page, _ = report
+    text = page.read_text(encoding="utf-8")
+    assert not re.search(r"""(?:src|href|url\()\s*=?\s*["']?(?:https?:)?//""", text)
+    for picture in Page(text).pictures:
+        svg = base64.b64decode(picture["src"].partition("base64,")[2])
+        drawn = ElementTree.fromstring(svg)
+        links = [value for node in drawn.iter() for key, value in node.items() if key.endswith("href")]
+        assert all(link.startswith(("#", "data:")) for link in links)
+        assert picture["alt"].startswith("Figure ")
+        assert picture["aria-describedby"] in text
+
+
+def test_every_file_is_written_and_offered(report):
+    """SVG, PNG, CSV and case files lie beside the page, and the page links each of them."""
+    page, _ = report
+    folder = page.parent
+    written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} - {"index.html"}
+    linked = {address for address in Page(page.read_text(encoding="utf-8")).addresses if address[0].isalpha()}
+    assert written == {address for address in linked if not address.startswith("data:")}
+    assert {Path(name).suffix for name in written} == {".svg", ".png", ".csv", ".toml"}
+
+
+def test_progress_is_told(report):
+    """After each figure the caller hears how many of how many are done."""
+    assert report[1] == [(1, 1, f"figure {FIGURE}")]
+
+
+def test_figures_are_the_same_in_every_run(report, tmp_path):
+    """A second report has the same drawings, data and cases to the last bit, in worker processes too."""
+    page, _ = report
+    again = write_report(tmp_path, only=[FIGURE, "5"], workers=2)
+    for path in page.parent.glob("*/*"):
+        if path.suffix != ".png":
+            assert path.read_bytes() == (again.parent / path.relative_to(page.parent)).read_bytes(), path.name
+
+
+def test_earlier_report_is_replaced(tmp_path):
+    """A report leaves no file of the one before it, and files that are not its own alone."""
+    page = write_report(tmp_path, only=[FIGURE])
+    stale, own = page.parent / "figures" / "figure_99.svg", page.parent / "notes.txt"
+    stale.touch()
+    own.touch()
+    write_report(tmp_path, only=[FIGURE])
+    assert own.exists() and not stale.exists()
+
+
+def test_other_folders_are_refused(tmp_path):
+    """A folder that holds other files is left alone, and a file is no folder."""
+    other = tmp_path / "index.html"
+    other.write_text("mine")
+    with pytest.raises(FileExistsError, match="holds other files"):
+        write_report(tmp_path)
+    assert [*tmp_path.iterdir()] == [other]
+    with pytest.raises(NotADirectoryError, match="is a file"):
+        write_report(other)
+
+
+def test_figures_are_chosen_by_number():
+    """A number chooses its figure, a number without letter all its parts; others are refused with those there are."""
+    assert choose([]) == FIGURES
+    assert choose(["2"]) == ("figure_02",)
+    with pytest.raises(ValueError, match=r"no figure '99'; there are 2, "):
+        choose(["99"])
+    with pytest.raises(ValueError, match="no figure ''"):
+        choose([""])
+
+
+@pytest.mark.parametrize(
+    ("earlier", "later"),
+    [
+        ("abstract", "section 3.1, figure 2"),
+        ("table 1", "section 5, figure 6"),
+        ("figure 4", "figure 5"),
+        ("section 5.1, figure 7c", "section 5.1, figure 7e"),
+        ("section 5.1, figure 9a", "section 5.1, figure 10"),
+        ("figure 11", "conclusion 1"),
+        ("section 6, conclusion 2", "section 6.1"),
+    ],
+)
+def test_claims_stand_as_in_the_paper(earlier, later):
+    """Claims are sorted by section and then by figure."""
+    assert place(earlier) < place(later)
+
+
+def test_page_escapes_and_counts():
+    """Text from figures is not read as HTML, and the summary counts each verdict."""
+    verdicts = ["reproduced", "reproduced in kind", "misprint", "misprint"]
+    claims = tuple(Claim(f"x < {k} & y", "section 1", "z > 1", "<b>", verdict) for k, verdict in enumerate(verdicts))
+    made = Made("A9", "<i>", "figure_A9", "a < b", claims, "data:,", "a.svg", "a.png", (), {}, 1.0, 2.0)
+    text = render([made], cores=3, workers=2, seconds=4.25)
+    Page(text)
+    assert GENERATOR in text
+    assert "x &lt; 3 &amp; y" in text and "<i>" not in text and "<b>" not in re.sub(r"<b>\d+</b>", "", text)
+    counts = re.findall(r"<b>(\d+)</b><span aria-hidden=\"true\">.</span> ([a-z ]+)<", text)
+    assert counts == [("1", "reproduced"), ("1", "reproduced in kind"), ("0", "not reproducible"), ("2", "misprint")]
+    assert "4.2 s" in text and "3 cores, 2 processes" in text
+
+
+def test_system_has_the_known_numbers():
+    """The table of the system holds the mass, the frequencies and the speeds of first yield."""
+    values = {(line.name, line.symbol): float(line.value) for line in system()}
+    assert values["Mass of the ball", "m"] == pytest.approx(1.200037, abs=1e-6)
+    assert values["Natural frequency, ball riding along", "√(K/(M+m))"] == pytest.approx(61.4295, abs=1e-4)
+    assert values["Speed of first yield, steel wall", "V_c"] == pytest.approx(0.1694607, abs=1e-5)
+    assert values["Speed of first yield, rigid wall", "V_c"] == pytest.approx(0.0423652, abs=1e-5)
+    assert values["Hertz stiffness, ball on steel wall", "A"] == pytest.approx(26.68518, abs=1e-5)
+    assert values["Its restitution", "e"] == pytest.approx(0.991170, abs=1e-6)
