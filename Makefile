@@ -16,6 +16,7 @@ $(VENV)/.installed: $(CORE)
 
 demo: setup
 	$(BIN)/rattlebox demo -o demo
+	$(BIN)/rattlebox paper -o demo/report
 
 test: setup
 	$(BIN)/python -m pytest -n 2 -m 'not slow'

@@ -109,7 +109,7 @@ def doctor() -> None:
 def main() -> None:
     """Run the command; bad input is told on one screen, with exit code 2."""
     try:
-        app(standalone_mode=False)
+        sys.exit(app(standalone_mode=False))  # 130 after Ctrl-C
     except CaseError as error:
         typer.echo(f"error: {error}", err=True)
         sys.exit(2)

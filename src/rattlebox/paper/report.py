@@ -6,6 +6,7 @@ import base64
 import errno
 import os
 import re
+import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -140,7 +141,9 @@ def _all_made(modules: Sequence[str], folder: Path, workers: int) -> Iterator[tu
         yield from ((module, _made(module, folder)) for module in modules)
         return
     # Processes, since matplotlib draws one figure at a time; spawned, since forking a process with threads is unsafe.
-    with ProcessPoolExecutor(min(workers, len(modules)), get_context("spawn")) as pool:
+    # Ctrl-C ends them at once and without a word.
+    on_ctrl_c = (signal.SIGINT, signal.SIG_DFL)
+    with ProcessPoolExecutor(min(workers, len(modules)), get_context("spawn"), signal.signal, on_ctrl_c) as pool:
         running = {pool.submit(_made, module, folder): module for module in modules}
         try:
             for done in as_completed(running):
