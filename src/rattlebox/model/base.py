@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationErro
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from .errors import translate
+from .errors import Hint, translate
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass as _ModelType
@@ -47,7 +47,7 @@ class Part(BaseModel, metaclass=_Explaining):
     """A frozen part of a case. Wrong values raise CaseError, whoever gives them."""
 
     held_as: ClassVar[tuple[str, ...]] = ()
-    spellings: ClassVar[tuple[str, ...]] = ()  # names that are taken beside those of the fields
+    spellings: ClassVar[dict[str, str]] = {}  # other names of fields, such as that for one instead of several
     unnamed: ClassVar[tuple[str, ...]] = ()  # fields that may be given without their names
     model_config = ConfigDict(
         frozen=True,
@@ -56,6 +56,30 @@ class Part(BaseModel, metaclass=_Explaining):
         allow_inf_nan=False,
         ser_json_inf_nan="constants",
     )
+
+    @classmethod
+    def in_full(cls, values: dict[str, Any]) -> dict[str, Any]:
+        """Return the values under the names of the fields.
+
+        Raises
+        ------
+        Hint
+            When one is given twice.
+        """
+        for other, name in cls.spellings.items():
+            if other in values and name in values:
+                raise Hint(f"give {other} or {name}, not both")
+        return {cls.spellings.get(name, name): value for name, value in values.items()}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        schema = handler(core)
+        content = handler.resolve_ref_schema(schema)
+        for other, name in cls.spellings.items():
+            content["properties"][other] = content["properties"][name]
+            if name in content.get("required", []):
+                content["required"].remove(name)
+        return schema
 
 
 def vocabulary() -> dict[str, dict[str, set[str]]]:
@@ -70,5 +94,5 @@ def vocabulary() -> dict[str, dict[str, set[str]]]:
             continue  # what several kinds share
         for holder in (*part.held_as, part.__name__):
             tag = "" if kind is None else str(kind.default)
-            known.setdefault(holder, {})[tag] = {*part.model_fields, *part.spellings}
+            known.setdefault(holder, {}).setdefault(tag, set()).update(part.model_fields, part.spellings)
     return known

@@ -52,7 +52,7 @@ class Case(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("",)
-    spellings: ClassVar[tuple[str, ...]] = ("load", "damper", "materials")
+    spellings: ClassVar[dict[str, str]] = {"damper": "dampers", "load": "loads"}
     name: str = ""
     structure: AnyStructure
     dampers: Annotated[tuple[ImpactDamper, ...], BeforeValidator(as_several), AlsoTakes()] = ()
@@ -66,15 +66,7 @@ class Case(Part):
     @model_validator(mode="before")
     @classmethod
     def _spellings(cls, values: Any) -> Any:
-        if not isinstance(values, dict):
-            return values
-        values = dict(values)
-        for one, many in (("damper", "dampers"), ("load", "loads")):
-            if one in values:
-                if many in values:
-                    raise Hint(f"give {one} or {many}, not both")
-                values[many] = values.pop(one)
-        return values
+        return cls.in_full(values) if isinstance(values, dict) else values
 
     @model_validator(mode="after")
     def _fits_together(self) -> Case:
@@ -240,9 +232,7 @@ class Case(Part):
         """
         given = read_toml(content, source)
         if not given:
-            raise CaseError(
-                f"{source}: there is nothing in it\n  try: rattlebox demo, which writes two case files"
-            )
+            raise CaseError(f"{source}: there is nothing in it\n  try: rattlebox demo, which writes two case files")
         try:
             library = _Library.model_validate({"materials": given.get("materials", {})})
             values = {key: value for key, value in given.items() if key != "materials"}
@@ -272,9 +262,7 @@ class Case(Part):
         """Return the JSON Schema of case files."""
         schema = cls.model_json_schema(mode="validation")
         properties = schema["properties"]
-        for one, many in (("damper", "dampers"), ("load", "loads")):
-            properties[one] = properties[many]
-        schema["properties"]["materials"] = {
+        properties["materials"] = {
             "type": "object",
             "description": "materials of this file, by name, used like those of the library",
             "additionalProperties": {"$ref": "#/$defs/Material"},
@@ -294,6 +282,7 @@ def _tidy(value: Any) -> Any:
 class _Library(Part):
     """The materials of a case file."""
 
+    held_as: ClassVar[tuple[str, ...]] = ("",)
     materials: dict[str, Material] = Field(default_factory=dict)
 
     @field_validator("materials", mode="before")

@@ -118,7 +118,7 @@ class ImpactDamper(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")
-    spellings: ClassVar[tuple[str, ...]] = ("ball",)
+    spellings: ClassVar[dict[str, str]] = {"ball": "balls"}
     kind: Literal["impact"] = "impact"
     name: str = ""
     balls: Annotated[tuple[Sphere, ...], BeforeValidator(as_several), AlsoTakes()]
@@ -145,11 +145,7 @@ class ImpactDamper(Part):
     def _spellings(cls, values: Any) -> Any:
         if not isinstance(values, dict):
             return values
-        values = dict(values)
-        if "ball" in values:
-            if "balls" in values:
-                raise Hint("give ball or balls, not both")
-            values["balls"] = values.pop("ball")
+        values = cls.in_full(values)
         if (values.get("cavity_length") is None) == (values.get("gap") is None):
             raise Hint("either gap or cavity_length is needed, not both", 'gap = "0.4 mm"')
         return values

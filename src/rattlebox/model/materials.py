@@ -76,7 +76,9 @@ def find_material(value: Any, info: ValidationInfo) -> Any:
     return value
 
 
-AnyMaterial = Annotated[Material, BeforeValidator(find_material), AlsoTakes({"type": "string"})]
+AnyMaterial = Annotated[
+    Material, BeforeValidator(find_material), AlsoTakes({"type": "string", "not": {"const": "rigid"}})
+]
 AnyWall = Annotated[
     Annotated[AnyMaterial, Tag("of a material")] | Annotated[Literal["rigid"], Tag("rigid")],
     Discriminator(lambda value: "rigid" if value == "rigid" else "of a material"),

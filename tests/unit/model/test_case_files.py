@@ -121,3 +121,17 @@ def test_schema_names_every_field_and_its_units() -> None:
     assert "kg" in mass["description"]
     assert {"damper", "load", "base", "structure", "materials"} <= set(schema["properties"])
     assert {"SDOF", "Modal", "Matrices", "Fixed", "Shaker"} <= set(schema["$defs"])
+
+
+def test_schema_takes_every_way_to_write_it() -> None:
+    """One instead of several, a number for a restitution and a name for a material are in the JSON Schema too."""
+    schema = rb.Case.json_schema()
+    damper = schema["$defs"]["ImpactDamper"]
+    assert {"ball", "balls", "gap", "cavity_length"} <= set(damper["properties"])
+    assert {"ball", "balls"}.isdisjoint(damper["required"])
+    assert {"$ref": "#/$defs/Sphere"} in damper["properties"]["ball"]["anyOf"]
+    assert {"$ref": "#/$defs/ImpactDamper"} in schema["properties"]["damper"]["anyOf"]
+    assert schema["required"] == ["structure", "duration"]
+    restitution = json.dumps(schema["$defs"]["Tsuji"]["properties"]["restitution"])
+    assert '"type": "number"' in restitution
+    assert '"type": "string"' in json.dumps(schema["$defs"]["Sphere"]["properties"]["material"])
