@@ -64,7 +64,11 @@ def test_the_good_case_is_accepted() -> None:
         ('mass = "20 kg"', "", ["structure.mass", "needed"]),
         ('stiffness = "80 kN/m"', 'stiffness = "-1 N/m"', ["structure.stiffness", "negative"]),
         ('amplitude = "5 kN"', 'amplitude = "5 kg"', ["amplitude", "'5 kg'", "force", "not a mass", "5 kN"]),
-        ('amplitude = "5 kN"', 'amplitude = "5 mm"', ["load.amplitude = '5 mm'", "a force (N) is needed", "not a length"]),
+        (
+            'amplitude = "5 kN"',
+            'amplitude = "5 mm"',
+            ["load.amplitude = '5 mm'", "a force (N) is needed", "not a length"],
+        ),
         ('amplitude = "5 kN"', 'amplitude = "5 kX"', ["amplitude", "unknown unit 'kX'"]),
         ('gap = "0.4 mm"', 'gap = "0.4 mmm"', ["gap", "unknown unit 'mmm'", "did you mean 'mm'?"]),
         ('gap = "0.4 mm"', 'gap = "-0.4 mm"', ["gap", "negative"]),
