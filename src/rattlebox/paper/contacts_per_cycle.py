@@ -128,9 +128,9 @@ def draw(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _steady(one: xr.Dataset) -> xr.DataArray:
+def _steady(one: xr.Dataset) -> NDArray[np.bool_]:
     """Whether all cycles have the same count, over frequency."""
-    return (one.share == 1).any("count")
+    return np.asarray((one.share == 1).any("count"))
 
 
 def _bands(one: xr.Dataset) -> list[tuple[float, float, int]]:
@@ -173,7 +173,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
         one = data.sel(model=model)
         steady = _steady(one)
         share = float(steady.mean())
-        kinds = np.unique(one.share.argmax("count").values[steady.values])
+        kinds = np.unique(one.share.argmax("count").values[steady])
         found.append((model, share, kinds, one))
     changing = all(0 < share < 1 for _, share, _, _ in found)
     ours = "; ".join(
