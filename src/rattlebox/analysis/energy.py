@@ -84,7 +84,8 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
     time : (N,) array_like
         Increasing times [s] that cover at least one cycle; best so that whole cycles end on samples.
     force : (N,) array_like
-        Force that drives the damper [N]: the force of the balls on their cavity with its sign reversed.
+        Force that drives the damper [N]: the force of the balls on their cavity with its sign reversed. Forty samples in
+        each contact give the power to some 0.2 %; hard impacts have no force to sample.
     velocity : (N,) array_like
         Velocity of the point where it acts [m/s].
     frequency
