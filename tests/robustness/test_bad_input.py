@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -262,6 +263,27 @@ def test_load_on_what_cannot_move() -> None:
     """A force on a fixed cavity is refused."""
     with pytest.raises(rb.CaseError, match="cannot move a fixed structure"):
         rb.Case(structure=rb.Fixed(), load=rb.HalfSine(amplitude="1 N", duration="1 ms"), duration=1.0)
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: rb.SDOF(20.0, 80e3), "SDOF takes its fields by name: .*mass, stiffness"),
+        (lambda: rb.Constant(0.5, e=0.4), "Constant takes its fields by name"),
+        (lambda: rb.Tsuji(restitution=rb.Thornton()), "Thornton does not belong here"),
+        (lambda: rb.Case(structure=rb.Thornton(), duration=1.0), "there is no such kind here"),
+        (lambda: rb.Case(structure=rb.SDOF(mass=1e-320, stiffness=1.0), duration=1.0), "no finite numbers"),
+        (lambda: rb.Modal(frequencies=[], damping_ratios=[], shapes={"tip": []}), "at least one mode"),
+        (lambda: rb.chirp("1 N", -1.0, 2.0, 1.0), "positive frequencies"),
+        (lambda: rb.random_record([(1.0, 2.0), (300.0, 1.0)], 1.0, 10.0), "rate = 3000"),
+        (lambda: rb.random_record([(0.1, 1.0), (0.2, 1.0)], 1.0, 10.0), "a longer record"),
+        (lambda: rb.random_record([(1.0, 2.0), (3.0, -1.0)], 1.0, 10.0), "positive .* pairs"),
+    ],
+)
+def test_mistakes_in_python(make: Callable[[], object], said: str) -> None:
+    """What is written in Python is refused like what is written in a file, also by the helpers that make records."""
+    with pytest.raises(rb.CaseError, match=said):
+        make()
 
 
 def test_base_motion_of_modes_without_participation() -> None:

@@ -36,7 +36,9 @@ class _Explaining(_ModelType):
     def __call__(cls, *args: Any, **values: Any) -> Any:  # noqa: N805
         if args:
             names: tuple[str, ...] = getattr(cls, "unnamed", ())
-            values = dict(zip(names, args, strict=True)) | values
+            if len(args) > len(names) or set(names[: len(args)]) & set(values):
+                raise Hint(f"{cls.__name__} takes its fields by name: {', '.join(getattr(cls, 'model_fields', ()))}")
+            values = dict(zip(names, args, strict=False)) | values
         try:
             return super().__call__(**values)
         except ValidationError as error:

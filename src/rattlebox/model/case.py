@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
+import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
 
 from .base import AlsoTakes, Part, vocabulary
@@ -95,6 +96,9 @@ class Case(Part):
 
     def _check_signals(self) -> None:
         modes = self.modes
+        for numbers in (modes.decay, modes.stiffness, modes.q0, modes.p0, *modes.shapes.values()):
+            if not np.isfinite(numbers).all():
+                raise Hint("its modes are no finite numbers", "masses and stiffnesses of usual sizes", ["structure"])
         motion = self.structure.motion if isinstance(self.structure, Shaker) else ()
         for field, signals in (("loads", self.loads), ("base", self.base), ("motion", motion)):
             for index, signal in enumerate(signals):

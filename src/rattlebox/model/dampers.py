@@ -81,7 +81,7 @@ def _place(value: Any) -> Any:
 
 
 def _one_place(value: Any) -> float | str:
-    if isinstance(value, bool):
+    if isinstance(value, (bool, dict)) or _are_several(value):
         raise Hint("a fraction of the gap from -1 to 1 is needed, or a length", 'start = -1 or start = "0.1 mm"')
     if isinstance(value, (int, float)):
         return parse(value, ("m",))[0]

@@ -86,9 +86,9 @@ def translate(
         missing = finding["type"] == "missing"
         place, value = _as_written(given, location, len(finding["loc"]) - missing)
         head = f"{source}: {place}" if place else f"{source}:"
-        if not missing and value is not _NOTHING and not isinstance(value, Mapping):
+        if not missing and value is not _NOTHING and not _is_table(value):
             head += f" = {_shown(value)}"
-        block = _lines(head, *_said(finding, value, str(source), vocabulary))
+        block = _lines(head, *_said(finding, value, str(source), vocabulary, place))
         if block not in blocks:
             blocks.append(block)
     if len(blocks) > _LIMIT:
@@ -163,7 +163,11 @@ def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[str, An
 def _get(node: Any, name: Any) -> Any:
     if isinstance(node, Mapping):
         return node.get(name)
-    return getattr(node, name, None) if hasattr(type(node), "model_fields") and isinstance(name, str) else None
+    return getattr(node, name, None) if _is_table(node) and isinstance(name, str) else None
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, Mapping) or hasattr(type(value), "model_fields")
 
 
 def _shown(value: Any) -> str:
@@ -198,6 +202,8 @@ _PLAIN = {
     "string_type": "text is needed",
     "bool_type": "true or false is needed",
     "bool_parsing": "true or false is needed",
+    "list_type": "a list is needed",
+    "tuple_type": "a list is needed",
     "finite_number": "a finite number is needed",
     "greater_than_equal": "must be at least {ge:g}",
     "less_than_equal": "must be at most {le:g}",
@@ -207,7 +213,7 @@ _TABLES = ("model_type", "model_attributes_type", "dict_type")
 _TAGS = ("union_tag_not_found", "union_tag_invalid")
 
 
-def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary) -> tuple[str, str]:
+def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: str) -> tuple[str, str]:
     """Complaint and suggestion."""
     raised, what, context = _raised(finding), finding["type"], finding.get("ctx") or {}
     if isinstance(raised, Hint):
@@ -218,17 +224,19 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary) -> tupl
     if what == "extra_forbidden":
         return "there is no such field here", nearest(str(location[-1]), _fields(location[:-1], source, vocabulary))
     kinds = [kind for kind in _kinds(location, source, vocabulary) if kind]
+    if what in (*_TAGS, *_TABLES) and _is_table(value) and not isinstance(value, Mapping):
+        return f"{type(value).__name__} does not belong here", f"one of kind {' or '.join(kinds)}" if kinds else ""
     if what in _TAGS:
         if what == "union_tag_not_found":
             return f"'kind' is needed: {', '.join(kinds)}", f'kind = "{kinds[0]}"' if kinds else ""
         return "there is no such kind here", nearest(str(value), kinds)
     if what in _TABLES:
         kind = value if isinstance(value, str) and value in kinds else next(iter(kinds), None)
-        name = next((str(part) for part in reversed(location) if isinstance(part, str)), "")
-        name = _SPELLINGS.get(name, name)
+        name = place.rpartition(".")[2].partition("[")[0]
         if isinstance(value, (list, tuple)):
             return "one table is needed, not a list", f"[{name}] in single brackets"
-        return "a table is needed", f'{name} = {{ kind = "{kind}", ... }}' if kind else f"{name} = {{ ... }}"
+        inside = f'kind = "{kind}", ...' if kind and name in vocabulary else "..."
+        return "a table is needed", f"{name} = {{ {inside} }}"
     if what == "literal_error" and isinstance(value, str):
         expected = str(context.get("expected", "")).replace(" or ", ", ").split(", ")
         close = difflib.get_close_matches(value, [word.strip("'") for word in expected], n=1)

@@ -394,9 +394,16 @@ def random_record(
             "a PSD needs positive (frequency, density) pairs with rising frequencies",
             "[(10, 1e-3), (200, 1e-3)]",
         )
+    if not (duration > 0 and rate >= 2 * corners[-1, 0]):
+        raise Hint(
+            "a random record needs a positive duration, and a rate of at least twice the highest frequency",
+            f"rate = {10 * corners[-1, 0]:g}",
+        )
     count = round(duration * rate)
     frequency = np.fft.rfftfreq(count, 1 / rate)
     inside = (frequency >= corners[0, 0]) & (frequency <= corners[-1, 0])
+    if not inside.any():
+        raise Hint(f"no frequency of a record of {duration:g} s lies in the band", "a longer record")
     density = np.zeros(frequency.size)
     logs = np.log(corners)
     density[inside] = np.exp(np.interp(np.log(frequency[inside]), logs[:, 0], logs[:, 1]))

@@ -127,6 +127,8 @@ class Modal(Part):
     @model_validator(mode="after")
     def _same_lengths(self) -> Self:
         count = len(self.frequencies)
+        if count == 0:
+            raise Hint("at least one mode is needed", 'kind = "fixed" for a cavity that does not move', ["frequencies"])
         rows: dict[str, Any] = {"damping_ratios": self.damping_ratios, "participation": self.participation}
         rows |= {"displacement": self.displacement, "velocity": self.velocity}
         rows |= {f"shapes.{name}": row for name, row in self.shapes.items()}
