@@ -1,0 +1,199 @@
+"""Figure A3: relative speed at impact against frequency and amplitude of a harmonic load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from rattlebox.engines.simulate import simulate_many
+from rattlebox.model.case import Case
+from rattlebox.model.contacts import restitution_of_alpha
+from rattlebox.model.dampers import Sphere
+from rattlebox.model.pairs import contact_pairs
+from rattlebox.model.restitutions import JacksonGreen
+from rattlebox.plots.style import INK, SERIES_COLOURS, PaperFigure, paper, pen
+
+from .figure import Reproduction
+from .harmonic import State, harmonic_case
+from .models import CONSTANT_E, MODELS, RIGID, described
+from .seed import ALPHA, DAMPING, GAP, MASS, RADIUS, STIFFNESS
+from .two_impacts import TwoImpacts, two_impacts
+
+AMPLITUDE, FREQUENCY = 20.0, 18.0
+"""Of the load, while the other one varies [N], [Hz]."""
+FREQUENCIES = np.arange(120, 241) / 10
+AMPLITUDES = np.arange(8, 161) / 2
+DURATION = 45.0
+"""Of each run [s]; the last impacts count."""
+HITS = 60
+"""Impacts kept of each run."""
+SHOWN = CONSTANT_E, RIGID
+"""Models of the rows."""
+
+
+def _case(model: str, amplitude: float, frequency: float) -> Case:
+    return harmonic_case(
+        MODELS[model],
+        amplitude=amplitude,
+        frequency=frequency,
+        state=State(ball_position=GAP),
+        duration=DURATION,
+        times=(0.0,),
+    )
+
+
+def cases() -> Mapping[str, Case]:
+    """Return the case at which both parameters cross, by model."""
+    return {model: _case(model, AMPLITUDE, FREQUENCY) for model in SHOWN}
+
+
+def data() -> xr.Dataset:
+    """Collect the last impacts of each run, and the exact motion with two impacts a cycle."""
+    loads = [(AMPLITUDE, f) for f in FREQUENCIES] + [(a, FREQUENCY) for a in AMPLITUDES]
+    runs = simulate_many([_case(model, float(a), float(f)) for model in SHOWN for a, f in loads])
+    speeds = np.full((len(runs), HITS), np.nan)
+    for row, run in zip(speeds, runs, strict=True):
+        last = run.arrays.impacts.approach_speed[-HITS:]
+        row[: last.size] = last
+    by_model = speeds.reshape(len(SHOWN), len(loads), HITS)
+    exact = np.array([_exact(float(a), float(f)) for a, f in loads])
+    border = FREQUENCIES.size
+    variables: dict[str, Any] = {
+        "amplitude_at": described((), AMPLITUDE, "N", "amplitude while frequency varies"),
+        "frequency_at": described((), FREQUENCY, "Hz", "frequency while amplitude varies"),
+        "critical_speed": described((), _critical_speed(), "m/s", "elastic limit of the elasto-plastic model"),
+    }
+    for name, part in (("frequency", slice(border)), ("amplitude", slice(border, None))):
+        variables[f"speed_over_{name}"] = described(
+            ("model", name, "hit"), by_model[:, part], "m/s", "relative speed at impact"
+        )
+        for column, kind in enumerate(("stable", "unstable")):
+            variables[f"{kind}_over_{name}"] = described(
+                name, exact[part, column], "m/s", f"exact speed with two hard impacts a cycle, {kind}"
+            )
+    return xr.Dataset(
+        variables,
+        {
+            "model": described("model", list(SHOWN), "", "contact model"),
+            "frequency": described("frequency", FREQUENCIES, "Hz", "frequency of the load"),
+            "amplitude": described("amplitude", AMPLITUDES, "N", "amplitude of the load"),
+            "hit": described("hit", np.arange(HITS), "", "number of the kept impact"),
+        },
+    )
+
+
+def _critical_speed() -> float:
+    """Below it the elasto-plastic model with a rigid wall loses nothing [m/s]."""
+    law = MODELS[RIGID].restitution
+    assert isinstance(law, JacksonGreen)
+    return law.critical_speed(contact_pairs(_case(RIGID, AMPLITUDE, FREQUENCY), 0)[0])
+
+
+def _exact(amplitude: float, frequency: float) -> NDArray[np.float64]:
+    """Speed of the faster motion with two impacts a cycle [m/s], in the first place when stable, else in the second."""
+    found: tuple[TwoImpacts, ...] = two_impacts(
+        mass=MASS,
+        stiffness=STIFFNESS,
+        damping=DAMPING,
+        ball=Sphere(radius=RADIUS, material="steel").weight,
+        clearance=2 * GAP,
+        restitution=float(restitution_of_alpha(ALPHA, "zero_overlap")),
+        amplitude=amplitude,
+        frequency=frequency,
+    )
+    speeds = np.full(2, np.nan)
+    if found:
+        speeds[int(found[0].multiplier >= 1)] = found[0].approach_speed
+    return speeds
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Draw the speeds over frequency and amplitude, one row a model, with the exact motion behind the first."""
+    with paper("page"):
+        figure = PaperFigure("page", 0.78)
+        panels = figure.subplots(data.model.size, 2, sharex="col", sharey=True)
+        for row, model in zip(panels, data.model.values, strict=True):
+            for axes, name in zip(row, ("frequency", "amplitude"), strict=True):
+                speeds = data[f"speed_over_{name}"].sel(model=model)
+                at = np.repeat(data[name].values, data.hit.size)
+                axes.plot(at, 1e3 * speeds.values.ravel(), ".", ms=1.3, mew=0, color=INK, rasterized=True)
+                if model == CONSTANT_E:
+                    _draw_exact(axes, data, name)
+                else:
+                    limit = 1e3 * float(data.critical_speed)
+                    axes.axhline(
+                        limit, color=SERIES_COLOURS[2], lw=pen(1.2), zorder=0, label="elastic below this speed"
+                    )
+            row[0].set_title(model)
+            row[0].set_ylabel("Speed at impact (mm/s)")
+        panels[0, 0].set_ylim(0, 1050 * float(data.speed_over_amplitude.max()))
+        panels[0, 0].set_xlim(float(data.frequency[0]), float(data.frequency[-1]))
+        panels[0, 1].set_xlim(float(data.amplitude[0]), float(data.amplitude[-1]))
+        panels[-1, 0].set_xlabel(f"Frequency of the load of {float(data.amplitude_at):g} N (Hz)")
+        panels[-1, 1].set_xlabel(f"Amplitude of the load at {float(data.frequency_at):g} Hz (N)")
+        lines = [line for axes in panels[:, 0] for line in axes.get_legend_handles_labels()[0]]
+        figure.legend(handles=lines, loc="outside upper left", ncols=3)
+    return figure
+
+
+def _draw_exact(axes: Axes, data: xr.Dataset, name: str) -> None:
+    for kind, style in (("stable", "-"), ("unstable", (0, (1.2, 0.8)))):
+        axes.plot(
+            data[name],
+            1e3 * data[f"{kind}_over_{name}"],
+            color=SERIES_COLOURS[1],
+            ls=style,
+            lw=pen(2.2),
+            zorder=1.5,
+            label=f"exact, two hard impacts a cycle, {kind}",
+        )
+
+
+def settled(data: xr.Dataset, name: str) -> xr.DataArray:
+    """Return where the speeds of a run are all alike, to a hundredth.
+
+    Parameters
+    ----------
+    data
+        Of this figure.
+    name
+        "frequency" or "amplitude".
+    """
+    speeds = data[f"speed_over_{name}"]
+    return (speeds.max("hit") - speeds.min("hit")) < 0.01 * speeds.mean("hit")
+
+
+def caption(data: xr.Dataset) -> str:
+    """Say what one sees."""
+    one = data.sel(model=CONSTANT_E)
+    alike = settled(one, "frequency")
+    stable = np.isfinite(one.stable_over_frequency)
+    off = np.abs(one.speed_over_frequency.mean("hit") / one.stable_over_frequency - 1).where(alike)
+    lost = one.frequency.where(~stable & (one.frequency > float(one.frequency.where(stable).min())), drop=True)
+    return (
+        f"Relative speeds of the last {data.hit.size} impacts of runs of {DURATION:g} s, over the frequency and over the "
+        "amplitude of the load; the ball starts at the leading wall. A single dot over a parameter is a motion in "
+        "which all impacts are alike, two dots are a motion that favours a wall or repeats every second cycle, a "
+        "cloud is one without visible order. With constant restitution the exact "
+        f"motion with two impacts a cycle is stable at {int(stable.sum())} of {stable.size} frequencies; at "
+        f"{int((alike & stable).sum())} of them the run settles on it, {100 * float(off.median()):.1f} % off in speed "
+        "because contacts take time, and at the others on another motion. It loses stability from "
+        f"{float(lost.min()):g} to {float(lost.max()):g} Hz, where "
+        f"{int((alike & ~stable).sel(frequency=lost).sum())} of {lost.size} runs keep alike impacts."
+    )
+
+
+FIGURE = Reproduction(
+    number="A3",
+    title="Bifurcations of the relative speed at impact",
+    data=data,
+    draw=draw,
+    caption=caption,
+    cases=cases,
+)
