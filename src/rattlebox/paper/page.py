@@ -10,6 +10,8 @@ from math import sqrt
 from pathlib import Path
 from typing import NamedTuple, get_args
 
+from markupsafe import Markup, escape
+
 from .figure import Claim, Verdict
 
 GENERATOR = '<meta name="generator" content="Rattlebox">'
@@ -84,7 +86,6 @@ def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float)
         Time that the whole took.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
-    from markupsafe import Markup
 
     from rattlebox.model.methods import EventDriven
     from rattlebox.results.provenance import Provenance
@@ -98,6 +99,7 @@ def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float)
         lstrip_blocks=True,
         undefined=StrictUndefined,
     )
+    environment.filters["typeset"] = typeset
     return environment.get_template("report.html").render(
         generator=Markup(GENERATOR),
         title="A particle damper, reproduced and judged",
@@ -119,6 +121,28 @@ def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float)
     )
 
 
+_TYPESET = (
+    (re.compile(r"(?<=\d)e([+-]?)0*(\d+)\b"), lambda m: f" × 10<sup>{'−' if m[1] == '-' else ''}{m[2]}</sup>"),
+    (re.compile(r"\b(\w)_(\w+)\b"), lambda m: f"{m[1]}<sub>{m[2]}</sub>"),
+    (re.compile(r"\^(-?[\d.]*\d)"), lambda m: f"<sup>{m[1].replace('-', '−')}</sup>"),
+    (re.compile(r"(?<![\w)])-(?=\d)"), lambda m: "−"),
+)
+
+
+def typeset(text: str) -> Markup:
+    """Return text as HTML with powers of ten, subscripts, exponents and minus signs as they are printed.
+
+    Parameters
+    ----------
+    text
+        Such as "V_c is 4e-09 m/s", "N/m^1.5".
+    """
+    html = str(escape(text))
+    for pattern, printed in _TYPESET:
+        html = pattern.sub(printed, html)
+    return Markup(html)
+
+
 _SECTION_OF_FIGURE = {1: (3.0,), 2: (3.1,), 3: (4.1,), 4: (4.2,), 5: (4.3,), 6: (5.0,)}
 _SECTION_OF_ELSE = {"abstract": (0.0,), "table": (4.25,), "conclusion": (6.0,)}
 
@@ -132,7 +156,7 @@ def place(where: str) -> tuple[float, ...]:
         Such as "section 5.1, figure 7c", "table 1" or "conclusion 3".
     """
     section = re.search(r"section (\d+(?:\.\d+)?)", where.lower())
-    figure = re.search(r"fig(?:ure|\.) (\d+)([a-z]?)", where.lower())
+    figure = re.search(r"fig(?:ures?|s?\.?) (\d+)([a-z]?)", where.lower())
     told = (float(figure[1]), ord(figure[2] or "a")) if figure else ()
     if section:
         return float(section[1]), *told

@@ -22,7 +22,16 @@ from .tables import write_tables
 if TYPE_CHECKING:
     import xarray as xr
 
-FIGURES = ("figure_02", "figure_05", "figure_07a", "figure_07b", "figure_09a", "figure_09b")
+FIGURES = (
+    "figure_02",
+    "figure_05",
+    "figure_06",
+    "figure_07a",
+    "figure_07b",
+    "figure_07c",
+    "figure_09a",
+    "figure_09b",
+)
 """Modules of the figures, in the order of the page."""
 
 _FIGURE_FOLDER, _CASE_FOLDER = "figures", "cases"

@@ -16,7 +16,7 @@ import xarray as xr
 import rattlebox as rb
 from rattlebox.paper import write_report
 from rattlebox.paper.figure import Claim
-from rattlebox.paper.page import GENERATOR, Made, place, render, system
+from rattlebox.paper.page import GENERATOR, Made, place, render, system, typeset
 from rattlebox.paper.report import FIGURES, choose, reproduction
 from rattlebox.paper.tables import write_tables
 
@@ -201,7 +201,8 @@ def test_figures_are_chosen_by_number():
     [
         ("abstract", "section 3.1, figure 2"),
         ("table 1", "section 5, figure 6"),
-        ("figure 4", "figure 5"),
+        ("figure 4", "Fig. 5"),
+        ("Section 5.1, Figs 7a to 7c", "section 5.1, figures 7b and 7c"),
         ("section 5.1, figure 7c", "section 5.1, figure 7e"),
         ("section 5.1, figure 9a", "section 5.1, figure 10"),
         ("figure 11", "conclusion 1"),
@@ -225,6 +226,21 @@ def test_page_escapes_and_counts():
     counts = re.findall(r"<b>(\d+)</b><span aria-hidden=\"true\">.</span> ([a-z ]+)<", text)
     assert counts == [("1", "reproduced"), ("1", "reproduced in kind"), ("0", "not reproducible"), ("2", "misprint")]
     assert "4.2 s" in text and "3 cores, 2 processes" in text
+
+
+@pytest.mark.parametrize(
+    ("text", "html"),
+    [
+        ("4.8e-09 m/s", "4.8 × 10<sup>−9</sup> m/s"),
+        ("1e+03 to 2e12", "1 × 10<sup>3</sup> to 2 × 10<sup>12</sup>"),
+        ("V_c < E_k/2", "V<sub>c</sub> &lt; E<sub>k</sub>/2"),
+        ("N/m^1.5, s^-1", "N/m<sup>1.5</sup>, s<sup>−1</sup>"),
+        ("-3 to 5, x-1, figure_02, e = 0.99", "−3 to 5, x-1, figure_02, e = 0.99"),
+    ],
+)
+def test_numbers_and_symbols_are_typeset(text, html):
+    """Powers of ten, subscripts, exponents and minus signs are printed as such, other text is left alone."""
+    assert typeset(text) == html
 
 
 def test_system_has_the_known_numbers():
