@@ -19,6 +19,7 @@ from rattlebox.model.structures import Fixed
 from rattlebox.plots.style import INK, SERIES_COLOURS, SERIES_MARKERS, PaperFigure, paper, pen
 
 from .figure import Claim, Reproduction
+from .models import described
 from .seed import ALPHA, GAP, RADIUS
 
 ENDINGS: tuple[Ending, Ending] = ("zero_overlap", "zero_force")
@@ -69,31 +70,36 @@ def data() -> xr.Dataset:
     printed = [restitution_of_alpha(ALPHA, ending) for ending in ENDINGS]
     needed = [alpha_of_restitution(0.99, ending) for ending in ENDINGS]
 
-    def told(dims: str | tuple[str, ...], values: object, name: str) -> tuple[Any, ...]:
-        return dims, values, {"units": "", "long_name": name}
-
     return xr.Dataset(
         {
-            "alpha": told(("ending", "e"), exact, "damping coefficient α, exact"),
-            "fitted": told(("ending", "fit_from", "e"), fitted, "damping coefficient α, fit of degree 9 in log10 e"),
-            "coefficient": told(("ending", "fit_from", "power"), fits, "coefficient of the fit at a power of log10 e"),
-            "deviation": told(
-                ("ending", "fit_from", "e"), np.abs(fitted / exact[:, None] - 1), "deviation of the fit from exact"
+            "alpha": described(("ending", "e"), exact, "", "damping coefficient α, exact"),
+            "fitted": described(
+                ("ending", "fit_from", "e"), fitted, "", "damping coefficient α, fit of degree 9 in log10 e"
             ),
-            "shared": told("e", shared, "damping coefficient α, polynomial of degree 6 in e that programs share"),
-            "shared_deviation": told("e", np.abs(shared / exact[0] - 1), "deviation of the shared polynomial"),
-            "simulated": told(("ending", "tried"), np.reshape(first, (2, -1)), "restitution of a simulated impact"),
-            "expected": told(("ending", "tried"), np.array(expected), "restitution that the exact relation gives"),
-            "printed_alpha": told((), ALPHA, "printed coefficient"),
-            "printed_e": told("ending", np.array(printed), "restitution at the printed coefficient"),
-            "needed_alpha": told("ending", np.array(needed), "coefficient for a restitution of 0.99"),
+            "coefficient": described(
+                ("ending", "fit_from", "power"), fits, "", "coefficient of the fit at a power of log10 e"
+            ),
+            "deviation": described(
+                ("ending", "fit_from", "e"), np.abs(fitted / exact[:, None] - 1), "", "deviation of the fit from exact"
+            ),
+            "shared": described(
+                "e", shared, "", "damping coefficient α, polynomial of degree 6 in e that programs share"
+            ),
+            "shared_deviation": described("e", np.abs(shared / exact[0] - 1), "", "deviation of the shared polynomial"),
+            "simulated": described(
+                ("ending", "tried"), np.reshape(first, (2, -1)), "", "restitution of a simulated impact"
+            ),
+            "expected": described(("ending", "tried"), expected, "", "restitution that the exact relation gives"),
+            "printed_alpha": described((), ALPHA, "", "printed coefficient"),
+            "printed_e": described("ending", printed, "", "restitution at the printed coefficient"),
+            "needed_alpha": described("ending", needed, "", "coefficient for a restitution of 0.99"),
         },
         {
-            "e": told("e", e, "restitution"),
-            "ending": told("ending", list(ENDINGS), "where the contact ends"),
-            "fit_from": told("fit_from", list(_FIT_FROM), "least restitution of the fit"),
-            "power": told("power", np.arange(_DEGREE + 1), "power of log10 e"),
-            "tried": told("tried", np.array(_TRIED), "damping coefficient α of the simulated impact"),
+            "e": described("e", e, "", "restitution"),
+            "ending": described("ending", list(ENDINGS), "", "where the contact ends"),
+            "fit_from": described("fit_from", list(_FIT_FROM), "", "least restitution of the fit"),
+            "power": described("power", np.arange(_DEGREE + 1), "", "power of log10 e"),
+            "tried": described("tried", _TRIED, "", "damping coefficient α of the simulated impact"),
         },
     )
 

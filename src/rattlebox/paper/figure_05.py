@@ -20,6 +20,7 @@ from rattlebox.plots.style import FAINT, INK, SERIES_COLOURS, PaperFigure, paper
 
 from .ensemble import ensemble, near
 from .figure import Claim, Reproduction
+from .models import described
 from .seed import ALPHA, PLASTIC, PLASTIC_RIGID, START, seed_case
 
 WALLS = ("steel", "rigid")
@@ -54,26 +55,25 @@ def data() -> xr.Dataset:
     lowest = np.reshape([values.min() for _, values in met], (len(WALLS), len(START)))
     runs = ("wall", "start")
 
-    def told(dims: str | tuple[str, ...], values: object, name: str, units: str = "") -> tuple[Any, ...]:
-        return dims, values, {"units": units, "long_name": name}
-
     return xr.Dataset(
         {
-            "restitution": told(("law", "wall", "speed"), np.array(curves), "restitution"),
-            "constant": told((), restitution_of_alpha(ALPHA, "zero_overlap"), "restitution of the constant model"),
-            "critical_speed": told("wall", critical, "elastic limit V_c of the Jackson-Green law", "m/s"),
-            "marked_speed": told(("wall", "reduced"), marked, "approach speed at multiples of V_c", "m/s"),
-            "marked_restitution": told(("wall", "reduced"), np.array(marks), "Jackson-Green restitution there"),
-            "faster": told((*runs, "speed"), faster, "share of the impacts after 5 kN that are faster"),
-            "largest_speed": told(runs, largest, "largest approach speed after 5 kN", "m/s"),
-            "lowest_restitution": told(runs, lowest, "lowest restitution after 5 kN"),
+            "restitution": described(("law", "wall", "speed"), curves, "", "restitution"),
+            "constant": described(
+                (), restitution_of_alpha(ALPHA, "zero_overlap"), "", "restitution of the constant model"
+            ),
+            "critical_speed": described("wall", critical, "m/s", "elastic limit V_c of the Jackson-Green law"),
+            "marked_speed": described(("wall", "reduced"), marked, "m/s", "approach speed at multiples of V_c"),
+            "marked_restitution": described(("wall", "reduced"), marks, "", "Jackson-Green restitution there"),
+            "faster": described((*runs, "speed"), faster, "", "share of the impacts after 5 kN that are faster"),
+            "largest_speed": described(runs, largest, "m/s", "largest approach speed after 5 kN"),
+            "lowest_restitution": described(runs, lowest, "", "lowest restitution after 5 kN"),
         },
         {
-            "speed": told("speed", speed, "approach speed V", "m/s"),
-            "law": told("law", list(_LAWS), "restitution law"),
-            "wall": told("wall", list(WALLS), "elasticity of the wall in the law"),
-            "start": told("start", list(START), "start position, the paper's case"),
-            "reduced": told("reduced", np.array(_MARKS), "V* = V/V_c"),
+            "speed": described("speed", speed, "m/s", "approach speed V"),
+            "law": described("law", list(_LAWS), "", "restitution law"),
+            "wall": described("wall", list(WALLS), "", "elasticity of the wall in the law"),
+            "start": described("start", list(START), "", "start position, the paper's case"),
+            "reduced": described("reduced", _MARKS, "", "V* = V/V_c"),
         },
     )
 

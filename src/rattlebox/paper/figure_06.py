@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -23,6 +22,7 @@ from rattlebox.plots.style import FAINT, INK, SERIES_COLOURS, PaperFigure, paper
 from rattlebox.results import Run
 
 from .figure import Claim, Reproduction
+from .models import described
 from .seed import GAP, PLASTIC, RADIUS
 
 _BALL = Sphere(radius=RADIUS, material="steel")
@@ -62,30 +62,31 @@ def data() -> xr.Dataset:
     kept = elastic.impacts.separation_speed.values / limit
     hits = np.arange(1, after.size + 1)
 
-    def told(dims: str | tuple[str, ...], values: object, name: str, units: str = "") -> tuple[Any, ...]:
-        return dims, values, {"units": units, "long_name": name}
-
     return xr.Dataset(
         {
-            "place": told(("zone", "time"), np.array(place), "place of the ball in the cavity over d0"),
-            "speed": told(("zone", "time"), np.array(speed), "velocity of the ball over V_c"),
-            "simulated": told("hit", after, "speed after the hit over V_c"),
-            "predicted": told("hit", _predicted(hits.size), "speed after the hit over V_c, from the law alone"),
-            "asymptote": told("hit", 1 + _asymptote(hits), "speed after the hit over V_c, for many hits"),
-            "elastic_hits": told((), kept.size, "hits of the ball that starts in the elastic zone"),
-            "elastic_drift": told((), np.abs(kept / _STARTS["elastic"] - 1).max(), "largest change of its speed"),
-            "critical_speed": told(
+            "place": described(("zone", "time"), place, "", "place of the ball in the cavity over d0"),
+            "speed": described(("zone", "time"), speed, "", "velocity of the ball over V_c"),
+            "simulated": described("hit", after, "", "speed after the hit over V_c"),
+            "predicted": described(
+                "hit", _predicted(hits.size), "", "speed after the hit over V_c, from the law alone"
+            ),
+            "asymptote": described("hit", 1 + _asymptote(hits), "", "speed after the hit over V_c, for many hits"),
+            "elastic_hits": described((), kept.size, "", "hits of the ball that starts in the elastic zone"),
+            "elastic_drift": described(
+                (), np.abs(kept / _STARTS["elastic"] - 1).max(), "", "largest change of its speed"
+            ),
+            "critical_speed": described(
                 "yield_stress",
                 np.array([JacksonGreen(yield_stress=strength).critical_speed(PAIR) for strength in _YIELD]),
-                "elastic limit V_c",
                 "m/s",
+                "elastic limit V_c",
             ),
         },
         {
-            "zone": told("zone", list(_STARTS), "zone of the start"),
-            "time": told("time", times, "time", "s"),
-            "hit": told("hit", hits, "number of the hit"),
-            "yield_stress": told("yield_stress", np.array(_YIELD), "yield stress", "Pa"),
+            "zone": described("zone", list(_STARTS), "", "zone of the start"),
+            "time": described("time", times, "s", "time"),
+            "hit": described("hit", hits, "", "number of the hit"),
+            "yield_stress": described("yield_stress", _YIELD, "Pa", "yield stress"),
         },
     )
 

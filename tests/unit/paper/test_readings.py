@@ -41,9 +41,11 @@ def test_numbers_of_the_contact(data):
     ],
 )
 def test_losses_of_the_main_readings(data, reading, expected):
-    """The medians lie within the scatter of a chaotic system about the known shares."""
-    median = data.share.sel(reading=reading, level=0.5)
-    np.testing.assert_allclose(median, expected, rtol=0.12, atol=1e-4)
+    """The known shares, given to their last digit, lie in the band of each case."""
+    low, _, high = data.share.sel(reading=reading).transpose("level", "start").values
+    last_digit = 1e-3 if max(expected) > 0.01 else 1e-4
+    assert np.all(low - last_digit <= expected)
+    assert np.all(high + last_digit >= expected)
 
 
 def test_loss_does_not_depend_on_the_ending_or_the_stiffness(data):
@@ -55,6 +57,5 @@ def test_loss_does_not_depend_on_the_ending_or_the_stiffness(data):
 def test_verdicts_follow_the_data(data):
     """The mass is confirmed and three prints are not; with the two sizes swapped the diameter would be right."""
     assert [claim.verdict for claim in FIGURE.claims(data)] == ["reproduced", "misprint", "misprint", "misprint"]
-    swapped = data.assign(mass_share=data.mass_share[::-1].values * data.mass_share / data.mass_share)
-    swapped["clearance"] = ("size", data.clearance.values[::-1])
+    swapped = data.assign({name: ("size", data[name].values[::-1]) for name in ("mass_share", "clearance")})
     assert [claim.verdict for claim in FIGURE.claims(swapped)][:2] == ["not reproducible", "reproduced"]
