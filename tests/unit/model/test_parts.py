@@ -201,6 +201,29 @@ def test_every_material_is_physical_and_has_a_source() -> None:
     assert (steel.young, steel.poisson, steel.density, steel.yield_stress) == (200e9, 0.3, 7850.0, 1030e6)
 
 
+def test_library_agrees_with_its_sources() -> None:
+    """Lead and alumina have the numbers that the tables named as their sources print."""
+    lead, alumina = rb.materials()["lead"], rb.materials()["alumina"]
+    assert (lead.density, lead.young, lead.poisson, lead.yield_stress) == (11340.0, 13.5e9, 0.44, 7e6)
+    assert (alumina.density, alumina.young, alumina.poisson) == (3984.0, 416e9, 0.231)
+
+
+def test_a_ball_that_was_weighed_and_timed() -> None:
+    """A coated ball described by its weight and the time of one contact has them: no modulus of its material enters."""
+    for material in ("steel", "nylon"):
+        ball = rb.Sphere(diameter="24 mm", material=material, mass="36 g")
+        damper = rb.ImpactDamper(
+            ball=ball,
+            gap="2 mm",
+            velocity="1 m/s",
+            contact=rb.Linear(contact_time="2.1 ms", restitution=0.45, ending="zero_overlap"),
+        )
+        impact = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="5.5 ms")).impacts
+        zeta = -math.log(0.45) / math.hypot(math.log(0.45), math.pi)
+        assert impact.duration[0] == pytest.approx(2.1e-3 / math.sqrt(1 - zeta**2), rel=1e-9)
+        assert impact.separation_speed[0] / impact.approach_speed[0] == pytest.approx(0.45, rel=1e-9)
+
+
 def test_parts_do_not_change() -> None:
     """A part of a case cannot be assigned to."""
     with pytest.raises(ValueError, match="frozen"):
