@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -62,6 +63,6 @@ class Reproduction:
 
     @property
     def name(self) -> str:
-        """Stem of this figure's files: "figure_07c"."""
-        digits = self.number.rstrip("abcdefghijklmnopqrstuvwxyz, ")
-        return f"figure_{digits.zfill(2)}{self.number[len(digits) :]}".replace(", ", "_")
+        """Stem of this figure's files: "figure_07c", "figure_07de" for "7d, 7e"."""
+        whole, *parts = re.findall(r"^[A-Z]?\d+|[a-z]", self.number)
+        return f"figure_{whole.zfill(2)}{''.join(parts)}"

@@ -29,8 +29,14 @@ FIGURES = (
     "figure_07a",
     "figure_07b",
     "figure_07c",
+    "figure_07de",
     "figure_09a",
     "figure_09b",
+    "figure_10",
+    "readings",
+    "hundred_times",
+    "contacts_per_cycle",
+    "bifurcation",
 )
 """Modules of the figures, in the order of the page."""
 
