@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import ceil, pi, sqrt
+from math import ceil, pi
 
 import numpy as np
 import xarray as xr
@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 from rattlebox.analysis import impacts_per_cycle
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.case import Case
-from rattlebox.model.dampers import Sphere
 from rattlebox.plots.style import INK, SERIES_COLOURS, PaperFigure, paper, pen
 
 from .figure import Claim, Reproduction
-from .harmonic import State, harmonic_case
+from .harmonic import State, harmonic_case, resonance
 from .models import MODELS, described
-from .seed import DAMPING, GAP, MASS, RADIUS, STIFFNESS
+from .seed import DAMPING, GAP, MASS, STIFFNESS
 
 AMPLITUDE = 20.0
 """Of the load [N]."""
@@ -44,13 +43,8 @@ def _case(model: str, frequency: float) -> Case:
 
 def cases() -> Mapping[str, Case]:
     """Return each model's case nearest to resonance."""
-    resonance = FREQUENCIES[np.abs(FREQUENCIES - _resonance()).argmin()]
-    return {f"{model}, {resonance:g} Hz": _case(model, float(resonance)) for model in MODELS}
-
-
-def _resonance() -> float:
-    """Natural frequency when the ball rides along [Hz]."""
-    return sqrt(STIFFNESS / (MASS + Sphere(radius=RADIUS, material="steel").weight)) / (2 * pi)
+    nearest = float(FREQUENCIES[np.abs(FREQUENCIES - resonance()).argmin()])
+    return {f"{model}, {nearest:g} Hz": _case(model, nearest) for model in MODELS}
 
 
 def _alone(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -83,7 +77,7 @@ def data() -> xr.Dataset:
             "cycles": described("frequency", [c.size for c in counts[: shape[1]]], "", "cycles counted"),
             "alone": described("frequency", _alone(FREQUENCIES), "m", "amplitude of the structure alone"),
             "gap": described((), GAP, "m", "clearance on each side of the centred ball"),
-            "resonance": described((), _resonance(), "Hz", "natural frequency with the ball riding along"),
+            "resonance": described((), resonance(), "Hz", "natural frequency with the ball riding along"),
             "amplitude": described((), AMPLITUDE, "N", "amplitude of the load"),
         },
         {

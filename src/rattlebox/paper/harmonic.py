@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import pi, sqrt
 from typing import NamedTuple
 
 from rattlebox.model.case import Case
@@ -13,6 +14,9 @@ from rattlebox.model.signals import Harmonic
 from rattlebox.model.structures import SDOF
 
 from .seed import CONSTANT, DAMPING, GAP, MASS, RADIUS, STIFFNESS
+
+BALL = Sphere(radius=RADIUS, material="steel").weight
+"""Mass of the ball [kg]."""
 
 
 class State(NamedTuple):
@@ -79,3 +83,24 @@ def harmonic_case(
         method=method or EventDriven(),
         output=Output(rate=rate) if times is None else Output(times=times),
     )
+
+
+def riding(amplitude: float, frequency: float, place: float = 0.0) -> State:
+    """Return where a steady motion begins in which the ball rides along as a part of the structure.
+
+    Parameters
+    ----------
+    amplitude, frequency
+        Of the load [N], [Hz].
+    place
+        Of the ball in its cavity, from the centre [m].
+    """
+    omega = 2 * pi * frequency
+    response = amplitude / (STIFFNESS - (MASS + BALL) * omega**2 + 1j * DAMPING * omega)
+    speed = omega * response.real
+    return State(response.imag, speed, place, speed)
+
+
+def resonance() -> float:
+    """Return the natural frequency with the ball riding along [Hz]."""
+    return sqrt(STIFFNESS / (MASS + BALL)) / (2 * pi)
