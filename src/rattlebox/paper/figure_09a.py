@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import product
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -23,6 +23,7 @@ from rattlebox.plots.style import FAINT, INK, PaperFigure, label, paper, pen, sc
 
 from .ensemble import band, ensemble, near
 from .figure import Claim, Reproduction
+from .models import described
 from .seed import CONSTANT, GAP, PLASTIC, START, seed_case
 
 AMPLITUDE = 100.0
@@ -64,13 +65,10 @@ def portraits(of: Literal["ball", "structure"]) -> xr.Dataset:
     portrait = [phase_portrait(run, run.arrays.points[0] if of == "structure" else None) for run in runs]
     spread = np.array([_contacts(model, start) for model, start in product(_MODELS, START.values())])
 
-    def each(values: object, units: str, text: str) -> tuple[tuple[str, ...], object, dict[str, str]]:
+    def each(values: object, units: str, text: str) -> tuple[Any, ...]:
         array = np.reshape(np.asarray(values), (*shape, -1))
         dims = ("model", "case", "time") if array.shape[-1] > 1 else ("model", "case")
-        return dims, array.squeeze(), {"units": units, "long_name": text}
-
-    def along(dim: str, values: object, units: str, text: str) -> tuple[str, object, dict[str, str]]:
-        return dim, values, {"units": units, "long_name": text}
+        return described(dims, array.squeeze(), units, text)
 
     wall: tuple[Literal["rigid"] | None, ...] = (None, "rigid")
     pair = contact_pairs(_case("elasto-plastic", 0.0), 0)[0]
@@ -87,15 +85,15 @@ def portraits(of: Literal["ball", "structure"]) -> xr.Dataset:
             ),
             "work": each([run.ledger.work[-1] for run in runs], "J", "work of the pulse"),
             "impact_loss": each([run.ledger.impact_loss[-1] for run in runs], "J", "energy lost in impacts"),
-            "critical_speed": along(
+            "critical_speed": described(
                 "wall", [JacksonGreen(wall=w).critical_speed(pair) for w in wall], "m/s", "speed at which yield begins"
             ),
         },
         {
-            "model": along("model", list(_MODELS), "", "model of restitution"),
-            "case": along("case", list(START), "", "start position"),
-            "wall": along("wall", ["steel", "rigid"], "", "wall in the critical speed"),
-            "time": along("time", arrays[0].time, "s", "time"),
+            "model": described("model", list(_MODELS), "", "model of restitution"),
+            "case": described("case", list(START), "", "start position"),
+            "wall": described("wall", ["steel", "rigid"], "", "wall in the critical speed"),
+            "time": described("time", arrays[0].time, "s", "time"),
         },
     )
 

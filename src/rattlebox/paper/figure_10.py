@@ -11,12 +11,13 @@ from matplotlib.figure import Figure
 from rattlebox.analysis import amplitude_spectrum
 from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
-from rattlebox.plots.style import FAINT, INK, SERIES_COLOURS, PaperFigure, label, paper, pen
+from rattlebox.plots.style import FAINT, INK, PaperFigure, label, paper, pen
 from rattlebox.results import Run
 
 from .ensemble import band, ensemble, near
 from .figure import Claim, Reproduction
-from .seed import CONSTANT, MASS, PLASTIC, PLASTIC_RIGID, START, STIFFNESS, seed_case
+from .models import COLOURS, CONSTANT_E, MODELS, RIGID, STEEL, described
+from .seed import MASS, START, STIFFNESS, seed_case
 
 DURATION, RATE = 10.0, 2000.0
 """Of the record [s], and its samples a second [Hz]."""
@@ -30,23 +31,18 @@ MEMBERS = 20
 PRINTED = 61.3
 """Resonance that the paper reads [rad/s]."""
 
-_MODELS = {
-    "constant": CONSTANT,
-    "elasto-plastic, steel wall": PLASTIC,
-    "elasto-plastic, rigid wall": PLASTIC_RIGID,
-}
 _WITHOUT = "without damper"
 
 
 def _case(model: str, start: float = START[1]) -> Case:
     if model == _WITHOUT:
         return seed_case(ball=False, duration=DURATION, rate=RATE)
-    return seed_case(_MODELS[model], start=start, duration=DURATION, rate=RATE)
+    return seed_case(MODELS[model], start=start, duration=DURATION, rate=RATE)
 
 
 def cases() -> Mapping[str, Case]:
     """Return the centred runs at 5000 N: constant restitution, both walls of the elasto-plastic model, no damper."""
-    return {model: _case(model) for model in (*_MODELS, _WITHOUT)}
+    return {model: _case(model) for model in (*MODELS, _WITHOUT)}
 
 
 def _structure(run: Run) -> np.ndarray:
@@ -70,7 +66,7 @@ def _spectra(runs: Sequence[Run], signal: Callable[[Run], np.ndarray], shown: sl
 def data() -> xr.Dataset:
     """Compute the spectra of single runs and ensembles, and how often the ball rattles between its walls."""
     out: dict[str, list[np.ndarray]] = {}
-    for model in _MODELS:
+    for model in MODELS:
         single = simulate(_case(model))
         many = ensemble(lambda offset, model=model: _case(model, near(START[1], offset)), MEMBERS)  # type: ignore[misc]
         for name, signal in (("ball", _ball), ("structure", _structure)):
@@ -92,43 +88,40 @@ def data() -> xr.Dataset:
     bare = [simulate(_case(_WITHOUT))]
     without, close = _spectra(bare, _structure, SHOWN)[0], _spectra(bare, _structure, NEAR, PADDING)[0]
 
-    def told(dims: tuple[str, ...], values: object, units: str, text: str) -> tuple[object, object, dict[str, str]]:
-        return dims, values, {"units": units, "long_name": text}
-
     texts = {"": ", single run", "_low": ", 10 % of the ensemble", "_median": ", median", "_high": ", 90 %"}
     spectra = {
-        name + key: told(("model", "frequency"), np.array(out[name + key]), "m", f"amplitude of the {name}{text}")
+        name + key: described(("model", "frequency"), np.array(out[name + key]), "m", f"amplitude of the {name}{text}")
         for name in ("ball", "structure")
         for key, text in texts.items()
     }
     zoomed = {
-        "near" + key: told(
+        "near" + key: described(
             ("model", "near"), np.array(out["near" + key]), "m", "amplitude of the structure" + texts[key]
         )
         for key in ("_low", "_median", "_high")
     }
-    ball_mass = _case("constant").dampers[0].masses[0]
+    ball_mass = _case(CONSTANT_E).dampers[0].masses[0]
     return xr.Dataset(
         {
             **spectra,
             **zoomed,
-            "without": told(("frequency",), without.values, "m", "amplitude of the structure without damper"),
-            "near_without": told(("near",), close.values, "m", "amplitude of the structure without damper"),
-            "peak": told(("model", "quantile"), np.array(out["peak"]), "rad/s", "highest peak of the structure"),
-            "trips": told(
+            "without": described(("frequency",), without.values, "m", "amplitude of the structure without damper"),
+            "near_without": described(("near",), close.values, "m", "amplitude of the structure without damper"),
+            "peak": described(("model", "quantile"), np.array(out["peak"]), "rad/s", "highest peak of the structure"),
+            "trips": described(
                 ("model", "quantile"), np.array(out["trips"]), "rad/s", "rate of round trips between the walls"
             ),
-            "last_loss": told(
+            "last_loss": described(
                 ("model",), np.array(out["last_loss"]), "s", "last contact that loses energy, single run"
             ),
-            "riding": told((), np.sqrt(STIFFNESS / (MASS + ball_mass)), "rad/s", "sqrt(K/(M+m))"),
-            "bare": told((), np.sqrt(STIFFNESS / MASS), "rad/s", "sqrt(K/M)"),
+            "riding": described((), np.sqrt(STIFFNESS / (MASS + ball_mass)), "rad/s", "sqrt(K/(M+m))"),
+            "bare": described((), np.sqrt(STIFFNESS / MASS), "rad/s", "sqrt(K/M)"),
         },
         {
-            "model": told(("model",), list(_MODELS), "", "model of restitution"),
-            "frequency": told(("frequency",), without.frequency.values, "rad/s", "angular frequency"),
-            "near": told(("near",), close.frequency.values, "rad/s", "angular frequency about the resonance"),
-            "quantile": told(("quantile",), [0.1, 0.5, 0.9], "", "quantile of the ensemble"),
+            "model": described(("model",), list(MODELS), "", "model of restitution"),
+            "frequency": described(("frequency",), without.frequency.values, "rad/s", "angular frequency"),
+            "near": described(("near",), close.frequency.values, "rad/s", "angular frequency about the resonance"),
+            "quantile": described(("quantile",), [0.1, 0.5, 0.9], "", "quantile of the ensemble"),
         },
         {"window": WINDOW, "duration": DURATION},
     )
@@ -140,7 +133,7 @@ def draw(data: xr.Dataset) -> Figure:
         figure = PaperFigure("page", 0.95)
         grid = figure.subplots(3, len(data.model), sharey="row")
         for j, model in enumerate(data.model.values):
-            one, colour = data.sel(model=model), SERIES_COLOURS[j]
+            one, colour = data.sel(model=model), COLOURS[model]
             for axes, name, x in zip(
                 grid[:, j], ("ball", "structure", "near"), ("frequency", "frequency", "near"), strict=True
             ):
@@ -157,8 +150,8 @@ def draw(data: xr.Dataset) -> Figure:
                     label="10 to 90 %",
                 )
                 axes.plot(at, one[f"{name}_median"], color=colour, linewidth=pen(0.9), label="median")
-                if j:
-                    reference = data[f"{name}_median"].isel(model=0)
+                if model != CONSTANT_E:
+                    reference = data[f"{name}_median"].sel(model=CONSTANT_E)
                     axes.plot(
                         at, reference, color=INK, linewidth=pen(0.5), zorder=1.5, label="constant restitution, median"
                     )
@@ -174,7 +167,7 @@ def draw(data: xr.Dataset) -> Figure:
                 axes.set_xticks([10, 100, 1000], ["10", "100", "1000"])
             for axes in grid[1:, j]:
                 label(axes, "x", "Angular frequency", "rad/s")
-            grid[0, j].set_title(model.replace(", ", ",\n") if j else "constant restitution\n")
+            grid[0, j].set_title(model.replace(", ", ",\n") if ", " in model else f"{model}\n")
         for axes, text in zip(
             grid[:, 0], ("10a  Ball in cavity", "10b  Structure", "10b  near resonance"), strict=True
         ):
@@ -212,7 +205,7 @@ def _wide(data: xr.Dataset, model: str) -> tuple[float, float]:
 
 def _lower(data: xr.Dataset, name: str, model: str) -> tuple[float, float, float]:
     """Shares of all bins in which a model's median is below constant restitution's, its band is below, and above."""
-    one, constant = data.sel(model=model), data.sel(model="constant")
+    one, constant = data.sel(model=model), data.sel(model=CONSTANT_E)
     return (
         float((one[f"{name}_median"] < constant[f"{name}_median"]).mean()),
         float((one[f"{name}_high"] < constant[f"{name}_low"]).mean()),
@@ -233,20 +226,19 @@ def _bare_peak(data: xr.Dataset) -> float:
 def caption(data: xr.Dataset) -> str:
     """Say what the spectra show."""
     peak = data.peak.sel(quantile=0.5)
-    steel, rigid = data.model.values[1:]
-    rise, low, high = _hump(data, steel)
-    trips = data.trips.sel(model=steel).values
-    apart = np.abs(np.log(data.ball_median.sel(model=rigid) / data.ball_median.sel(model="constant")))
+    rise, low, high = _hump(data, STEEL)
+    trips = data.trips.sel(model=STEEL).values
+    apart = np.abs(np.log(data.ball_median.sel(model=RIGID) / data.ball_median.sel(model=CONSTANT_E)))
     return (
         f"Amplitude spectra of the first {data.attrs['duration']:g} s after the pulse of 5000 N, case 1, without a taper "
         f"({data.attrs['window']} window); an amplitude is that of a steady sine over the record, and bins are "
         f"{2 * np.pi / data.attrs['duration']:.2f} rad/s apart. The ball rides along: with it the structure resonates "
         f"at {float(peak.min()):.2f} to {float(peak.max()):.2f} rad/s, close to sqrt(K/(M+m)) = {float(data.riding):.2f}; "
         f"without it at {_bare_peak(data):.2f} rad/s, as sqrt(K/M) = {float(data.bare):.2f} tells. With the elasto-plastic "
-        f"model and a steel wall no contact loses energy after {float(data.last_loss.sel(model=steel)):.2f} s, and the "
+        f"model and a steel wall no contact loses energy after {float(data.last_loss.sel(model=STEEL)):.2f} s, and the "
         f"ball rattles on from wall to wall at {trips[0]:.0f} to {trips[2]:.0f} rad/s: a band from {low:.0f} to "
         f"{high:.0f} rad/s, {rise:.0f} times above the dip before it, that lifts the structure to up to "
-        f"{_lifted(data, steel):.0f} times its amplitude without damper. With a rigid wall the ball's median stays "
+        f"{_lifted(data, STEEL):.0f} times its amplitude without damper. With a rigid wall the ball's median stays "
         f"within a factor of {float(np.exp(apart.quantile(0.9))):.1f} of that of constant restitution in nine of ten bins."
     )
 
@@ -260,12 +252,8 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
     near_riding = bool((np.abs(peak - riding) < np.abs(peak - bare)).all())
     humps = {str(model): _hump(data, str(model)) for model in data.model.values}
     best = max(humps, key=lambda model: humps[model][0])
-    wide = _wide(data, "constant")
-    shares = {
-        (name, str(model)): _lower(data, name, str(model))
-        for name in ("ball", "structure")
-        for model in data.model.values[1:]
-    }
+    wide = _wide(data, CONSTANT_E)
+    shares = {(name, model): _lower(data, name, model) for name in ("ball", "structure") for model in (STEEL, RIGID)}
     least = min(lower for lower, _, _ in shares.values())
     return (
         Claim(

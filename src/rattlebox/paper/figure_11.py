@@ -16,6 +16,7 @@ from rattlebox.plots.style import FAINT, INK, SERIES_COLOURS, PaperFigure, label
 
 from .ensemble import band, ensemble, near
 from .figure import Claim, Reproduction
+from .models import described
 from .seed import CONSTANT, PLASTIC, START, seed_case
 
 AMPLITUDE = 100.0
@@ -79,46 +80,47 @@ def data() -> xr.Dataset:
     early = slice(1, int(SHOWN * RATE))
     flown = [np.max(run.ledger.particles[early] / run.ledger.total[early]) for run in single]
 
-    def told(dims: tuple[str, ...], values: object, units: str, text: str) -> tuple[object, object, dict[str, str]]:
-        return dims, values, {"units": units, "long_name": text}
-
     each = ("model", "level")
     text = "time after which the displacement stays below a level"
     return xr.Dataset(
         {
-            "without": told(("time",), without[drawn], "m", "displacement without damper"),
-            "displacement": told(
+            "without": described(("time",), without[drawn], "m", "displacement without damper"),
+            "displacement": described(
                 ("model", "time"), np.array([run.arrays.displacement[drawn, 0] for run in single]), "m", "displacement"
             ),
-            "contact": told(("model", "count"), contacts, "s", "time of contact"),
-            "settled_without": told(("level",), settled(without), "s", f"{text}, without damper"),
-            "settled": told(each, np.array(alone), "s", f"{text}, single run"),
-            "settled_low": told(each, low, "s", f"{text}, 10 % of the ensemble"),
-            "settled_median": told(each, median, "s", f"{text}, median"),
-            "settled_high": told(each, high, "s", f"{text}, 90 % of the ensemble"),
-            "peak_reduction": told(("model", "quantile"), np.array(reductions)[..., 0], "", "reduction of the peak"),
-            "rms_reduction": told(
+            "contact": described(("model", "count"), contacts, "s", "time of contact"),
+            "settled_without": described(("level",), settled(without), "s", f"{text}, without damper"),
+            "settled": described(each, np.array(alone), "s", f"{text}, single run"),
+            "settled_low": described(each, low, "s", f"{text}, 10 % of the ensemble"),
+            "settled_median": described(each, median, "s", f"{text}, median"),
+            "settled_high": described(each, high, "s", f"{text}, 90 % of the ensemble"),
+            "peak_reduction": described(
+                ("model", "quantile"), np.array(reductions)[..., 0], "", "reduction of the peak"
+            ),
+            "rms_reduction": described(
                 ("model", "quantile", "until"),
                 np.array(reductions)[..., 1:],
                 "",
                 "reduction of the RMS since the pulse",
             ),
-            "ball_share": told(("model",), np.array(flown), "", "greatest share of the ball in the energy, single run"),
-            "impact_share": told(
+            "ball_share": described(
+                ("model",), np.array(flown), "", "greatest share of the ball in the energy, single run"
+            ),
+            "impact_share": described(
                 ("model",),
                 np.array([(run.ledger.impact_loss / run.ledger.work[-1])[-1] for run in single]),
                 "",
                 "share of the work lost in impacts, single run",
             ),
-            "peak": told((), peak, "m", "peak without damper"),
+            "peak": described((), peak, "m", "peak without damper"),
         },
         {
-            "model": told(("model",), list(_MODELS), "", "model of restitution"),
-            "time": told(("time",), time[drawn], "s", "time"),
-            "count": told(("count",), np.arange(contacts.shape[1]), "", "number of the contact"),
-            "level": told(("level",), levels, "", "share of the peak without damper"),
-            "quantile": told(("quantile",), [0.1, 0.5, 0.9], "", "quantile of the ensemble"),
-            "until": told(("until",), list(UNTIL), "s", "end of the interval"),
+            "model": described(("model",), list(_MODELS), "", "model of restitution"),
+            "time": described(("time",), time[drawn], "s", "time"),
+            "count": described(("count",), np.arange(contacts.shape[1]), "", "number of the contact"),
+            "level": described(("level",), levels, "", "share of the peak without damper"),
+            "quantile": described(("quantile",), [0.1, 0.5, 0.9], "", "quantile of the ensemble"),
+            "until": described(("until",), list(UNTIL), "s", "end of the interval"),
         },
     )
 

@@ -6,6 +6,7 @@ import xarray as xr
 
 import rattlebox as rb
 from rattlebox.paper import figure_10
+from rattlebox.paper.models import STEEL
 from rattlebox.paper.seed import DAMPING, MASS, PULSE, STIFFNESS
 
 BIN = 2 * np.pi / 10.0
@@ -47,9 +48,8 @@ def test_near_spectrum_passes_through_the_bins(data: xr.Dataset) -> None:
 
 def test_band_of_the_steel_wall_is_the_rattle(data: xr.Dataset) -> None:
     """The second band lies where the ball's round trips between the walls are."""
-    steel = "elasto-plastic, steel wall"
-    rise, low, high = figure_10._hump(data, steel)
-    slow, usual, fast = data.trips.sel(model=steel).values
+    rise, low, high = figure_10._hump(data, STEEL)
+    slow, usual, fast = data.trips.sel(model=STEEL).values
     assert rise > 10
     assert low < slow < usual < fast < high
     assert high - low < 1.5 * (fast - slow)
