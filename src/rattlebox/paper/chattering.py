@@ -1,0 +1,258 @@
+"""Figure A4: chattering, shown in time, and where it ends in a lasting contact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from rattlebox.analysis import impacts_per_cycle
+from rattlebox.engines.simulate import simulate_many
+from rattlebox.model.case import Case
+from rattlebox.model.pairs import contact_pairs
+from rattlebox.model.restitutions import JacksonGreen
+from rattlebox.plots.style import FAINT, INK, SERIES_MARKERS, PaperFigure, paper, pen
+from rattlebox.results import Run
+
+from .figure import Claim, Reproduction
+from .harmonic import harmonic_case, resonance, riding
+from .models import COLOURS, CONSTANT_E, MODELS, RIGID, described
+from .seed import GAP
+
+SHOWN = CONSTANT_E, RIGID
+LOAD = 500.0
+"""Of the runs shown in time [N]."""
+LOADS = np.array([50.0, 100.0, 200.0, 300.0, 350.0, 375.0, 400.0, 450.0, 500.0, 600.0])
+"""Of the runs that are counted [N]."""
+CYCLES, COUNTED, DRAWN = 16, 8, 1.25
+"""Length of each run, of its part that is counted and of its part that is drawn [cycles]."""
+SAMPLES = 2500
+_LASTING = 5.0
+"""A contact lasts when it takes that many times as long as the collision of its speed."""
+
+
+def _case(model: str, amplitude: float) -> Case:
+    """At resonance, begun on the steady motion, so that few cycles settle."""
+    frequency = resonance()
+    end = CYCLES / frequency
+    return harmonic_case(
+        MODELS[model],
+        amplitude=amplitude,
+        frequency=frequency,
+        state=riding(amplitude, frequency, 0.9 * GAP),
+        duration=end,
+        times=tuple(np.linspace(end - DRAWN / frequency, end, SAMPLES)) if amplitude == LOAD else (0.0,),
+    )
+
+
+def cases() -> Mapping[str, Case]:
+    """Return the runs shown in time."""
+    return {model: _case(model, LOAD) for model in SHOWN}
+
+
+def data() -> xr.Dataset:
+    """Run both models at all loads; keep motion and impacts of one load."""
+    runs = simulate_many([_case(model, float(load)) for model in SHOWN for load in LOADS])
+    grid = [runs[k : k + LOADS.size] for k in range(0, len(runs), LOADS.size)]
+    shown = [row[int(np.flatnonzero(LOADS == LOAD)[0])] for row in grid]
+    begin = float(shown[0].arrays.time[1])
+    hits = [_hits(run, begin) for run in shown]
+    size = max(hit.shape[1] for hit in hits)
+    padded = np.array([np.pad(hit, ((0, 0), (0, size - hit.shape[1])), constant_values=np.nan) for hit in hits])
+    law = MODELS[RIGID].restitution
+    assert isinstance(law, JacksonGreen)
+    motion = np.array([(run.arrays.displacement[1:, 0], run.arrays.relative_position[1:, 0]) for run in shown])
+    peak = float(np.abs(motion[0, 0]).max()) * (2 * pi * resonance()) ** 2
+    over = ("model", "amplitude")
+    hit = ("model", "hit")
+    return xr.Dataset(
+        {
+            "displacement": described(("model", "time"), motion[:, 0], "m", "displacement of the structure"),
+            "place": described(("model", "time"), motion[:, 1], "m", "place of the ball in its cavity"),
+            "hit_time": described(hit, padded[:, 0], "s", "time of first touch"),
+            "approach_speed": described(hit, padded[:, 1], "m/s", "relative speed at first touch"),
+            "restitution": described(hit, padded[:, 2], "", "restitution"),
+            "contact_time": described(hit, padded[:, 3], "s", "duration of the contact"),
+            "lasting": described(hit, padded[:, 4] == 1, "", "contact lasts"),
+            "contacts": described(over, [[_counted(run) for run in row] for row in grid], "", "contacts a cycle"),
+            "longest": described(over, [[_longest(run) for run in row] for row in grid], "s", "longest contact"),
+            "held": described(over, [[_held(run) for run in row] for row in grid], "", "some contacts last"),
+            "shown_load": described((), LOAD, "N", "amplitude of the load of the motion shown"),
+            "frequency": described((), resonance(), "Hz", "frequency of the load"),
+            "peak_acceleration": described((), peak, "m/s^2", "largest acceleration of the walls"),
+            "critical_speed": described(
+                (), law.critical_speed(contact_pairs(_case(RIGID, LOAD), 0)[0]), "m/s", "elastic limit"
+            ),
+            "gap": described((), GAP, "m", "clearance on each side of the centred ball"),
+        },
+        {
+            "model": described("model", list(SHOWN), "", "contact model"),
+            "time": described("time", shown[0].arrays.time[1:] - begin, "s", "time"),
+            "hit": described("hit", np.arange(size), "", "number of the impact"),
+            "amplitude": described("amplitude", LOADS, "N", "amplitude of the load"),
+        },
+    )
+
+
+def _hits(run: Run, begin: float) -> NDArray[np.float64]:
+    """Time, speed, restitution and duration of each impact after a time, and whether its contact lasts."""
+    log = run.arrays.impacts
+    end = np.where(log.complete, log.time + log.duration, run.arrays.time[-1])
+    kept = end > begin
+    columns = log.time - begin, log.approach_speed, log.restitution, end - log.time, _lasting(run)
+    return np.array([np.asarray(column, dtype=float)[kept] for column in columns])
+
+
+def _lasting(run: Run) -> NDArray[np.bool_]:
+    """Whether each contact lasts much longer than a collision of its approach speed."""
+    log = run.arrays.impacts
+    pair = contact_pairs(Case.from_toml(run.case_toml), 0)[0]
+    depth = (1.25 * pair.mass * log.approach_speed**2 / pair.hertz_stiffness) ** 0.4
+    return np.asarray(log.duration > _LASTING * 2.9432752 * depth / log.approach_speed)
+
+
+def _counted(run: Run) -> float:
+    end = float(run.arrays.time[-1])
+    start = end - COUNTED / resonance()
+    return float(impacts_per_cycle(run.arrays.impacts.time, 1 / resonance(), start=start, end=end).mean())
+
+
+def _longest(run: Run) -> float:
+    log = run.arrays.impacts
+    return float(log.duration[_late(run)].max())
+
+
+def _held(run: Run) -> bool:
+    return bool(_lasting(run)[_late(run)].any())
+
+
+def _late(run: Run) -> NDArray[np.bool_]:
+    """Impacts whose contacts opened within the cycles that count."""
+    log = run.arrays.impacts
+    return np.asarray(log.complete & (log.time > run.arrays.time[-1] - COUNTED / resonance()))
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Draw the motion in time, one column a model, and below how contacts change with the load."""
+    with paper("page"):
+        figure = PaperFigure("page", 1.0)
+        panels = figure.subplots(4, 2, height_ratios=(0.5, 1, 1, 1))
+        for column, model in zip(panels.T, data.model.values, strict=True):
+            column[0].set_title(f"{model}, {float(data.shown_load):g} N")
+            for axes in column[1:3]:
+                axes.sharex(column[0])
+            _draw_in_time(column[:3], data.sel(model=model), COLOURS[model])
+        for row, texts in zip(
+            panels[:3], ("Structure\n(mm)", "Ball in its cavity\n(mm)", "Speed at impact\n(m/s)"), strict=True
+        ):
+            row[0].set_ylabel(texts)
+            row[1].sharey(row[0])
+        panels[2, 0].set_ylim(0.004, 1.2)
+        panels[1, 0].set_ylim(-0.5, 0.5)
+        _draw_over_load(panels[3], data)
+        figure.align_ylabels()
+    return figure
+
+
+def _draw_in_time(panels: Sequence[Axes], one: xr.Dataset, colour: str) -> None:
+    time = 1e3 * one.time
+    moved, place, speed = panels
+    moved.plot(time, 1e3 * one.displacement, color=INK)
+    place.plot(time, 1e3 * one.place, color=colour, lw=pen(0.6))
+    for side in (-1, 1):
+        place.axhline(side * 1e3 * float(one.gap), color=INK, lw=pen(0.6))
+    speed.semilogy(1e3 * one.hit_time, one.approach_speed, "o", ms=2.0, mew=0, color=colour)
+    for begin, length in zip(one.hit_time.values[one.lasting], one.contact_time.values[one.lasting], strict=True):
+        for axes in (place, speed):
+            axes.axvspan(1e3 * begin, 1e3 * (begin + length), color=FAINT, alpha=0.5, lw=0, zorder=0)
+    if one.lasting.any():
+        limit = float(one.critical_speed)
+        speed.axhline(limit, color=INK, ls=(0, (4, 3)), lw=pen(0.6), zorder=0)
+        speed.text(38.0, 0.8 * limit, "elastic below", va="top", fontsize="small")
+    speed.set_xlim(0, float(time[-1]))
+    speed.set_xlabel("Time (ms)")
+
+
+def _draw_over_load(panels: Sequence[Axes], data: xr.Dataset) -> None:
+    for k, model in enumerate(data.model.values):
+        one = data.sel(model=model)
+        look: dict[str, Any] = {"color": COLOURS[model], "marker": SERIES_MARKERS[k], "label": model}
+        panels[0].plot(one.amplitude, one.contacts, **look)
+        panels[1].semilogy(one.amplitude, 1e3 * one.longest, **look)
+    for axes in panels:
+        axes.set_xlabel("Amplitude of the load (N)")
+        axes.margins(x=0.03)
+    panels[0].set_ylabel("Contacts a cycle")
+    panels[0].set_ylim(bottom=0)
+    panels[1].set_ylabel("Longest contact\n(ms)")
+    panels[1].legend(loc="upper left")
+
+
+def caption(data: xr.Dataset) -> str:
+    """Say what one sees."""
+    rigid, constant = data.sel(model=RIGID), data.sel(model=CONSTANT_E)
+    text = (
+        f"Chattering under a load of {float(data.shown_load):g} N at {float(data.frequency):.2f} Hz, where the walls reach "
+        f"{float(data.peak_acceleration) / 9.80665:.0f} g. With constant restitution each wall is hit some "
+        f"{float(constant.contacts.sel(amplitude=data.shown_load)) / 2:.0f} times before the ball crosses, never below "
+        f"{float(constant.approach_speed.min()):.2g} m/s: incomplete chatter."
+    )
+    lasting = rigid.where(rigid.lasting, drop=True)
+    if lasting.hit.size == 0:
+        return text + " With the elasto-plastic model no contact lasts either."
+    speed = float(lasting.approach_speed.max())
+    before = rigid.approach_speed.values[: int(lasting.hit[0]) + 1]
+    burst = before[int(np.argmax(before)) :]
+    loads = rigid.amplitude.values[rigid.held]
+    return text + (
+        f" With the elasto-plastic model the speed falls from {burst[0]:.2f} m/s within {burst.size} hits; the last one, at "
+        f"{1e3 * speed:.0f} mm/s, closes a contact that lasts {1e3 * float(lasting.contact_time.max()):.0f} ms (grey): "
+        f"complete chatter. " + _why(speed, float(data.critical_speed)) + " Below, after settling: contacts last from "
+        f"{loads.min():g} N on, and fewer fit into a cycle."
+    )
+
+
+def _why(speed: float, limit: float) -> str:
+    if speed < limit:
+        return (
+            f"At that speed impacts lose nothing (limit {1e3 * limit:.0f} mm/s); it is the growing acceleration of the "
+            "wall that keeps the contact closed, and it opens when the acceleration falls."
+        )
+    return f"That is above the elastic limit of {1e3 * limit:.0f} mm/s."
+
+
+def claims(data: xr.Dataset) -> Sequence[Claim]:
+    """Judge the expected chattering."""
+    rigid, constant = data.sel(model=RIGID), data.sel(model=CONSTANT_E)
+    ours = (
+        f"up to {float(rigid.contacts.max()):.0f} contacts a cycle with the elasto-plastic model, "
+        f"{float(constant.contacts.max()):.0f} with constant restitution; longest contact "
+        f"{1e3 * float(rigid.longest.max()):.1f} ms and {1e3 * float(constant.longest.max()):.2f} ms"
+    )
+    many = float(rigid.contacts.max()) > 10
+    return (
+        Claim(
+            "The elasto-plastic model is expected to chatter: contacts follow each other and are sustained within a cycle.",
+            "section 6.1",
+            f"{ours}, with loads up to {float(data.amplitude.max()):g} N at {float(data.frequency):.2f} Hz",
+            "expected there, not computed; load and frequency are ours, rigid wall in the critical speed",
+            "reproduced" if bool(rigid.held.any()) else "reproduced in kind" if many else "not reproducible",
+        ),
+    )
+
+
+FIGURE = Reproduction(
+    number="A4",
+    title="Chattering in time",
+    data=data,
+    draw=draw,
+    caption=caption,
+    cases=cases,
+    claims=claims,
+)
