@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import sqrt
 from pathlib import Path
@@ -70,7 +70,7 @@ class Made:
     @property
     def label(self) -> str:
         """How the page calls the figure."""
-        return f"Figure {self.number}"
+        return f"{'Figures' if ',' in self.number else 'Figure'} {self.number}"
 
 
 def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float) -> str:
@@ -121,11 +121,18 @@ def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float)
     )
 
 
-_TYPESET = (
-    (re.compile(r"(?<=\d)e([+-]?)0*(\d+)\b"), lambda m: f" × 10<sup>{'−' if m[1] == '-' else ''}{m[2]}</sup>"),
-    (re.compile(r"\b(\w)_(\w+)\b"), lambda m: f"{m[1]}<sub>{m[2]}</sub>"),
-    (re.compile(r"\^(-?[\d.]*\d)"), lambda m: f"<sup>{m[1].replace('-', '−')}</sup>"),
-    (re.compile(r"(?<![\w)])-(?=\d)"), lambda m: "−"),
+def _power(found: re.Match[str]) -> str:
+    """Write 4e+02 as 400 and 4e-09 as a power of ten."""
+    exponent = int(found[2])
+    return f"{float(found[0]):g}" if 0 <= exponent <= 3 else f"{found[1]} × 10<sup>{exponent}</sup>"
+
+
+_TYPESET: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
+    (r"(\d+(?:\.\d+)?)e([+-]?\d+)\b", _power),
+    (r"\b(\w)_(\w+)\b", r"\1<sub>\2</sub>"),
+    (r"\^(-?[\d.]*\d)", r"<sup>\1</sup>"),
+    (r"\bsqrt\b", "√"),
+    (r"(?<![\w)])-(?=\d)", "−"),
 )
 
 
@@ -139,7 +146,7 @@ def typeset(text: str) -> Markup:
     """
     html = str(escape(text))
     for pattern, printed in _TYPESET:
-        html = pattern.sub(printed, html)
+        html = re.sub(pattern, printed, html)
     return Markup(html)
 
 

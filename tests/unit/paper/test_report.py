@@ -232,9 +232,9 @@ def test_page_escapes_and_counts():
     ("text", "html"),
     [
         ("4.8e-09 m/s", "4.8 × 10<sup>−9</sup> m/s"),
-        ("1e+03 to 2e12", "1 × 10<sup>3</sup> to 2 × 10<sup>12</sup>"),
+        ("4.5e+02 to 2e+12", "450 to 2 × 10<sup>12</sup>"),
         ("V_c < E_k/2", "V<sub>c</sub> &lt; E<sub>k</sub>/2"),
-        ("N/m^1.5, s^-1", "N/m<sup>1.5</sup>, s<sup>−1</sup>"),
+        ("N/m^1.5, s^-1, sqrt(K/M)", "N/m<sup>1.5</sup>, s<sup>−1</sup>, √(K/M)"),
         ("-3 to 5, x-1, figure_02, e = 0.99", "−3 to 5, x-1, figure_02, e = 0.99"),
     ],
 )
