@@ -181,9 +181,9 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
         Claim(
             statement="After 2 s the structure's energy runs more smoothly with the elasto-plastic model than with "
             "constant restitution.",
-            where="Section 5.1, Figs 7a and 7b",
-            ours="Energy that the ball gives back after 2 s, in units of the structure's energy at 2 s (medians): "
-            f"{'; '.join(said)}; scatter of the first {scatter}. Contacts after 2 s: {counted}.",
+            where="section 5.1, figures 7a and 7b",
+            ours="energy that the ball gives back after 2 s, in units of the structure's energy at 2 s (medians): "
+            f"{'; '.join(said)}; scatter of the first {scatter}; contacts after 2 s: {counted}",
             reading=" or ".join(smoother) if smoother else "steel wall and rigid wall",
             verdict="reproduced" if smoother else "not reproducible",
         ),

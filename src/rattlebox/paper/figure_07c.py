@@ -149,16 +149,16 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
     return (
         Claim(
             statement="Constant restitution underestimates the energy that the damper dissipates.",
-            where="Section 6, conclusion 2; Figs 7a to 7c",
-            ours=f"Median loss in 10 s: {told(1e3 * final.sel(quantile=0.5), '{:.3g} mJ')}.",
+            where="section 6, conclusion 2; figures 7a to 7c",
+            ours=f"median loss in 10 s: {told(1e3 * final.sel(quantile=0.5), '{:.3g} mJ')}",
             reading=" or ".join(more or plastic),
             verdict="reproduced" if more else "not reproducible",
         ),
         Claim(
             statement="With the elasto-plastic model a few contacts take most of the energy, and little is lost later.",
-            where="Section 5.1, Fig. 7c",
-            ours=f"Contacts that bring half of the loss (medians): {told(half, '{:.0f}')}; "
-            f"of all contacts in 10 s: {told(data.contacts.sel(quantile=0.5), '{:.0f}')}.",
+            where="section 5.1, figure 7c",
+            ours=f"contacts that bring half of the loss (medians): {told(half, '{:.0f}')}; "
+            f"of all contacts in 10 s: {told(data.contacts.sel(quantile=0.5), '{:.0f}')}",
             reading=" or ".join(few or plastic),
             verdict="reproduced" if few else "not reproducible",
         ),

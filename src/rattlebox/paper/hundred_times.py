@@ -156,7 +156,7 @@ def _panel(axes: Axes, ratio: xr.DataArray) -> None:
 
 
 def _told(values: xr.DataArray) -> str:
-    return "; ".join(f"{name} {float(values.sel(measure=measure)):.2g}" for measure, name in MEASURES.items())
+    return "; ".join(f"{name} {float(values.sel(measure=measure)):.3g}" for measure, name in MEASURES.items())
 
 
 def _stress(data: xr.Dataset, where: xr.DataArray) -> str:
@@ -196,10 +196,10 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
         Claim(
             statement="The damper dissipates about 100 times faster with the elasto-plastic model than with constant "
             "restitution.",
-            where="Section 5.1, Fig. 7c",
-            ours=f"Elasto-plastic over constant, medians, {_stress(data, data.yield_stress == PRINTED)}. {told}. "
+            where="section 5.1, figure 7c",
+            ours=f"elasto-plastic over constant, medians, {_stress(data, data.yield_stress == PRINTED)}. {told}. "
             f"{CLAIMED:.0f} is reached by: {'; '.join(softest) or 'none'}. "
-            f"Bounds of any restitution law: {_told(data.bound)}.",
+            f"bounds of any restitution law: {_told(data.bound)}",
             reading=" or ".join(readings) if readings else "every reading of faster, steel and rigid wall",
             verdict="reproduced" if readings else "not reproducible",
         ),
