@@ -199,7 +199,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             where="section 5.1, figure 7c",
             ours=f"elasto-plastic over constant, medians, {_stress(data, data.yield_stress == PRINTED)}. {told}. "
             f"{CLAIMED:.0f} is reached by: {'; '.join(softest) or 'none'}. "
-            f"bounds of any restitution law: {_told(data.bound)}",
+            f"Bounds of any restitution law: {_told(data.bound)}",
             reading=" or ".join(readings) if readings else "every reading of faster, steel and rigid wall",
             verdict="reproduced" if readings else "not reproducible",
         ),
