@@ -17,7 +17,7 @@ def data():
 
 def test_restitution_is_jackson_and_greens(data):
     """Each hit of the elasto-plastic model has the restitution of the law at its speed, 1 below 42.3652 mm/s."""
-    hits = data.sel(model=RIGID).dropna("hit")
+    hits = data.sel(shown=RIGID).dropna("hit")
     assert float(data.critical_speed) == pytest.approx(0.0423652, abs=5e-8)
     ratio = hits.approach_speed / 0.0423652
     plastic = hits.sel(hit=ratio > 1.001)
@@ -32,7 +32,7 @@ def test_restitution_is_jackson_and_greens(data):
 
 def test_chatter_ends_in_a_contact_that_opens_as_it_closed(data):
     """The lasting contact is elastic, and lies around the instant at which the wall's acceleration is largest."""
-    one = data.sel(model=RIGID)
+    one = data.sel(shown=RIGID)
     lasting = one.where(one.lasting, drop=True)
     assert lasting.hit.size == 2
     assert float(lasting.approach_speed.max()) < float(data.critical_speed)
