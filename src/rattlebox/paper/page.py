@@ -150,8 +150,13 @@ def typeset(text: str) -> Markup:
     return Markup(html)
 
 
-_SECTION_OF_FIGURE = {1: (3.0,), 2: (3.1,), 3: (4.1,), 4: (4.2,), 5: (4.3,), 6: (5.0,)}
-_SECTION_OF_ELSE = {"abstract": (0.0,), "table": (4.25,), "conclusion": (6.0,)}
+_SECTION_OF = {
+    "figure": {1: 3.0, 2: 3.1, 3: 4.1, 4: 4.2, 5: 4.3, 6: 5.0, 7: 5.1},
+    "equation": {1: 3.0, 8: 3.1, 11: 3.2, 17: 5.1},
+    "table": {1: 4.25},
+    "conclusion": {1: 6.0},
+}
+"""Where the paper's numbered things stand; those between stand with the one before."""
 
 
 def place(where: str) -> tuple[float, ...]:
@@ -160,16 +165,17 @@ def place(where: str) -> tuple[float, ...]:
     Parameters
     ----------
     where
-        Such as "section 5.1, figure 7c", "table 1" or "conclusion 3".
+        Such as "section 5.1, figure 7c", "equation (5)", "table 1" or "conclusion 3".
     """
-    section = re.search(r"section (\d+(?:\.\d+)?)", where.lower())
-    figure = re.search(r"fig(?:ures?|s?\.?) (\d+)([a-z]?)", where.lower())
-    told = (float(figure[1]), ord(figure[2] or "a")) if figure else ()
-    if section:
-        return float(section[1]), *told
-    if figure:
-        return *_SECTION_OF_FIGURE.get(int(figure[1]), (5.1,)), *told
-    return next((key for word, key in _SECTION_OF_ELSE.items() if word in where.lower()), (9.0,))
+    where = where.lower()
+    section = re.search(r"section (\d+(?:\.\d+)?)", where)
+    things = re.search(r"(fig|equation|table|conclusion)(?:ure)?s?\.? \(?(\d+)([a-z]?)", where)
+    if things is None:
+        return (float(section[1]) if section else float("abstract" not in where) * 9.0,)
+    kind, number, part = things.groups()
+    starts = _SECTION_OF[{"fig": "figure"}.get(kind, kind)]
+    found = starts[max(start for start in starts if start <= int(number))]
+    return float(section[1]) if section else found, float(number), float(ord(part or "a"))
 
 
 class Quantity(NamedTuple):

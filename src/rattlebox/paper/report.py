@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 FIGURES = (
     "figure_02",
+    "figure_04",
     "figure_05",
     "figure_06",
     "figure_07a",
@@ -33,10 +34,12 @@ FIGURES = (
     "figure_09a",
     "figure_09b",
     "figure_10",
+    "figure_11",
     "readings",
     "hundred_times",
     "contacts_per_cycle",
     "bifurcation",
+    "chattering",
 )
 """Modules of the figures, in the order of the page."""
 
