@@ -216,7 +216,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
     return (
         Claim(
             f"After a pulse of {AMPLITUDE:g} N the ball of case 1 never touches a wall.",
-            "section 5.2, figure 9",
+            "section 5.1, figure 9",
             f"relative amplitude {1e3 * peak:.4f} mm in a clearance of {1e3 * GAP:.1f} mm; no contact below "
             f"{_touching_pulse(data):.0f} N",
             "case 1 centred; both models",
@@ -231,7 +231,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
         ),
         Claim(
             "In cases 2 and 3 the relative velocity falls because impacts lose energy.",
-            "section 5.2, figure 9a",
+            "section 5.1, figure 9a",
             f"impacts take {float(share.sel(model='constant').min()):.1f} to "
             f"{float(share.sel(model='constant').max()):.1f} % of the work with constant restitution and "
             f"{float(share.sel(model='elasto-plastic').max()):.2g} % with the elasto-plastic model"

@@ -66,14 +66,14 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
     return (
         Claim(
             "Case 1 is a pure stable focus, owed to the viscous damper of the structure.",
-            "section 5.2, figure 9",
+            "section 5.1, figure 9",
             f"decay at {rate:.4f} per second, C/(2M) = {viscous:.4f} per second, no contact",
             "case 1 centred; both models",
             "reproduced" if focus else "not reproducible",
         ),
         Claim(
             "With contacts (cases 2 and 3) the behaviour differs in kind.",
-            "section 5.2, figure 9b",
+            "section 5.1, figure 9b",
             f"contacts throw the structure outwards by up to {outwards:.1f} µm at once, "
             f"while case 1 {'only shrinks' if smooth < 0 else f'grows by {smooth:.2g} µm'}; after "
             f"{data.time[-1]:g} s its amplitude is {float(ends.min()):.2f} to {float(ends.max()):.2f} times that of case 1",

@@ -258,14 +258,14 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
     return (
         Claim(
             f"The response peaks at about {PRINTED} rad/s.",
-            "section 5.2, figure 10",
+            "section 5.1, figure 10",
             f"{listed} rad/s, resolved to {bin_width:.2f} rad/s",
             "case 1 at 5000 N; all models",
             "reproduced" if float(np.abs(peak - PRINTED).max()) < bin_width / 2 else "not reproducible",
         ),
         Claim(
             "This peak is the natural frequency sqrt(K/M) of the structure.",
-            "section 5.2",
+            "section 5.1",
             f"it lies at sqrt(K/(M+m)) = {riding:.2f} rad/s, for the ball rides along; without the ball the peak is at "
             f"{alone:.2f} rad/s, and sqrt(K/M) = {bare:.2f} rad/s",
             "case 1 at 5000 N; all models",
@@ -273,7 +273,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
         ),
         Claim(
             "A second resonance shows at higher frequencies.",
-            "section 5.2, figure 10",
+            "section 5.1, figure 10",
             f"{best}: a band from {humps[best][1]:.0f} to {humps[best][2]:.0f} rad/s, {humps[best][0]:.0f} times above the "
             "dip before it; it is the rattle of the ball from wall to wall, whose rate follows its speed, not a "
             "resonance. "
@@ -283,14 +283,14 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
         ),
         Claim(
             "The ball's amplitude is significant over a range of frequencies.",
-            "section 5.2, figure 10a",
+            "section 5.1, figure 10a",
             f"above a tenth of its peak from {wide[0]:.0f} to {wide[1]:.0f} rad/s with constant restitution",
             "case 1 at 5000 N; median of starts within 1 µm",
             "reproduced" if wide[1] > 3 * riding else "not reproducible",
         ),
         Claim(
             "The elasto-plastic model lowers the amplitude at all frequencies.",
-            "section 5.2, figure 10",
+            "section 5.1, figure 10",
             "; ".join(
                 f"{name}, {model}: median lower in {100 * lower:.0f} % of the bins, whole band lower in {100 * sure:.0f} %, "
                 f"higher in {100 * higher:.0f} %"

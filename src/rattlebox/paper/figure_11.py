@@ -208,7 +208,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
     return (
         Claim(
             "With the damper the vibration is attenuated earlier.",
-            "section 5.2, figure 11",
+            "section 5.1, figure 11",
             f"settling below {100 * SETTLED:g} % of the peak: "
             f"{', '.join(_settled(data, str(model)) for model in data.model.values)}, "
             f"without damper {bare:.1f} s; reduction of the peak: "
