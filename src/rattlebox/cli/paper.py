@@ -25,16 +25,16 @@ def make_report(out: Path, only: Sequence[str], workers: int | None) -> None:
         Processes; default one for each core.
     """
     try:
-        choose(only)
+        figures = choose(only)
     except ValueError as error:
         raise typer.BadParameter(str(error), param_hint="--only") from None
     console = Console()
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("reproducing the paper", total=None)
+        task = bar.add_task("reproducing the paper", total=len(figures))
 
-        def progress(done: int, total: int, last: str) -> None:
-            bar.update(task, completed=done, total=total, description=f"{last} done")
+        def progress(done: int, _: int, last: str) -> None:
+            bar.update(task, completed=done, description=f"{last} done")
 
         page = write_report(out, only, workers=workers or cores(), progress=progress)
     console.print(
