@@ -81,7 +81,7 @@ def compiled(folder: Path, values: dict[str, float], name: str) -> tuple[list[st
 
 @pytest.mark.skipif(COMPILER is None, reason="no C++ compiler")
 def test_the_example_on_the_page(tmp_path: Path) -> None:
-    """The page's C++ law compiles in its place, takes the coefficients of the page's class by name, and gives its formula."""
+    """The page's C++ law compiles in place, takes the coefficients of the page's class by name, and gives the formula."""
     space = dict(vars(restitutions))
     exec(block("python"), space)
     law = space["Viscoelastic"](loss=0.25, maximum=0.95)
