@@ -40,6 +40,7 @@ FIGURES = (
     "contacts_per_cycle",
     "bifurcation",
     "chattering",
+    "lyapunov",
 )
 """Modules of the figures, in the order of the page."""
 
