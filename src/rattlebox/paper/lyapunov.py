@@ -330,7 +330,7 @@ def caption(data: xr.Dataset) -> str:
     strong = data.sel(pulse=data.pulse.max())
     grown = strong.exponent.where(strong.chaotic)
     orderly = [
-        f"{model}, case {' and '.join(map(str, one.case.values[~one.chaotic]))}"
+        f"{model}, case {' and case '.join(map(str, one.case.values[~one.chaotic]))}"
         for model, one in strong.groupby("model")
         for one in [one.squeeze("model")]
         if not one.chaotic.all()
