@@ -264,8 +264,8 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             "reproduced" if float(np.abs(peak - PRINTED).max()) < bin_width / 2 else "not reproducible",
         ),
         Claim(
-            "This peak is the natural frequency sqrt(K/M) of the structure.",
-            "section 5.1",
+            "The peak of the response is the natural frequency sqrt(K/M) of the structure.",
+            "section 5.1, figure 10",
             f"it lies at sqrt(K/(M+m)) = {riding:.2f} rad/s, for the ball rides along; without the ball the peak is at "
             f"{alone:.2f} rad/s, and sqrt(K/M) = {bare:.2f} rad/s",
             "case 1 at 5000 N; all models",

@@ -132,7 +132,7 @@ _TYPESET: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(\w)_(\w+)\b", r"\1<sub>\2</sub>"),
     (r"\^(-?[\d.]*\d)", r"<sup>\1</sup>"),
     (r"\bsqrt\b", "√"),
-    (r"(?<![\w)])-(?=\d)", "−"),
+    (r"(?<![\w)])-(?=[\dα-ω])", "−"),
 )
 
 
@@ -168,7 +168,7 @@ def place(where: str) -> tuple[float, ...]:
         Such as "section 5.1, figure 7c", "equation (5)", "table 1" or "conclusion 3".
     """
     where = where.lower()
-    section = re.search(r"section (\d+(?:\.\d+)?)", where)
+    section = re.search(r"sections? (\d+(?:\.\d+)?)", where)
     things = re.search(r"(fig|equation|table|conclusion)(?:ure)?s?\.? \(?(\d+)([a-z]?)", where)
     if things is None:
         return (float(section[1]) if section else float("abstract" not in where) * 9.0,)

@@ -206,6 +206,7 @@ def test_figures_are_chosen_by_number():
         ("section 2, figure 5", "equation (5)"),
         ("equation (5)", "equations (14) and (15)"),
         ("equation (14)", "figure 4"),
+        ("Sections 5.1 and 6.1, figure 7e", "section 5.1, figure 9"),
         ("section 6.1", "elsewhere"),
         ("section 5.1, figure 7c", "section 5.1, figure 7e"),
         ("section 5.1, figure 9a", "section 5.1, figure 10"),
@@ -239,7 +240,7 @@ def test_page_escapes_and_counts():
         ("4.5e+02 to 2e+12", "450 to 2 × 10<sup>12</sup>"),
         ("V_c < E_k/2", "V<sub>c</sub> &lt; E<sub>k</sub>/2"),
         ("N/m^1.5, s^-1, sqrt(K/M)", "N/m<sup>1.5</sup>, s<sup>−1</sup>, √(K/M)"),
-        ("-3 to 5, x-1, figure_02, e = 0.99", "−3 to 5, x-1, figure_02, e = 0.99"),
+        ("-3 to 5, (-ζω), x-1, figure_02, e = 0.99", "−3 to 5, (−ζω), x-1, figure_02, e = 0.99"),
     ],
 )
 def test_numbers_and_symbols_are_typeset(text, html):
