@@ -239,10 +239,16 @@ protected:
             }
             if (!system_.stuck.empty()) {
                 std::vector<real> work(n);
+                real blur = 0; // a row afloat has forces of nothing but rounding
+                for (const real* y : {y_.data(), trial_.data()}) {
+                    system_(y, work.data());
+                    for (real force : system_.stuck_forces())
+                        blur = std::fmax(blur, 512 * epsilon * std::fabs(force));
+                }
                 for (std::size_t i = 0; i < system_.stuck.size(); ++i) {
                     const auto holding = [&](const real* y) {
                         system_(y, work.data());
-                        return system_.stuck_forces()[i];
+                        return system_.stuck_forces()[i] + blur;
                     };
                     consider(Event::unstuck, static_cast<int>(i), std::fmax(holding(y_.data()), 0.0),
                              holding);
@@ -259,7 +265,12 @@ protected:
                 if (phase(c) == Phase::touching ||
                     (std::fabs(before.value) <= blur && std::fabs(before.rate) <= blur)) {
                     if (after.value > blur) phase(c) = Phase::open;
-                    if (after.value >= -blur || hard()) continue;
+                    if (hard()) {
+                        const real drift = this->blur() * trial_[clock];
+                        if (after.value < std::fmin(before.value, 0.0) - blur - drift) return press(c);
+                        continue;
+                    }
+                    if (after.value >= -blur) continue;
                     if (weak(c, trial_.data(), trial_[clock], contact_speed())) {
                         phase(c) = Phase::touching;
                         event = Event::rest_touch;
@@ -318,6 +329,12 @@ protected:
             }
             h = std::min(h * grow, longest);
         }
+    }
+
+    // What touches closes by itself: it sticks from the beginning of this step.
+    void press(int c) {
+        unload_system(y_);
+        stick(c);
     }
 
     void handle(Event event, int which) {

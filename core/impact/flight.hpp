@@ -180,7 +180,7 @@ public:
         power = horizon_;
         for (int n = 2; n <= Series::order; ++n) {
             power *= horizon_;
-            if (std::fabs(g.c[n]) * power <= 64 * epsilon * scale || g.c[n] == 0) continue;
+            if (std::fabs(g.c[n]) * power <= 8192 * epsilon * scale) continue; // rounding of the forces
             if (g.c[n] < 0) return -1;
             for (;;) {
                 real rest = 0, later = 1;

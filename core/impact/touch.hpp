@@ -9,6 +9,7 @@ namespace rattlebox {
 
 class Touching : protected Progress {
     LoneContact lone_, sampler_;
+    real fastest_ = 0; // of the balls relative to their cavities, at any hard impact so far
 
 protected:
     // ---- first touch
@@ -223,9 +224,20 @@ protected:
         return largest;
     }
 
+    // What rounding leaves of the difference of two equal velocities.
+    real blur() const {
+        const real* v = velocities(problem_, state_.y.data());
+        real largest = 0;
+        for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i)
+            largest = std::fmax(largest, std::fabs(v[i]));
+        for (const Damper& damper : problem_.dampers)
+            largest = std::fmax(largest, std::fabs(cavity(damper, state_.y.data()).p));
+        return 16 * epsilon * largest;
+    }
+
     // An impact elsewhere has moved what was at rest on something: it is struck in its turn, or it parts.
     void wake_stuck() {
-        const real blur = 16 * epsilon * largest_speed();
+        const real blur = this->blur();
         std::erase_if(system_.stuck, [&](int c) {
             if (std::fabs(system_.approach(state_.y.data(), c)) <= blur) return false;
             phase(c) = Phase::open;
@@ -236,19 +248,21 @@ protected:
                 phase(c) = Phase::open;
     }
 
-    // An impact of c. What rests on each other meanwhile holds without rebound, where it need not pull: the
-    // impulses of c and of the stuck contacts solve one linear system.
-    void strike(int c, real speed, real e) {
-        // Impacts that shrink without a force that presses (a row that collapses) end like those that do.
-        if (speed < problem_.settings.stick * largest_speed()) e = 0;
+    // Takes `change` from the closing rate of c. The contacts that are stuck meanwhile hold without rebound,
+    // where they need not pull: the impulses of all of them solve one linear system. So do those that only
+    // touch, if c does not rebound either. Returns the impulse in c.
+    real push_apart(int c, real change, bool rebounds) {
         std::vector<int> held = system_.stuck;
+        for (int other = 0; other < problem_.contact_count() && !rebounds; ++other)
+            if (phase(other) == Phase::touching) held.push_back(other);
+        std::erase(held, c);
         held.push_back(c);
         std::vector<real> matrix, impulses;
         for (;;) {
             const std::size_t n = held.size();
             matrix.resize(n * n);
             impulses.assign(n, 0.0);
-            impulses[n - 1] = -(1 + e) * speed;
+            impulses[n - 1] = -change;
             for (std::size_t i = 0; i < n; ++i)
                 for (std::size_t j = 0; j < n; ++j)
                     matrix[i * n + j] = system_.coupling(contact(held[i]), contact(held[j]));
@@ -258,6 +272,14 @@ protected:
             held.erase(held.begin() + (weakest - impulses.begin()));
         }
         for (std::size_t i = 0; i < held.size(); ++i) impulse(held[i], impulses[i]);
+        return impulses.back();
+    }
+
+    void strike(int c, real speed, real e) {
+        // Impacts that shrink without a force that presses (a row that collapses) end like those that do.
+        fastest_ = std::fmax(fastest_, largest_speed());
+        if (speed < problem_.settings.stick * fastest_ || speed < blur()) e = 0;
+        const real push = push_apart(c, (1 + e) * speed, e > 0);
         Impact line;
         line.contact = c;
         line.time = state_.t;
@@ -266,7 +288,7 @@ protected:
         line.separation_speed = e * speed;
         line.duration = 0;
         line.peak_force = infinity;
-        line.energy_lost = 0.5 * impulses.back() * (1 - e) * speed;
+        line.energy_lost = 0.5 * push * (1 - e) * speed;
         line.complete = true;
         ledger_.normal[damper_of(c)] += line.energy_lost;
         result_.impacts.push_back(line);
@@ -283,14 +305,14 @@ protected:
 
     // Holds c at rest from now on; returns the energy that was left in its rebound.
     real stick(int c) {
-        const Contact& k = contact(c);
-        const real rest = system_.approach(state_.y.data(), c), mass = 1 / -system_.coupling(k, k);
-        impulse(c, mass * rest);
-        ledger_.normal[damper_of(c)] += 0.5 * mass * rest * rest;
+        const real rest = system_.approach(state_.y.data(), c);
+        const real lost = 0.5 * push_apart(c, rest, false) * rest;
+        ledger_.normal[damper_of(c)] += lost;
         ++result_.counts.sticks;
         system_.stuck.push_back(c);
         phase(c) = Phase::closed;
-        return 0.5 * mass * rest * rest;
+        wake_stuck();
+        return lost;
     }
 
 public:

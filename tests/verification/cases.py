@@ -4,6 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 import rattlebox as rb
 
 from .exact import masri_caughey, shaken
@@ -252,4 +254,27 @@ def five_balls(duration: float = 2.0) -> Any:
             rb.Harmonic(amplitude=20.0, frequency=9.0, point="tip"),
         ],
         duration=duration,
+    )
+
+
+def hard_row(rng: np.random.Generator, balls: int) -> Any:
+    """Return a row of hard balls in a shaken structure, with or without gravity."""
+    e = rng.uniform(0.2, 0.95)
+    return rb.Case(
+        structure=rb.SDOF(
+            mass=1.0,
+            stiffness=(2 * math.pi * rng.uniform(3, 20)) ** 2,
+            damping_ratio=rng.uniform(0, 0.05),
+            velocity=rng.uniform(-1, 1),
+        ),
+        damper=rb.ImpactDamper(
+            balls=[rb.Sphere(radius=r, material="steel") for r in rng.uniform(2e-3, 6e-3, balls)],
+            gap=rng.uniform(2e-4, 3e-3),
+            contact=rb.Tsuji(restitution=e),
+            gravity=rng.choice([0.0, 9.81]),
+        ),
+        load=rb.Harmonic(amplitude=rng.uniform(1, 20), frequency=rng.uniform(3, 20)),
+        duration=1.0,
+        method=rb.Newton(),
+        output=rb.Output(rate=5000.0),
     )

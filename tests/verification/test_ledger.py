@@ -73,6 +73,21 @@ def test_row_of_balls_stays_in_order() -> None:
     assert abs(a.contact_energy).max() < a.load_work.max()
 
 
+@pytest.mark.parametrize("balls", [2, 3, 4])
+def test_hard_rows_collapse_stick_and_go_on(balls: int) -> None:
+    """Random rows of hard balls, collapses included, stay in order, finish and balance to 1e-10 of the work."""
+    rng = np.random.default_rng(balls)
+    for _ in range(8):
+        case = cases.hard_row(rng, balls)
+        run = measures.simulate(case)
+        assert run.status == "finished"
+        assert run.closure <= 1e-10
+        place = run.arrays.relative_position - run.arrays.ball_centre
+        half = 0.5 * run.arrays.clearance[0]
+        gaps = np.hstack([place[:, :1] + half, np.diff(place, axis=1), half - place[:, -1:]])
+        assert gaps.min() >= -1e-12 * half
+
+
 @pytest.mark.parametrize("method", ["newton", "event_driven"])
 def test_momentum_of_a_free_system_is_conserved(method: str) -> None:
     """A free cavity with a ball keeps its momentum to rounding, and hard impacts keep it too."""

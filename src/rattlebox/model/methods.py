@@ -60,7 +60,8 @@ class Newton(Part):
     restitution
         A law or a number from 0 to 1; default the contact's own law.
     stick
-        A contact whose next bounce would last less than this part of the shortest period sticks.
+        A contact whose next bounce would last less than this part of the shortest period sticks, and one that closes
+        more slowly than this part of the largest speed so far of a ball in its cavity does not rebound.
     max_events
         Budget of flights and impacts.
     """
