@@ -61,7 +61,7 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
 def _run(case: Case, raw: dict[str, Any]) -> Run:
     arrays = _arrays(case, raw)
     provenance = Provenance.now(method=case.method.kind, seed=case.seed)
-    return Run(arrays, case_toml=case.to_toml(), provenance=provenance)
+    return Run(arrays, case_toml=case.to_toml, provenance=provenance)
 
 
 def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:

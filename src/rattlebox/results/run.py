@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,14 +28,16 @@ class Run:
     arrays
         What the engine computed.
     case_toml
-        The case, as the text of a case file.
+        The case, as the text of a case file, or what returns it: writing it costs more than many a run.
     provenance
         Where the run comes from; made on the spot when left out.
     """
 
-    def __init__(self, arrays: RunArrays, case_toml: str = "", provenance: Provenance | None = None) -> None:
+    def __init__(
+        self, arrays: RunArrays, case_toml: str | Callable[[], str] = "", provenance: Provenance | None = None
+    ) -> None:
         self._arrays = arrays
-        self._case_toml = case_toml
+        self._case = case_toml
         self._provenance = Provenance.now() if provenance is None else provenance
 
     @property
@@ -42,10 +45,10 @@ class Run:
         """The plain arrays, SI units, read-only."""
         return self._arrays
 
-    @property
+    @cached_property
     def case_toml(self) -> str:
         """The case that was run, as the text of a case file."""
-        return self._case_toml
+        return self._case if isinstance(self._case, str) else self._case()
 
     @property
     def provenance(self) -> Provenance:
@@ -99,7 +102,7 @@ class Run:
     def _dataset(self, group: Any) -> xarray.Dataset:
         from .datasets import dataset
 
-        return dataset(self._arrays, self.ledger, group, self._provenance, self._case_toml)
+        return dataset(self._arrays, self.ledger, group, self._provenance, self.case_toml)
 
     def summary(self) -> Summary:
         """Numbers that one looks at first: impacts, energy shares, closure, peaks, computing time.
@@ -183,7 +186,7 @@ class Run:
         if not isinstance(other, Run):
             return NotImplemented
         return (
-            self._case_toml == other._case_toml
+            self.case_toml == other.case_toml
             and self._provenance == other._provenance
             and self._arrays == other._arrays
         )
