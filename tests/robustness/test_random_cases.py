@@ -1,0 +1,253 @@
+"""Random cases of all kinds, run for a while: they end, say how, keep their energy and repeat to the last bit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import rattlebox as rb
+from rattlebox.results.arrays import RunArrays
+
+EVENTS = 300
+"""Budget of each run: enough for every case that does not chatter for ever."""
+
+
+def scale(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers of any size between two, as likely small as large."""
+    return st.floats(math.log10(low), math.log10(high)).map(lambda exponent: float(f"{10**exponent:.4g}"))
+
+
+def either_sign(numbers: st.SearchStrategy[float]) -> st.SearchStrategy[float]:
+    """The numbers, their opposites, and zero."""
+    return st.one_of(st.just(0.0), numbers, numbers.map(lambda x: -x))
+
+
+ratios = st.one_of(st.sampled_from([0.0, 1.0, 2.0]), scale(1e-4, 0.5))
+fractions = st.floats(-1, 1).map(lambda x: round(x, 3))
+
+
+@st.composite
+def structures(draw: st.DrawFn) -> Any:
+    """Draw a structure of any kind, at rest or not."""
+    kind = draw(st.sampled_from(["sdof", "modal", "matrices", "fixed", "shaker"]))
+    shift = either_sign(scale(1e-6, 1e-2))
+    speed = either_sign(scale(1e-4, 1.0))
+    if kind == "sdof":
+        stiffness = draw(st.one_of(st.just(0.0), scale(1e2, 1e6)))
+        damping = {"damping": draw(scale(1e-2, 1e2))} if stiffness == 0 else {"damping_ratio": draw(ratios)}
+        return rb.SDOF(
+            mass=draw(scale(0.05, 50)), stiffness=stiffness, displacement=draw(shift), velocity=draw(speed), **damping
+        )
+    if kind == "modal":
+        count = draw(st.integers(1, 3))
+        row = st.lists(st.floats(-1, 1).map(lambda x: round(x, 2)), min_size=count, max_size=count)
+        return rb.Modal(
+            frequencies=draw(st.lists(st.one_of(st.just(0.0), scale(1, 200)), min_size=count, max_size=count)),
+            damping_ratios=draw(st.lists(ratios, min_size=count, max_size=count)),
+            shapes={"tip": draw(row), "root": draw(row)},
+            participation=draw(row),
+        )
+    if kind == "matrices":
+        count = draw(st.integers(2, 3))
+        springs = np.array(draw(st.lists(scale(1e3, 1e5), min_size=count, max_size=count)))
+        K = np.diag(springs) + np.diag([*springs[1:], 0.0]) - np.diag(springs[1:], 1) - np.diag(springs[1:], -1)
+        M = np.diag(draw(st.lists(scale(0.1, 10), min_size=count, max_size=count)))
+        a, b = draw(ratios), draw(scale(1e-7, 1e-4))
+        return rb.Matrices(M=M, C=a * M + b * K, K=K, points={"tip": count - 1, "root": 0})
+    if kind == "shaker":
+        return rb.Shaker(motion=rb.Harmonic(amplitude=f"{draw(scale(1e-5, 1e-2))} m", frequency=draw(scale(2, 100))))
+    return rb.Fixed()
+
+
+@st.composite
+def signals(draw: st.DrawFn, size: st.SearchStrategy[float], point: str | None) -> Any:
+    """Draw a pulse, a harmonic or a record."""
+    kind = draw(st.sampled_from(["half_sine", "harmonic", "record"]))
+    if kind == "half_sine":
+        return rb.HalfSine(
+            amplitude=draw(size), duration=draw(scale(1e-4, 0.1)), start=draw(st.sampled_from([0.0, 0.01])), point=point
+        )
+    if kind == "harmonic":
+        stop = draw(st.sampled_from([None, 0.05]))
+        return rb.Harmonic(
+            amplitude=draw(size), frequency=draw(scale(1, 300)), phase=draw(fractions), stop=stop, point=point
+        )
+    values = draw(st.lists(either_sign(size), min_size=2, max_size=6))
+    return rb.Record(times=np.linspace(0, 1, len(values)), values=values, point=point)
+
+
+@st.composite
+def restitutions(draw: st.DrawFn, lowest: float) -> Any:
+    """Draw a restitution law for any material."""
+    kind = draw(st.sampled_from(["number", "number", "table", "jackson_green", "thornton", "johnson"]))
+    if kind == "number":
+        return draw(st.one_of(st.just(1.0), st.floats(lowest, 1).map(lambda x: round(x, 3))))
+    if kind == "table":
+        return rb.Tabulated(speeds=[0.01, 0.1, 1.0], values=draw(st.lists(st.floats(0.1, 1), min_size=3, max_size=3)))
+    if kind == "jackson_green":
+        return rb.JacksonGreen(
+            yield_stress=draw(scale(1e7, 2e9)),
+            extrapolate=draw(st.booleans()),
+            wall=draw(st.sampled_from([None, "rigid"])),
+        )
+    return (
+        rb.ThorntonRestitution(yield_pressure=1e9)
+        if kind == "thornton"
+        else rb.Johnson(speed_scale=draw(scale(1e-3, 1)))
+    )
+
+
+@st.composite
+def contacts(draw: st.DrawFn) -> Any:
+    """Draw a contact law."""
+    kind = draw(st.sampled_from(["tsuji", "alpha", "linear", "dashpot", "thornton"]))
+    ending = draw(st.sampled_from(["zero_force", "zero_overlap"]))
+    if kind == "tsuji":
+        return rb.Tsuji(restitution=draw(restitutions(0.05)), ending=ending)
+    if kind == "alpha":
+        return rb.Tsuji(alpha=draw(scale(1e-3, 2)), ending=ending)
+    if kind == "linear":
+        return rb.Linear(stiffness=draw(scale(1e4, 1e8)), restitution=draw(restitutions(0.05)), ending=ending)
+    if kind == "dashpot":
+        return rb.Linear(contact_time=draw(scale(1e-5, 1e-3)), damping=draw(scale(1e-3, 1)), ending="zero_force")
+    return rb.Thornton(yield_pressure=draw(scale(1e8, 3e9)))
+
+
+@st.composite
+def dampers(draw: st.DrawFn, count: int, point: str | None, cavity: float, name: str) -> Any:
+    """Draw a damper with balls somewhere in a cavity that may be displaced."""
+    material = st.sampled_from(["steel", "brass", "glass", "nylon", "lead"])
+    gap = draw(scale(1e-5, 1e-2))
+    places = sorted(draw(st.lists(fractions, min_size=count, max_size=count)))
+    return rb.ImpactDamper(
+        name=name,
+        balls=[rb.Sphere(radius=draw(scale(1e-3, 2e-2)), material=draw(material)) for _ in range(count)],
+        gap=gap,
+        start=[f"{cavity + place * gap!r} m" for place in places],
+        velocity=draw(st.lists(either_sign(scale(1e-4, 2)), min_size=count, max_size=count)),
+        gravity=draw(st.sampled_from([0.0, 0.0, -9.81, 3.0])),
+        contact=draw(contacts()),
+        ball_contact=draw(st.one_of(st.none(), contacts())),
+        wall=draw(st.sampled_from([None, "rigid", "steel"])),
+        point=point,
+    )
+
+
+@st.composite
+def cases(draw: st.DrawFn) -> rb.Case:
+    """Draw a case of any kind."""
+    structure = draw(structures())
+    modes = structure.modes()
+    point = "tip" if "tip" in modes.shapes else None
+    loads, base = [], []
+    if modes.decay.size:
+        loads = draw(st.lists(signals(scale(1e-2, 5e3), point), max_size=2))
+        base = draw(st.lists(signals(scale(1e-1, 50), None), max_size=1))
+    counts = draw(st.lists(st.integers(1, 4), min_size=1, max_size=2))
+    method = draw(st.sampled_from(["event_driven", "event_driven", "steps", "newton", "two_step"]))
+    if method == "newton":
+        computed: Any = rb.Newton(
+            restitution=draw(st.one_of(st.none(), restitutions(0.0))),
+            stick=draw(st.sampled_from([0.0, 1e-6])) if max(counts) == 1 else 0.0,
+            max_events=EVENTS,
+        )
+    elif method == "two_step":
+        computed = rb.TwoStep(dt_flight=1e-5, dt_contact=1e-6, inner=draw(st.sampled_from(["rk4", "dopri5"])))
+    else:
+        computed = rb.EventDriven(
+            max_events=EVENTS,
+            tolerance=draw(st.sampled_from([1e-12, 1e-9])),
+            collocation=method == "event_driven",
+        )
+    cavity = float(modes.shape(point) @ modes.q0)
+    return rb.Case(
+        structure=structure,
+        loads=loads,
+        base=base,
+        dampers=[draw(dampers(count, point, cavity, f"damper {n + 1}")) for n, count in enumerate(counts)],
+        duration=0.02 if method == "two_step" else draw(scale(0.01, 0.5)),
+        method=computed,
+        output=rb.Output(rate=draw(st.sampled_from([200.0, 5000.0]))),
+    )
+
+
+def complaints(case: rb.Case) -> list[str]:
+    """Run a case twice and return all that is wrong with what comes back."""
+    run, again = rb.simulate(case), rb.simulate(case)
+    a = run.arrays
+    found = (
+        []
+        if run.status in ("finished", "law_domain", "too_many_events", "step_too_small", "not_finite")
+        else [run.status]
+    )
+    if not run.ok and len(run.message) < 40:
+        found.append(f"{run.status} without a word on what to try")
+    if replace(a, wall_time=0.0) != replace(again.arrays, wall_time=0.0):
+        found.append("a second run differs")
+    if run.status != "not_finite":
+        found += [f"{name} is not finite" for name in strange(a)]
+    ledger = run.ledger
+    energy = float(
+        np.max(np.abs(ledger.motion)) + np.max(np.abs(ledger.work)) + np.max(np.abs(ledger.gravity - ledger.gravity[0]))
+    )
+    if isinstance(case.method, rb.TwoStep):
+        return found
+    tolerance = getattr(case.method, "tolerance", 1e-12)
+    if run.closure > 1e4 * tolerance:
+        found.append(f"closure {run.closure:.3g}")
+    if np.min(np.diff(ledger.losses), initial=0) < -1e3 * tolerance * energy:
+        found.append(f"losses fall by {-np.min(np.diff(ledger.losses)) / energy:.3g} of the energy")
+    if (
+        not case.loads
+        and not case.base_acceleration()
+        and np.max(np.diff(ledger.total), initial=0) > 1e3 * tolerance * energy
+    ):
+        found.append(f"energy rises by {np.max(np.diff(ledger.total)) / energy:.3g} without work")
+    found += escapes(case, run)
+    return found
+
+
+def strange(arrays: RunArrays) -> list[str]:
+    """Names of the variables that hold numbers that are none, where they should not."""
+    log = arrays.impacts
+    ended = log.complete  # a contact that is closed at the end of the run has no separation yet
+    values = {field.name: getattr(arrays, field.name) for field in fields(arrays)}
+    values |= {f"impacts.{field.name}": getattr(log, field.name)[ended] for field in fields(log)}
+    absent = {"impacts.restitution"} | ({"impacts.peak_force"} if not log.duration.any() else set())  # of hard impacts
+    return [
+        name
+        for name, numbers in values.items()
+        if isinstance(numbers, np.ndarray)
+        and numbers.dtype.kind == "f"
+        and name not in absent
+        and not np.isfinite(numbers).all()
+    ]
+
+
+def escapes(case: rb.Case, run: rb.Run) -> list[str]:
+    """Contacts that are deeper at a time of the output than the impact log knows."""
+    a, found, first = run.arrays, [], 0
+    for index, damper in enumerate(case.dampers):
+        own = slice(first, first + len(damper.balls))
+        first = own.stop
+        place = a.relative_position[:, own] - a.ball_centre[own]
+        half = 0.5 * damper.clearance
+        depths = np.column_stack([-half - place[:, 0], place[:, :-1] - place[:, 1:], place[:, -1] - half])
+        for contact, depth in enumerate(depths.T):
+            logged = a.impacts.peak_overlap[(a.impacts.damper == index) & (a.impacts.contact == contact)]
+            known = np.max(logged, initial=0)
+            if np.max(depth) > 1.001 * known + 1e-10:
+                found.append(f"contact {contact} of {damper.name} is {np.max(depth):.3g} m deep, logged {known:.3g}")
+    return found
+
+
+@settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(cases())
+def test_a_random_case_keeps_what_is_promised(case: rb.Case) -> None:
+    """Any case ends with a status, without NaN, with a ledger that closes, and with the same bits when run again."""
+    assert complaints(case) == []
