@@ -153,7 +153,7 @@ def cases(draw: st.DrawFn) -> rb.Case:
     if method == "newton":
         computed: Any = rb.Newton(
             restitution=draw(st.one_of(st.none(), restitutions(0.0))),
-            stick=draw(st.sampled_from([0.0, 1e-6])) if max(counts) == 1 else 0.0,
+            stick=draw(st.sampled_from([0.0, 1e-6, 1e-3])),
             max_events=EVENTS,
         )
     elif method == "two_step":
