@@ -39,10 +39,10 @@ template <class... Types> class Choice {
     }
 
 public:
-    template <class T> void set(const T& value) {
+    template <class T> T& set(const T& value) {
         static_assert(index_of<T>() >= 0, "not one of the choices");
-        new (storage_) T(value);
         index_ = index_of<T>();
+        return *new (storage_) T(value);
     }
 
     template <class F> decltype(auto) visit(F&& f) const { return visit_from<Types...>(f); }

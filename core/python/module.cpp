@@ -1,17 +1,10 @@
 // The door between Python and the core: problems in, results out, Ctrl-C heard while threads work.
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
-#include <atomic>
-#include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <mutex>
-#include <thread>
-
-#include "impact/run.hpp"
-#include "python/read.hpp"
-#include "python/write.hpp"
+#include "python/sweep.hpp"
 
 namespace nb = nanobind;
 using namespace rattlebox;
@@ -23,58 +16,27 @@ struct Job {
     Result result;
     double seconds = 0;
     bool begun = false;
-    std::exception_ptr error;
 };
 
-void work(Job& job, const std::atomic<bool>& stop) {
-    const auto from = std::chrono::steady_clock::now();
-    job.begun = true;
-    try {
-        job.result = run(job.problem, &stop);
-    } catch (...) {
-        job.error = std::current_exception();
-    }
-    job.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
-}
-
 // Runs all problems on `threads` threads. Each result is computed by one thread alone: the same bits for any
-// number.
+// number. Ctrl-C ends the runs in progress with a status of their own.
 nb::list simulate(const nb::list& problems, int threads) {
     std::vector<Job> jobs(problems.size());
     for (std::size_t i = 0; i < jobs.size(); ++i)
-        door::read(jobs[i].problem, nb::cast<nb::dict>(problems[i]));
-
-    std::atomic<bool> stop{false};
-    std::atomic<std::size_t> next{0};
-    std::mutex mutex;
-    std::condition_variable done;
-    int working = threads;
-    bool interrupted = false;
-    std::vector<std::thread> pool;
-    for (int t = 0; t < threads; ++t)
-        pool.emplace_back([&] {
-            for (std::size_t i; !stop && (i = next++) < jobs.size();) work(jobs[i], stop);
-            const std::lock_guard lock(mutex);
-            --working;
-            done.notify_all();
-        });
-    for (bool finished = false; !finished;) {
-        {
-            nb::gil_scoped_release unlocked;
-            std::unique_lock lock(mutex);
-            finished = done.wait_for(lock, std::chrono::milliseconds(50), [&] { return working == 0; });
-        }
-        if (!finished && !interrupted && PyErr_CheckSignals() != 0) {
-            PyErr_Clear();
-            interrupted = true;
-            stop = true;
-        }
+        door::Reader(jobs[i].problem, nullptr).problem(nb::cast<nb::dict>(problems[i]));
+    const auto work = [&](std::size_t i, int, const std::atomic<bool>& stop) {
+        const auto from = std::chrono::steady_clock::now();
+        jobs[i].begun = true;
+        jobs[i].result = run(jobs[i].problem, &stop);
+        jobs[i].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
+    };
+    try {
+        door::work_off(jobs.size(), threads, 1, work, [](std::size_t) { return true; });
+    } catch (nb::python_error& error) {
+        if (!error.matches(PyExc_KeyboardInterrupt)) throw;
     }
-    for (std::thread& t : pool) t.join();
-
     nb::list results;
     for (Job& job : jobs) {
-        if (job.error) std::rethrow_exception(job.error);
         if (!job.begun) job.result.status = Status::interrupted;
         results.append(door::write(job.problem, std::move(job.result), job.seconds));
     }
@@ -86,7 +48,7 @@ nb::object restitution(const nb::dict& law, const door::Array& speeds) {
     Problem storage;
     storage.tables.reserve(2);
     RestitutionLaw choice;
-    door::choose(choice, law, storage);
+    door::Reader(storage, nullptr).choose(choice, law);
     std::vector<real> values;
     for (std::size_t i = 0; i < speeds.shape(0); ++i) {
         const Rebound r = rebound(choice, speeds.data()[i]);
@@ -101,5 +63,17 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
     module.doc() = "Rattlebox core";
     module.def("simulate", &simulate, nb::arg("problems"), nb::arg("threads") = 1,
                "Run packed problems (see rattlebox/engines/pack.py) and return their results.");
+    module.def("sweep", &door::sweep, nb::arg("problem"), nb::arg("shape"), nb::arg("start"), nb::arg("stop"),
+               nb::arg("measures"), nb::arg("window"), nb::arg("motion") = false, nb::arg("state") = false,
+               nb::arg("last") = 0, nb::arg("threads") = 1, nb::arg("progress") = nb::none(),
+               "Run members start to stop of a batch and keep measures of them, not their trajectories.");
+    module.def(
+        "measures",
+        [] {
+            nb::dict names;
+            for (const Measure& m : measures) names[m.name] = m.samples;
+            return names;
+        },
+        "Names of the measures, and whether each needs samples of the motion.");
     module.def("restitution", &restitution, nb::arg("law"), nb::arg("speeds"));
 }

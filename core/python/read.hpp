@@ -1,4 +1,7 @@
 // Reads the dictionaries that rattlebox/engines/pack.py writes into a Problem. Everything goes by name.
+//
+// In a batch any number may be an array over the batch's grid, and any vector an array of components over it:
+// the problem then holds the first member's number, and a column tells where the others are.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -8,130 +11,190 @@
 #include <stdexcept>
 #include <string>
 
-#include "impact/problem.hpp"
+#include "impact/batch.hpp"
 
 namespace rattlebox::door {
 
 namespace nb = nanobind;
 using Array = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Grid = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 
 inline std::vector<real> reals(nb::handle object) {
     const auto array = nb::cast<Array>(object);
     return {array.data(), array.data() + array.shape(0)};
 }
 
-inline real number(const nb::dict& d, const char* key) { return nb::cast<real>(d[key]); }
+// What is read must not move afterwards: columns point into the problem.
+class Reader {
+    Problem& problem_;
+    Batch* batch_;
 
-inline Table keep(Problem& problem, std::vector<real> values) {
-    problem.tables.push_back(std::move(values));
-    return {problem.tables.back().data(), static_cast<int>(problem.tables.back().size())};
-}
-
-template <class Law> void fill(Law& law, const nb::dict& d, Problem& problem) {
-    for (const auto& field : Law::fields)
-        if (d.contains(field.name)) law.*field.member = number(d, field.name);
-    if constexpr (requires { Law::tables; })
-        for (const auto& table : Law::tables) law.*table.member = keep(problem, reals(d[table.name]));
-}
-
-// Sets `choice` to the law that carries this name.
-template <class Laws> void choose(Laws& choice, const nb::dict& d, Problem& problem) {
-    const auto name = nb::cast<std::string>(d["law"]);
-    bool found = false;
-    Laws::each_type([&](auto* null) {
-        using Law = std::remove_const_t<std::remove_pointer_t<decltype(null)>>;
-        if (name != Law::name) return;
-        Law law;
-        fill(law, d, problem);
-        choice.set(law);
-        found = true;
-    });
-    if (!found) throw std::invalid_argument("the core has no law named '" + name + "'");
-}
-
-inline Signal read_signal(const nb::dict& d, Problem& problem) {
-    Signal s;
-    const auto kind = nb::cast<std::string>(d["kind"]);
-    if (kind == "record") {
-        s.kind = Signal::Kind::record;
-        s.times = keep(problem, reals(d["times"]));
-        s.values = keep(problem, reals(d["values"]));
-        return s;
-    }
-    s.kind = kind == "half_sine" ? Signal::Kind::half_sine : Signal::Kind::harmonic;
-    s.amplitude = number(d, "amplitude");
-    s.frequency = number(d, "frequency");
-    s.phase = number(d, "phase");
-    s.start = number(d, "start");
-    s.stop = number(d, "stop");
-    return s;
-}
-
-inline void read_settings(Settings& s, const nb::dict& d) {
-    const auto method = nb::cast<std::string>(d["method"]);
-    s.method = method == "newton"     ? Method::newton
-               : method == "two_step" ? Method::two_step
-                                      : Method::event_driven;
-    s.duration = number(d, "duration");
-    if (d.contains("tolerance")) s.tolerance = number(d, "tolerance");
-    if (d.contains("max_events")) s.max_events = nb::cast<long>(d["max_events"]);
-    if (d.contains("stick")) s.stick = number(d, "stick");
-    if (d.contains("dt_flight")) s.dt_flight = number(d, "dt_flight");
-    if (d.contains("dt_contact")) s.dt_contact = number(d, "dt_contact");
-    if (d.contains("adaptive_inner")) s.adaptive_inner = nb::cast<bool>(d["adaptive_inner"]);
-    if (d.contains("collocation")) s.collocation = nb::cast<bool>(d["collocation"]);
-}
-
-inline void read(Problem& problem, const nb::dict& d) {
-    const auto decay = reals(d["mode_decay"]), stiffness = reals(d["mode_stiffness"]);
-    const auto q = reals(d["mode_displacement"]), p = reals(d["mode_velocity"]);
-    for (std::size_t k = 0; k < decay.size(); ++k) {
-        problem.modes.push_back({decay[k], stiffness[k]});
-        problem.start.push_back({q[k], p[k]});
-    }
-    const auto loads = nb::cast<nb::list>(d["loads"]);
-    const auto contacts = nb::cast<nb::list>(d["contacts"]);
-    problem.tables.reserve(2 * loads.size() + 2 * contacts.size()); // Table views must not move
-    for (nb::handle item : loads) {
-        const auto l = nb::cast<nb::dict>(item);
-        problem.loads.push_back({read_signal(l, problem), reals(l["shape"]), nb::cast<bool>(l["base"])});
-    }
-    for (nb::handle item : nb::cast<nb::list>(d["dampers"])) {
-        const auto entry = nb::cast<nb::dict>(item);
-        Damper damper;
-        damper.first_ball = problem.ball_count();
-        damper.clearance = number(entry, "clearance");
-        damper.gravity = number(entry, "gravity");
-        damper.shape = reals(entry["shape"]);
-        const auto mass = reals(entry["mass"]), position = reals(entry["position"]),
-                   velocity = reals(entry["velocity"]);
-        damper.balls = static_cast<int>(mass.size());
-        for (std::size_t i = 0; i < mass.size(); ++i) {
-            problem.ball_mass.push_back(mass[i]);
-            problem.ball_position.push_back(position[i]);
-            problem.ball_velocity.push_back(velocity[i]);
-            problem.ball_damper.push_back(problem.damper_count());
+    // One number for each member, from an array whose axes from `first` on are those of the batch.
+    void column(real& target, const Grid& array, std::size_t first, std::size_t offset) {
+        target = array.data()[offset];
+        if (array.ndim() == first) return;
+        const std::size_t axes = array.ndim() - first;
+        if (!batch_ || axes != batch_->shape.size())
+            throw std::invalid_argument("an array has the wrong number of axes");
+        Column column{&target, array.data() + offset, std::vector<std::size_t>(axes, 0)};
+        std::size_t step = 1;
+        for (std::size_t k = axes; k-- > 0;) {
+            const std::size_t size = array.shape(first + k);
+            if (size != 1 && size != batch_->shape[k])
+                throw std::invalid_argument("an array does not fit the grid");
+            if (size != 1) column.stride[k] = step;
+            step *= size;
         }
-        problem.dampers.push_back(std::move(damper));
+        if (step > 1) batch_->columns.push_back(std::move(column));
     }
-    std::size_t next = 0;
-    for (int i = 0; i < problem.damper_count(); ++i) {
-        Damper& damper = problem.dampers[static_cast<std::size_t>(i)];
-        damper.first_contact = problem.contact_count();
-        for (int k = 0; k <= damper.balls; ++k, ++next) {
-            const auto entry = nb::cast<nb::dict>(contacts[next]);
-            Contact contact;
-            contact.damper = i;
-            contact.below = k == 0 ? wall : damper.first_ball + k - 1;
-            contact.above = k == damper.balls ? wall : damper.first_ball + k;
-            contact.mass = number(entry, "mass");
-            choose(contact.normal, nb::cast<nb::dict>(entry["normal"]), problem);
-            choose(contact.restitution, nb::cast<nb::dict>(entry["restitution"]), problem);
-            problem.contacts.push_back(contact);
+
+public:
+    Reader(Problem& problem, Batch* batch) : problem_(problem), batch_(batch) {}
+
+    void number(real& target, nb::handle value) {
+        if (nb::ndarray_check(value))
+            column(target, nb::cast<Grid>(value), 0, 0);
+        else
+            target = nb::cast<real>(value);
+    }
+
+    void number(real& target, const nb::dict& d, const char* key) { number(target, d[key]); }
+
+    std::size_t length(nb::handle vector) const { return nb::cast<Grid>(vector).shape(0); }
+
+    // Component i of a vector.
+    void component(real& target, nb::handle vector, std::size_t i) {
+        const auto array = nb::cast<Grid>(vector);
+        std::size_t each = 1;
+        for (std::size_t k = 1; k < array.ndim(); ++k) each *= array.shape(k);
+        column(target, array, 1, i * each);
+    }
+
+    void vector(std::vector<real>& target, nb::handle value) {
+        target.resize(length(value));
+        for (std::size_t i = 0; i < target.size(); ++i) component(target[i], value, i);
+    }
+
+private:
+    Table keep(std::vector<real> values) {
+        problem_.tables.push_back(std::move(values));
+        return {problem_.tables.back().data(), static_cast<int>(problem_.tables.back().size())};
+    }
+
+public:
+    // Sets `choice` to the law that carries this name.
+    template <class Laws> void choose(Laws& choice, const nb::dict& d) {
+        const auto name = nb::cast<std::string>(d["law"]);
+        bool found = false;
+        Laws::each_type([&](auto* null) {
+            using Law = std::remove_const_t<std::remove_pointer_t<decltype(null)>>;
+            if (name != Law::name) return;
+            Law& law = choice.set(Law{});
+            for (const auto& field : Law::fields)
+                if (d.contains(field.name)) number(law.*field.member, d, field.name);
+            if constexpr (requires { Law::tables; })
+                for (const auto& table : Law::tables) law.*table.member = keep(reals(d[table.name]));
+            found = true;
+        });
+        if (!found) throw std::invalid_argument("the core has no law named '" + name + "'");
+    }
+
+private:
+    void signal(Signal& s, const nb::dict& d) {
+        const auto kind = nb::cast<std::string>(d["kind"]);
+        if (kind == "record") {
+            s.kind = Signal::Kind::record;
+            s.times = keep(reals(d["times"]));
+            s.values = keep(reals(d["values"]));
+            return;
+        }
+        s.kind = kind == "half_sine" ? Signal::Kind::half_sine : Signal::Kind::harmonic;
+        number(s.amplitude, d, "amplitude");
+        number(s.frequency, d, "frequency");
+        number(s.phase, d, "phase");
+        number(s.start, d, "start");
+        number(s.stop, d, "stop");
+    }
+
+    void settings(Settings& s, const nb::dict& d) {
+        const auto method = nb::cast<std::string>(d["method"]);
+        s.method = method == "newton"     ? Method::newton
+                   : method == "two_step" ? Method::two_step
+                                          : Method::event_driven;
+        number(s.duration, d, "duration");
+        if (d.contains("tolerance")) number(s.tolerance, d, "tolerance");
+        if (d.contains("max_events")) s.max_events = nb::cast<long>(d["max_events"]);
+        if (d.contains("stick")) number(s.stick, d, "stick");
+        if (d.contains("dt_flight")) number(s.dt_flight, d, "dt_flight");
+        if (d.contains("dt_contact")) number(s.dt_contact, d, "dt_contact");
+        if (d.contains("adaptive_inner")) s.adaptive_inner = nb::cast<bool>(d["adaptive_inner"]);
+        if (d.contains("collocation")) s.collocation = nb::cast<bool>(d["collocation"]);
+    }
+
+    void damper(Damper& damper, const nb::dict& d) {
+        number(damper.clearance, d, "clearance");
+        number(damper.gravity, d, "gravity");
+        vector(damper.shape, d["shape"]);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(damper.balls); ++i) {
+            const std::size_t ball = static_cast<std::size_t>(damper.first_ball) + i;
+            component(problem_.ball_mass[ball], d["mass"], i);
+            component(problem_.ball_position[ball], d["position"], i);
+            component(problem_.ball_velocity[ball], d["velocity"], i);
         }
     }
-    problem.sample_times = reals(d["sample_times"]);
-    read_settings(problem.settings, nb::cast<nb::dict>(d["settings"]));
-}
+
+public:
+    void problem(const nb::dict& d) {
+        const std::size_t modes = length(d["mode_decay"]);
+        problem_.modes.resize(modes);
+        problem_.start.resize(modes);
+        for (std::size_t k = 0; k < modes; ++k) {
+            component(problem_.modes[k].decay, d["mode_decay"], k);
+            component(problem_.modes[k].stiffness, d["mode_stiffness"], k);
+            component(problem_.start[k].q, d["mode_displacement"], k);
+            component(problem_.start[k].p, d["mode_velocity"], k);
+        }
+        const auto loads = nb::cast<nb::list>(d["loads"]), dampers = nb::cast<nb::list>(d["dampers"]),
+                   contacts = nb::cast<nb::list>(d["contacts"]);
+        problem_.tables.reserve(2 * loads.size() + 2 * contacts.size());
+        problem_.loads.resize(loads.size());
+        for (std::size_t l = 0; l < loads.size(); ++l) {
+            const auto entry = nb::cast<nb::dict>(loads[l]);
+            signal(problem_.loads[l].signal, entry);
+            vector(problem_.loads[l].shape, entry["shape"]);
+            problem_.loads[l].base = nb::cast<bool>(entry["base"]);
+        }
+        problem_.dampers.resize(dampers.size());
+        problem_.contacts.resize(contacts.size());
+        std::size_t balls = 0;
+        for (std::size_t i = 0; i < dampers.size(); ++i) {
+            Damper& damper = problem_.dampers[i];
+            damper.first_ball = static_cast<int>(balls);
+            damper.first_contact = static_cast<int>(balls + i);
+            damper.balls = static_cast<int>(length(nb::cast<nb::dict>(dampers[i])["mass"]));
+            balls += static_cast<std::size_t>(damper.balls);
+            for (int k = 0; k <= damper.balls; ++k) {
+                Contact& contact = problem_.contacts.at(static_cast<std::size_t>(damper.first_contact + k));
+                contact.damper = static_cast<int>(i);
+                contact.below = k == 0 ? wall : damper.first_ball + k - 1;
+                contact.above = k == damper.balls ? wall : damper.first_ball + k;
+            }
+            problem_.ball_damper.resize(balls, static_cast<int>(i));
+        }
+        problem_.ball_mass.resize(balls);
+        problem_.ball_position.resize(balls);
+        problem_.ball_velocity.resize(balls);
+        for (std::size_t i = 0; i < dampers.size(); ++i)
+            damper(problem_.dampers[i], nb::cast<nb::dict>(dampers[i]));
+        for (std::size_t c = 0; c < contacts.size(); ++c) {
+            const auto entry = nb::cast<nb::dict>(contacts[c]);
+            number(problem_.contacts[c].mass, entry, "mass");
+            choose(problem_.contacts[c].normal, nb::cast<nb::dict>(entry["normal"]));
+            choose(problem_.contacts[c].restitution, nb::cast<nb::dict>(entry["restitution"]));
+        }
+        if (d.contains("sample_times")) problem_.sample_times = reals(d["sample_times"]);
+        settings(problem_.settings, nb::cast<nb::dict>(d["settings"]));
+    }
+};
 
 } // namespace rattlebox::door

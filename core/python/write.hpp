@@ -12,10 +12,11 @@ namespace rattlebox::door {
 
 namespace nb = nanobind;
 
-template <class T> nb::object array(std::vector<T> values) {
+template <class T> nb::object array(std::vector<T> values, std::vector<std::size_t> shape = {}) {
     auto* owned = new std::vector<T>(std::move(values));
+    if (shape.empty()) shape = {owned->size()};
     nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    return nb::cast(nb::ndarray<nb::numpy, T>(owned->data(), {owned->size()}, owner));
+    return nb::cast(nb::ndarray<nb::numpy, T>(owned->data(), shape.size(), shape.data(), owner));
 }
 
 template <class T, class F> nb::object column(const std::vector<Impact>& impacts, F&& f) {

@@ -1,0 +1,244 @@
+// Numbers that sum up a run: each looks at the samples and the impacts of a window, and is listed by name.
+#pragma once
+
+#include <complex>
+
+#include "impact/batch.hpp"
+#include "impact/log.hpp"
+
+namespace rattlebox {
+
+class Observer {
+    const Problem& problem_;
+    const Result& run_;
+    const Window& window_;
+
+    const Samples& samples() const { return run_.samples; }
+    std::size_t balls() const { return problem_.ball_mass.size(); }
+
+    template <class F> real over_impacts(real value, F&& f) const {
+        for (const Impact& i : run_.impacts)
+            if (i.time >= window_.from) value = f(value, i);
+        return value;
+    }
+
+    real sum(const std::vector<real>& by_damper, std::size_t i) const {
+        real total = 0;
+        const std::size_t d = problem_.dampers.size();
+        for (std::size_t k = 0; k < d; ++k) total += by_damper[i * d + k];
+        return total;
+    }
+
+public:
+    Observer(const Problem& problem, const Result& run, const Window& window)
+        : problem_(problem), run_(run), window_(window) {}
+
+    std::size_t count() const { return samples().time.size(); }
+    std::size_t last() const { return count() - 1; }
+    real time(std::size_t i) const { return samples().time[i]; }
+    const real* state(std::size_t i) const {
+        return samples().state.data() + i * 2 * (problem_.modes.size() + balls());
+    }
+    real length() const { return time(last()) - time(0); }
+    real cycles() const { return length() / window_.period; }
+
+    // ---- motion of the point that is watched
+
+    ModeState point(std::size_t i) const { return along(window_.shape, i); }
+
+    ModeState along(const std::vector<real>& shape, std::size_t i) const {
+        ModeState z;
+        const real* y = state(i);
+        for (std::size_t k = 0; k < shape.size(); ++k) {
+            z.q += shape[k] * y[2 * k];
+            z.p += shape[k] * y[2 * k + 1];
+        }
+        return z;
+    }
+
+    template <class F> real peak(F&& f) const {
+        real most = 0;
+        for (std::size_t i = 0; i < count(); ++i) most = std::fmax(most, std::fabs(f(i)));
+        return most;
+    }
+
+    template <class F> real rms(F&& f) const { // trapezoids
+        real total = 0.5 * (square(f(0)) + square(f(last())));
+        for (std::size_t i = 1; i < last(); ++i) total += square(f(i));
+        return std::sqrt(total / static_cast<real>(last()));
+    }
+
+    // Time after which the point stays within a share of its peak.
+    real settling(real band) const {
+        const auto z = [&](std::size_t i) { return point(i).q; };
+        const real limit = band * peak(z);
+        for (std::size_t i = count(); i-- > 0;) {
+            if (std::fabs(z(i)) <= limit) continue;
+            if (i == last()) return not_a_number;
+            const real side = std::copysign(limit, z(i));
+            return time(i) + (time(i + 1) - time(i)) * (side - z(i)) / (z(i + 1) - z(i));
+        }
+        return time(0);
+    }
+
+    // ---- energy
+
+    real gravity(std::size_t i) const {
+        const real* s = positions(problem_, state(i));
+        real total = 0;
+        for (std::size_t b = 0; b < balls(); ++b)
+            total -= problem_.ball_mass[b] *
+                     problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[b])].gravity * s[b];
+        return total;
+    }
+    real motion(std::size_t i) const {
+        const real *y = state(i), *v = velocities(problem_, y);
+        real total = sum(samples().stored, i);
+        for (std::size_t k = 0; k < problem_.modes.size(); ++k)
+            total += ModeState{y[2 * k], y[2 * k + 1]}.energy(problem_.modes[k]);
+        for (std::size_t b = 0; b < balls(); ++b) total += 0.5 * problem_.ball_mass[b] * square(v[b]);
+        return total;
+    }
+    real load_work(std::size_t i) const { return samples().load_work[i] - samples().load_work[0]; }
+    real base_work(std::size_t i) const { return samples().base_work[i] - samples().base_work[0]; }
+    real viscous(std::size_t i) const { return samples().viscous[i] - samples().viscous[0]; }
+    real impact(std::size_t i) const {
+        return sum(samples().normal, i) - sum(samples().normal, 0) + sum(samples().plastic, i) -
+               sum(samples().plastic, 0);
+    }
+    real supplied() const {
+        return motion(0) + load_work(last()) + base_work(last()) + gravity(0) - gravity(last());
+    }
+    real share(real part) const { return supplied() > 0 ? part / supplied() : not_a_number; }
+
+    real closure() const {
+        real worst = 0, load = 0, base = 0, height = 0;
+        const real before = motion(0) + gravity(0);
+        for (std::size_t i = 0; i < count(); ++i) {
+            worst = std::fmax(worst, std::fabs(motion(i) + gravity(i) - before - load_work(i) - base_work(i) +
+                                               viscous(i) + impact(i)));
+            load = std::fmax(load, std::fabs(load_work(i)));
+            base = std::fmax(base, std::fabs(base_work(i)));
+            height = std::fmax(height, std::fabs(gravity(i) - gravity(0)));
+        }
+        return worst == 0 ? 0 : worst / (load + base + motion(0) + height);
+    }
+
+    // ---- impacts
+
+    real impacts() const {
+        return over_impacts(0, [](real n, const Impact&) { return n + 1; });
+    }
+    real peak_force() const {
+        return over_impacts(0, [](real most, const Impact& i) { return std::fmax(most, i.peak_force); });
+    }
+    real peak_overlap() const {
+        return over_impacts(0, [](real most, const Impact& i) { return std::fmax(most, i.peak_overlap); });
+    }
+    real largest_approach_speed() const {
+        return over_impacts(0, [](real most, const Impact& i) { return std::fmax(most, i.approach_speed); });
+    }
+    real mean_approach_speed() const {
+        const real n = impacts();
+        return n > 0 ? over_impacts(0, [](real s, const Impact& i) { return s + i.approach_speed; }) / n
+                     : not_a_number;
+    }
+    real longest_contact() const {
+        return over_impacts(0, [](real most, const Impact& i) { return std::fmax(most, i.duration); });
+    }
+
+    // ---- the damper as a mass: force on the balls over acceleration of their cavity, at the frequency of
+    // the window
+
+    // Amplitude of an acceleration, from the motion: exact up to the integral of a position without jumps.
+    template <class F> std::complex<real> acceleration(F&& f) const {
+        const real w = 2 * pi / window_.period, n = static_cast<real>(last());
+        const auto turn = [&](std::size_t i) { return std::exp(std::complex<real>(0, -w * time(i))); };
+        std::complex<real> total = 0;
+        for (std::size_t i = 0; i < last(); ++i) total += f(i).q * turn(i);
+        const ModeState begin = f(0), end = f(last());
+        const std::complex<real> jump =
+            (end.p - begin.p + std::complex<real>(0, w * (end.q - begin.q))) * turn(0);
+        return 2.0 / length() * jump - square(w) * 2.0 / n * total;
+    }
+
+    std::complex<real> base() const {
+        std::complex<real> total = 0;
+        for (std::size_t i = 0; i < last(); ++i)
+            for (const Load& load : problem_.loads)
+                if (load.base)
+                    total += load.signal.piece(time(i)).value(time(i)) *
+                             std::exp(std::complex<real>(0, -2 * pi / window_.period * time(i)));
+        return 2.0 * total / static_cast<real>(last());
+    }
+
+    std::complex<real> cavity_acceleration(const Damper& damper) const {
+        return base() + acceleration([&](std::size_t i) { return along(damper.shape, i); });
+    }
+
+    std::complex<real> apparent_mass() const {
+        if (problem_.dampers.empty()) return 0;
+        std::complex<real> power = 0;
+        const std::complex<real> shaken = base();
+        for (std::size_t b = 0; b < balls(); ++b) {
+            const auto ball = [&](std::size_t i) {
+                return ModeState{positions(problem_, state(i))[b], velocities(problem_, state(i))[b]};
+            };
+            const Damper& damper = problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[b])];
+            power += problem_.ball_mass[b] * (shaken + acceleration(ball)) *
+                     std::conj(cavity_acceleration(damper));
+        }
+        return power / std::norm(cavity_acceleration(problem_.dampers[0]));
+    }
+
+    // Loss of a cycle over m V^2 with the cavity's velocity amplitude V: what tells dampers of any size
+    // apart.
+    real reduced_loss() const {
+        if (problem_.dampers.empty()) return 0;
+        real mass = 0;
+        for (real m : problem_.ball_mass) mass += m;
+        const real speed = std::abs(cavity_acceleration(problem_.dampers[0])) * window_.period / (2 * pi);
+        return impact(last()) / cycles() / (mass * square(speed));
+    }
+};
+
+struct Measure {
+    const char* name;
+    bool samples; // needs the motion, not only its ends
+    real (*value)(const Observer&);
+};
+
+inline constexpr Measure measures[] = {
+    {"impacts", false, [](const Observer& o) { return o.impacts(); }},
+    {"impacts_per_cycle", false, [](const Observer& o) { return o.impacts() / o.cycles(); }},
+    {"peak_contact_force", false, [](const Observer& o) { return o.peak_force(); }},
+    {"peak_overlap", false, [](const Observer& o) { return o.peak_overlap(); }},
+    {"largest_approach_speed", false, [](const Observer& o) { return o.largest_approach_speed(); }},
+    {"mean_approach_speed", false, [](const Observer& o) { return o.mean_approach_speed(); }},
+    {"longest_contact", false, [](const Observer& o) { return o.longest_contact(); }},
+    {"work", false, [](const Observer& o) { return o.load_work(o.last()) + o.base_work(o.last()); }},
+    {"viscous_loss", false, [](const Observer& o) { return o.viscous(o.last()); }},
+    {"impact_loss", false, [](const Observer& o) { return o.impact(o.last()); }},
+    {"viscous_share", false, [](const Observer& o) { return o.share(o.viscous(o.last())); }},
+    {"impact_share", false, [](const Observer& o) { return o.share(o.impact(o.last())); }},
+    {"motion_share", false, [](const Observer& o) { return o.share(o.motion(o.last())); }},
+    {"closure", false, [](const Observer& o) { return o.closure(); }},
+    {"peak", true, [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).q; }); }},
+    {"rms", true, [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).q; }); }},
+    {"peak_velocity", true,
+     [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).p; }); }},
+    {"rms_velocity", true,
+     [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).p; }); }},
+    {"settling_time", true, [](const Observer& o) { return o.settling(0.05); }},
+    {"loss_per_cycle", false, [](const Observer& o) { return o.impact(o.last()) / o.cycles(); }},
+    {"reduced_loss", true, [](const Observer& o) { return o.reduced_loss(); }},
+    {"effective_mass", true, [](const Observer& o) { return o.apparent_mass().real(); }},
+    {"damping_mass", true, [](const Observer& o) { return -o.apparent_mass().imag(); }},
+    {"loss_factor", true,
+     [](const Observer& o) {
+         const std::complex<real> mass = o.apparent_mass();
+         return -mass.imag() / std::fabs(mass.real());
+     }},
+};
+
+} // namespace rattlebox

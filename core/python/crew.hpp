@@ -1,0 +1,69 @@
+// Threads that work off numbered jobs without the GIL, while this one listens for Ctrl-C.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace rattlebox::door {
+
+namespace nb = nanobind;
+
+// Calls job(i, thread, stop) for i in 0..count, `chunk` at a time on one thread. Every 50 ms go_on(jobs done)
+// is asked with the GIL held; when it says no, or after Ctrl-C, `stop` is set and the rest is left. False
+// when it was stopped.
+template <class Job, class GoOn>
+bool work_off(std::size_t count, int threads, std::size_t chunk, Job&& job, GoOn&& go_on) {
+    std::atomic<bool> stop{false};
+    std::atomic<std::size_t> next{0}, done{0};
+    std::mutex mutex;
+    std::condition_variable over;
+    std::exception_ptr error;
+    int working = threads;
+    std::vector<std::thread> pool;
+    for (int t = 0; t < threads; ++t)
+        pool.emplace_back([&, t] {
+            try {
+                for (std::size_t i; !stop && (i = next.fetch_add(chunk)) < count;)
+                    for (std::size_t k = i; k < std::min(i + chunk, count) && !stop; ++k, ++done)
+                        job(k, t, stop);
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                error = std::current_exception();
+                stop = true;
+            }
+            const std::lock_guard lock(mutex);
+            --working;
+            over.notify_all();
+        });
+    bool stopped = false;
+    for (bool finished = false; !finished;) {
+        {
+            nb::gil_scoped_release unlocked;
+            std::unique_lock lock(mutex);
+            finished = over.wait_for(lock, std::chrono::milliseconds(50), [&] { return working == 0; });
+        }
+        if (finished || stopped) continue;
+        try {
+            if (PyErr_CheckSignals() != 0) throw nb::python_error();
+            stopped = !go_on(done.load());
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            error = std::current_exception();
+            stopped = true;
+        }
+        if (stopped) stop = true;
+    }
+    for (std::thread& t : pool) t.join();
+    if (error) std::rethrow_exception(error);
+    return !stopped;
+}
+
+} // namespace rattlebox::door
