@@ -54,6 +54,7 @@ class Tsuji(Contact):
         "zero_force": the contact ends when its force vanishes, it never pulls; "zero_overlap": at zero overlap.
     """
 
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "alpha"),)
     kind: Literal["tsuji"] = "tsuji"
     restitution: AnyRestitution | None = None
     alpha: Annotated[float, Field(ge=0)] | None = None
@@ -102,6 +103,7 @@ class Linear(Contact):
         "zero_force": the contact never pulls; "zero_overlap": it ends at zero overlap.
     """
 
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("stiffness", "contact_time"), ("restitution", "damping"))
     kind: Literal["linear"] = "linear"
     stiffness: PositiveStiffness | None = None
     contact_time: PositiveTime | None = None

@@ -15,7 +15,7 @@ from .errors import Hint, at
 from .materials import AnyMaterial, AnyWall
 from .modes import Vector
 from .signals import as_several
-from .units import Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse
+from .units import SI, Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse
 
 
 class Sphere(Part):
@@ -32,6 +32,7 @@ class Sphere(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("ball", "balls")
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("radius", "diameter"),)
     radius: PositiveLength | None = None
     diameter: PositiveLength | None = Field(default=None, exclude=True)
     material: AnyMaterial
@@ -119,6 +120,7 @@ class ImpactDamper(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")
     spellings: ClassVar[dict[str, str]] = {"ball": "balls"}
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("gap", "cavity_length"),)
     kind: Literal["impact"] = "impact"
     name: str = ""
     balls: Annotated[tuple[Sphere, ...], BeforeValidator(as_several), AlsoTakes()]
@@ -132,6 +134,7 @@ class ImpactDamper(Part):
     ] = 0.0
     velocity: Annotated[
         tuple[float, ...],
+        SI("m/s"),
         BeforeValidator(_speeds),
         WithJsonSchema({"description": "velocity in m/s, or text with a unit; one, or one for each ball"}),
     ] = (0.0,)

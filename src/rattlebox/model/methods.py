@@ -98,6 +98,7 @@ class Output(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("output",)
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("rate", "times"),)
     rate: PositiveFrequency | None = None
     times: Annotated[tuple[float, ...] | None, BeforeValidator(_times)] = None
 

@@ -11,7 +11,7 @@ from .base import AlsoTakes, Part
 from .errors import Hint
 from .materials import AnyWall
 from .pairs import Pair
-from .units import Modulus, PositiveVelocity
+from .units import SI, Modulus, PositiveVelocity
 
 Coefficients = tuple[str, dict[str, Any]]
 _fraction = WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})
@@ -210,6 +210,7 @@ def as_restitution(value: Any) -> Any:
 
 AnyRestitution = Annotated[
     Annotated[Constant | Tabulated | JacksonGreen | ThorntonRestitution | Johnson, Field(discriminator="kind")],
+    SI("1"),
     BeforeValidator(as_restitution),
     AlsoTakes({"type": "number", "minimum": 0, "maximum": 1}),
 ]

@@ -215,6 +215,7 @@ class Record(Signal):
         name: `columns=(1, 3)`, `columns=("t", "a")`. They may be left out where there are only two.
     """
 
+    in_file: ClassVar[tuple[str, ...]] = ("times", "values")
     kind: Literal["record"] = "record"
     times: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
     values: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
@@ -266,8 +267,8 @@ class Record(Signal):
     def _file_stands_for_numbers(self, handler: Any) -> Any:
         data = handler(self)
         if self.file is not None:
-            data.pop("times", None)
-            data.pop("values", None)
+            for name in self.in_file:
+                data.pop(name, None)
         return data
 
     @classmethod

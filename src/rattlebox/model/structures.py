@@ -14,7 +14,7 @@ from .errors import Hint, at, nearest
 from .files import absolute, check_finite, existing, read_arrays
 from .modes import ModalModel, Vector
 from .signals import AnySignal, Signal, Unit, signals_in
-from .units import Damping, Frequency, Length, PositiveMass, Stiffness, Velocity, numbers
+from .units import SI, Damping, Frequency, Length, PositiveMass, Stiffness, Velocity, numbers
 
 if TYPE_CHECKING:
     from typing import Self
@@ -64,6 +64,7 @@ class SDOF(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("structure",)
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("damping", "damping_ratio"),)
     kind: Literal["sdof"] = "sdof"
     mass: PositiveMass
     stiffness: Stiffness
@@ -119,10 +120,10 @@ class Modal(Part):
     kind: Literal["modal"] = "modal"
     frequencies: list[Frequency]
     damping_ratios: list[Ratio]
-    shapes: dict[str, Numbers]
-    participation: Numbers | None = None
-    displacement: Numbers | None = None
-    velocity: Numbers | None = None
+    shapes: Annotated[dict[str, Numbers], SI("kg^-0.5")]
+    participation: Annotated[Numbers | None, SI("kg^0.5")] = None
+    displacement: Annotated[Numbers | None, SI("kg^0.5 m")] = None
+    velocity: Annotated[Numbers | None, SI("kg^0.5 m/s")] = None
 
     @model_validator(mode="after")
     def _same_lengths(self) -> Self:
@@ -179,15 +180,16 @@ class Matrices(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("structure",)
+    in_file: ClassVar[tuple[str, ...]] = ("M", "C", "K")
     kind: Literal["matrices"] = "matrices"
-    M: Matrix
-    C: Matrix | None = None
-    K: Matrix
+    M: Annotated[Matrix, SI("kg")]
+    C: Annotated[Matrix | None, SI("N s/m")] = None
+    K: Annotated[Matrix, SI("N/m")]
     points: dict[str, Point]
     file: str | None = None
     influence: Numbers | None = None
-    displacement: Numbers | None = None
-    velocity: Numbers | None = None
+    displacement: Annotated[Numbers | None, SI("m")] = None
+    velocity: Annotated[Numbers | None, SI("m/s")] = None
 
     @model_validator(mode="before")
     @classmethod
@@ -246,7 +248,7 @@ class Matrices(Part):
     def _file_stands_for_matrices(self, handler: Any) -> Any:
         data = handler(self)
         if self.file is not None:
-            for name in ("M", "C", "K"):
+            for name in self.in_file:
                 data.pop(name, None)
         return data
 

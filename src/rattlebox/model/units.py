@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -184,6 +185,13 @@ def text(value: float, unit: str) -> str:
     return f"{value!r} {unit}"
 
 
+@dataclass(frozen=True)
+class SI:
+    """Tells the unit of a field's numbers."""
+
+    unit: str
+
+
 def quantity(unit: str, description: str = "") -> Any:
     """Return the annotations of a field that holds a quantity in this SI unit."""
 
@@ -192,6 +200,7 @@ def quantity(unit: str, description: str = "") -> Any:
 
     example = _EXAMPLES.get(unit, f"1 {unit}")
     return (
+        SI(unit),
         BeforeValidator(read),
         PlainSerializer(lambda value: text(value, unit), return_type=str, when_used="json"),
         WithJsonSchema(

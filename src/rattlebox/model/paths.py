@@ -1,0 +1,341 @@
+"""Paths into a case, such as "damper.ball.radius": look one up, see its value, put another in its place."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from difflib import get_close_matches
+from typing import Any, get_args
+
+from pydantic import ValidationError
+
+from .base import Part, vocabulary
+from .case import Case
+from .dampers import ImpactDamper, Sphere
+from .errors import Hint, nearest, translate
+from .materials import Material
+from .signals import Signal
+from .units import SI, parse
+
+Place = tuple[str | int, ...]
+
+_STEP = re.compile(r"\.?([^.\[\]]+)|\[(\d+)\]")
+
+
+def place_of(case: Case, path: str) -> Place:
+    """Find what a path means in a case.
+
+    Parameters
+    ----------
+    case
+        The case.
+    path
+        Names of fields and numbers in lists, as in case files and messages: "damper.gap", "dampers[1].balls[0].radius",
+        "structure.damping_ratio". Where a list has one member, its number may be left out.
+
+    Returns
+    -------
+    tuple
+        Names of fields and numbers, with nothing left out: ("dampers", 0, "gap").
+
+    Raises
+    ------
+    CaseError
+        When there is no such field, or more than one is meant.
+    """
+    place: list[str | int] = []
+    node: Any = case
+    steps = _steps(path)
+    for number, step in enumerate(steps):
+        so_far = "".join(_words(steps[:number]))
+        if isinstance(step, str) and _is_row_of_parts(node):
+            node = node[_only(node, path, so_far)]
+            place.append(0)
+        if isinstance(step, int):
+            if not isinstance(node, (tuple, list)):
+                raise Hint(f"{path}: {so_far or 'a case'} is no list", "the same without a number in brackets")
+            if step >= len(node):
+                raise Hint(f"{path}: {so_far} has {len(node)} member{'s' * (len(node) != 1)}, counted from 0")
+            place.append(step)
+            node = node[step]
+        elif isinstance(node, Part):
+            alias = type(node).spellings.get(step)
+            if (alias or step) not in type(node).model_fields:
+                known = {*type(node).model_fields, *type(node).spellings} - {"kind"}
+                raise Hint(f"{path}: there is no {step!r} in {so_far or 'a case'}", _suggested(case, path, step, known))
+            place.append(alias or step)
+            node = get_field(node, alias or step)
+            if alias and number == len(steps) - 1 and node:
+                place.append(_only(node, path, "".join(_words(steps))))
+        elif isinstance(node, dict) and step in node:
+            place.append(step)
+            node = node[step]
+        elif node is None:
+            raise Hint(f"{path}: {so_far} is not set in this case", f"give {so_far} as a whole")
+        else:
+            hint = nearest(step, node) if isinstance(node, dict) else _suggested(case, path, step, set())
+            raise Hint(f"{path}: there is no {step!r} in {so_far}", hint)
+    return tuple(place)
+
+
+def spelt(case: Case, place: Place) -> str:
+    """Return the shortest path to a place: "damper.gap" where there is one damper, else "dampers[0].gap"."""
+    words = list(_words(place))
+    for number, step in enumerate(place):
+        row = _at(case, place[:number])
+        if isinstance(step, int) and _is_row_of_parts(row) and len(row) == 1:
+            holder = _at(case, place[: number - 1])
+            words[number] = ""
+            others = [other for other, name in type(holder).spellings.items() if name == place[number - 1]]
+            if others:
+                words[number - 1] = words[number - 1].replace(str(place[number - 1]), others[0])
+    return "".join(words)
+
+
+def get(case: Case, path: str) -> Any:
+    """Return what stands at a path, in SI units.
+
+    Parameters
+    ----------
+    case
+        The case.
+    path
+        See place_of.
+
+    Raises
+    ------
+    CaseError
+        When there is no such field.
+    """
+    return _at(case, place_of(case, path))
+
+
+def get_field(part: Part, name: str) -> Any:
+    """Return a field of a part, also one that was turned into its alternative."""
+    if isinstance(part, Sphere) and name == "diameter":
+        return 2 * (part.radius or 0.0)
+    if isinstance(part, ImpactDamper) and name == "cavity_length":
+        return part.clearance + sum(2 * (ball.radius or 0.0) for ball in part.balls)
+    return getattr(part, name)
+
+
+def unit_of(case: Case, path: str) -> str | None:
+    """Return the SI unit of the numbers at a path, "1" for those without dimension, None for what is no number."""
+    place = place_of(case, path)
+    node: Any = case
+    unit: str | None = None
+    for step in place:
+        if isinstance(node, Part):
+            assert isinstance(step, str)
+            if isinstance(node, Signal) and step in ("amplitude", "values"):
+                unit = node.unit
+            else:
+                field = type(node).model_fields[step]
+                unit = next(_units([*field.metadata, field.annotation]), None)
+            node = get_field(node, step)
+        else:
+            node = node[step]
+    return unit
+
+
+def _units(annotations: Sequence[Any]) -> Iterator[str]:
+    """SI units that annotations tell, the plainest last."""
+    for annotation in annotations:
+        if isinstance(annotation, SI):
+            yield annotation.unit
+        yield from _units([item.unit for item in getattr(annotation, "__metadata__", ()) if isinstance(item, SI)])
+        yield from _units(get_args(annotation))
+    if any(annotation in (int, float) for annotation in annotations):
+        yield "1"
+
+
+def replaced(case: Case, values: Mapping[str, Any]) -> Case:
+    """Return a case with other values in places.
+
+    What excludes a value goes: a case with damping becomes one with a damping ratio when that is given.
+
+    Parameters
+    ----------
+    case
+        The case.
+    values
+        New values by path (see place_of), as one would write them in the case: numbers in SI, text with units, names of
+        materials, whole parts.
+
+    Raises
+    ------
+    CaseError
+        When a path leads nowhere, or the new case does not fit, with the reason.
+    """
+    places = places_of(case, values)
+    tree: Any = case
+    for place in sorted(places, key=len):  # a whole part first, then what is in it
+        tree = _with(tree, place, places[place])
+    tree = _briefly(tree)
+    own = {material.name: material for material in _materials(case)}
+    try:
+        return Case.model_validate(tree, context=own)
+    except ValidationError as error:
+        raise translate(error, "case", vocabulary(), tree) from None
+
+
+def places_of(case: Case, values: Mapping[str, Any]) -> dict[Place, Any]:
+    """Return values by place, with None in the places of what they exclude.
+
+    Parameters
+    ----------
+    case
+        The case.
+    values
+        By path.
+
+    Raises
+    ------
+    CaseError
+        When a path leads nowhere, or two lead to one place.
+    """
+    paths: dict[Place, str] = {}
+    for path in values:
+        place = place_of(case, path)
+        if place in paths:
+            raise Hint(f"{path} and {paths[place]} are the same", "one of them")
+        paths[place] = path
+    places = {place: values[path] for place, path in paths.items()}
+    for place, path in paths.items():
+        for length, step in enumerate(place):
+            holder = _at(case, place[:length])
+            if isinstance(holder, Part) and step in type(holder).in_file and getattr(holder, "file", None):
+                raise Hint(
+                    f"{path}: it comes from {getattr(holder, 'file', None)}", "the numbers themselves instead of a file"
+                )
+        if places[place] is None:
+            continue
+        *above, name = place
+        holder = _at(case, above)
+        pairs = type(holder).alternatives if isinstance(holder, Part) else ()
+        excluded = [other for pair in pairs if name in pair for other in pair if other != name]
+        if name == "amplitude" and _names_a_unit(places[place]):
+            excluded.append("unit")
+        for other in excluded:
+            places.setdefault((*above, other), None)
+    return places
+
+
+def _names_a_unit(value: Any) -> bool:
+    try:
+        return parse(value, ("N", "m/s^2", "m"))[1] is not None
+    except (Hint, TypeError):  # for the case to explain
+        return False
+
+
+def _from_file(node: Any) -> tuple[str, ...]:
+    """Fields of a part that were read from a file."""
+    return type(node).in_file if isinstance(node, Part) and getattr(node, "file", None) is not None else ()
+
+
+def _at(case: Case, place: Sequence[str | int]) -> Any:
+    node: Any = case
+    for step in place:
+        node = get_field(node, str(step)) if isinstance(node, Part) else node[step]
+    return node
+
+
+def _with(node: Any, place: Place, value: Any) -> Any:
+    """The same with another value at a place; parts on the way become tables."""
+    if not place:
+        return value
+    step, *rest = place
+    if isinstance(step, int):
+        return [_with(item, tuple(rest), value) if i == step else item for i, item in enumerate(node)]
+    if isinstance(node, Part):
+        from_file = _from_file(node)
+        node = {name: getattr(node, name) for name in type(node).model_fields if name not in from_file}
+    if not isinstance(node, dict):
+        raise Hint(f"there is no {step!r} in {node!r}", "a whole part, or what is in it, not both")
+    return {**node, step: _with(node.get(step), tuple(rest), value)}
+
+
+def _briefly(node: Any) -> Any:
+    """The same with "damper" for a list of one damper and so on: messages speak so."""
+    if isinstance(node, list):
+        return [_briefly(item) for item in node]
+    if not isinstance(node, dict):
+        return node
+    tree = {name: _briefly(item) for name, item in node.items()}
+    for part in (Case, ImpactDamper):
+        for other, name in part.spellings.items():
+            if isinstance(tree.get(name), list) and len(tree[name]) == 1:
+                tree[other] = tree.pop(name)[0]
+    return tree
+
+
+def _materials(node: Any) -> Iterator[Material]:
+    if isinstance(node, Material):
+        yield node
+    elif isinstance(node, Part):
+        for name in type(node).model_fields:
+            yield from _materials(getattr(node, name))
+    elif isinstance(node, tuple):
+        for item in node:
+            yield from _materials(item)
+
+
+def all_paths(case: Case) -> list[str]:
+    """Return the paths of all fields of a case, as short as they can be."""
+    return [spelt(case, place) for place in _places(case, ())]
+
+
+def _places(node: Any, place: Place) -> Iterator[Place]:
+    if isinstance(node, Part):
+        for name in type(node).model_fields:
+            if name != "kind":
+                yield (*place, name)
+                yield from _places(getattr(node, name), (*place, name))
+    elif _is_row_of_parts(node):
+        for number, item in enumerate(node):
+            yield from _places(item, (*place, number))
+
+
+def _is_row_of_parts(value: Any) -> bool:
+    return isinstance(value, tuple) and (not value or isinstance(value[0], Part))
+
+
+def _only(row: Sequence[Any], path: str, name: str) -> int:
+    """The number of the only member of a list, 0."""
+    if not row:
+        raise Hint(f"{path}: there is no {name} in this case")
+    if len(row) > 1:
+        raise Hint(f"{path}: which of {len(row)}?", f"{name}[0] to {name}[{len(row) - 1}]")
+    return 0
+
+
+def _steps(path: str) -> list[str | int]:
+    """The names and numbers of a path."""
+    steps: list[str | int] = []
+    end = 0
+    for match in _STEP.finditer(path):
+        if match.start() != end or (match.start() == 0 and match[0][0] in ".["):
+            break
+        steps.append(match[1] if match[2] is None else int(match[2]))
+        end = match.end()
+    if end != len(path) or not steps:
+        raise Hint(f"{path!r} is no path", 'names with dots between and numbers in brackets: "dampers[1].ball.radius"')
+    return steps
+
+
+def _words(steps: Sequence[str | int]) -> Iterator[str]:
+    for number, step in enumerate(steps):
+        yield f"[{step}]" if isinstance(step, int) else f".{step}" if number else step
+
+
+def _suggested(case: Case, path: str, step: str, known: set[str]) -> str:
+    """Paths like one that leads nowhere."""
+    near = get_close_matches(step, known, n=2, cutoff=0.6)
+    if near:
+        return "did you mean " + " or ".join(map(repr, near)) + "?"
+    everywhere = all_paths(case)
+    like = [other for other in everywhere if re.split(r"[.\[]", other)[-1] == re.split(r"[.\[]", path)[-1]]
+    like = like or get_close_matches(path, everywhere, n=2, cutoff=0.6)
+    if like:
+        return "did you mean " + " or ".join(map(repr, like[:3])) + "?"
+    return nearest(step, known) if known else ""
