@@ -1,0 +1,429 @@
+"""What varies in a study: axes by path, their values in SI, and the case of any one variant."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from hashlib import sha256
+from typing import Any
+
+import numpy as np
+
+from rattlebox.model.base import Part
+from rattlebox.model.case import Case
+from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.materials import Material
+from rattlebox.model.paths import Place, all_paths, get, replaced, unit_of
+from rattlebox.model.restitutions import Constant
+
+from .designs import RandomDesign, Replicas
+from .parameters import Column, Parameter, Values, objects
+
+Axes = Mapping[Any, Any] | RandomDesign | Replicas | Sequence[Mapping[Any, Any] | RandomDesign | Replicas]
+
+_TOLD = 16  # values that a description holds in full
+_TRIED = 8  # variants tried besides the extreme ones
+_EXAMPLE = '{"damper.gap": rb.linspace("0.1 mm", "2 mm", 20)}'
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """The variants of a case: a grid of some dimensions, along each of which one parameter varies, or several linked ones.
+
+    Attributes
+    ----------
+    dims : tuple of str
+        Names of the dimensions; the last one varies fastest.
+    shape : tuple of int
+        Their lengths.
+    columns : dict of str to array
+        By path: the values, broadcastable to `shape`. Numbers in SI, float64; else an array of objects as they stand in a
+        Case. Start positions are fractions of the gap.
+    """
+
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    columns: dict[str, Column]
+    _coords: dict[str, tuple[str, Column, dict[str, str]]] = field(repr=False)
+
+    @classmethod
+    def of(cls, case: Case, axes: Axes, *, source: str = "axes") -> Design:
+        """Read what a user says of axes, and try the extreme variants.
+
+        Parameters
+        ----------
+        case
+            The case that varies.
+        axes
+            A mapping, a random design, replicas, or a list of such, whose dimensions follow each other. A mapping has one
+            dimension an item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
+            together; or `name: {path: values, ...}` for those too, with a name for the dimension. Values are a list or an
+            array of numbers in SI, text with units, names or parts; or linspace, geomspace.
+        source
+            What messages call the axes.
+
+        Raises
+        ------
+        CaseError
+            When a path, a value or a variant does not fit, naming it and what is allowed.
+        """
+        try:
+            return _Reader(case, source).design(axes)
+        except Hint as hint:
+            raise CaseError(f"{source}: {hint}") from None
+
+    @property
+    def size(self) -> int:
+        """Number of variants."""
+        return math.prod(self.shape)
+
+    def coords(self) -> dict[str, tuple[str, Column, dict[str, str]]]:
+        """Return the coordinates of an xarray Dataset: (dimension, values, attributes) by name."""
+        return dict(self._coords)
+
+    def values_at(self, index: int) -> dict[str, Any]:
+        """Return what is different in one variant, by path.
+
+        Parameters
+        ----------
+        index
+            Number of the variant, from 0, the last dimension varying fastest.
+        """
+        if not 0 <= index < self.size:
+            raise Hint(f"there is no variant {index}", f"0 to {self.size - 1}")
+        place = np.unravel_index(index, self.shape)
+        members = {
+            path: values[tuple(0 if length == 1 else at for at, length in zip(place, values.shape, strict=True))]
+            for path, values in self.columns.items()
+        }
+        return {path: float(value) if isinstance(value, float) else value for path, value in members.items()}
+
+    def case_at(self, case: Case, index: int) -> Case:
+        """Return the case of one variant.
+
+        Parameters
+        ----------
+        case
+            The case that varies.
+        index
+            Number of the variant, from 0, the last dimension varying fastest.
+
+        Raises
+        ------
+        CaseError
+            When there is no such variant, or its parts do not fit together.
+        """
+        return replaced(case, self.values_at(index))
+
+    def describe(self) -> dict[str, Any]:
+        """Return what JSON can hold of the design; equal designs have equal descriptions, however they were spelt."""
+        return {
+            "dims": [[name, length] for name, length in zip(self.dims, self.shape, strict=True)],
+            "columns": {
+                path: {"varies_along": [d for d, n in zip(self.dims, values.shape, strict=True) if n > 1]}
+                | _summary(values)
+                for path, values in sorted(self.columns.items())
+            },
+            "coords": {
+                name: {"dim": dim, "units": attrs.get("units")} | _summary(values)
+                for name, (dim, values, attrs) in sorted(self._coords.items())
+                if name not in self.columns and values.dtype.kind == "f"
+            },
+        }
+
+
+def _summary(values: Column) -> dict[str, Any]:
+    """What tells an array from any other."""
+    flat = values.ravel()
+    if flat.dtype.kind == "f":
+        if flat.size <= _TOLD:
+            return {"values": flat.tolist()}
+        ends = {"first": flat[0], "last": flat[-1], "smallest": flat.min(), "largest": flat.max()}
+        digest = sha256(np.ascontiguousarray(flat, dtype="<f8").tobytes()).hexdigest()
+        return {"count": flat.size, **{name: float(value) for name, value in ends.items()}, "sha256": digest}
+    told = {id(value): _plain(value) for value in {id(value): value for value in flat}.values()}
+    if flat.size <= _TOLD:
+        return {"values": [told[id(value)] for value in flat]}
+    digests = {key: sha256(json.dumps(item, sort_keys=True).encode()).digest() for key, item in told.items()}
+    return {"count": flat.size, "sha256": sha256(b"".join(digests[id(value)] for value in flat)).hexdigest()}
+
+
+def _plain(value: Any) -> Any:
+    """What JSON can hold of an object."""
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value.model_dump(mode="json", exclude_none=True) if isinstance(value, Part) else value
+
+
+@dataclass(frozen=True, eq=False)
+class _Direction:
+    """One dimension."""
+
+    name: str
+    size: int
+    values: list[Values]
+    offsets: list[Values] = field(default_factory=list)
+
+
+class _Reader:
+    """Turns what a user says into a design."""
+
+    def __init__(self, case: Case, source: str) -> None:
+        self.case, self.source = case, source
+        parts = [get(case, path) for path in all_paths(case)]
+        self.materials = {part.name: part for part in parts if isinstance(part, Material)}
+
+    def design(self, axes: Any) -> Design:
+        """Read axes, put them together and try some variants."""
+        directions: list[_Direction] = []
+        for part in axes if isinstance(axes, (list, tuple)) else [axes]:
+            if isinstance(part, RandomDesign):
+                directions.append(self.sample(part))
+            elif isinstance(part, Replicas):
+                directions.append(self.replicas(part))
+            elif isinstance(part, Mapping):
+                directions += [self.axis(key, values) for key, values in part.items()]
+            else:
+                raise Hint(f"{part!r:.60} says of no path which values it takes", _EXAMPLE)
+        if not directions:
+            raise Hint("nothing varies", f"{_EXAMPLE}, or rb.simulate for one run")
+        names = [direction.name for direction in directions]
+        for name in names:
+            if names.count(name) > 1:
+                raise Hint(f"two dimensions are called {name!r}", '{"a name": {path: values, path: values}}')
+        for direction in directions:
+            for values in direction.values:
+                if values.parameter.path in {*names} - {direction.name}:
+                    raise Hint(f"{values.parameter.path} varies, but another dimension is called so", "another name")
+        design = Design(
+            tuple(names),
+            tuple(direction.size for direction in directions),
+            _Grid(self.case, directions).columns(),
+            {name: coord for direction in directions for name, coord in _coordinates(direction)},
+        )
+        self.try_some(design)
+        return design
+
+    def parameter(self, path: Any) -> Parameter:
+        return Parameter(self.case, path, self.source, self.materials)
+
+    def axis(self, key: Any, values: Any) -> _Direction:
+        """One item of a mapping."""
+        if isinstance(values, Mapping):
+            linked = dict(values)
+        elif not isinstance(key, tuple):
+            linked = {key: values}
+        elif isinstance(values, (list, tuple)) and len(values) == len(key) == len(set(key)):
+            linked = dict(zip(key, values, strict=True))
+        else:
+            raise Hint(
+                f"{key}: as many lists of values are needed, one for each path", "{(path, path): (values, values)}"
+            )
+        name = key[0] if isinstance(key, tuple) and key else key
+        if not isinstance(name, str) or not name or not linked:
+            raise Hint(f"{key!r} is no path", _EXAMPLE)
+        read = [self.parameter(path).values(given) for path, given in linked.items()]
+        sizes = {one.parameter.path: one.array.size for one in read}
+        if len(set(sizes.values())) > 1:
+            told = ", ".join(f"{path} has {size}" for path, size in sizes.items())
+            raise Hint(f"parameters that vary together need as many values each, but {told}")
+        return _Direction(name, read[0].array.size, read)
+
+    def sample(self, design: RandomDesign) -> _Direction:
+        """Points of a random design."""
+        read = []
+        for (path, given), points in zip(design.ranges.items(), design.points().T, strict=True):
+            parameter = self.parameter(path)
+            if isinstance(given, (str, Mapping)) or not hasattr(given, "__len__") or len(given) < 2:
+                raise parameter.wrong(
+                    "a pair of the smallest and the largest value is needed", '("0.1 mm", "2 mm")', None, given
+                )
+            if parameter.number(given[0], 0) is None:
+                choice = objects([parameter.read(item, which) for which, item in enumerate(given)])
+                read.append(Values(parameter, choice[(points * len(choice)).astype(int)], None))
+                continue
+            if len(given) > 2:
+                raise parameter.wrong(
+                    "a pair of the smallest and the largest value is needed", "an axis of its own", None, given
+                )
+            low, high, unit = parameter.ends(*given)
+            if not low < high:
+                raise parameter.wrong("the first value must be the smaller one", "", None, given)
+            if path not in design.log:
+                read.append(Values(parameter, low + (high - low) * points, unit))
+            elif low > 0:
+                read.append(Values(parameter, low * (high / low) ** points, unit))
+            else:
+                raise parameter.wrong(
+                    "spread in its logarithm it must be greater than zero", "a positive smallest value", None, given
+                )
+        return _Direction("sample", design.count, read)
+
+    def replicas(self, replicas: Replicas) -> _Direction:
+        """Small offsets."""
+        read: list[Values] = []
+        for (path, reach), offsets in zip(replicas.reach.items(), replicas.offsets().T, strict=True):
+            parameter = self.parameter(path)
+            number = parameter.number(reach, "reach")
+            if number is None or number[0] <= 0:
+                raise parameter.wrong("a reach greater than zero is needed", '"1 um"', "reach", reach)
+            if parameter.place in [other.parameter.place for other in read]:
+                raise Hint(f"{path} varies twice")
+            read.append(Values(parameter, number[0] * offsets, number[1]))
+        return _Direction("replica", replicas.count, [], read)
+
+    def try_some(self, design: Design) -> None:
+        """Build the extreme variants and a few more."""
+        corners = itertools.product(*({0, length - 1} for length in design.shape))
+        tried = [int(np.ravel_multi_index(corner, design.shape)) for corner in itertools.islice(corners, 4 * _TRIED)]
+        for values in design.columns.values():
+            flat = values.ravel()
+            numbers = flat.dtype.kind == "f"
+            for which in (flat.argmin(), flat.argmax()) if numbers else range(min(flat.size, 8 * _TRIED)):
+                tried.append(int(np.ravel_multi_index(np.unravel_index(which, values.shape), design.shape)))
+        tried += np.linspace(0, design.size - 1, _TRIED).astype(int).tolist()
+        for index in dict.fromkeys(tried):
+            try:
+                design.case_at(self.case, index)
+            except CaseError as error:
+                units = {path: unit_of(self.case, path) for path in design.columns}
+                told = ", ".join(
+                    f"{path} = {_label(value)}" + (f" {units[path]}" if units[path] not in (None, "1") else "")
+                    for path, value in design.values_at(index).items()
+                )
+                said = str(error).removeprefix("case: ").replace("\n", "\n  ")
+                raise CaseError(f"{self.source}: variant {index} does not fit: {told}\n  {said}") from None
+
+
+class _Grid:
+    """Puts the dimensions together."""
+
+    def __init__(self, case: Case, directions: list[_Direction]) -> None:
+        self.case, self.directions = case, directions
+        self.parameters: dict[Place, Parameter] = {}
+        self.found: dict[Place, Column] = {}
+
+    def columns(self) -> dict[str, Column]:
+        """Values by path; start positions, which may need the gap, come last."""
+        for starts in (False, True):
+            for number, direction in enumerate(self.directions):
+                for values in direction.values:
+                    if values.parameter.is_start == starts:
+                        self.add(values.parameter, self.reduced(values, number))
+            for number, direction in enumerate(self.directions):
+                for values in direction.offsets:
+                    if values.parameter.is_start == starts:
+                        self.move(values.parameter, self.reduced(values, number))
+        return {self.parameters[place].path: column for place, column in self.found.items()}
+
+    def add(self, new: Parameter, column: Column) -> None:
+        """Let a parameter vary, unless it does already."""
+        for old in self.parameters.values():
+            if old.place == new.place:
+                raise Hint(f"{new.path} varies twice" + (f", also as {old.path}" if old.path != new.path else ""))
+            pairs = new.part.alternatives if old.place[:-1] == new.place[:-1] else ()
+            if (old.name, new.name) in pairs or (new.name, old.name) in pairs:
+                raise Hint(f"{old.path} and {new.path} exclude each other", "one of them")
+        self.parameters[new.place], self.found[new.place] = new, column
+
+    def move(self, parameter: Parameter, offsets: Column) -> None:
+        """Add offsets to what an axis or the case gives."""
+        if parameter.place not in self.found:
+            self.add(parameter, self.now(parameter))
+        base = self.found[parameter.place]
+        if base.dtype.kind != "f":
+            raise parameter.wrong("its values are no numbers that could be moved a little")
+        moved = base + offsets
+        self.found[parameter.place] = self.mirrored(parameter, moved) if parameter.is_start else moved
+
+    def now(self, parameter: Parameter) -> Column:
+        """What the case gives."""
+        number = None if parameter.now is None else parameter.number(parameter.now)
+        if number is None:
+            each = f"{parameter.path}[0]" if isinstance(parameter.now, (list, tuple)) else ""
+            raise parameter.wrong("the case gives no one number that could be moved a little", each)
+        return self.reduced(Values(parameter, np.array([number[0]]), number[1]), 0)
+
+    def reduced(self, values: Values, number: int) -> Column:
+        """Values along one dimension; lengths of the start as fractions of the gap."""
+        shape = [1] * len(self.directions)
+        shape[number] = values.array.size
+        column = values.array.reshape(shape)
+        return column / self.gap(values.parameter) if values.parameter.is_start and values.unit == "m" else column
+
+    def gap(self, start: Parameter) -> Column:
+        """Gap of the damper of a start position."""
+        number = int(start.place[1])
+        damper = self.case.dampers[number]
+        own = {place[2:]: column for place, column in self.found.items() if place[:2] == ("dampers", number)}
+        length, gap = own.get(("cavity_length",)), own.get(("gap",), np.array(damper.clearance / 2))
+        wholes: set[Place] = {("balls",), *(("balls", ball) for ball in range(len(damper.balls)))}
+        if ("dampers",) in self.found or () in own or (length is not None and wholes & own.keys()):
+            raise start.wrong("what gives the gap varies as a whole", "fractions of the gap, -1 to 1")
+        if length is not None:
+            gap = length / 2
+            for ball, sphere in enumerate(damper.balls):
+                radius, diameter = own.get(("balls", ball, "radius")), own.get(("balls", ball, "diameter"))
+                gap = gap - (
+                    diameter / 2 if diameter is not None else sphere.radius or 0.0 if radius is None else radius
+                )
+        if not np.all(gap > 0):
+            raise start.wrong("a length needs a gap greater than zero", "fractions of the gap, -1 to 1")
+        return gap
+
+    def mirrored(self, parameter: Parameter, start: Column) -> Column:
+        """Start positions inside the cavity, which may be displaced."""
+        damper = self.case.dampers[int(parameter.place[1])]
+        modes = self.case.modes
+        cavity = float(modes.shape(damper.point) @ modes.q0)
+        centre = cavity / self.gap(parameter) if cavity else 0.0
+        beside = start - centre
+        return np.where(np.abs(beside) > 1, np.copysign(2.0, beside) - beside, beside) + centre
+
+
+def _coordinates(direction: _Direction) -> Iterator[tuple[str, tuple[str, Column, dict[str, str]]]]:
+    """The coordinates along one dimension."""
+    name = direction.name
+    if name not in [values.parameter.path for values in direction.values]:
+        yield name, (name, np.arange(direction.size), {"units": "1", "long_name": f"number of {name}"})
+    for values in direction.values:
+        path = values.parameter.path
+        attrs = {"long_name": _spoken(path)} | ({} if values.unit is None else {"units": values.unit})
+        yield path, (name, _labels(values.array) if values.unit is None else values.array, attrs)
+    for values in direction.offsets:
+        path = f"{values.parameter.path} offset"
+        yield path, (name, values.array, {"units": str(values.unit), "long_name": _spoken(path)})
+
+
+def _spoken(path: str) -> str:
+    return path.replace(".", " ").replace("_", " ")
+
+
+def _labels(items: Column) -> Column:
+    """Texts that tell objects apart."""
+    different = {id(item): item for item in items}
+    texts = {key: _label(item) for key, item in different.items()}
+    first: dict[str, Any] = {}
+    if any(first.setdefault(texts[key], item) != item for key, item in different.items()):
+        return np.array([f"{texts[id(item)]} ({number})" for number, item in enumerate(items, start=1)])
+    return np.array([texts[id(item)] for item in items])
+
+
+def _label(value: Any) -> str:
+    """A short text for a value."""
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(_label, value))}]"
+    if not isinstance(value, Part):
+        return str(value)
+    if getattr(value, "name", ""):
+        return str(getattr(value, "name", ""))
+    given = {key: _label(getattr(value, key)) for key in sorted(value.model_fields_set - {"kind"})}
+    if isinstance(value, Constant) and given.keys() == {"e"}:
+        return given["e"]
+    kind = getattr(value, "kind", type(value).__name__)
+    return f"{kind}({', '.join(f'{key}={text}' for key, text in given.items())})" if given else str(kind)
