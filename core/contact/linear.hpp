@@ -48,7 +48,8 @@ struct LinearDashpot {
     real plastic(const Memory&, real) const { return 0; }
 
     real boundary(const Memory& m, real x, real rate) const {
-        return zero_overlap != 0 || m.damping == 0 ? x : force(m, x, rate);
+        return zero_overlap != 0 || m.damping == 0 ? x
+                                                   : stiffness * x * std::fabs(x) * x * x + m.damping * rate;
     }
     Next cross(Memory&, real, real) const { return zero_overlap != 0 ? Next::open : Next::release; }
 };

@@ -8,7 +8,8 @@ namespace rattlebox {
 
 class ClosedContacts : protected Touching {
     Dop853 integrator_;
-    std::vector<real> partial_, scale_;
+    std::vector<real> partial_, scale_, slope_, ahead_, behind_;
+    static constexpr real roughly = 1e-8; // of a step: for peaks, whose error is its square
 
 protected:
     // ---- closed contacts
@@ -110,8 +111,9 @@ protected:
     }
 
     // Where in a step of length h from y_ the function turns from `before` (>= 0) to <= 0: the far end of a
-    // bracket that has shrunk to rounding. Every probe is a step of the integrator itself.
-    template <class F> real locate(real h, real before, real after, F&& f) {
+    // bracket that has shrunk to `part` of it, by default to rounding. Every probe is a step of the
+    // integrator itself.
+    template <class F> real locate(real h, real before, real after, F&& f, real part = 4 * epsilon) {
         real low = 0, high = h, f_low = before, f_high = after;
         int side = 0;
         for (int iteration = 0; iteration < 80 && f_high != 0; ++iteration) {
@@ -121,7 +123,7 @@ protected:
             if (iteration % 3 == 2)
                 next += edge; // step over the root, so that the bracket shrinks from both ends
             if (!(next > low && next < high) || iteration > 20) next = low + 0.5 * width;
-            if (width <= 4 * epsilon * h) break;
+            if (width <= part * h) break;
             integrator_.step(system_, y_.data(), next, partial_.data());
             const real value = f(partial_.data());
             if (value > 0) {
@@ -227,15 +229,18 @@ protected:
                 }
             };
             for (std::size_t j = 0; j < system_.active.size(); ++j)
-                consider(Event::boundary, static_cast<int>(j), boundary(y_.data(), j),
+                consider(Event::boundary, static_cast<int>(j), std::fmax(boundary(y_.data(), j), 0.0),
                          [&](const real* y) { return boundary(y, j); });
             for (std::size_t r = 0; r < released_.size(); ++r) {
                 const Released& released = released_[r];
                 consider(Event::opened, static_cast<int>(r),
                          -gap(problem_, contact(released.contact), y_.data()).value,
                          [&](const real* y) { return -gap(problem_, contact(released.contact), y).value; });
-                consider(Event::engaged, static_cast<int>(r), std::fmax(apart(y_.data(), released), 0.0),
-                         [&](const real* y) { return apart(y, released); });
+                // Only a force that grows: one that was just released may still push by rounding.
+                const real was = apart(y_.data(), released);
+                if (apart(trial_.data(), released) < was)
+                    consider(Event::engaged, static_cast<int>(r), std::fmax(was, 0.0),
+                             [&](const real* y) { return apart(y, released); });
             }
             if (!system_.stuck.empty()) {
                 std::vector<real> work(n);
@@ -278,7 +283,8 @@ protected:
                         retry = true;
                     }
                 } else if (after.value <= 0) {
-                    if (after.rate >= 0) continue; // parting, by less than rounding can tell
+                    if (after.rate >= 0 && before.value <= blur)
+                        continue; // parting, by less than rounding can tell
                     consider(Event::touch, c, std::fmax(before.value, 0.0), value);
                 } else if (before.rate < 0 && after.rate > 0 &&
                            std::fmin(before.value, after.value) <
@@ -444,29 +450,31 @@ protected:
             const real before = system_.approach(y_.data(), c), after = system_.approach(trial_.data(), c);
             if (before > 0 && after < 0) {
                 const real turn =
-                    locate(h, before, after, [&](const real* y) { return system_.approach(y, c); });
+                    locate(h, before, after, [&](const real* y) { return system_.approach(y, c); }, roughly);
                 integrator_.step(system_, y_.data(), turn, partial_.data());
                 note(j, partial_.data());
             }
-            // A maximum inside: the force rises at the step's start and falls at its end.
-            const auto force_at = [&](real where) {
-                integrator_.step(system_, y_.data(), where, partial_.data());
-                return system_.force(partial_.data(), j);
-            };
-            const real probe = 1e-3 * h;
-            const auto rise = [&](real where) { return force_at(where + probe) - force_at(where - probe); };
-            real low = probe, high = h - probe, f_low = rise(low), f_high = rise(high);
-            if (!(f_low > 0 && f_high < 0)) continue;
-            for (int pass = 0; pass < 8; ++pass) {
-                real next = (low * f_high - high * f_low) / (f_high - f_low);
-                if (pass % 3 == 2) next = 0.5 * (low + high);
-                const real value = rise(next);
-                (value > 0 ? low : high) = next;
-                (value > 0 ? f_low : f_high) = value;
-            }
-            force_at((low * f_high - high * f_low) / (f_high - f_low));
+            const real rises = force_slope(y_.data(), h, j), falls = force_slope(trial_.data(), h, j);
+            if (!(rises > 0 && falls < 0)) continue;
+            const real top =
+                locate(h, rises, falls, [&](const real* y) { return force_slope(y, h, j); }, roughly);
+            integrator_.step(system_, y_.data(), top, partial_.data());
             note(j, partial_.data());
         }
+    }
+
+    // Slope of the force of j along the motion through y, up to a positive factor.
+    real force_slope(const real* y, real h, std::size_t j) {
+        const std::size_t n = system_.size();
+        slope_.resize(n);
+        ahead_.resize(n);
+        behind_.resize(n);
+        system_(y, slope_.data());
+        for (std::size_t i = 0; i < n; ++i) {
+            ahead_[i] = y[i] + 1e-4 * h * slope_[i];
+            behind_[i] = y[i] - 1e-4 * h * slope_[i];
+        }
+        return system_.force(ahead_.data(), j) - system_.force(behind_.data(), j);
     }
 
 public:

@@ -293,7 +293,8 @@ public:
             const real change = sweep();
             if (!(change < 1)) return false;
             // The next change would be near rounding, or it no longer falls because it is rounding.
-            if (change * change < 16 * epsilon * before || (change < 64 * epsilon && change > 0.1 * before)) {
+            if (change * change < 0.01 * problem_.settings.tolerance * before ||
+                (change < 64 * epsilon && change > 0.1 * before)) {
                 rates();
                 return true;
             }

@@ -42,6 +42,12 @@ struct Settings {
     real dt_flight = 5e-6, dt_contact = 3e-8; // two_step
     bool adaptive_inner = false;              // two_step: dopri5 instead of rk4
     bool collocation = true;                  // event_driven: lone contacts by collocation in phase
+
+    // What the ledger may miss of the energy put in; none for fixed steps, whose error it measures.
+    real closure_bound() const {
+        if (method == Method::two_step) return infinity;
+        return method == Method::newton ? 1e-8 : std::fmax(1e-8, 1e4 * tolerance);
+    }
 };
 
 struct Problem {

@@ -174,7 +174,7 @@ public:
             for (std::size_t j = 0; j < n; ++j) {
                 const real x = y[x_index(j)];
                 clock_[j] = x == smallest ? 1 : cube(smallest / x);
-                total += clock_[j];
+                total += std::fabs(clock_[j]);
             }
             clock = cube(smallest) / total;
         }

@@ -300,7 +300,7 @@ public:
             std::swap(y_, next_);
             t = end;
             ++(closed ? result_.counts.contact_steps : result_.counts.flights);
-            if (!std::isfinite(y_[0])) {
+            if (!std::all_of(y_.begin(), y_.end(), [](real v) { return std::isfinite(v); })) {
                 result_.status = Status::not_finite;
                 break;
             }

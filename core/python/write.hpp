@@ -67,6 +67,7 @@ inline nb::dict write(const Problem& problem, Result&& r, double seconds) {
     c["sticks"] = r.counts.sticks;
     d["counts"] = c;
     d["status"] = static_cast<int>(r.status);
+    d["closure_bound"] = problem.settings.closure_bound();
     d["stopped_at"] = r.stopped_at;
     d["stopped_contact"] = r.stopped_contact;
     d["stopped_value"] = r.stopped_value;

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import fields, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -189,6 +191,8 @@ def complaints(case: rb.Case) -> list[str]:
         found.append(f"{run.status} without a word on what to try")
     if replace(a, wall_time=0.0) != replace(again.arrays, wall_time=0.0):
         found.append("a second run differs")
+    if run.status == "too_many_events" and a.counts["events"] < getattr(case.method, "max_events", 0) // 2:
+        found.append("contact steps without events have spent the budget")
     if run.status != "not_finite":
         found += [f"{name} is not finite" for name in strange(a)]
     ledger = run.ledger
@@ -251,3 +255,9 @@ def escapes(case: rb.Case, run: rb.Run) -> list[str]:
 def test_a_random_case_keeps_what_is_promised(case: rb.Case) -> None:
     """Any case ends with a status, without NaN, with a ledger that closes, and with the same bits when run again."""
     assert complaints(case) == []
+
+
+@pytest.mark.parametrize("file", sorted((Path(__file__).parent / "found").glob("*.toml")), ids=lambda file: file.stem)
+def test_a_case_that_once_failed_keeps_what_is_promised(file: Path) -> None:
+    """Cases that broke a promise before stay mended."""
+    assert complaints(rb.Case.from_file(file)) == []

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rattlebox.engines.core import core
 from rattlebox.engines.pack import pack
-from rattlebox.engines.status import describe
+from rattlebox.engines.status import LEDGER_OPEN, describe
 from rattlebox.results.arrays import ImpactArrays, RunArrays
 from rattlebox.results.provenance import Provenance
 from rattlebox.results.run import Run
@@ -61,7 +62,11 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
 def _run(case: Case, raw: dict[str, Any]) -> Run:
     arrays = _arrays(case, raw)
     provenance = Provenance.now(method=case.method.kind, seed=case.seed)
-    return Run(arrays, case_toml=case.to_toml, provenance=provenance)
+    run = Run(arrays, case_toml=case.to_toml, provenance=provenance)
+    if run.status == "finished" and run.closure > raw["closure_bound"]:
+        status, message = describe(LEDGER_OPEN, case.duration, "", run.closure)
+        run = Run(replace(arrays, status=status, message=message), case_toml=case.to_toml, provenance=provenance)
+    return run
 
 
 def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:

@@ -24,7 +24,13 @@ STATUSES: tuple[tuple[str, str], ...] = (
         "not_finite",
         "The motion grew beyond all numbers at t = {time:.9g} s. Shorten the time steps of the TwoStep method.",
     ),
+    (
+        "ledger_open",
+        "The run reached its end, but its energy ledger closes only to {value:.2g} of the energy put in: do not trust it. "
+        "Lower the tolerance, and compare with another method.",
+    ),
 )
+LEDGER_OPEN = [name for name, _ in STATUSES].index("ledger_open")
 
 
 def describe(status: int, time: float, contact: str, value: float) -> tuple[str, str]:
