@@ -1,0 +1,71 @@
+"""A grid of variants, cut into blocks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Boxes of a grid that are unbroken ranges of its variants, counted in C order, too.
+
+    A block is thus a range for the core, a region of the result, and one file of a store for each variable.
+
+    Parameters
+    ----------
+    shape
+        Shape of the grid.
+    box
+        Shape of a block, ones before its first other number and whole rows after it; blocks at an end are smaller.
+    """
+
+    shape: tuple[int, ...]
+    box: tuple[int, ...]
+
+    @classmethod
+    def of(cls, shape: Sequence[int], size: int) -> Blocks:
+        """Cut into blocks of at most some size, as equal as they can be.
+
+        Parameters
+        ----------
+        shape
+            Shape of the grid.
+        size
+            Largest number of variants in a block, 1 or more.
+        """
+        box: list[int] = []
+        for length in reversed(shape):
+            parts = math.ceil(length / max(1, size))
+            box.append(math.ceil(length / parts))
+            size //= length
+        return cls(tuple(shape), tuple(reversed(box)))
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Number of blocks along each dimension."""
+        return tuple(math.ceil(length / edge) for length, edge in zip(self.shape, self.box, strict=True))
+
+    def __len__(self) -> int:
+        return math.prod(self.counts)
+
+    def region(self, block: int) -> tuple[slice, ...]:
+        """Return where a block lies in the grid."""
+        place = np.unravel_index(block, self.counts) if self.shape else ()
+        return tuple(
+            slice(int(i) * edge, min((int(i) + 1) * edge, length))
+            for i, edge, length in zip(place, self.box, self.shape, strict=True)
+        )
+
+    def sides(self, block: int) -> tuple[int, ...]:
+        """Return the shape of a block."""
+        return tuple(part.stop - part.start for part in self.region(block))
+
+    def range(self, block: int) -> tuple[int, int]:
+        """Return the first variant of a block and the one after its last."""
+        corner = tuple(part.start for part in self.region(block))
+        start = int(np.ravel_multi_index(corner, self.shape)) if self.shape else 0
+        return start, start + math.prod(self.sides(block))

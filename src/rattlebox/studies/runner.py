@@ -1,0 +1,300 @@
+"""Where a study runs, block by block: threads of this process, or the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+import threading
+import time
+import warnings
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager
+from importlib import import_module
+from itertools import zip_longest
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.model.errors import CaseError
+
+from .bar import telling
+from .blocks import Blocks
+from .store import Memory, Output, Plan, Store
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from distributed import Client
+
+Values = Mapping[str, NDArray[Any]]
+Block = tuple[int, int, int]  # number, first variant, the one after the last
+
+_BLOCKS = 2000  # at most, so that a store of weeks has no millions of files; a stop loses no more than one in so many
+_BLOCK_BYTES = 2**27
+_HERE_SECONDS = 1.0
+_DASK_SECONDS = 5.0
+_SHARE = 16  # blocks for each worker of a cluster, at least, unless they would take less than the next
+_DASK_LEAST_SECONDS = 0.5
+
+
+class Task(Protocol):
+    """Work on many variants that can be cut anywhere: the bits of a variant depend on nothing but its number."""
+
+    @property
+    def size(self) -> int:
+        """Number of variants."""
+
+    @property
+    def outputs(self) -> Mapping[str, Output]:
+        """By name: further dimensions with their lengths, number type, attributes."""
+
+    def describe(self) -> Mapping[str, Any]:
+        """What is computed besides the design, in JSON's types: what differs in it is another study."""
+
+    def run(self, start: int, stop: int, *, threads: int, cancelled: Callable[[], bool] | None) -> Values | None:
+        """Return each output of variants start to stop, variants first; anything soon after `cancelled`."""
+
+
+class Grid(Protocol):
+    """The variants: see Design."""
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Names of the dimensions."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Their lengths."""
+
+    def coords(self) -> Mapping[str, Any]:
+        """Coordinates as for a Dataset."""
+
+    def describe(self) -> Mapping[str, Any]:
+        """What JSON can hold of it; equal for equal designs."""
+
+
+class Stopped(KeyboardInterrupt):
+    """A study that was stopped by Ctrl-C, with a message that says how to go on."""
+
+
+def run_task(
+    task: Task,
+    *,
+    design: Grid,
+    store: str | os.PathLike[str] | None = None,
+    on: Client | None = None,
+    threads: int | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
+    block: int | None = None,
+    coords: Mapping[str, Any] | None = None,
+) -> xr.Dataset:
+    """Run all variants of a task.
+
+    Parameters
+    ----------
+    task
+        What to compute of each variant.
+    design
+        The grid of variants.
+    store
+        Folder on disk for the result, which need not exist. What is finished is there whatever happens, and the same
+        call goes on from it.
+    on
+        Client of a Dask cluster; default this process.
+    threads
+        Threads that share a block; default as many as this process may use cores, or one on a cluster.
+    progress
+        True or False for a bar, default a bar on a terminal; or a function of the number of variants that are there and
+        of all.
+    block
+        Largest number of variants in a block; default so many as take about a second, or five on a cluster.
+    coords
+        Further coordinates.
+
+    Returns
+    -------
+    xarray.Dataset
+        Each output over the grid and its own dimensions, in memory or, with `store`, opened on disk. The bits
+        depend neither on blocks, threads, workers nor on stops.
+
+    Raises
+    ------
+    CaseError
+        When the store holds something else or is being written to, or when the cluster fails.
+    OSError
+        When the store cannot be written.
+    Stopped
+        After Ctrl-C.
+    """
+    from rattlebox import __version__
+
+    threads = threads or (1 if on else cores())
+    plan = Plan(
+        dims=tuple(design.dims),
+        shape=tuple(design.shape),
+        outputs=task.outputs,
+        coords={**design.coords(), **(coords or {})},
+        about={**task.describe(), "design": dict(design.describe()), "version": __version__, "core": _core()},
+    )
+
+    def cut() -> Blocks:
+        return Blocks.of(plan.shape, block or _block_size(task, plan, on, threads))
+
+    done = 0
+    try:
+        with ExitStack() as stack:
+            kept: Store | Memory = Memory(plan, cut()) if store is None else Store(store, plan, cut)
+            stack.enter_context(kept)
+            tell = stack.enter_context(telling(progress, task.size))
+            blocks: list[Block] = [(i, *kept.blocks.range(i)) for i in range(len(kept.blocks))]
+            done = sum(stop - start for i, start, stop in blocks if kept.finished[i])
+            tell(done)
+            todo = [entry for entry in blocks if not kept.finished[entry[0]]]
+            results = _on_cluster(on, task, todo, threads) if on else _here(task, todo, threads)
+            stack.callback(results.close)
+            for (number, start, stop), values in results:
+                kept.write(number, values)
+                done += stop - start
+                tell(done)
+            return kept.result()
+    except KeyboardInterrupt:
+        raise Stopped(_how_to_go_on(done, task.size, store)) from None
+
+
+def cores() -> int:
+    """Return how many processor cores this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on every system
+        return os.cpu_count() or 1
+
+
+def _core() -> str:
+    """Name of the instructions that decide the last bits."""
+    from rattlebox.engines.core import choice
+
+    level = choice()[0]
+    return platform.machine() if level == "native" else level
+
+
+def _how_to_go_on(done: int, total: int, store: str | os.PathLike[str] | None) -> str:
+    if store is None:
+        return f"stopped after {done:,} of {total:,} variants, which are lost; with a store, they would be kept"
+    return f"stopped; {done:,} of {total:,} variants are in {os.fspath(store)}, and the same command goes on from there"
+
+
+# ---- how large a block is
+
+
+def _block_size(task: Task, plan: Plan, on: Any, threads: int) -> int:
+    with _aside() as (pool, stop):
+        each = pool.submit(_seconds_each, task, stop.is_set).result()
+    if on:
+        workers = sum(on.nthreads().values()) or 1
+        share = each * task.size / (workers * threads * _SHARE)
+        seconds = min(max(share, _DASK_LEAST_SECONDS), _DASK_SECONDS)
+    else:
+        seconds = _HERE_SECONDS
+    least = 4 * threads if threads > 1 else 1  # so that no thread waits long for the others
+    size = max(seconds * threads / each, least, task.size / _BLOCKS)
+    return max(1, math.ceil(min(size, _BLOCK_BYTES / max(1, plan.bytes_each))))
+
+
+def _seconds_each(task: Task, cancelled: Callable[[], bool]) -> float:
+    """Time a few variants from all over the study on one thread, more of them until it takes long enough to tell."""
+    count = 1
+    while True:
+        starts = np.unique(np.linspace(0, task.size - count, 4).astype(int))
+        begin = time.perf_counter()
+        for start in starts.tolist():
+            task.run(start, start + count, threads=1, cancelled=_after(begin + 1, cancelled))
+        took = time.perf_counter() - begin
+        if took > 0.05 or 4 * count >= task.size or cancelled():
+            return took / (len(starts) * count)
+        count = min(4 * count, task.size)
+
+
+def _after(end: float, cancelled: Callable[[], bool]) -> Callable[[], bool]:
+    return lambda: cancelled() or time.perf_counter() > end
+
+
+# ---- in this process
+
+
+@contextmanager
+def _aside() -> Iterator[tuple[ThreadPoolExecutor, threading.Event]]:
+    """A thread beside the one that hears Ctrl-C; what runs there is told to stop on leaving, however that happens."""
+    stop = threading.Event()
+    with ThreadPoolExecutor(1) as pool:
+        try:
+            yield pool, stop
+        finally:
+            stop.set()
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _here(task: Task, todo: Sequence[Block], threads: int) -> Generator[tuple[Block, Values]]:
+    """Run block after block, the next one while a result is being kept."""
+    with _aside() as (pool, stop):
+
+        def submit(block: Block) -> Future[Values | None]:
+            return pool.submit(task.run, *block[1:], threads=threads, cancelled=stop.is_set)
+
+        ahead = submit(todo[0]) if todo else None
+        for block, following in zip_longest(todo, todo[1:]):
+            assert ahead
+            values = ahead.result()
+            ahead = submit(following) if following else None
+            yield block, _whole(values)
+
+
+def _whole(values: Values | None) -> Values:
+    if values is None:
+        raise KeyboardInterrupt  # the task heard of Ctrl-C before we did
+    return values
+
+
+# ---- on a cluster
+
+
+def _on_cluster(client: Any, task: Task, todo: Sequence[Block], threads: int) -> Generator[tuple[Block, Values]]:
+    """Run blocks wherever there is a worker; those of workers that die are run again by others."""
+    dask: Any = import_module("distributed")
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Sending large graph")  # not scattered: what is lost there is gone for good
+        shared = client.submit(_itself, task, pure=False)
+    blocks = {
+        client.submit(_block, shared, *block[1:], threads, _core(), pure=False, priority=-block[0]): block
+        for block in todo
+    }
+    try:
+        for future in dask.as_completed(list(blocks)):
+            values = future.result()
+            yield blocks.pop(future), _whole(values)
+    except dask.KilledWorker as error:
+        raise CaseError(
+            f"the cluster gave up: {error.allowed_failures + 1} workers in turn died of one block\n"
+            "  try: workers with more memory, or smaller blocks"
+        ) from None
+    except dask.CancelledError:
+        raise CaseError("the cluster is lost: its scheduler has stopped, or the connection to it has broken") from None
+    finally:
+        client.cancel([shared, *blocks], force=True)
+
+
+def _itself(task: Task) -> Task:
+    return task
+
+
+def _block(task: Task, start: int, stop: int, threads: int, core: str) -> Values | None:
+    """Run a block on a worker."""
+    worker: Any = import_module("distributed").get_worker()
+    if _core() != core:
+        raise CaseError(
+            f"the worker {worker.address} computes with {_core()} instructions, the study with {core}: "
+            "the last bits would differ\n  try: the same RATTLEBOX_SIMD in the environment of all"
+        )
+    tasks, key = worker.state.tasks, worker.get_current_task()
+    return task.run(start, stop, threads=threads, cancelled=lambda: key not in tasks or tasks[key].state == "cancelled")

@@ -1,0 +1,1 @@
+"""Studies that are stopped, killed, resumed, refused."""

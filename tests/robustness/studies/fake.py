@@ -1,0 +1,84 @@
+"""A study whose variants are cheap, chaotic and as slow as one likes; run as a program, it is a study to be killed."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass
+class Grid:
+    """Variants along two axes."""
+
+    shape: tuple[int, ...] = (6, 10)
+    dims: tuple[str, ...] = ("gap", "material")
+    first: float = 3.6
+
+    def coords(self) -> dict[str, Any]:
+        """Numbers with a unit, and names."""
+        names = np.array([f"m{i}" for i in range(self.shape[1])])
+        return {"gap": ("gap", np.linspace(0, 1, self.shape[0]), {"units": "m"}), "material": ("material", names)}
+
+    def describe(self) -> dict[str, Any]:
+        """What is compared."""
+        return {"shape": list(self.shape), "first": self.first}
+
+
+@dataclass
+class Logistic:
+    """The logistic map: its bits tell any difference of order or number."""
+
+    grid: Grid = field(default_factory=Grid)
+    pause: float = 0.0
+    case: str = "[damper]\ngap = 0.1\n[load]\namplitude = 5.0\n"
+    broken: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of variants."""
+        return math.prod(self.grid.shape)
+
+    @property
+    def outputs(self) -> dict[str, Any]:
+        """A number, a status and a row of numbers."""
+        names = "finished too_many_events"
+        return {
+            "value": ((), "float64", {"units": "J", "long_name": "value"}),
+            "status": ((), "int8", {"long_name": "how the run ended", "flag_meanings": names}),
+            "orbit": ((("step", 3),), "float32", {"units": "m", "long_name": "orbit"}),
+        }
+
+    def describe(self) -> dict[str, Any]:
+        """What is compared."""
+        return {"case": self.case, "measure": ["value"]}
+
+    def run(
+        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None
+    ) -> dict[str, NDArray[Any]] | None:
+        """Take a pause for each variant, then compute them."""
+        until = time.perf_counter() + self.pause * (stop - start)
+        while time.perf_counter() < until:
+            if cancelled and cancelled():
+                return None
+            time.sleep(0.002)
+        if self.broken:
+            raise ZeroDivisionError("a fault in the task")
+        number = np.arange(start, stop)
+        x = (number + 0.5) / self.size
+        for _ in range(1000):
+            x = (self.grid.first + 0.4 * number / self.size) * x * (1 - x)
+        orbit = np.stack([x, x**2, x**3], axis=1).astype("f4")
+        return {"value": x, "status": (number % 7 == 0).astype("i1"), "orbit": orbit}
+
+
+if __name__ == "__main__":
+    from rattlebox.studies.runner import run_task
+
+    run_task(Logistic(pause=float(sys.argv[2])), design=Grid(), store=sys.argv[1], block=5)

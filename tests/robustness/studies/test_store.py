@@ -1,0 +1,208 @@
+"""A study on disk: what it holds, what it refuses, and what it says when the disk takes no more."""
+
+from __future__ import annotations
+
+import errno
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rattlebox as rb
+from rattlebox.studies.runner import run_task
+from rattlebox.studies.store import open_study, progress_of
+
+from .fake import Grid, Logistic
+
+FAKE = Path(__file__).with_name("fake.py")
+
+
+def study(store: Path | None = None, task: Logistic | None = None, **options: Any) -> xr.Dataset:
+    """Run the fake study."""
+    task = task or Logistic()
+    return run_task(task, design=task.grid, store=store, block=7, progress=False, **options)
+
+
+def bits(data: xr.Dataset) -> dict[str, bytes]:
+    """Every variable to the last bit."""
+    return {str(name): values.values.tobytes() for name, values in data.data_vars.items()}
+
+
+def test_on_disk_and_in_memory_are_the_same(tmp_path: Path) -> None:
+    """A store holds the same bits, coordinates, dimensions and attributes as a result in memory, for any block size."""
+    here = study()
+    there = study(tmp_path / "maps" / "study.zarr")
+    assert bits(here) == bits(there)
+    xr.testing.assert_equal(here, there.load())
+    assert here.sizes == {"gap": 6, "material": 10, "step": 3}
+    assert here.attrs | {"created": ""} == there.attrs | {"created": ""}
+    assert there.gap.attrs["units"] == "m"
+    assert there.value.attrs == {"units": "J", "long_name": "value"}
+    larger = run_task(Logistic(), design=Grid(), store=tmp_path / "larger.zarr", block=23)
+    assert bits(larger) == bits(here)
+    chosen = run_task(Logistic(), design=Grid(), store=tmp_path / "chosen.zarr")
+    assert bits(chosen) == bits(here)
+
+
+def test_a_store_is_plain_zarr(tmp_path: Path) -> None:
+    """xarray opens a study by itself, with coordinates, texts and attributes, and without a warning."""
+    study(tmp_path / "study.zarr")
+    data = xr.open_zarr(tmp_path / "study.zarr", chunks=None)
+    assert list(data.material.values) == [f"m{i}" for i in range(10)]
+    assert data.attrs["version"] == rb.__version__
+    assert "amplitude" in data.attrs["case"]
+    xr.testing.assert_identical(data, open_study(tmp_path / "study.zarr"))
+
+
+def test_what_is_not_finished_is_not_a_number(tmp_path: Path) -> None:
+    """A study that fails in the middle keeps what it had, tells how much that is, and shows gaps for the rest."""
+
+    def fail(done: int, total: int) -> None:
+        if done >= 20:
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        run_task(Logistic(), design=Grid(), store=tmp_path / "study.zarr", block=7, progress=fail)
+    how_far = progress_of(tmp_path / "study.zarr")
+    assert (how_far.done, how_far.total) == (20, 60)
+    data = open_study(tmp_path / "study.zarr")
+    assert np.isfinite(data.value.values).sum() == 20
+    assert (data.status.values == -128).sum() == 40
+    assert bits(study(tmp_path / "study.zarr")) == bits(study())
+
+
+def test_going_on_computes_nothing_twice(tmp_path: Path) -> None:
+    """A finished study is returned without running anything, and progress starts from what is there."""
+    study(tmp_path / "study.zarr")
+    seen: list[int] = []
+    task = Logistic(broken=True)
+    again = run_task(task, design=Grid(), store=tmp_path / "study.zarr", progress=lambda done, total: seen.append(done))
+    assert bits(again) == bits(study())
+    assert seen == [60]
+
+
+def test_another_study_is_refused_with_the_differences(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A store of another case, design, version or core is refused; what differs is listed; nothing is overwritten."""
+    store = tmp_path / "study.zarr"
+    before = bits(study(store))
+    other = Logistic(case="[damper]\ngap = 0.2\n[load]\namplitude = 5.0\nkind = 'harmonic'\n")
+    with pytest.raises(rb.CaseError) as told:
+        study(store, other)
+    assert str(told.value) == (
+        f"{store} holds another study\n"
+        "  case.damper.gap: 0.1 there, 0.2 here\n"
+        '  case.load.kind: nothing there, "harmonic" here\n'
+        "  try: another folder, or remove this one"
+    )
+    with pytest.raises(rb.CaseError, match=r"design\.first: 3\.6 there, 3\.5 here"):
+        study(store, Logistic(Grid(first=3.5)))
+    with pytest.raises(rb.CaseError, match=r"design\.shape: \[6, 10\] there, \[6, 11\] here\n  try"):
+        study(store, Logistic(Grid(shape=(6, 11))))
+    monkeypatch.setattr(rb, "__version__", "9.9")
+    with pytest.raises(rb.CaseError, match=r'version: "[0-9.]+" there, "9\.9" here'):
+        study(store)
+    monkeypatch.undo()
+    monkeypatch.setattr("rattlebox.studies.runner._core", lambda: "v9")
+    with pytest.raises(rb.CaseError, match="try: RATTLEBOX_SIMD="):
+        study(store)
+    assert bits(open_study(store)) == before
+
+
+def test_many_differences_fit_one_screen(tmp_path: Path) -> None:
+    """Of many differences the first are told and the others counted."""
+    store = tmp_path / "study.zarr"
+    study(store)
+    with pytest.raises(rb.CaseError, match="and 12 more\n"):
+        study(store, Logistic(case="\n".join(f"a{i:02} = {i}" for i in range(18))))
+
+
+def test_folders_of_other_things_are_refused(tmp_path: Path) -> None:
+    """A file, or a folder that holds something else, is left alone."""
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(rb.CaseError, match="is a file; a study needs a folder"):
+        study(tmp_path / "notes.txt")
+    with pytest.raises(rb.CaseError, match="holds other files"):
+        study(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+    for reader in (open_study, progress_of):
+        with pytest.raises(rb.CaseError, match="is not a study"):
+            reader(tmp_path)
+        with pytest.raises(rb.CaseError, match="is not there"):
+            reader(tmp_path / "nowhere")
+
+
+def test_a_later_format_is_refused(tmp_path: Path) -> None:
+    """A store of a later layout is neither read nor written."""
+    study(tmp_path / "study.zarr")
+    kept = tmp_path / "study.zarr" / "progress" / "zarr.json"
+    kept.write_text(kept.read_text().replace('"format": 1', '"format": 2'))
+    for use in (study, open_study, progress_of):
+        with pytest.raises(rb.CaseError, match="later Rattlebox"):
+            use(tmp_path / "study.zarr")
+
+
+def test_a_store_that_was_half_made_is_made_again(tmp_path: Path) -> None:
+    """A store whose maker was killed before its last file is begun anew."""
+    study(tmp_path / "study.zarr")
+    shutil.rmtree(tmp_path / "study.zarr" / "progress" / "finished")
+    (tmp_path / "study.zarr" / "value" / "zarr.json").unlink()
+    assert bits(study(tmp_path / "study.zarr")) == bits(study())
+
+
+def test_a_full_disk_is_told_and_what_is_there_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """When the disk is full in the middle, the blocks before are kept, and with room the study goes on."""
+    from zarr.storage import _local
+
+    put, written = _local._put, 0
+
+    def fill(path: Path, value: Any, exclusive: bool = False) -> int:
+        nonlocal written
+        written += 1
+        if written > 40:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return put(path, value, exclusive)
+
+    monkeypatch.setattr(_local, "_put", fill)
+    with pytest.raises(OSError, match="no space is left") as told:
+        study(tmp_path / "study.zarr")
+    assert told.value.filename == str(tmp_path / "study.zarr")
+    monkeypatch.undo()
+    assert 0 < progress_of(tmp_path / "study.zarr").done < 60
+    assert bits(study(tmp_path / "study.zarr")) == bits(study())
+
+
+def with_own_mounts(script: str) -> subprocess.CompletedProcess[str]:
+    """Run a shell script that may mount."""
+    command = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-ec", script]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+
+
+MOUNTS = shutil.which("unshare") is not None and with_own_mounts("mount -t tmpfs none /mnt").returncode == 0
+
+
+@pytest.mark.skipif(not MOUNTS, reason="this machine does not let users mount")
+@pytest.mark.parametrize(
+    ("mount", "said"),
+    [
+        ("mount -t tmpfs -o size=112k none {0}", "no space is left on the disk"),
+        ("mount -t tmpfs -o ro none {0}", "the study cannot be written: Read-only file system"),
+    ],
+    ids=["full", "read-only"],
+)
+def test_real_disks_that_take_no_more(mount: str, said: str, tmp_path: Path) -> None:
+    """A file system that is really full or read-only ends the study with that message."""
+    script = f"{mount.format(tmp_path)}; {sys.executable} {FAKE} {tmp_path}/study.zarr 0"
+    done = with_own_mounts(script)
+    assert f"{said}\n  try: " in done.stderr.splitlines()[-2] + "\n" + done.stderr.splitlines()[-1] + "\n"
+
+
+def test_a_task_that_fails_is_not_hidden(tmp_path: Path) -> None:
+    """An error of the task arrives as it is, and the store stays usable."""
+    with pytest.raises(ZeroDivisionError, match="a fault in the task"):
+        study(tmp_path / "study.zarr", Logistic(broken=True))
+    assert bits(study(tmp_path / "study.zarr")) == bits(study())
