@@ -80,7 +80,7 @@ def _participation(modes: ModalModel) -> NDArray[np.float64]:
 
 def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> Packed:
     damper = case.dampers[damper_index]
-    between_balls = 0 < place < len(damper.masses)
+    between_balls = 0 < place < len(damper.balls)
     law = damper.ball_contact if between_balls and damper.ball_contact is not None else damper.contact
     if isinstance(case.method, Newton):
         restitution: Restitution | None = case.method.restitution or law.equivalent_restitution(pair)

@@ -13,11 +13,12 @@ from pydantic import BeforeValidator, Field, ValidationError, field_validator, m
 
 from .base import AlsoTakes, Part, vocabulary
 from .dampers import ImpactDamper
+from .elementwise import Vector
 from .errors import CaseError, Hint, at, translate
 from .files import existing, read_toml
 from .materials import Material, materials
 from .methods import AnyMethod, EventDriven, Output
-from .modes import ModalModel, Vector
+from .modes import ModalModel
 from .pairs import contact_pairs
 from .signals import AnySignal, Harmonic, Record, Signal, Unit, as_several, signals_in
 from .structures import AnyStructure, Shaker
@@ -174,7 +175,8 @@ class Case(Part):
     @cached_property
     def modes(self) -> ModalModel:
         """The structure in modal form."""
-        return self.structure.modes()
+        with np.errstate(all="ignore"):  # numbers beyond all bounds are told when the case is checked
+            return self.structure.modes()
 
     def base_acceleration(self) -> tuple[Signal, ...]:
         """Return the signals that accelerate the base [m/s^2]."""

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 
 from .base import Part
+from .elementwise import power, sqrt
 from .errors import Hint
 from .pairs import Pair
 from .restitutions import AnyRestitution, Constant, Restitution, ThorntonRestitution, yield_pressure
@@ -39,6 +40,11 @@ def _soft(restitution: Any) -> None:
             "a contact with duration needs a restitution of at least 1e-6",
             "method = Newton(), whose impacts may be fully plastic",
         )
+
+
+def _constant(e: Any) -> Constant:
+    """The law of a constant restitution, or of an array of them."""
+    return Constant(float(e)) if e.ndim == 0 else Constant.model_construct(e=e)
 
 
 class Tsuji(Contact):
@@ -85,7 +91,7 @@ class Tsuji(Contact):
         if self.restitution is not None:
             return self.restitution
         assert self.alpha is not None
-        return Constant(float(restitution_of_alpha(self.alpha, self.ending)))
+        return _constant(restitution_of_alpha(self.alpha, self.ending))
 
 
 class Linear(Contact):
@@ -126,7 +132,7 @@ class Linear(Contact):
             stiffness = self.stiffness
         else:
             assert self.contact_time is not None
-            stiffness = pair.mass * (math.pi / self.contact_time) ** 2
+            stiffness = pair.mass * power(math.pi / self.contact_time, 2)
         values: dict[str, Any] = {
             "stiffness": stiffness,
             "mass": pair.mass,
@@ -134,7 +140,7 @@ class Linear(Contact):
         }
         if self.damping is not None:
             values["damping"] = self.damping
-            if self.ending == "zero_overlap" and self.damping >= 2 * math.sqrt(stiffness * pair.mass):
+            if self.ending == "zero_overlap" and np.any(self.damping >= 2 * sqrt(stiffness * pair.mass)):
                 raise Hint("with this damping an overlap never returns to zero", 'ending = "zero_force"')
         return "linear", values
 
@@ -143,8 +149,8 @@ class Linear(Contact):
         if self.restitution is not None:
             return self.restitution
         _, values = self.coefficients(pair)
-        zeta = values["damping"] / (2 * math.sqrt(values["stiffness"] * pair.mass))
-        return Constant(float(restitution_of_alpha(math.sqrt(5) * zeta, self.ending)))
+        zeta = values["damping"] / (2 * sqrt(values["stiffness"] * pair.mass))
+        return _constant(restitution_of_alpha(math.sqrt(5) * zeta, self.ending))
 
 
 class Thornton(Contact):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import reduce
+from operator import add
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -11,9 +13,9 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from .base import AlsoTakes, Part
 from .contacts import AnyContact
+from .elementwise import Vector, power, stacked
 from .errors import Hint, at
 from .materials import AnyMaterial, AnyWall
-from .modes import Vector
 from .signals import as_several
 from .units import SI, Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse
 
@@ -52,10 +54,18 @@ class Sphere(Part):
         return values
 
     @property
+    def half(self) -> float:
+        """Radius [m], whichever way the size was given."""
+        assert self.radius is not None
+        return self.radius
+
+    @property
     def weight(self) -> float:
         """Mass [kg]."""
-        assert self.radius is not None
-        return self.mass if self.mass is not None else 4 / 3 * math.pi * self.radius**3 * self.material.density
+        if self.mass is not None:
+            return self.mass
+        volume: float = 4 / 3 * math.pi * power(self.half, 3)
+        return volume * self.material.density
 
 
 def _each(values: Sequence[Any], read: Callable[[Any], Any]) -> list[Any]:
@@ -156,7 +166,7 @@ class ImpactDamper(Part):
     @model_validator(mode="after")
     def _gap_of_cavity(self) -> ImpactDamper:
         if self.cavity_length is not None:
-            row = sum(2 * (ball.radius or 0.0) for ball in self.balls)
+            row = self.row
             if self.cavity_length < row:
                 raise Hint(
                     f"the balls alone are {row:.6g} m long",
@@ -194,6 +204,11 @@ class ImpactDamper(Part):
         return self.name or ("damper" if index == 0 else f"damper{index + 1}")
 
     @property
+    def row(self) -> float:
+        """Length of the balls side by side [m]."""
+        return reduce(add, [2 * ball.half for ball in self.balls])
+
+    @property
     def clearance(self) -> float:
         """Total clearance of the row, twice the gap [m]."""
         assert self.gap is not None
@@ -202,12 +217,12 @@ class ImpactDamper(Part):
     @property
     def masses(self) -> Vector:
         """Of the balls, (n,) [kg]."""
-        return np.array([ball.weight for ball in self.balls])
+        return stacked([ball.weight for ball in self.balls])
 
     @property
     def centres(self) -> Vector:
         """Places of the ball centres from the cavity's centre in the packed, centred row, (n,) [m]."""
-        radii = np.array([ball.radius for ball in self.balls])
+        radii = np.array([ball.half for ball in self.balls])
         edges = np.concatenate([[0.0], np.cumsum(2 * radii)])
         centres: Vector = edges[:-1] + radii - radii.sum()
         return centres
@@ -217,10 +232,10 @@ class ImpactDamper(Part):
         """Reduced start positions, (n,) [m]."""
         half = 0.5 * self.clearance
         places = self.start if isinstance(self.start, list) else [self.start] * len(self.balls)
-        return np.array([parse(p, ("m",))[0] if isinstance(p, str) else p * half for p in places])
+        return stacked([parse(p, ("m",))[0] if isinstance(p, str) else p * half for p in places])
 
     @property
     def velocities0(self) -> Vector:
         """Start velocities, (n,) [m/s]."""
         speeds = self.velocity if len(self.velocity) > 1 else self.velocity * len(self.balls)
-        return np.array(speeds)
+        return stacked(speeds)

@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from .base import Part
+from .elementwise import Vector
 from .errors import Hint, at
-from .modes import Vector
 from .restitutions import AnyRestitution
 from .units import PositiveFrequency, PositiveTime, parse
 

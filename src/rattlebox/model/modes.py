@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from .elementwise import Vector, inverse, total
 from .errors import Hint, nearest
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,5 +53,5 @@ class ModalModel:
 
     def effective_mass(self, name: str | None) -> float:
         """Return the mass that an impact at a point feels, 1 / sum(shape^2) [kg]; infinite where nothing moves."""
-        mobility = float(np.sum(self.shape(name) ** 2))
-        return 1 / mobility if mobility > 0 else float("inf")
+        mass: float = inverse(total(self.shape(name) ** 2))
+        return mass

@@ -4,14 +4,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from .elementwise import exp, power, sqrt
 from .errors import Hint
 from .materials import Material
 
 if TYPE_CHECKING:
     from .case import Case
+
+
+def hardness(poisson: float, yield_stress: float) -> float:
+    """Return C S_y with C = 1.295 exp(0.736 nu) [Pa], the pressure in the middle of a contact at which yield begins."""
+    factor: float = 1.295 * exp(0.736 * poisson)
+    return factor * yield_stress
 
 
 @dataclass(frozen=True)
@@ -31,16 +41,33 @@ class Body:
     mass: float = math.inf
 
     @property
+    def is_flat(self) -> bool:
+        """True for a wall."""
+        return isinstance(self.radius, float) and math.isinf(self.radius)
+
+    @property
     def compliance(self) -> float:
         """(1 - nu^2) / E [1/Pa], 0 for a rigid body."""
-        return 0.0 if self.material is None else (1 - self.material.poisson**2) / self.material.young
+        return 0.0 if self.material is None else (1 - power(self.material.poisson, 2)) / self.material.young
 
     @property
     def hardness(self) -> float:
-        """C S_y with C = 1.295 exp(0.736 nu) [Pa]: the body with the lower value yields first."""
+        """Hardness [Pa]: the body with the lower one yields first."""
         if self.material is None or self.material.yield_stress is None:
             return math.inf
-        return 1.295 * math.exp(0.736 * self.material.poisson) * self.material.yield_stress
+        return hardness(self.material.poisson, self.material.yield_stress)
+
+    def or_weaker(self, other: Body) -> Body:
+        """Return the body that yields first, of two that can; for arrays one of the material that does in each place."""
+        weaker = other.hardness < self.hardness
+        if not isinstance(weaker, np.ndarray):
+            return other if weaker else self
+        assert self.material is not None and other.material is not None
+        chosen = {
+            name: np.where(weaker, getattr(other.material, name), getattr(self.material, name))
+            for name in ("young", "poisson", "yield_stress")
+        }
+        return Body(self.material.model_copy(update=chosen))
 
 
 @dataclass(frozen=True)
@@ -59,7 +86,7 @@ class Pair:
     @property
     def is_wall(self) -> bool:
         """True for a ball against a wall."""
-        return math.isinf(self.below.radius) or math.isinf(self.above.radius)
+        return self.below.is_flat or self.above.is_flat
 
     @property
     def modulus(self) -> float:
@@ -79,7 +106,8 @@ class Pair:
     @property
     def hertz_stiffness(self) -> float:
         """A = (4/3) E* sqrt(R*) [N/m^1.5]."""
-        return 4 / 3 * self.modulus * math.sqrt(self.radius)
+        stiffness: float = 4 / 3 * self.modulus * sqrt(self.radius)
+        return stiffness
 
     def first_to_yield(self, need: str) -> Body:
         """Return the body that yields first.
@@ -89,17 +117,17 @@ class Pair:
         Hint
             When neither material has a yield stress; `need` says who asks.
         """
-        body = min(self.below, self.above, key=lambda b: b.hardness)
-        if math.isinf(body.hardness):
+        bodies = [b for b in (self.below, self.above) if b.material is not None and b.material.yield_stress is not None]
+        if not bodies:
             raise Hint(f"{need} needs a material with a yield stress", 'yield_stress = "1030 MPa" in the material')
-        return body
+        return reduce(Body.or_weaker, bodies)
 
     def against(self, wall: Material | str | None) -> Pair:
         """Return the pair with another wall: a material or "rigid"; None and pairs of balls are left as they are."""
         if wall is None or not self.is_wall:
             return self
         material = None if isinstance(wall, str) else wall
-        if math.isinf(self.below.radius):
+        if self.below.is_flat:
             return replace(self, below=replace(self.below, material=material))
         return replace(self, above=replace(self.above, material=material))
 
@@ -116,9 +144,7 @@ def contact_pairs(case: Case, index: int) -> list[Pair]:
     """
     damper = case.dampers[index]
     wall_mass = case.modes.effective_mass(damper.point)
-    balls = [
-        Body(ball.material, ball.radius or 0.0, mass) for ball, mass in zip(damper.balls, damper.masses, strict=True)
-    ]
+    balls = [Body(ball.material, ball.half, ball.weight) for ball in damper.balls]
 
     def wall(beside: Body) -> Body:
         material = beside.material if damper.wall is None else damper.wall

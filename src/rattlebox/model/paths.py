@@ -113,9 +113,9 @@ def get(case: Case, path: str) -> Any:
 def get_field(part: Part, name: str) -> Any:
     """Return a field of a part, also one that was turned into its alternative."""
     if isinstance(part, Sphere) and name == "diameter":
-        return 2 * (part.radius or 0.0)
+        return 2 * part.half
     if isinstance(part, ImpactDamper) and name == "cavity_length":
-        return part.clearance + sum(2 * (ball.radius or 0.0) for ball in part.balls)
+        return part.clearance + part.row
     return getattr(part, name)
 
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from .base import AlsoTakes, Part
+from .elementwise import pick, power, sqrt
 from .errors import Hint
 from .materials import AnyWall
-from .pairs import Pair
+from .pairs import Pair, hardness
 from .units import SI, Modulus, PositiveVelocity
 
 Coefficients = tuple[str, dict[str, Any]]
@@ -117,16 +118,19 @@ class JacksonGreen(Restitution):
         pair = pair.against(self.wall)
         strength, _ = self._strength(pair)
         pressure = math.pi * strength / 2
-        depth = (pressure / pair.modulus) ** 2 * pair.radius
-        load = 4 / 3 * (pair.radius / pair.modulus) ** 2 * pressure**3
-        return math.sqrt(4 * depth * load / (5 * pair.mass))
+        depth = power(pressure / pair.modulus, 2) * pair.radius
+        load = 4 / 3 * power(pair.radius / pair.modulus, 2) * power(pressure, 3)
+        speed: float = sqrt(4 * depth * load / (5 * pair.mass))
+        return speed
 
     def _strength(self, pair: Pair) -> tuple[float, float]:
         if self.yield_stress is not None:
-            bodies = [b for b in (pair.below, pair.above) if b.material is not None]
-            materials = [b.material for b in bodies if b.material is not None]
-            softest = min(materials, key=lambda m: m.poisson)
-            return 1.295 * math.exp(0.736 * softest.poisson) * self.yield_stress, self.yield_stress / softest.young
+            sides = [body.material for body in (pair.below, pair.above) if body.material is not None]
+            young, poisson = sides[0].young, sides[0].poisson
+            for other in sides[1:]:
+                softer = other.poisson < poisson
+                young, poisson = pick(softer, other.young, young), pick(softer, other.poisson, poisson)
+            return hardness(poisson, self.yield_stress), self.yield_stress / young
         body = pair.first_to_yield("the Jackson-Green law")
         assert body.material is not None and body.material.yield_stress is not None
         return body.hardness, body.material.yield_stress / body.material.young
@@ -166,11 +170,12 @@ class ThorntonRestitution(Restitution):
     def yield_speed(self, pair: Pair) -> float:
         """Return V_y [m/s]."""
         pressure = yield_pressure(pair, self.yield_pressure, "Thornton's law")
-        return float(
-            (math.pi / (2 * pair.modulus)) ** 2
-            * math.sqrt(8 * math.pi * pair.radius**3 / (15 * pair.mass))
-            * pressure**2.5
+        speed: float = (
+            power(math.pi / (2 * pair.modulus), 2)
+            * sqrt(8 * math.pi * power(pair.radius, 3) / (15 * pair.mass))
+            * power(pressure, 2.5)
         )
+        return speed
 
     def coefficients(self, pair: Pair) -> Coefficients:
         """Return the yield speed."""
@@ -195,7 +200,8 @@ class Johnson(Restitution):
         scale = self.speed_scale
         if scale is None:
             strength = yield_pressure(pair, None, "Johnson's law") / 1.6
-            scale = 3.8**4 * (strength / pair.modulus) ** 2 * math.sqrt(2 * strength * pair.radius**3 / pair.mass)
+            root = sqrt(2 * strength * power(pair.radius, 3) / pair.mass)
+            scale = 3.8**4 * power(strength / pair.modulus, 2) * root
         return "johnson", {"speed_scale": scale, "maximum": self.maximum}
 
 

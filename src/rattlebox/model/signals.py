@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, model_validator
 
 from .base import Part
+from .elementwise import power
 from .errors import Hint, at
 from .files import absolute
 from .records import Column, as_columns, read_columns
@@ -135,7 +136,7 @@ class HalfSine(Signal):
         """Return what the core reads."""
         return {
             "kind": "half_sine",
-            "amplitude": float(self.amplitude),
+            "amplitude": +self.amplitude,  # a plain number
             "frequency": math.pi / self.duration,
             "phase": 0.0,
             "start": self.start,
@@ -181,7 +182,7 @@ class Harmonic(Signal):
         """Return what the core reads."""
         return {
             "kind": "harmonic",
-            "amplitude": float(self.amplitude),
+            "amplitude": +self.amplitude,  # a plain number
             "frequency": 2 * math.pi * self.frequency,
             "phase": self.phase,
             "start": self.start,
@@ -190,7 +191,7 @@ class Harmonic(Signal):
 
     def acceleration(self) -> Harmonic:
         """Return the acceleration that belongs to a harmonic displacement."""
-        factor = -((2 * math.pi * self.frequency) ** 2)
+        factor = -power(2 * math.pi * self.frequency, 2)
         return self.model_copy(update={"amplitude": self.amplitude * factor, "unit": "m/s^2"})
 
 

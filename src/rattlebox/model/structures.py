@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 import os
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -10,9 +11,10 @@ import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_serializer, model_validator
 
 from .base import AlsoTakes, Part
+from .elementwise import Vector, power, stacked
 from .errors import Hint, at, nearest
 from .files import absolute, check_finite, existing, read_arrays
-from .modes import ModalModel, Vector
+from .modes import ModalModel
 from .signals import AnySignal, Signal, Unit, signals_in
 from .units import SI, Damping, Frequency, Length, PositiveMass, Stiffness, Velocity, numbers
 
@@ -85,17 +87,17 @@ class SDOF(Part):
         """Reduce to one mode."""
         stiffness = self.stiffness / self.mass
         if self.damping_ratio is not None:
-            decay = self.damping_ratio * stiffness**0.5
+            decay = self.damping_ratio * power(stiffness, 0.5)
         else:
-            decay = (self.damping or 0.0) / (2 * self.mass)
-        root = self.mass**0.5
+            decay = (0.0 if self.damping is None else self.damping) / (2 * self.mass)
+        root = power(self.mass, 0.5)
         return ModalModel(
-            decay=np.array([decay]),
-            stiffness=np.array([stiffness]),
-            shapes={"mass": np.array([1 / root])},
-            participation=np.array([root]),
-            q0=np.array([self.displacement * root]),
-            p0=np.array([self.velocity * root]),
+            decay=stacked([decay]),
+            stiffness=stacked([stiffness]),
+            shapes={"mass": stacked([1 / root])},
+            participation=stacked([root]),
+            q0=stacked([self.displacement * root]),
+            p0=stacked([self.velocity * root]),
         )
 
 
@@ -146,15 +148,15 @@ class Modal(Part):
 
     def modes(self) -> ModalModel:
         """Return the modes."""
-        omega = 2 * np.pi * np.array(self.frequencies)
-        zero = np.zeros(len(omega))
+        omega = [2 * math.pi * frequency for frequency in self.frequencies]
+        zero = [0.0] * len(omega)
         return ModalModel(
-            decay=np.array(self.damping_ratios) * omega,
-            stiffness=omega**2,
-            shapes={name: np.array(row) for name, row in self.shapes.items()},
-            participation=None if self.participation is None else np.array(self.participation),
-            q0=zero if self.displacement is None else np.array(self.displacement),
-            p0=zero if self.velocity is None else np.array(self.velocity),
+            decay=stacked([ratio * w for ratio, w in zip(self.damping_ratios, omega, strict=True)]),
+            stiffness=stacked([w * w for w in omega]),
+            shapes={name: stacked(row) for name, row in self.shapes.items()},
+            participation=None if self.participation is None else stacked(self.participation),
+            q0=stacked(zero if self.displacement is None else self.displacement),
+            p0=stacked(zero if self.velocity is None else self.velocity),
         )
 
 

@@ -1,0 +1,67 @@
+"""Formulas for one number and, to the same bits, for arrays of them.
+
+Parts of a case hold numbers. In a batch (see rattlebox.engines.pack) some of them are arrays that broadcast against each
+other, so that one formula serves one case and a million; what is called a number here, `float`, may then be an array.
+Vectors have their components along the first axis.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from itertools import repeat
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+
+
+def _one_by_one(function: Callable[..., float], x: NDArray[Any], *others: Iterable[Any]) -> Any:
+    """NumPy's own exponentials and powers of arrays can differ in the last bit from those of one number."""
+    return np.fromiter(map(function, x.ravel().tolist(), *others), float, x.size).reshape(x.shape)
+
+
+def power(x: Any, exponent: float) -> Any:
+    """Return x ** exponent."""
+    return _one_by_one(pow, x, repeat(exponent)) if isinstance(x, np.ndarray) else x**exponent
+
+
+def exp(x: Any) -> Any:
+    """Return e ** x."""
+    return _one_by_one(math.exp, x) if isinstance(x, np.ndarray) else math.exp(x)
+
+
+def sqrt(x: Any) -> Any:
+    """Return the square root, which is rounded exactly everywhere."""
+    return np.sqrt(x) if isinstance(x, np.ndarray) else math.sqrt(x)
+
+
+def inverse(x: Any) -> Any:
+    """Return 1 / x, infinity for zero."""
+    if isinstance(x, np.ndarray):
+        return np.divide(1.0, x, out=np.full_like(x, np.inf), where=x != 0)
+    return 1 / x if x else math.inf
+
+
+def pick(condition: Any, one: Any, other: Any) -> Any:
+    """Return one where the condition holds, else the other."""
+    if isinstance(condition, np.ndarray):
+        return np.where(condition, one, other)
+    return one if condition else other
+
+
+def stacked(components: Sequence[Any]) -> Vector:
+    """Put components together to a vector, (n,) or (n, ...)."""
+    for component in components:
+        if isinstance(component, np.ndarray):
+            return np.stack(np.broadcast_arrays(*components))
+    return np.array(components, dtype=float)
+
+
+def total(vector: Vector) -> Any:
+    """Return the sum of the components, added in the same order for one vector and for many."""
+    if vector.ndim == 1:
+        return float(vector.sum())
+    return np.ascontiguousarray(np.moveaxis(vector, 0, -1)).sum(axis=-1)
