@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rattlebox.engines.curves import restitution_curve
     from rattlebox.engines.simulate import simulate, simulate_many
     from rattlebox.results import Run, load
+    from rattlebox.studies.designs import geomspace, linspace, random_design, replicas
 
 __version__ = "0.1.0"
 
@@ -34,6 +35,10 @@ _LATER = {
     "restitution_curve": "rattlebox.engines.curves",
     "Run": "rattlebox.results",
     "load": "rattlebox.results",
+    "geomspace": "rattlebox.studies.designs",
+    "linspace": "rattlebox.studies.designs",
+    "random_design": "rattlebox.studies.designs",
+    "replicas": "rattlebox.studies.designs",
 }
 
 __all__ = [
@@ -69,9 +74,13 @@ __all__ = [
     "analysis",
     "chirp",
     "contact_pairs",
+    "geomspace",
+    "linspace",
     "load",
     "materials",
+    "random_design",
     "random_record",
+    "replicas",
     "restitution_curve",
     "restitution_of_alpha",
     "simulate",
