@@ -65,7 +65,7 @@ struct PhaseGrid {
     real position(real value) const {
         const bool late = value > 0.5 * end;
         const real target = (late ? end - value : value) / end;
-        real x = std::fmin(std::pow(target / 126, 0.2), 0.45);
+        real x = target > 0.2 ? 0.5 - (0.5 - target) * 256 / 630 : std::pow(target / 126, 0.2);
         for (int iteration = 0; iteration < 50; ++iteration) {
             const real change = (target - beta(x)) / (630 * square(square(x * (1 - x))));
             x += change;
@@ -370,13 +370,12 @@ public:
     // dpsi/dt at an instant, but for the closing acceleration's small part.
     real turning(const Instant& now) const { return s_ * wave_ * now.x; }
 
-    // The largest force: a step of Newton in time from the deepest point, and again.
-    real peak_force(const Instant& deepest) const {
-        if (damping_ == 0) return deepest.force;
+    // The largest force: steps of Newton in time, from where it is in a lightly damped contact on its own.
+    real peak_force() const {
         const real b2 = law_.stiffness / contact_->mass, c = damping_ / contact_->mass;
-        real psi = std::acos(zeta_), best = 0;
-        Instant at = deepest;
+        real psi = 0.5 * pi - 8.0 / 3.0 * zeta_, best = 0;
         for (int pass = 0; pass < 6; ++pass) {
+            const Instant at = look(grid_.position(psi));
             const real x = at.x, w = at.rate, x3 = cube(x), dx = w / (4 * x3),
                        dw = -at.force / contact_->mass;
             const real slope = 1.5 * b2 * x * x * w + c * (w * dx + x * dw);
@@ -389,7 +388,6 @@ public:
             const real turned = psi + shift * turning(at);
             if (std::fabs(turned - psi) < 1e-4 || turned < 0.2 || turned > grid_.end - 0.2) break;
             psi = turned;
-            at = look(grid_.position(psi));
         }
         return best;
     }

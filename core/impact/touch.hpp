@@ -9,6 +9,7 @@ namespace rattlebox {
 
 class Touching : protected Progress {
     LoneContact lone_, sampler_;
+    Ledger after_;     // a contact that is not yet accepted
     real fastest_ = 0; // of the balls relative to their cavities, at any hard impact so far
 
 protected:
@@ -80,7 +81,8 @@ protected:
         if (!lone_.prepare(contact(c), *law, loads_, state_, speed, zeta, next_stop() - state_.t))
             return false;
         if (!alone(c, speed, lone_.longest_time()) || !lone_.solve()) return false;
-        Ledger after = ledger_;
+        Ledger& after = after_;
+        after = ledger_;
         const LoneContact::Instant end = lone_.end();
         lone_.finish(end, scratch_, after);
         const real stored = law->stored({}, end.x);
@@ -101,7 +103,7 @@ protected:
         line.separation_speed = -end.rate;
         line.duration = end.time;
         line.peak_overlap = square(square(deepest.x));
-        line.peak_force = lone_.peak_force(deepest);
+        line.peak_force = zeta == 0 ? deepest.force : lone_.peak_force();
         line.energy_lost = end.lost + stored;
         line.complete = true;
         result_.impacts.push_back(line);
@@ -317,7 +319,7 @@ protected:
 
 public:
     Touching(const Problem& problem, const std::atomic<bool>* stop)
-        : Progress(problem, stop), lone_(problem), sampler_(problem) {}
+        : Progress(problem, stop), lone_(problem), sampler_(problem), after_(problem) {}
 };
 
 } // namespace rattlebox
