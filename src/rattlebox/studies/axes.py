@@ -194,6 +194,7 @@ class _Reader:
         for name in names:
             if names.count(name) > 1:
                 raise Hint(f"two dimensions are called {name!r}", '{"a name": {path: values, path: values}}')
+        columns = _Grid(self.case, directions).columns()
         for direction in directions:
             for values in direction.values:
                 if values.parameter.path in {*names} - {direction.name}:
@@ -201,7 +202,7 @@ class _Reader:
         design = Design(
             tuple(names),
             tuple(direction.size for direction in directions),
-            _Grid(self.case, directions).columns(),
+            columns,
             {name: coord for direction in directions for name, coord in _coordinates(direction)},
         )
         self.try_some(design)

@@ -1,0 +1,511 @@
+"""Axes of a study: what values mean, what a design holds, and what is said of bad ones."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rattlebox as rb
+from rattlebox.model.paths import replaced
+from rattlebox.studies.axes import Design
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+@pytest.fixture(scope="module")
+def case() -> rb.Case:
+    """One steel ball, start in the middle of a gap of 0.4 mm."""
+    return rb.Case.from_file(EXAMPLES / "steel_ball.toml")
+
+
+@pytest.fixture(scope="module")
+def row() -> rb.Case:
+    """Five balls on a beam with two loads."""
+    return rb.Case.from_file(EXAMPLES / "row_on_beam.toml")
+
+
+@pytest.fixture(scope="module")
+def shaker() -> rb.Case:
+    """One ball on a vertical shaker."""
+    return rb.Case.from_file(EXAMPLES / "shaker.toml")
+
+
+def refused(case: rb.Case, axes: Any) -> str:
+    """Return what is said of bad axes, and check that it is short."""
+    with pytest.raises(rb.CaseError) as caught:
+        Design.of(case, axes)
+    message = str(caught.value)
+    assert message.startswith("axes: ")
+    assert len(message.splitlines()) <= 6
+    return message
+
+
+def same(one: Design, other: Design) -> bool:
+    """Tell whether two designs are described alike."""
+    return one.describe() == other.describe()
+
+
+# ---- values
+
+
+@pytest.mark.parametrize(
+    ("path", "given", "values", "unit"),
+    [
+        ("damper.gap", ["0.1 mm", "200 um", 3e-4], [1e-4, 2e-4, 3e-4], "m"),
+        ("damper.gap", rb.linspace("0.1 mm", "0.3 mm", 3), [1e-4, 2e-4, 3e-4], "m"),
+        ("load.amplitude", rb.geomspace("10 N", "1 kN", 3), [10.0, 100.0, 1000.0], "N"),
+        ("damper.gap", np.array([1e-4, 2e-4]), [1e-4, 2e-4], "m"),
+        ("damper.gap", xr.DataArray([1e-4, 2e-4]), [1e-4, 2e-4], "m"),
+        ("duration", range(1, 4), [1.0, 2.0, 3.0], "s"),
+        ("structure.damping_ratio", [0, 0.01, np.float32(0.5)], [0.0, 0.01, 0.5], "1"),
+        ("damper.contact.restitution", [0.5, 0.9], [0.5, 0.9], "1"),
+        ("damper.contact.restitution", [rb.Constant(0.5), rb.Constant(0.9)], [0.5, 0.9], "1"),
+        ("damper.velocity", ["0.1 m/s", "200 mm/s"], [0.1, 0.2], "m/s"),
+        ("damper.ball.mass", ["1 kg", "2000 g"], [1.0, 2.0], "kg"),
+        ("damper.ball.diameter", ["60 mm"], [0.06], "m"),
+        ("damper.start", [-1, 0.5], [-1.0, 0.5], "1"),
+        ("method.max_events", [1000, 2000], [1000.0, 2000.0], "1"),
+    ],
+)
+def test_values_are_read_in_si(case: rb.Case, path: str, given: Any, values: list[float], unit: str) -> None:
+    """However values are spelt, the column holds them in SI and the coordinate tells the unit and a name."""
+    design = Design.of(case, {path: given})
+    assert design.columns[path].dtype == np.float64
+    np.testing.assert_allclose(design.columns[path], values, rtol=1e-15)
+    coord = xr.Dataset(coords=design.coords())[path]
+    np.testing.assert_allclose(coord, values, rtol=1e-15)
+    assert coord.attrs == {"units": unit, "long_name": path.replace(".", " ").replace("_", " ")}
+
+
+def test_pint_quantities_are_read(case: rb.Case) -> None:
+    """An array of pint keeps its unit."""
+    from rattlebox.model.units import registry
+
+    design = Design.of(case, {"damper.gap": np.array([0.1, 0.2]) * registry().millimeter})
+    np.testing.assert_allclose(design.columns["damper.gap"], [1e-4, 2e-4], rtol=1e-15)
+
+
+def test_places_in_lists_have_their_units(row: rb.Case) -> None:
+    """Members of lists vary on their own, in the unit of the list."""
+    design = Design.of(
+        row,
+        {
+            "structure.frequencies[0]": ["7 Hz", "9 Hz"],
+            "loads[1].frequency": [f"{2 * np.pi} rad/s"],
+            "damper.balls[2].diameter": ["7 mm"],
+            "damper.start[0]": [-0.6],
+            "damper.velocity": [0.1],
+            "structure.shapes.tip[1]": [0.1, 0.2, 0.3],
+        },
+    )
+    coords = design.coords()
+    units = {name: attrs["units"] for name, (_, _, attrs) in coords.items()}
+    assert units == {
+        "structure.frequencies[0]": "Hz",
+        "loads[1].frequency": "Hz",
+        "damper.balls[2].diameter": "m",
+        "damper.start[0]": "1",
+        "damper.velocity": "m/s",
+        "structure.shapes.tip[1]": "kg^-0.5",
+    }
+    np.testing.assert_allclose(design.columns["loads[1].frequency"].ravel(), [1.0], rtol=1e-15)
+    last = design.case_at(row, design.size - 1)
+    assert isinstance(last.structure, rb.Modal)
+    assert last.structure.frequencies == [9.0, 23.0, 51.0]
+    assert last.structure.shapes["tip"] == [0.5, 0.3, 0.2]
+    assert last.dampers[0].start == [-0.6, -0.2, 0.0, 0.3, 0.6]
+
+
+def test_names_and_parts_are_objects_with_labels(case: rb.Case) -> None:
+    """What is no number comes as objects of the case, and as short texts on the coordinate."""
+    contacts = [rb.Tsuji(restitution=0.9), {"kind": "thornton"}, rb.Linear(stiffness="1 MN/m", damping=5)]
+    design = Design.of(
+        case,
+        {
+            "damper.ball.material": ["steel", "brass"],
+            "damper.contact": contacts,
+            "damper.wall": ["rigid", "steel"],
+            "method.collocation": [True, False],
+        },
+    )
+    assert all(column.dtype == object for column in design.columns.values())
+    assert design.columns["damper.ball.material"].ravel().tolist() == [rb.materials()["steel"], rb.materials()["brass"]]
+    labels = {name: values.tolist() for name, (_, values, _) in design.coords().items()}
+    assert labels["damper.ball.material"] == ["steel", "brass"]
+    assert labels["damper.contact"] == ["tsuji(restitution=0.9)", "thornton", "linear(damping=5, stiffness=1e+06)"]
+    assert labels["damper.wall"] == ["rigid", "steel"]
+    assert design.case_at(case, 4).dampers[0].contact == rb.Thornton()
+
+
+def test_labels_of_different_objects_differ(case: rb.Case) -> None:
+    """Two materials of one name can be told apart."""
+    steel = rb.materials()["steel"]
+    soft = rb.Material(**{**dict(steel), "yield_stress": "500 MPa"})
+    _, labels, _ = Design.of(case, {"damper.ball.material": [steel, soft]}).coords()["damper.ball.material"]
+    assert labels.tolist() == ["steel (1)", "steel (2)"]
+
+
+def test_materials_of_the_case_are_known_by_name() -> None:
+    """A material that the case brings along need not be given again."""
+    case = rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="5 mm", material=rb.Material(name="oak", density=700, young="10 GPa", poisson=0.3)),
+            gap="1 mm",
+            contact=rb.Tsuji(restitution=0.5),
+        ),
+        duration=1,
+    )
+    design = Design.of(case, {"damper.ball.material": ["steel", "oak"]})
+    assert [design.case_at(case, i).dampers[0].balls[0].material.name for i in (0, 1)] == ["steel", "oak"]
+
+
+# ---- dimensions
+
+
+def test_grid_has_one_dimension_an_item(case: rb.Case) -> None:
+    """Columns of a grid stretch along their own dimension only, the last one varying fastest."""
+    design = Design.of(case, {"damper.gap": ["1 mm", "2 mm", "3 mm"], "load.amplitude": ["1 kN", "5 kN"]})
+    assert (design.dims, design.shape, design.size) == (("damper.gap", "load.amplitude"), (3, 2), 6)
+    assert {path: column.shape for path, column in design.columns.items()} == {
+        "damper.gap": (3, 1),
+        "load.amplitude": (1, 2),
+    }
+    variant = design.case_at(case, 3)
+    assert (variant.dampers[0].gap, variant.loads[0].amplitude) == (2e-3, 5000.0)
+    assert replaced(variant, {"damper.gap": "0.4 mm", "load.amplitude": "5 kN"}) == case
+
+
+def test_linked_parameters_share_a_dimension(case: rb.Case) -> None:
+    """A tuple of paths varies together along one dimension, called after the first, or as it is named."""
+    gaps, loads = ["1 mm", "2 mm"], rb.linspace("1 kN", "5 kN", 2)
+    tied = Design.of(case, {("damper.gap", "load.amplitude"): (gaps, loads), "duration": [1, 2]})
+    named = Design.of(case, {"level": {"damper.gap": gaps, "load.amplitude": loads}, "duration": [1, 2]})
+    assert (tied.dims, tied.shape) == (("damper.gap", "duration"), (2, 2))
+    assert (named.dims, named.shape) == (("level", "duration"), (2, 2))
+    for design in (tied, named):
+        assert design.columns["damper.gap"].shape == design.columns["load.amplitude"].shape == (2, 1)
+        variant = design.case_at(case, 2)
+        assert (variant.dampers[0].gap, variant.loads[0].amplitude, variant.duration) == (2e-3, 5000.0, 1.0)
+        dims = {name: dim for name, (dim, _, _) in design.coords().items()}
+        assert dims["load.amplitude"] == dims["damper.gap"] == design.dims[0]
+    assert named.coords()["level"][1].tolist() == [0, 1]
+
+
+def test_exclusive_fields_replace_each_other(case: rb.Case) -> None:
+    """Varying a damping ratio, a cavity length or a diameter takes the place of what the case gives instead."""
+    design = Design.of(
+        case,
+        {"structure.damping_ratio": [0.1], "damper.cavity_length": ["68 mm"], "damper.ball.diameter": ["66 mm"]},
+    )
+    variant = design.case_at(case, 0)
+    assert isinstance(variant.structure, rb.SDOF)
+    assert (variant.structure.damping, variant.structure.damping_ratio) == (None, 0.1)
+    assert variant.dampers[0].balls[0].radius == 0.033
+    assert variant.dampers[0].gap == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_a_part_may_vary_with_what_is_in_it(case: rb.Case) -> None:
+    """A whole contact comes first, then its restitution."""
+    laws = [rb.Tsuji(restitution=0.1, ending=ending) for ending in ("zero_force", "zero_overlap")]
+    design = Design.of(case, {"damper.contact": laws, "damper.contact.restitution": [0.5, 0.9]})
+    contact = design.case_at(case, 3).dampers[0].contact
+    assert contact == rb.Tsuji(restitution=0.9, ending="zero_overlap")
+
+
+# ---- starts and replicas
+
+
+def test_lengths_of_the_start_become_fractions_of_each_gap(case: rb.Case) -> None:
+    """A start given as a length stays that length whatever gap it meets."""
+    design = Design.of(case, {"damper.gap": ["0.1 mm", "1 mm"], "damper.start": ["50 um", "-0.02 mm"]})
+    np.testing.assert_allclose(design.columns["damper.start"], [[0.5, -0.2], [0.05, -0.02]], rtol=1e-14)
+    assert design.coords()["damper.start"][2]["units"] == "m"
+    for index, place in enumerate([5e-5, -2e-5, 5e-5, -2e-5]):
+        np.testing.assert_allclose(design.case_at(case, index).dampers[0].positions0, [place], rtol=1e-14)
+
+
+@pytest.mark.parametrize("size", ["damper.ball.radius", "damper.ball.diameter"])
+def test_lengths_of_the_start_meet_the_gap_of_a_cavity(case: rb.Case, size: str) -> None:
+    """The gap that belongs to a cavity length and a varying ball is the one that counts."""
+    sizes = ["30 mm", "33 mm"] if size.endswith("radius") else ["60 mm", "66 mm"]
+    design = Design.of(
+        case, {"damper.cavity_length": ["67 mm", "70 mm"], size: sizes, "damper.start": ["0.1 mm", "0.3 mm"]}
+    )
+    for index in range(design.size):
+        place = [1e-4, 3e-4][index % 2]
+        np.testing.assert_allclose(design.case_at(case, index).dampers[0].positions0, [place], rtol=1e-12)
+
+
+def test_replicas_move_what_the_case_or_an_axis_gives(case: rb.Case) -> None:
+    """Offsets fill the reach to both sides, are the same for every variant, and are added."""
+    axes = {"damper.gap": ["0.1 mm", "1 mm"], "structure.mass": [10, 20]}
+    moved = rb.replicas({"damper.start": "1 um", "structure.mass": "10 g"}, 64, seed=3)
+    design = Design.of(case, [axes, moved])
+    assert (design.dims, design.shape) == (("damper.gap", "structure.mass", "replica"), (2, 2, 64))
+    assert design.columns["damper.start"].shape == (2, 1, 64)
+    assert design.columns["structure.mass"].shape == (1, 2, 64)
+    coords = xr.Dataset(coords=design.coords())
+    offsets = coords["damper.start offset"]
+    assert offsets.attrs["units"] == "m"
+    assert offsets.dims == ("replica",)
+    counts, _ = np.histogram(offsets, bins=64, range=(-1e-6, 1e-6))
+    assert (counts == 1).all()
+    start = design.columns["damper.start"][:, 0] * [[1e-4], [1e-3]]
+    np.testing.assert_allclose(start, np.broadcast_to(offsets, (2, 64)), rtol=1e-14)
+    mass = design.columns["structure.mass"][0] - [[10.0], [20.0]]
+    np.testing.assert_allclose(mass, np.broadcast_to(coords["structure.mass offset"], (2, 64)), atol=1e-14)
+    np.testing.assert_array_equal(coords["structure.mass"], [10.0, 20.0])
+
+
+def test_replicas_of_a_start_at_a_wall_stay_inside(case: rb.Case) -> None:
+    """Beyond a wall of the cavity, also of one that is displaced, a start is mirrored at it."""
+    for displacement in (0.0, 3e-4):
+        centre = displacement / 4e-4
+        here = replaced(case, {"structure.displacement": displacement, "damper.start": centre})
+        axes = [{"damper.start": [centre - 1, centre, centre + 1]}, rb.replicas({"damper.start": "1 um"}, 8)]
+        beside = Design.of(here, axes).columns["damper.start"] - centre
+        assert np.abs(beside).max() <= 1 + 1e-12
+        np.testing.assert_allclose(beside[2], -np.sign(beside[1]) * beside[1] + 1, rtol=1e-12)
+        np.testing.assert_allclose(beside[0], -beside[2], rtol=1e-12)
+
+
+def test_replicas_move_a_number_that_a_gap_or_a_restitution_gives(case: rb.Case) -> None:
+    """The gap that is moved is the one that a start in lengths refers to; a constant restitution counts as its number."""
+    here = replaced(case, {"damper.contact.restitution": 0.9})
+    reach = {"damper.gap": "0.1 mm", "damper.start": "10 um", "damper.contact.restitution": 0.05}
+    design = Design.of(here, rb.replicas(reach, 16))
+    coords = design.coords()
+    np.testing.assert_allclose(
+        design.columns["damper.start"] * design.columns["damper.gap"], coords["damper.start offset"][1], rtol=1e-13
+    )
+    np.testing.assert_allclose(
+        design.columns["damper.contact.restitution"] - 0.9, coords["damper.contact.restitution offset"][1], atol=1e-15
+    )
+
+
+# ---- random designs
+
+
+@pytest.mark.parametrize("method", ["sobol", "halton", "lhs", "random"])
+def test_random_points_fill_their_ranges(case: rb.Case, method: Any) -> None:
+    """Points lie inside their ranges, evenly: a quarter of them in each quarter, in the logarithm where it is asked."""
+    ranges = {"damper.gap": ("0.1 mm", "2 mm"), "load.amplitude": ("10 N", "1000 N")}
+    random = rb.random_design(ranges, 1000, method=method, log=["load.amplitude"])
+    design = Design.of(case, random)
+    assert (design.dims, design.shape) == (("sample",), (1000,))
+    parts = {
+        "gap": (design.columns["damper.gap"] - 1e-4) / 1.9e-3,
+        "load": np.log10(design.columns["load.amplitude"] / 10) / 2,
+    }
+    slack = 75 if method == "random" else 10  # four standard deviations, and a few points
+    for part in parts.values():
+        assert part.min() >= 0
+        assert part.max() <= 1
+        counts, _ = np.histogram(part, bins=4, range=(0, 1))
+        assert np.abs(counts - 250).max() <= slack
+
+
+def test_random_designs_repeat_and_differ_by_seed(case: rb.Case) -> None:
+    """The same seed gives the same design, another one another, and a longer Sobol design begins with the shorter."""
+    ranges = {"damper.gap": ("0.1 mm", "2 mm")}
+    design = Design.of(case, rb.random_design(ranges, 10, seed=1))
+    assert same(design, Design.of(case, rb.random_design(ranges, 10, seed=1)))
+    assert not same(design, Design.of(case, rb.random_design(ranges, 10, seed=2)))
+    longer = Design.of(case, rb.random_design(ranges, 100, seed=1))
+    np.testing.assert_array_equal(longer.columns["damper.gap"][:10], design.columns["damper.gap"])
+
+
+def test_random_designs_choose_materials(case: rb.Case) -> None:
+    """Where a parameter is no number, members of a list are drawn about equally often."""
+    names = ["steel", "brass", "glass"]
+    design = Design.of(case, rb.random_design({"damper.ball.material": names, "duration": (1, 2)}, 300))
+    _, labels, _ = design.coords()["damper.ball.material"]
+    assert {name: (labels == name).sum() for name in names} == pytest.approx(dict.fromkeys(names, 100), abs=3)
+
+
+# ---- the design as a whole
+
+
+def test_description_is_plain_and_equal_for_equal_designs(case: rb.Case) -> None:
+    """Descriptions go through JSON unchanged and do not depend on the spelling of values, but on each of them."""
+    spelt = [
+        [
+            {"damper.gap": ["1 mm", "2 mm"], "damper.ball.material": ["steel"]},
+            rb.replicas({"damper.start": "1 um"}, 50),
+        ],
+        [
+            {"damper.gap": rb.linspace(1e-3, "0.2 cm", 2), "damper.ball.material": [rb.materials()["steel"]]},
+            rb.replicas({"damper.start": 1e-6 * rb_metre()}, 50),
+        ],
+    ]
+    one, other = (Design.of(case, axes) for axes in spelt)
+    assert same(one, other)
+    assert json.loads(json.dumps(one.describe())) == one.describe()
+    many = np.linspace(1e-4, 1e-3, 1000)
+    moved = many.copy()
+    moved[500] *= 1 + 2e-16
+    designs = [
+        Design.of(case, axes)
+        for axes in (
+            {"damper.gap": many},
+            {"damper.gap": moved},
+            {"damper.gap": many, "duration": [1]},
+            {"damper.gap": [1e-3, 2e-3], "duration": [1, 2]},
+            {"duration": [1, 2], "damper.gap": [1e-3, 2e-3]},
+            {"damper.ball.material": ["steel", "brass"] * 10},
+            {"damper.ball.material": ["brass", "steel"] * 10},
+        )
+    ]
+    described = [json.dumps(design.describe()) for design in designs]
+    assert len(set(described)) == len(designs)
+    assert max(map(len, described)) < 2000
+
+
+def rb_metre() -> Any:
+    """One metre as a quantity of pint."""
+    from rattlebox.model.units import registry
+
+    return registry().meter
+
+
+def test_designs_travel(case: rb.Case) -> None:
+    """A pickled design is the same design."""
+    design = Design.of(case, [{"damper.ball.material": ["steel", "brass"]}, rb.replicas({"damper.start": 0.01}, 3)])
+    copy = pickle.loads(pickle.dumps(design))
+    assert same(copy, design)
+    assert copy.case_at(case, 5) == design.case_at(case, 5)
+
+
+def test_a_million_variants_are_light(case: rb.Case) -> None:
+    """A grid of a million holds its axes only, and big columns are not read value by value."""
+    grid = Design.of(case, {"damper.gap": np.linspace(1e-4, 2e-3, 1000), "load.amplitude": np.linspace(1, 9e3, 1000)})
+    assert grid.size == 10**6
+    assert sum(column.nbytes for column in grid.columns.values()) == 16000
+    random = Design.of(case, rb.random_design({"damper.gap": ("0.1 mm", "2 mm")}, 10**6, method="lhs"))
+    assert len(json.dumps(random.describe())) < 1000
+
+
+@pytest.mark.parametrize("index", [-1, 2])
+def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> None:
+    """Variants count from 0."""
+    with pytest.raises(rb.CaseError, match="there is no variant"):
+        Design.of(case, {"duration": [1, 2]}).case_at(case, index)
+
+
+# ---- bad axes
+
+
+@pytest.mark.parametrize(
+    ("axes", "said"),
+    [
+        ({}, ["nothing varies", "damper.gap"]),
+        (5, ["5 says of no path"]),
+        ({"damper.gapp": [1]}, ["damper.gapp", "did you mean 'gap'?"]),
+        ({3: [1]}, ["3 is no path"]),
+        ({"": [1]}, ["'' is no path"]),
+        ({"damper.gap": []}, ["damper.gap", "there are no values"]),
+        ({"damper.gap": "1 mm"}, ["damper.gap = '1 mm'", "a list of values is needed", "['1 mm']"]),
+        ({"damper.gap": 1e-3}, ["damper.gap = 0.001", "a list of values is needed"]),
+        ({"damper.gap": np.array(1e-3)}, ["damper.gap", "a list of values is needed"]),
+        ({"damper.gap": ["1 mm", "2 kg"]}, ["damper.gap[1] = '2 kg'", "a length (m) is needed, not a mass"]),
+        ({"damper.gap": ["1 mmm"]}, ["damper.gap[0]", "unknown unit 'mmm'", "did you mean 'mm'?"]),
+        ({"damper.gap": [1e-3, float("nan")]}, ["damper.gap[1] = nan", "finite"]),
+        ({"damper.gap": np.array([1e-3, np.inf])}, ["damper.gap[1] = inf", "finite"]),
+        ({"damper.gap": [1e-3, -1e-3]}, ["damper.gap[1] = -0.001", "negative"]),
+        ({"damper.gap": np.ones((2, 2))}, ["damper.gap[0]", "a length (m) is needed"]),
+        ({"damper.gap": [True]}, ["damper.gap[0] = True", "a length (m) is needed"]),
+        ({"load.amplitude": ["1 mm"]}, ["load.amplitude[0] = '1 mm'", "a force (N) is needed, not a length"]),
+        ({"damper.contact.restitution": [0.5, 1.2]}, ["damper.contact.restitution[1] = 1.2", "between 0"]),
+        ({"damper.ball.material": ["stel"]}, ["damper.ball.material[0] = 'stel'", "did you mean 'steel'?"]),
+        ({"damper.contact": [{"kind": "tsuj"}]}, ["damper.contact[0].kind = 'tsuj'", "did you mean 'tsuji'?"]),
+        ({"structure.mass": [1, 0]}, ["structure.mass[1] = 0", "greater than zero"]),
+        ({"damper.gap": rb.geomspace(0, "1 mm", 3)}, ["damper.gap", "other than zero", "rb.linspace"]),
+        ({"damper.gap": rb.linspace("1 mm", "1 kg", 3)}, ["damper.gap, to = '1 kg'", "not a mass"]),
+        ({"damper.ball.material": rb.linspace(0, 1, 3)}, ["damper.ball.material", "no numbers"]),
+        ({"damper.gap": [1e-3], "dampers[0].gap": [1e-3]}, ["dampers[0].gap varies twice, also as damper.gap"]),
+        (
+            [{"damper.gap": [1e-3]}, rb.random_design({"damper.gap": (1e-4, 1e-3)}, 2)],
+            ["damper.gap varies twice"],
+        ),
+        ({"damper.gap": [1e-3], "damper.cavity_length": [0.07]}, ["damper.gap and damper.cavity_length exclude"]),
+        ([{"damper.cavity_length": [0.07]}, rb.replicas({"damper.gap": 1e-6}, 2)], ["exclude each other"]),
+        (
+            {("damper.gap", "load.amplitude"): [("1 mm", "1 kN"), ("2 mm", "2 kN"), ("3 mm", "3 kN")]},
+            ["as many lists of values are needed, one for each path"],
+        ),
+        (
+            {("damper.gap", "load.amplitude"): (["1 mm"], [1, 2])},
+            ["as many values each", "damper.gap has 1, load.amplitude has 2"],
+        ),
+        ([{"duration": [1]}, {"duration": [2]}], ["two dimensions are called 'duration'"]),
+        ({"duration": {"damper.gap": [1e-3]}, "x": {"duration": [1]}}, ["another dimension is called so"]),
+        ({"damper.start": [0, "0.1 mm"]}, ["damper.start", "fractions of the gap and lengths do not mix"]),
+        ({"damper.start": [0, 2]}, ["variant 1 does not fit: damper.start = 2", "inside a wall", "between -1 and 1"]),
+        ({"damper.gap": ["0.1 mm", "1 mm"], "damper.start": ["0.2 mm"]}, ["variant 0", "inside a wall"]),
+        ({"damper.gap": [0.0], "damper.start": ["1 um"]}, ["damper.start", "a gap greater than zero"]),
+        (
+            {"damper.cavity_length": [0.07], "damper.ball": [rb.Sphere(radius="1 mm", material="steel")]}
+            | {"damper.start": ["1 um"]},
+            ["damper.start", "what gives the gap varies as a whole"],
+        ),
+        (
+            {"structure.stiffness": [0, 1], "structure.damping_ratio": [0.1]},
+            ["variant 0 does not fit: structure.stiffness = 0 N/m", "no meaning without stiffness"],
+        ),
+        (rb.random_design({"damper.gap": ("2 mm", "1 mm")}, 4), ["damper.gap", "the first value must be the smaller"]),
+        (rb.random_design({"damper.gap": "2 mm"}, 4), ["damper.gap", "a pair", '("0.1 mm", "2 mm")']),
+        (rb.random_design({"damper.gap": (1, 2, 3)}, 4), ["damper.gap", "a pair"]),
+        (rb.random_design({"damper.gap": (0, 1)}, 4, log=["damper.gap"]), ["damper.gap", "greater than zero"]),
+        (rb.replicas({"damper.start": "-1 um"}, 4), ["damper.start, reach = '-1 um'", "greater than zero"]),
+        (rb.replicas({"damper.start": 0.1, "dampers[0].start": 0.1}, 4), ["dampers[0].start varies twice"]),
+        (rb.replicas({"damper.ball.material": "steel"}, 4), ["damper.ball.material", "reach"]),
+        (rb.replicas({"damper.ball.mass": "1 g"}, 4), ["damper.ball.mass", "no one number"]),
+        ([rb.replicas({"duration": 1}, 2), rb.replicas({"damper.start": 0.1}, 2)], ["two dimensions", "'replica'"]),
+    ],
+)
+def test_bad_axes_are_refused_with_the_place_and_a_reason(case: rb.Case, axes: Any, said: list[str]) -> None:
+    """Each wrong axis is told at once: the path, the value, what is allowed."""
+    message = refused(case, axes)
+    for word in said:
+        assert word in message, message
+
+
+def test_values_that_the_place_has_in_another_unit_are_refused(shaker: rb.Case) -> None:
+    """The amplitude of a motion stays the displacement, or the acceleration, that it is."""
+    message = refused(shaker, {"structure.motion.amplitude": ["1 m/s^2"]})
+    assert "a length (m) is needed, not an acceleration" in message
+    assert Design.of(shaker, {"structure.motion.amplitude": ["0.1 mm"]}).coords()["structure.motion.amplitude"][2][
+        "units"
+    ] == ("m")
+
+
+def test_which_of_several_must_be_told(row: rb.Case) -> None:
+    """Where there are several balls or positions, the message says how to name one."""
+    assert "balls[0] to damper.balls[4]" in refused(row, {"damper.balls.material": ["steel"]})
+    assert "damper.start[0]" in refused(row, rb.replicas({"damper.start": "1 um"}, 3))
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: rb.linspace(0, 1, 0), "count = 0"),
+        (lambda: rb.geomspace(1, 2, 2.5), "count = 2.5"),  # type: ignore[arg-type]
+        (lambda: rb.random_design({}, 3), "ranges"),
+        (lambda: rb.random_design({"a": (0, 1)}, 3, method="sobl"), "did you mean 'sobol'"),  # type: ignore[arg-type]
+        (lambda: rb.random_design({"a": (0, 1)}, 3, log="b"), "log = 'b'"),
+        (lambda: rb.random_design({"a": (0, 1)}, 3, seed=-1), "seed = -1"),
+        (lambda: rb.replicas("damper.start", 3), "reach"),  # type: ignore[arg-type]
+        (lambda: rb.replicas({"a": 1}, True), "count = True"),
+    ],
+)
+def test_bad_arguments_are_refused_at_once(make: Any, said: str) -> None:
+    """What is wrong without a case is told before there is one."""
+    with pytest.raises(rb.CaseError, match=said):
+        make()
