@@ -1,13 +1,35 @@
-"""Case -> the plain numbers that the core reads (core/python/read.hpp). Everything goes by name, in SI units."""
+"""Case -> the plain numbers that the core reads (core/python/read.hpp). Everything goes by name, in SI units.
+
+Many variants of a case are packed at once: arrays that broadcast against each other stand in place of numbers in a copy of
+the case, which the same formulas pack. What is no number, and what is inside a table, cannot be an array: there each value
+is a case of its own, and the results are put together.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox.engines.variants import (
+    Columns,
+    Joint,
+    alike,
+    column,
+    compare,
+    contiguous,
+    examples,
+    is_number,
+    misplaced,
+    variant,
+    with_value,
+)
+from rattlebox.model.base import Part
+from rattlebox.model.errors import CaseError
 from rattlebox.model.methods import Newton, TwoStep
 from rattlebox.model.pairs import Pair, contact_pairs
+from rattlebox.model.paths import Place, part_at, place_of, replaced
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,21 +54,110 @@ def pack(case: Case) -> Packed:
     dict
         Modes, loads, dampers, contacts, sample times and settings, as core/python/read.hpp reads them.
     """
+    return {**_numbers(case), "sample_times": _array(case.sample_times())}
+
+
+def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> Packed:
+    """Pack many variants of a case for the core.
+
+    Some of them, the extreme ones among them, are packed one by one as well and compared.
+
+    Parameters
+    ----------
+    case
+        What does not vary.
+    columns
+        By path, "damper.gap": the values, an array with as many axes as `shape` and broadcastable to it. Numbers in SI;
+        anything else, such as names of materials, laws or lists, as objects.
+    shape
+        Of the grid of variants.
+
+    Returns
+    -------
+    dict
+        As `pack` returns it, but each number may be an array that broadcasts to `shape`, and each vector has these axes
+        after its own, (n, ...). There are no sample times; `points` holds the mode shapes at each point.
+
+    Raises
+    ------
+    CaseError
+        When a variant does not fit, or variants differ in more than numbers: in kinds of laws, in how many balls there are.
+    """
+    given = {path: column(path, values, shape) for path, values in columns.items()}
+    packed: Packed = contiguous(_variants(case, given, tuple(shape), {}))
+    for index in (*misplaced(packed, shape), *examples(given, shape)):
+        compare(_with_points(variant(case, given, index)), packed, index)
+    return packed
+
+
+def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mapping[str, Any]) -> Packed:
+    """The variants over columns, with fixed values besides."""
+    path = next((path for path, values in columns.items() if not is_number(case, path, values)), None)
+    if path is None:
+        return _broadcast(case, columns, len(shape), fixed)
+    values = columns[path]
+    rest = {other: column for other, column in columns.items() if other != path}
+    axis = next((k for k, n in enumerate(values.shape) if n > 1), None)
+    if axis is None:
+        return _variants(case, rest, shape, {**fixed, path: values.item()})
+    groups = alike(values, axis)
+    parts = []
+    for group in groups:
+        inside = {other: np.take(c, group, axis) if c.shape[axis] > 1 else c for other, c in rest.items()}
+        inside[path] = np.take(values, group[:1], axis)
+        parts.append(_variants(case, inside, (*shape[:axis], len(group), *shape[axis + 1 :]), fixed))
+    joined: Packed = Joint(path, groups, axis, shape).of(parts) if len(groups) > 1 else parts[0]
+    return joined
+
+
+def _broadcast(case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]) -> Packed:
+    """The variants over columns of numbers."""
+    first = {path: values.flat[0].item() for path, values in columns.items()}
+    batch = replaced(case, {**fixed, **first})  # where each number has its place
+    cavities: dict[Place, NDArray[Any]] = {}
+    for path, values in columns.items():
+        place = place_of(batch, path)
+        held = part_at(batch, place)
+        if place[-1] == "cavity_length":
+            cavities[place[:-1]] = values
+        elif place[-1] == "diameter":
+            batch = with_value(batch, (*place[:-1], "radius"), values / 2)
+        elif isinstance(held, Part):  # a number for a law: its only coefficient
+            batch = with_value(batch, (*place, "e"), values)
+        else:
+            batch = with_value(batch, place, (values,) if isinstance(held, tuple) else values)
+    for place, length in cavities.items():
+        batch = with_value(batch, (*place, "gap"), (length - part_at(batch, place).row) / 2)
+    try:
+        return _with_points(batch, axes)
+    except (TypeError, ValueError) as error:
+        if not isinstance(error, CaseError):
+            error.add_note("A formula does not take arrays: see rattlebox.model.elementwise.")
+        raise
+
+
+def _with_points(case: Case, axes: int = 0) -> Packed:
+    points = {name: _vector(shape, axes) for name, shape in case.modes.shapes.items()}
+    return {**_numbers(case, axes), "points": points}
+
+
+def _numbers(case: Case, axes: int = 0) -> Packed:
+    """All but the sample times; of a batch over some axes, which vectors have after their own."""
     modes = case.modes
     return {
-        "mode_decay": _array(modes.decay),
-        "mode_stiffness": _array(modes.stiffness),
-        "mode_displacement": _array(modes.q0),
-        "mode_velocity": _array(modes.p0),
-        "loads": _loads(case, modes),
+        "mode_decay": _vector(modes.decay, axes),
+        "mode_stiffness": _vector(modes.stiffness, axes),
+        "mode_displacement": _vector(modes.q0, axes),
+        "mode_velocity": _vector(modes.p0, axes),
+        "loads": _loads(case, modes, axes),
         "dampers": [
             {
                 "clearance": damper.clearance,
                 "gravity": damper.gravity,
-                "shape": _array(modes.shape(damper.point)),
-                "mass": _array(damper.masses),
-                "position": _array(damper.positions0),
-                "velocity": _array(damper.velocities0),
+                "shape": _vector(modes.shape(damper.point), axes),
+                "mass": _vector(damper.masses, axes),
+                "position": _vector(damper.positions0, axes),
+                "velocity": _vector(damper.velocities0, axes),
             }
             for damper in case.dampers
         ],
@@ -55,7 +166,6 @@ def pack(case: Case) -> Packed:
             for index in range(len(case.dampers))
             for place, pair in enumerate(contact_pairs(case, index))
         ],
-        "sample_times": _array(case.sample_times()),
         "settings": {"duration": case.duration, **_method(case)},
     }
 
@@ -64,12 +174,19 @@ def _array(values: Any) -> NDArray[np.float64]:
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
-def _loads(case: Case, modes: ModalModel) -> list[Packed]:
+def _vector(values: Any, axes: int) -> NDArray[np.float64]:
+    array = _array(values)
+    return array.reshape(-1, *(1,) * axes) if axes and array.ndim == 1 else array
+
+
+def _loads(case: Case, modes: ModalModel, axes: int) -> list[Packed]:
     loads = [
-        {**signal.coefficients(), "shape": _array(modes.shape(signal.point)), "base": False} for signal in case.loads
+        {**signal.coefficients(), "shape": _vector(modes.shape(signal.point), axes), "base": False}
+        for signal in case.loads
     ]
     base = [
-        {**signal.coefficients(), "shape": -_participation(modes), "base": True} for signal in case.base_acceleration()
+        {**signal.coefficients(), "shape": _vector(-_participation(modes), axes), "base": True}
+        for signal in case.base_acceleration()
     ]
     return loads + base
 

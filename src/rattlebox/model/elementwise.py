@@ -20,12 +20,12 @@ Vector = NDArray[np.float64]
 
 def _one_by_one(function: Callable[..., float], x: NDArray[Any], *others: Iterable[Any]) -> Any:
     """NumPy's own exponentials and powers of arrays can differ in the last bit from those of one number."""
-    return np.fromiter(map(function, x.ravel().tolist(), *others), float, x.size).reshape(x.shape)
+    return np.fromiter(map(function, x.ravel().data, *others), float, x.size).reshape(x.shape)
 
 
 def power(x: Any, exponent: float) -> Any:
     """Return x ** exponent."""
-    return _one_by_one(pow, x, repeat(exponent)) if isinstance(x, np.ndarray) else x**exponent
+    return _one_by_one(pow, x, repeat(float(exponent))) if isinstance(x, np.ndarray) else x**exponent
 
 
 def exp(x: Any) -> Any:

@@ -82,9 +82,9 @@ def spelt(case: Case, place: Place) -> str:
     """Return the shortest path to a place: "damper.gap" where there is one damper, else "dampers[0].gap"."""
     words = list(_words(place))
     for number, step in enumerate(place):
-        row = _at(case, place[:number])
+        row = part_at(case, place[:number])
         if isinstance(step, int) and _is_row_of_parts(row) and len(row) == 1:
-            holder = _at(case, place[: number - 1])
+            holder = part_at(case, place[: number - 1])
             words[number] = ""
             others = [other for other, name in type(holder).spellings.items() if name == place[number - 1]]
             if others:
@@ -107,7 +107,15 @@ def get(case: Case, path: str) -> Any:
     CaseError
         When there is no such field.
     """
-    return _at(case, place_of(case, path))
+    return part_at(case, place_of(case, path))
+
+
+def part_at(case: Case, place: Sequence[str | int]) -> Any:
+    """Return what stands at a place."""
+    node: Any = case
+    for step in place:
+        node = get_field(node, str(step)) if isinstance(node, Part) else node[step]
+    return node
 
 
 def get_field(part: Part, name: str) -> Any:
@@ -203,7 +211,7 @@ def places_of(case: Case, values: Mapping[str, Any]) -> dict[Place, Any]:
     places = {place: values[path] for place, path in paths.items()}
     for place, path in paths.items():
         for length, step in enumerate(place):
-            holder = _at(case, place[:length])
+            holder = part_at(case, place[:length])
             if isinstance(holder, Part) and step in type(holder).in_file and getattr(holder, "file", None):
                 raise Hint(
                     f"{path}: it comes from {getattr(holder, 'file', None)}", "the numbers themselves instead of a file"
@@ -211,7 +219,7 @@ def places_of(case: Case, values: Mapping[str, Any]) -> dict[Place, Any]:
         if places[place] is None:
             continue
         *above, name = place
-        holder = _at(case, above)
+        holder = part_at(case, above)
         pairs = type(holder).alternatives if isinstance(holder, Part) else ()
         excluded = [other for pair in pairs if name in pair for other in pair if other != name]
         if name == "amplitude" and _names_a_unit(places[place]):
@@ -231,13 +239,6 @@ def _names_a_unit(value: Any) -> bool:
 def _from_file(node: Any) -> tuple[str, ...]:
     """Fields of a part that were read from a file."""
     return type(node).in_file if isinstance(node, Part) and getattr(node, "file", None) is not None else ()
-
-
-def _at(case: Case, place: Sequence[str | int]) -> Any:
-    node: Any = case
-    for step in place:
-        node = get_field(node, str(step)) if isinstance(node, Part) else node[step]
-    return node
 
 
 def _with(node: Any, place: Place, value: Any) -> Any:
