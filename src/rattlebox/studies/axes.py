@@ -395,7 +395,7 @@ def _coordinates(direction: _Direction) -> Iterator[tuple[str, tuple[str, Column
         attrs = {"long_name": _spoken(path)} | ({} if values.unit is None else {"units": values.unit})
         yield path, (name, _labels(values.array) if values.unit is None else values.array, attrs)
     for values in direction.offsets:
-        path = f"{values.parameter.path} offset"
+        path = f"{values.parameter.path}.offset"
         yield path, (name, values.array, {"units": str(values.unit), "long_name": _spoken(path)})
 
 

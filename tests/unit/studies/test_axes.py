@@ -252,7 +252,7 @@ def test_replicas_move_what_the_case_or_an_axis_gives(case: rb.Case) -> None:
     assert design.columns["damper.start"].shape == (2, 1, 64)
     assert design.columns["structure.mass"].shape == (1, 2, 64)
     coords = xr.Dataset(coords=design.coords())
-    offsets = coords["damper.start offset"]
+    offsets = coords["damper.start.offset"]
     assert offsets.attrs["units"] == "m"
     assert offsets.dims == ("replica",)
     counts, _ = np.histogram(offsets, bins=64, range=(-1e-6, 1e-6))
@@ -260,7 +260,7 @@ def test_replicas_move_what_the_case_or_an_axis_gives(case: rb.Case) -> None:
     start = design.columns["damper.start"][:, 0] * [[1e-4], [1e-3]]
     np.testing.assert_allclose(start, np.broadcast_to(offsets, (2, 64)), rtol=1e-14)
     mass = design.columns["structure.mass"][0] - [[10.0], [20.0]]
-    np.testing.assert_allclose(mass, np.broadcast_to(coords["structure.mass offset"], (2, 64)), atol=1e-14)
+    np.testing.assert_allclose(mass, np.broadcast_to(coords["structure.mass.offset"], (2, 64)), atol=1e-14)
     np.testing.assert_array_equal(coords["structure.mass"], [10.0, 20.0])
 
 
@@ -283,10 +283,10 @@ def test_replicas_move_a_number_that_a_gap_or_a_restitution_gives(case: rb.Case)
     design = Design.of(here, rb.replicas(reach, 16))
     coords = design.coords()
     np.testing.assert_allclose(
-        design.columns["damper.start"] * design.columns["damper.gap"], coords["damper.start offset"][1], rtol=1e-13
+        design.columns["damper.start"] * design.columns["damper.gap"], coords["damper.start.offset"][1], rtol=1e-13
     )
     np.testing.assert_allclose(
-        design.columns["damper.contact.restitution"] - 0.9, coords["damper.contact.restitution offset"][1], atol=1e-15
+        design.columns["damper.contact.restitution"] - 0.9, coords["damper.contact.restitution.offset"][1], atol=1e-15
     )
 
 
