@@ -145,6 +145,7 @@ def _numbers(case: Case, axes: int = 0) -> Packed:
     """All but the sample times; of a batch over some axes, which vectors have after their own."""
     modes = case.modes
     return {
+        "settings": {"duration": case.duration, **_method(case)},
         "mode_decay": _vector(modes.decay, axes),
         "mode_stiffness": _vector(modes.stiffness, axes),
         "mode_displacement": _vector(modes.q0, axes),
@@ -166,7 +167,6 @@ def _numbers(case: Case, axes: int = 0) -> Packed:
             for index in range(len(case.dampers))
             for place, pair in enumerate(contact_pairs(case, index))
         ],
-        "settings": {"duration": case.duration, **_method(case)},
     }
 
 

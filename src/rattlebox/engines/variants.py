@@ -159,6 +159,7 @@ def misplaced(packed: Mapping[str, Any], shape: Sequence[int]) -> Iterator[Index
         overlap = np.argwhere(np.diff(position, axis=0) < 0)
         if len(overlap):
             yield _member(overlap[0][1:], shape)
+        whole = np.broadcast_shapes(position.shape, half.shape, cavity.shape)
         with np.nditer(
             [position, half, cavity], ["external_loop", "buffered"], buffersize=1 << 16, order="C"
         ) as pieces:
@@ -166,7 +167,7 @@ def misplaced(packed: Mapping[str, Any], shape: Sequence[int]) -> Iterator[Index
             for place, room, centre in pieces:
                 outside = np.abs(place - centre) - room > 4e-16 * (room + np.abs(centre))
                 if outside.any():
-                    yield _member(np.unravel_index(done + int(outside.argmax()), pieces.shape)[1:], shape)
+                    yield _member(np.unravel_index(done + int(outside.argmax()), whole)[1:], shape)
                     break
                 done += outside.size
 
@@ -230,8 +231,9 @@ def compare(one: Any, batch: Any, index: Index, *where: str) -> None:
         one, batch = np.asarray(one, dtype=float), np.asarray(batch, dtype=float)
         if batch.ndim > own:
             batch = batch[(slice(None),) * own + _inside(batch.shape[own:], index)]
-        limit = _ULPS * np.spacing(np.maximum(np.abs(one), np.abs(batch)))
-        same = bool(np.all((one == batch) | (np.abs(one - batch) <= limit)))
+        with np.errstate(invalid="ignore"):  # infinite ones, which must be equal
+            near = np.abs(one - batch) <= _ULPS * np.spacing(np.maximum(np.abs(one), np.abs(batch)))
+        same = bool(np.all((one == batch) | near))
     if not same:
         raise RuntimeError(
             f"{'.'.join(where)} of variant {index} is {one}, in the batch {batch}: see model.elementwise"

@@ -178,7 +178,7 @@ class Thornton(Contact):
 
     def equivalent_restitution(self, pair: Pair) -> Restitution:
         """Return the closed form of this contact's restitution."""
-        return ThorntonRestitution(yield_pressure=self.yield_pressure)
+        return ThorntonRestitution.model_construct(yield_pressure=self.yield_pressure)
 
 
 AnyContact = Annotated[Tsuji | Linear | Thornton, Field(discriminator="kind")]
