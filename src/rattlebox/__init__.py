@@ -26,12 +26,16 @@ if TYPE_CHECKING:
     from rattlebox.engines.simulate import simulate, simulate_many
     from rattlebox.results import Run, load
     from rattlebox.studies.designs import geomspace, linspace, random_design, replicas
+    from rattlebox.studies.measures import MEASURES
+    from rattlebox.studies.sweep import sweep
 
 __version__ = "0.1.0"
 
 _LATER = {
     "simulate": "rattlebox.engines.simulate",
     "simulate_many": "rattlebox.engines.simulate",
+    "sweep": "rattlebox.studies.sweep",
+    "MEASURES": "rattlebox.studies.measures",
     "restitution_curve": "rattlebox.engines.curves",
     "Run": "rattlebox.results",
     "load": "rattlebox.results",
@@ -42,6 +46,7 @@ _LATER = {
 }
 
 __all__ = [
+    "MEASURES",
     "SDOF",
     "Body",
     "Case",
@@ -85,6 +90,7 @@ __all__ = [
     "restitution_of_alpha",
     "simulate",
     "simulate_many",
+    "sweep",
 ]
 
 

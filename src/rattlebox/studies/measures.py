@@ -1,0 +1,54 @@
+"""Numbers that sum up a run, computed in the core (core/impact/measures.hpp) without keeping its trajectory."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Measure(NamedTuple):
+    """What a measure is.
+
+    Attributes
+    ----------
+    units
+        SI unit, "1" for pure numbers.
+    long_name
+        Meaning in a few words, fit for an axis label.
+    samples
+        It is found from samples of the motion, and is as good as they are dense.
+    cyclic
+        It needs a cycle: a harmonic load or motion.
+    """
+
+    units: str
+    long_name: str
+    samples: bool = False
+    cyclic: bool = False
+
+
+MEASURES: dict[str, Measure] = {
+    "impacts": Measure("1", "impacts"),
+    "impacts_per_cycle": Measure("1", "impacts a cycle", cyclic=True),
+    "peak_contact_force": Measure("N", "peak contact force"),
+    "peak_overlap": Measure("m", "largest overlap"),
+    "largest_approach_speed": Measure("m/s", "largest approach speed"),
+    "mean_approach_speed": Measure("m/s", "mean approach speed"),
+    "longest_contact": Measure("s", "longest contact"),
+    "work": Measure("J", "work of load and base"),
+    "viscous_loss": Measure("J", "loss in the structure"),
+    "impact_loss": Measure("J", "loss in the damper"),
+    "viscous_share": Measure("1", "share lost in the structure"),
+    "impact_share": Measure("1", "share lost in the damper"),
+    "motion_share": Measure("1", "share left in the motion"),
+    "closure": Measure("1", "closure of the energy ledger"),
+    "peak": Measure("m", "peak displacement", samples=True),
+    "rms": Measure("m", "RMS displacement", samples=True),
+    "peak_velocity": Measure("m/s", "peak velocity", samples=True),
+    "rms_velocity": Measure("m/s", "RMS velocity", samples=True),
+    "settling_time": Measure("s", "settling time to 5 % of the peak", samples=True),
+    "loss_per_cycle": Measure("J", "loss in the damper a cycle", cyclic=True),
+    "reduced_loss": Measure("1", "loss a cycle over m V^2", samples=True, cyclic=True),
+    "effective_mass": Measure("kg", "effective mass", samples=True, cyclic=True),
+    "damping_mass": Measure("kg", "imaginary part of the apparent mass", samples=True, cyclic=True),
+    "loss_factor": Measure("1", "loss factor", samples=True, cyclic=True),
+}

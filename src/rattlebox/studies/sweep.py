@@ -1,0 +1,119 @@
+"""Variants of a case over axes, and measures of each."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from rattlebox.model.errors import Hint
+from rattlebox.model.units import parse
+
+from .axes import Design
+from .measures import MEASURES
+from .runner import run_task
+from .task import SweepTask
+
+if TYPE_CHECKING:
+    import os
+
+    import xarray
+
+    from rattlebox.model.case import Case
+    from rattlebox.results import Run
+
+
+def sweep(
+    case: Case,
+    axes: Any,
+    measure: Sequence[str | Callable[[Run], float]] = ("impact_share",),
+    *,
+    skip: float | str = 0.0,
+    cycles: tuple[float, float] | None = None,
+    samples: int | None = None,
+    point: str | None = None,
+    motion: bool = False,
+    last: int = 0,
+    threads: int | None = None,
+    on: Any = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> xarray.Dataset:
+    """Run a case for every combination of values along some axes.
+
+    Parameters
+    ----------
+    case
+        The case, with the values that do not vary. Its output is not used.
+    axes
+        Values by path, {"damper.gap": rb.linspace("0.1 mm", "2 mm", 200), "load.amplitude": ["1 kN", "5 kN"]}: a grid;
+        a tuple of paths as a key links them; or `rb.random_design`, `rb.replicas`.
+    measure
+        Names of measures (rb.MEASURES), computed in the core without keeping trajectories, and functions of a Run,
+        for which each variant is run as by `rb.simulate`.
+    skip
+        Time before what is looked at, with a unit or in seconds: measures leave it out.
+    cycles
+        Instead of the case's duration and `skip`, with a harmonic load: how many cycles to skip and to look at.
+    samples
+        Equally spaced samples of the motion, both ends included, for measures that need them and for `motion`;
+        default 2001, or 64 a cycle with `cycles`.
+    point
+        Of the structure, that is watched; default the first damper's.
+    motion
+        Keep the samples of each variant.
+    last
+        Keep the last so many impacts of each variant.
+    threads
+        Threads of this process; default as many as there are cores. Results do not depend on it, to the last bit.
+    on
+        A dask.distributed Client to run blocks of variants on instead.
+    store
+        Folder of a Zarr store for results: what is finished is on disk, and the same call goes on after a stop.
+    progress
+        True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the axes: `status` and each measure with its unit; NaN where a run did not finish.
+
+    Raises
+    ------
+    CaseError
+        When an axis or a measure does not fit the case, before anything runs.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> from rattlebox.paper.seed import seed_case
+    >>> case = seed_case(duration=1.0)
+    >>> maps = rb.sweep(case, {"damper.gap": rb.linspace("0.2 mm", "1 mm", 5)}, ["impacts", "impact_share"])
+    >>> maps.impacts.dims
+    ('damper.gap',)
+    """
+    design = Design.of(case, axes)
+    task = SweepTask(
+        case,
+        design,
+        measures=_known(measure),
+        skip=parse(skip, ("s",))[0],
+        cycles=cycles,
+        samples=samples,
+        point=point,
+        motion=motion,
+        last=last,
+    )
+    assert task.look  # what does not fit is told before anything runs
+    return run_task(task, design=design, store=store, on=on, threads=threads, progress=progress)
+
+
+def _known(measure: Any) -> list[Any]:
+    asked = [measure] if isinstance(measure, str) or callable(measure) else list(measure)
+    for name in asked:
+        if isinstance(name, str) and name not in MEASURES:
+            near = difflib.get_close_matches(name, MEASURES, n=1)
+            raise Hint(f"there is no measure {name!r}", near[0] if near else ", ".join(MEASURES))
+        if not isinstance(name, str) and not callable(name):
+            raise Hint(f"{name!r} is neither the name of a measure nor a function of a Run", '"impact_share"')
+    return asked

@@ -1,0 +1,235 @@
+"""One study as work that can be cut into blocks and sent anywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from inspect import getsource
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.engines.batch import Look, run_block
+from rattlebox.engines.pack import Packed, pack_batch
+from rattlebox.engines.simulate import simulate_many
+from rattlebox.model.errors import Hint
+
+from .measures import MEASURES
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+    from rattlebox.results import Run
+
+    from .axes import Design
+
+Extra = tuple[tuple[str, int], ...]
+UserMeasure = Callable[["Run"], float]
+_RUNS_AT_ONCE = 64
+
+
+@dataclass
+class SweepTask:
+    """A case, its variants, and what is kept of each.
+
+    Attributes
+    ----------
+    case, design
+        The base case and the grid of its variants.
+    measures
+        Names of measures of the core, and functions of a Run.
+    skip
+        Begin of the window [s].
+    cycles
+        Instead of the case's duration and of `skip`: cycles of the harmonic load to skip, and to look at.
+    samples
+        Samples of the window; None for as many as the measures need.
+    point
+        Of the structure, that is watched; default the first damper's.
+    motion, last, state
+        Keep samples of the motion, the last impacts, the state at the end.
+    """
+
+    case: Case
+    design: Design
+    measures: Sequence[str | UserMeasure] = ()
+    skip: float = 0.0
+    cycles: tuple[float, float] | None = None
+    samples: int | None = None
+    point: str | None = None
+    motion: bool = False
+    last: int = 0
+    state: bool = False
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
+
+    @property
+    def size(self) -> int:
+        """Number of variants."""
+        return self.design.size
+
+    @property
+    def named(self) -> list[str]:
+        """Measures that the core computes."""
+        return [measure for measure in self.measures if isinstance(measure, str)]
+
+    @property
+    def own(self) -> dict[str, UserMeasure]:
+        """Measures that are functions of a Run, by name."""
+        return {
+            getattr(measure, "__name__", repr(measure)): measure
+            for measure in self.measures
+            if not isinstance(measure, str)
+        }
+
+    @cached_property
+    def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:
+        """Further dimensions, number type and attributes of each output."""
+        from rattlebox.engines.status import STATUSES
+
+        names = [name for name, _ in STATUSES]
+        flags = {"long_name": "how the run ended", "flag_meanings": " ".join(names)}
+        found: dict[str, tuple[Extra, str, dict[str, str]]] = {"status": ((), "int8", flags)}
+        for name in self.named:
+            measure = MEASURES[name]
+            found[name] = ((), "float64", {"units": measure.units, "long_name": measure.long_name})
+        for name in self.own:
+            found[name] = ((), "float64", {"units": "", "long_name": name.replace("_", " ")})
+        balls = sum(len(damper.balls) for damper in self.case.dampers)
+        time: Extra = (("instant", self.look.samples),)
+        if self.motion:
+            found["displacement"] = (time, "float64", {"units": "m", "long_name": "displacement"})
+            found["velocity"] = (time, "float64", {"units": "m/s", "long_name": "velocity"})
+            ball: Extra = (*time, ("ball", balls))
+            place = "ball position from its place in the packed, centred row"
+            found["ball_place"] = (ball, "float64", {"units": "m", "long_name": place})
+            found["ball_speed"] = (ball, "float64", {"units": "m/s", "long_name": "ball speed in its cavity"})
+        if self.last:
+            tail: Extra = (("last", self.last),)
+            found["last_time"] = (tail, "float64", {"units": "s", "long_name": "time of impact"})
+            found["last_approach_speed"] = (tail, "float64", {"units": "m/s", "long_name": "approach speed"})
+            found["last_contact"] = (tail, "float64", {"units": "", "long_name": "number of the contact"})
+        if self.state:
+            states: Extra = (("component", 2 * (len(self.case.modes.decay) + balls)),)
+            found["state"] = (states, "float64", {"units": "", "long_name": "modes, ball positions, ball velocities"})
+        return found
+
+    def describe(self) -> dict[str, Any]:
+        """What is computed besides the design, in JSON's types."""
+        kept = {name: getattr(self, name) for name in ("skip", "samples", "point", "motion", "last", "state")}
+        return {
+            "case": self.case.to_toml(),
+            "measures": [*self.named, *(f"{name} {_fingerprint(own)}" for name, own in self.own.items())],
+            "cycles": None if self.cycles is None else list(self.cycles),
+            **kept,
+        }
+
+    def run(
+        self,
+        start: int,
+        stop: int,
+        *,
+        threads: int = 1,
+        cancelled: Callable[[], bool] | None = None,
+    ) -> Mapping[str, NDArray[Any]] | None:
+        """Run variants start to stop.
+
+        Parameters
+        ----------
+        start, stop
+            Variants, counted along the grid with its last axis fastest.
+        threads
+            How many work at once.
+        cancelled
+            Asked some twenty times a second; True stops.
+
+        Returns
+        -------
+        dict of str to array, or None
+            Each output, (stop - start, ...); None when it was stopped.
+        """
+
+        def go_on(done: int) -> bool:
+            return not (cancelled and cancelled())
+
+        result = run_block(self.packed, self.design.shape, start, stop, self.look, threads=threads, progress=go_on)
+        if result is None or not self.own:
+            return result
+        columns = {name: np.full(stop - start, np.nan) for name in self.own}
+        for first in range(start, stop, _RUNS_AT_ONCE):
+            if not go_on(first - start):
+                return None
+            members = range(first, min(first + _RUNS_AT_ONCE, stop))
+            runs = simulate_many([self.design.case_at(self.case, index) for index in members], threads=threads)
+            for index, run in zip(members, runs, strict=True):
+                if run.status == "finished":
+                    for name, measure in self.own.items():
+                        columns[name][index - start] = measure(run)
+        return {**result, **columns}
+
+    # ---- what the core needs
+
+    @property
+    def packed(self) -> Packed:
+        """All variants, packed."""
+        return self._prepared[0]
+
+    @property
+    def look(self) -> Look:
+        """What is kept of each, for the core."""
+        return self._prepared[1]
+
+    @cached_property
+    def _prepared(self) -> tuple[Packed, Look]:
+        packed = pack_batch(self.case, self.design.columns, self.design.shape)
+        packed.pop("sample_times", None)
+        settings = packed["settings"]
+        period = _period(packed)
+        if self.cycles is not None:
+            if period is None:
+                raise Hint("cycles need a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
+            settings = {**settings, "duration": np.asarray(sum(self.cycles) * period)}
+        for name in self.named:
+            if MEASURES[name].cyclic and period is None:
+                raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "rb.Harmonic")
+        start = self.skip if self.cycles is None else self.cycles[0] * period
+        if np.any(np.asarray(start) >= settings["duration"]):
+            raise Hint(f"skip = {np.max(start):.6g} s leaves nothing of the run to look at", "a longer duration")
+        dense = self.motion or any(MEASURES[name].samples for name in self.named)
+        usual = 2001 if self.cycles is None else 1 + int(np.ceil(64 * self.cycles[1]))
+        look = Look(
+            measures=self.named,
+            shape=packed["points"][self._point],
+            start=start,
+            period=np.nan if period is None else period,
+            samples=self.samples or (usual if dense else 2),
+            motion=self.motion,
+            last=self.last,
+            state=self.state,
+        )
+        return {**packed, "settings": settings}, look
+
+    @property
+    def _point(self) -> str:
+        if self.point is None and self.case.dampers:
+            return self.case.modes.point(self.case.dampers[0].point)
+        return self.case.modes.point(self.point)
+
+
+def _period(packed: Packed) -> Any:
+    """Of the first harmonic load or motion [s]; None when there is none."""
+    for load in packed["loads"]:
+        if load["kind"] == "harmonic":
+            return 2 * np.pi / np.asarray(load["frequency"])
+    return None
+
+
+def _fingerprint(function: UserMeasure) -> str:
+    """Tells a function from others of its name."""
+    try:
+        return sha256(getsource(function).encode()).hexdigest()[:12]
+    except (OSError, TypeError):
+        return ""
