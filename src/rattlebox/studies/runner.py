@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import os
+import pickle
 import platform
 import threading
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack, contextmanager
 from importlib import import_module
 from itertools import zip_longest
@@ -190,7 +191,7 @@ def _how_to_go_on(done: int, total: int, store: str | os.PathLike[str] | None) -
 
 def _block_size(task: Task, plan: Plan, on: Any, threads: int) -> int:
     with _aside() as (pool, stop):
-        each = pool.submit(_seconds_each, task, stop.is_set).result()
+        each = _heard(pool.submit(_seconds_each, task, stop.is_set))
     if on:
         workers = sum(on.nthreads().values()) or 1
         share = each * task.size / (workers * threads * _SHARE)
@@ -235,6 +236,13 @@ def _aside() -> Iterator[tuple[ThreadPoolExecutor, threading.Event]]:
             pool.shutdown(wait=False, cancel_futures=True)
 
 
+def _heard(future: Future[Any]) -> Any:
+    """Wait for a result with an ear for Ctrl-C, which a wait without end may not hear."""
+    while not wait([future], timeout=0.05).done:
+        pass
+    return future.result()
+
+
 def _here(task: Task, todo: Sequence[Block], threads: int) -> Generator[tuple[Block, Values]]:
     """Run block after block, the next one while a result is being kept."""
     with _aside() as (pool, stop):
@@ -245,7 +253,7 @@ def _here(task: Task, todo: Sequence[Block], threads: int) -> Generator[tuple[Bl
         ahead = submit(todo[0]) if todo else None
         for block, following in zip_longest(todo, todo[1:]):
             assert ahead
-            values = ahead.result()
+            values = _heard(ahead)
             ahead = submit(following) if following else None
             yield block, _whole(values)
 
@@ -261,10 +269,10 @@ def _whole(values: Values | None) -> Values:
 
 def _on_cluster(client: Any, task: Task, todo: Sequence[Block], threads: int) -> Generator[tuple[Block, Values]]:
     """Run blocks wherever there is a worker; those of workers that die are run again by others."""
-    dask: Any = import_module("distributed")
+    cloudpickle, dask = import_module("cloudpickle"), import_module("distributed")
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Sending large graph")  # not scattered: what is lost there is gone for good
-        shared = client.submit(_itself, task, pure=False)
+        shared = client.submit(pickle.loads, cloudpickle.dumps(task), pure=False)
     blocks = {
         client.submit(_block, shared, *block[1:], threads, _core(), pure=False, priority=-block[0]): block
         for block in todo
@@ -278,14 +286,10 @@ def _on_cluster(client: Any, task: Task, todo: Sequence[Block], threads: int) ->
             f"the cluster gave up: {error.allowed_failures + 1} workers in turn died of one block\n"
             "  try: workers with more memory, or smaller blocks"
         ) from None
-    except dask.CancelledError:
-        raise CaseError("the cluster is lost: its scheduler has stopped, or the connection to it has broken") from None
+    except dask.CancelledError as error:
+        raise CaseError(f"the cluster is lost: {error}\n  try: whether its scheduler is running") from None
     finally:
         client.cancel([shared, *blocks], force=True)
-
-
-def _itself(task: Task) -> Task:
-    return task
 
 
 def _block(task: Task, start: int, stop: int, threads: int, core: str) -> Values | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -39,6 +40,7 @@ class Logistic:
     pause: float = 0.0
     case: str = "[damper]\ngap = 0.1\n[load]\namplitude = 5.0\n"
     broken: bool = False
+    deadly: bool = False
 
     @property
     def size(self) -> int:
@@ -70,6 +72,8 @@ class Logistic:
             time.sleep(0.002)
         if self.broken:
             raise ZeroDivisionError("a fault in the task")
+        if self.deadly and stop - start == self.size:
+            os._exit(1)
         number = np.arange(start, stop)
         x = (number + 0.5) / self.size
         for _ in range(1000):

@@ -50,7 +50,7 @@ def test_on_disk_and_in_memory_are_the_same(tmp_path: Path) -> None:
 
 
 def test_a_store_is_plain_zarr(tmp_path: Path) -> None:
-    """xarray opens a study by itself, with coordinates, texts and attributes, and without a warning."""
+    """A study opens in xarray by itself, with coordinates, texts and attributes, and without a warning."""
     study(tmp_path / "study.zarr")
     data = xr.open_zarr(tmp_path / "study.zarr", chunks=None)
     assert list(data.material.values) == [f"m{i}" for i in range(10)]
