@@ -1,0 +1,438 @@
+"""Maps and lines of a study: a measure over one or two of its axes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from ..model.errors import CaseError, Hint, nearest
+from ..model.units import parse
+from ..results.quantities import quantity
+from .style import (
+    FAINT,
+    INK,
+    SERIES_COLOURS,
+    SERIES_STYLES,
+    PaperFigure,
+    Size,
+    label,
+    legend_above,
+    letters,
+    paper,
+    pen,
+    scaled,
+    shorten,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Vector = NDArray[np.float64]
+
+_BAND = "replica"
+_HATCHES = ("////", "....", "xxxx", "\\\\\\\\", "++++", "oooo", "****")
+_MARKERS = ("x", "+", "1", "2", "3", "4", "*")
+_GREY = "#c8c8c8"
+
+
+def plot_map(
+    study: xr.Dataset,
+    of: str | None = None,
+    *,
+    kind: Literal["map", "lines"] | None = None,
+    at: Mapping[str, Any] | None = None,
+    size: Size = "column",
+) -> Figure:
+    """Draw a measure of a study over one or two of its axes.
+
+    Axes whose values grow by a factor are logarithmic. Of replicas, a map shows the median, and lines the median within the
+    band from 10 to 90 %. Runs that did not finish are hatched in a map and crossed on the axis below lines, and named.
+
+    Parameters
+    ----------
+    study
+        From `rb.sweep` or a store; any dataset of measures over axes.
+    of
+        Name of the measure; default the first.
+    kind
+        "map" in colours over two axes, "lines" over one, one line for each value of the other; default what fits.
+    at
+        Values of further axes, {"load.amplitude": "5 kN"}; the nearest one in the study is taken.
+    size
+        Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    Figure
+        With one panel.
+
+    Raises
+    ------
+    CaseError
+        When there is no such measure or axis, or the study varies along more axes than can be drawn.
+    ValueError
+        When the size is unknown.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> from rattlebox.paper.seed import seed_case
+    >>> gaps = {"damper.gap": rb.linspace("0.2 mm", "1 mm", 5)}
+    >>> figure = rb.plot_map(rb.sweep(seed_case(duration=1.0), gaps, ["impact_share"]))
+    """
+    if kind not in (None, "map", "lines"):
+        raise CaseError(f"kind = {kind!r}: there is no such kind\n  {nearest(str(kind), ('map', 'lines'))}")
+    name = _measure(study, of)
+    chosen, told = select(study, at or {})
+    chosen = chosen.squeeze(drop=True)
+    dims = [str(dim) for dim in chosen[name].dims if dim != _BAND]
+    _check_axes(chosen, name, dims, kind)
+    with paper(size):
+        if kind == "map" or (kind is None and len(dims) == 2):
+            figure = _map_figure(chosen, name, dims, size)
+        else:
+            figure = _lines_figure(chosen, name, dims, size)
+        if told:
+            figure.suptitle(shorten(told, letters(figure.axes[0])), x=0.01, ha="left", fontsize="medium")
+    return figure
+
+
+def select(study: xr.Dataset, at: Mapping[str, Any]) -> tuple[xr.Dataset, str]:
+    """Take the members of a study at values of its axes.
+
+    Parameters
+    ----------
+    study
+        Dataset over axes.
+    at
+        By the name of a coordinate: the value, a number in SI or text with a unit; the nearest one is taken.
+
+    Returns
+    -------
+    tuple
+        The study without these axes, and what was taken in words.
+
+    Raises
+    ------
+    CaseError
+        When there is no such axis, or the value lies outside its range.
+    """
+    words = []
+    for name, value in at.items():
+        known = [str(other) for other, coord in study.coords.items() if coord.ndim == 1]
+        if name not in known:
+            raise CaseError(f"at = {name!r}: the study has no such axis\n  {nearest(name, known)}")
+        coord = study[name]
+        number = _position(coord, name, value)
+        words.append(f"{_spoken(coord)} {_value(coord, coord.values[number])}")
+        study = study.isel({coord.dims[0]: number})
+    return study, ", ".join(words)
+
+
+def _position(coord: xr.DataArray, name: str, value: Any) -> int:
+    """Number of the value of a coordinate that is nearest."""
+    values = coord.values
+    if values.dtype.kind not in "fiu":
+        if value not in values.tolist():
+            raise CaseError(f"at: {name} = {value!r} is not in the study\n  {nearest(str(value), map(str, values))}")
+        return int(values.tolist().index(value))
+    try:
+        number = parse(value, (_unit(coord) or "1",))[0]
+    except Hint as hint:
+        raise CaseError(f"at: {name} = {value!r}\n  {hint}") from None
+    low, high = float(values.min()), float(values.max())
+    if not low - 1e-6 * abs(low) <= number <= high + 1e-6 * abs(high):
+        shown = f"{_value(coord, low)} to {_value(coord, high)}"
+        raise CaseError(f"at: {name} = {value!r} lies outside the study\n  try: {shown}")
+    return int(np.argmin(np.abs(values - number)))
+
+
+def _measure(study: xr.Dataset, of: str | None) -> str:
+    numbers = [str(name) for name, values in study.data_vars.items() if values.dtype.kind in "fiu" and name != "status"]
+    if of is None:
+        if not numbers:
+            raise CaseError("there is no measure in this study")
+        return numbers[0]
+    if of not in study.data_vars:
+        raise CaseError(f"of = {of!r}: there is no such measure in the study\n  {nearest(of, numbers)}")
+    return of
+
+
+def _check_axes(study: xr.Dataset, name: str, dims: list[str], kind: str | None) -> None:
+    """Refuse what cannot be drawn."""
+    own = [dim for dim in dims if "status" in study and dim not in study["status"].dims]
+    if own:
+        raise CaseError(f"{name} is no one number of a run, but runs along {', '.join(own)}\n  try: a measure")
+    if dims == ["sample"] and "sample" not in study.indexes:
+        raise CaseError("a random design has no axes to draw along\n  try: a grid of values")
+    if not dims:
+        raise CaseError(f"nothing varies in what is left of the study: {name} = {float(study[name].values):.6g}")
+    if len(dims) > 2 or (kind == "map" and len(dims) == 1):
+        which = f"varies along {', '.join(dims)}"
+        if len(dims) == 1:
+            raise CaseError(f"a map needs two axes, but {name} {which}\n  try: kind lines")
+        last = study[dims[-1]]
+        one = _value(last, last.values[0])
+        raise CaseError(f"{name} {which}; two axes can be drawn\n  try: at {dims[-1]} = {one}")
+
+
+# ---- maps
+
+
+def _map_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> Figure:
+    figure = PaperFigure(size, 0.78 if size == "column" else 0.56)
+    axes = figure.subplots()
+    draw_map(figure, axes, study, name, dims[0], dims[1])
+    look: dict[str, Any] = {"edgecolor": FAINT, "linewidth": pen(0.5)}
+    notes = [Patch(facecolor=gap.face, hatch=gap.hatch, label=gap.text, **look) for gap in _gaps(study, name)]
+    if notes:
+        figure.legend(handles=notes, loc="outside lower left", ncols=min(len(notes), 2), handlelength=1.4)
+    return figure
+
+
+def draw_map(
+    figure: Figure,
+    axes: Axes,
+    study: xr.Dataset,
+    name: str,
+    x: str,
+    y: str,
+    *,
+    norm: Normalize | None = None,
+    text: str | None = None,
+    extend: Literal["neither", "both", "min", "max"] = "neither",
+) -> Vector:
+    """Draw a measure in colours over two axes, with hatches where runs did not finish.
+
+    Parameters
+    ----------
+    figure, axes
+        Where.
+    study
+        Dataset over the two axes, and perhaps replicas, of which the median is shown.
+    name
+        Measure.
+    x, y
+        Axes of the study.
+    norm
+        Scale of colours; default from the least to the largest value.
+    text
+        Label of the colour bar; default from the attributes.
+    extend
+        Ends of the colour bar that are open.
+
+    Returns
+    -------
+    array
+        The values as they are shown, (y, x), over the divisor of their unit.
+    """
+    values = study[name]
+    if _BAND in values.dims:
+        values = values.median(_BAND)
+    array = values.transpose(y, x).values.astype(float)
+    divisor, unit = _scale(values, array)
+    across, up = _Axis.of(study[x]), _Axis.of(study[y])
+    mesh = axes.pcolormesh(
+        across.edges, up.edges, array / divisor, cmap=colours(), norm=norm, rasterized=True, shading="flat"
+    )
+    for gap in _gaps(study, name):
+        where = gap.where.transpose(y, x, ...).values.reshape((*array.shape, -1)).any(axis=-1)
+        left, low = across.edges[:-1], up.edges[:-1]
+        right, high = across.edges[1:], up.edges[1:]
+        cells = [
+            [(left[i], low[j]), (right[i], low[j]), (right[i], high[j]), (left[i], high[j])]
+            for j, i in np.argwhere(where)
+        ]
+        axes.add_collection(
+            PolyCollection(cells, facecolors=gap.face, edgecolors=_GREY, linewidths=0, hatch=gap.hatch, zorder=2)
+        )
+    across.finish(axes, "x")
+    up.finish(axes, "y")
+    bar = figure.colorbar(mesh, ax=axes, aspect=28, pad=0.02, extend=extend)
+    bar.outline.set_visible(False)
+    said = _capital(_spoken(values)) if text is None else text
+    if _BAND in study[name].dims:
+        said = f"{said}, median"
+    bar.set_label(f"{said} ({unit})" if unit else said)
+    return array / divisor
+
+
+def colours() -> Any:
+    """Return the colours of maps: even in lightness, so that they survive greyscale and colour blindness."""
+    from cmcrameri import cm  # type: ignore[import-untyped]
+
+    return cm.batlow
+
+
+class _Axis(NamedTuple):
+    """One axis of a figure."""
+
+    centres: Vector
+    edges: Vector
+    log: bool
+    names: list[str] | None
+    text: str
+    unit: str
+
+    @classmethod
+    def of(cls, coord: xr.DataArray) -> _Axis:
+        values, text = np.asarray(coord.values), _capital(_spoken(coord))
+        if values.dtype.kind not in "fiu":
+            places = np.arange(values.size, dtype=float)
+            return cls(places, np.arange(values.size + 1) - 0.5, False, [str(value) for value in values], text, "")
+        divisor, unit = _scale(coord, values)
+        centres = values / divisor
+        log = _grows_by_factor(centres)
+        inner = np.log(centres) if log else centres
+        between = 0.5 * (inner[1:] + inner[:-1])
+        edges = np.concatenate(([2 * inner[0] - between[0]], between, [2 * inner[-1] - between[-1]]))
+        return cls(centres, np.asarray(np.exp(edges) if log else edges, dtype=float), log, None, text, unit)
+
+    def finish(self, axes: Axes, which: Literal["x", "y"]) -> None:
+        axis = axes.xaxis if which == "x" else axes.yaxis
+        if self.log:
+            (axes.set_xscale if which == "x" else axes.set_yscale)("log")
+            axis.set_major_formatter(_plain)
+        if self.names is not None:
+            axis.set_ticks(self.centres.tolist(), [shorten(name, 16) for name in self.names])
+        label(axes, which, self.text, self.unit)
+
+
+def _plain(value: float, _: Any = None) -> str:
+    """A number as one writes it: 0.1, 10."""
+    return f"{value:g}"
+
+
+def _grows_by_factor(values: Vector) -> bool:
+    if values.size < 4 or np.any(values <= 0):
+        return False
+    ratios = values[1:] / values[:-1]
+    return bool(np.allclose(ratios, ratios[0], rtol=1e-6) and abs(ratios[0] - 1) > 1e-6)
+
+
+# ---- lines
+
+
+def _lines_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> Figure:
+    figure = PaperFigure(size, 0.72 if size == "column" else 0.5)
+    axes = figure.subplots()
+    along, *others = sorted(dims, key=lambda dim: study.sizes[dim], reverse=True)
+    across, values = _Axis.of(study[along]), study[name]
+    divisor, unit = _scale(values, values.values)
+    looks: list[dict[str, Any]] = [{"color": SERIES_COLOURS[0]}]
+    for other in others:
+        looks = _series(figure, axes, study[other])
+        values = values.transpose(other, ...)
+    for member, look in zip(values if others else [values], looks, strict=True):
+        look |= {"linestyle": "", "marker": "o"} if across.names is not None else {}
+        _draw_line(axes, across.centres, member / divisor, look)
+    marks = _mark_gaps(axes, study, name, along, across)
+    across.finish(axes, "x")
+    label(axes, "y", _capital(_spoken(values)), unit)
+    legend_above(axes)
+    if marks:
+        figure.legend(handles=marks, loc="outside lower left", ncols=2, handlelength=1.0)
+    return figure
+
+
+def _draw_line(axes: Axes, places: Vector, member: xr.DataArray, look: dict[str, Any]) -> None:
+    """Draw a line, or the median of replicas within their band."""
+    middle = member
+    if _BAND in member.dims:
+        low, middle, high = member.quantile([0.1, 0.5, 0.9], _BAND)
+        axes.fill_between(places, low.values, high.values, color=look["color"], alpha=0.25, linewidth=0)
+    axes.plot(places, middle.values, **look)
+
+
+def _series(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[dict[str, Any]]:
+    """Colours and names of lines; a colour bar where they are too many to be named."""
+    from matplotlib.cm import ScalarMappable
+
+    if coord.size <= len(SERIES_COLOURS):
+        names = [f"{_spoken(coord)} {_value(coord, value)}" for value in coord.values]
+        looks = zip(SERIES_COLOURS, SERIES_STYLES, names, strict=False)
+        return [{"color": colour, "linestyle": style, "label": text} for colour, style, text in looks]
+    axis = _Axis.of(coord)
+    dark = LinearSegmentedColormap.from_list("dark", colours()(np.linspace(0, 0.85, 256)))
+    norm = (LogNorm if axis.log else Normalize)(float(axis.centres.min()), float(axis.centres.max()))
+    bar = figure.colorbar(ScalarMappable(norm, dark), ax=axes, aspect=28, pad=0.02)
+    if axis.log:
+        bar.ax.yaxis.set_major_formatter(_plain)
+    bar.outline.set_visible(False)
+    bar.set_label(f"{axis.text} ({axis.unit})" if axis.unit else axis.text)
+    return [{"color": dark(norm(value))} for value in axis.centres]
+
+
+def _mark_gaps(axes: Axes, study: xr.Dataset, name: str, along: str, across: _Axis) -> list[Line2D]:
+    """Mark on the axis where there is no value."""
+    marks = []
+    for number, gap in enumerate(_gaps(study, name)):
+        here = gap.where.transpose(along, ...).values.reshape(across.centres.size, -1).any(axis=1)
+        look: dict[str, Any] = {"marker": gap.marker, "color": INK, "linestyle": ""}
+        height = np.full(here.sum(), 0.02 + 0.03 * number)
+        axes.plot(across.centres[here], height, transform=axes.get_xaxis_transform(), clip_on=False, **look)
+        marks.append(Line2D([], [], label=gap.text, **look))
+    return marks
+
+
+# ---- members without a value
+
+
+class _Gap(NamedTuple):
+    """Members that have no value for one reason."""
+
+    text: str
+    where: xr.DataArray
+    face: str
+    hatch: str
+    marker: str
+
+
+def _gaps(study: xr.Dataset, name: str) -> list[_Gap]:
+    """Why members have no value, if some have none."""
+    values = study[name]
+    finished, found = np.isfinite(values), []
+    if "status" in study:
+        states = study["status"]
+        finished = finished | (states != 0)
+        names = str(states.attrs.get("flag_meanings", "")).split()
+        for status in np.unique(states.values[states.values != 0]).tolist():
+            known = names[status].replace("_", " ") if 0 <= status < len(names) else "not computed yet"
+            number = status % len(_HATCHES)
+            found.append((known, states == status, "none", "" if status < 0 else _HATCHES[number], _MARKERS[number]))
+    found.append(("no value", ~finished, _GREY, "", "|"))
+    return [_Gap(f"{text} ({int(where.sum())})", where, *look) for text, where, *look in found if where.any()]
+
+
+# ---- words
+
+
+def _unit(values: xr.DataArray) -> str:
+    unit = str(values.attrs.get("units", ""))
+    return "" if unit == "1" else unit
+
+
+def _scale(values: xr.DataArray, array: Any) -> tuple[float, str]:
+    unit = _unit(values)
+    return scaled(array, unit) if unit else (1.0, "")
+
+
+def _spoken(values: xr.DataArray) -> str:
+    return str(values.attrs.get("long_name", values.name)).replace("_", " ")
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _value(coord: xr.DataArray, value: Any) -> str:
+    return quantity(float(value), _unit(coord)) if coord.dtype.kind in "fiu" else str(value)
