@@ -52,6 +52,11 @@ def pick(condition: Any, one: Any, other: Any) -> Any:
     return one if condition else other
 
 
+def less(one: Any, other: Any, if_equal_one: Any, if_equal_other: Any) -> Any:
+    """Return whether a number is less than another one; where they are equal, others decide."""
+    return (one < other) | ((one == other) & (if_equal_one < if_equal_other))
+
+
 def stacked(components: Sequence[Any]) -> Vector:
     """Put components together to a vector, (n,) or (n, ...)."""
     for component in components:

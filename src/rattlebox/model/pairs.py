@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .elementwise import exp, power, sqrt
+from .elementwise import exp, less, power, sqrt
 from .errors import Hint
 from .materials import Material
 
@@ -59,10 +59,10 @@ class Body:
 
     def or_weaker(self, other: Body) -> Body:
         """Return the body that yields first, of two that can; for arrays one of the material that does in each place."""
-        weaker = other.hardness < self.hardness
+        assert self.material is not None and other.material is not None
+        weaker = less(other.hardness, self.hardness, other.material.young, self.material.young)
         if not isinstance(weaker, np.ndarray):
             return other if weaker else self
-        assert self.material is not None and other.material is not None
         chosen = {
             name: np.where(weaker, getattr(other.material, name), getattr(self.material, name))
             for name in ("young", "poisson", "yield_stress")
@@ -110,7 +110,7 @@ class Pair:
         return stiffness
 
     def first_to_yield(self, need: str) -> Body:
-        """Return the body that yields first.
+        """Return the body that yields first, the softer one where both do.
 
         Raises
         ------

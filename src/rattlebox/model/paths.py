@@ -160,7 +160,8 @@ def _units(annotations: Sequence[Any]) -> Iterator[str]:
 def replaced(case: Case, values: Mapping[str, Any]) -> Case:
     """Return a case with other values in places.
 
-    What excludes a value goes: a case with damping becomes one with a damping ratio when that is given.
+    What excludes a value goes: a case with damping becomes one with a damping ratio when that is given. Dampers know their
+    gap, also those given by the length of the cavity: balls of another radius keep the gap unless a length is given.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from .base import AlsoTakes, Part
-from .elementwise import pick, power, sqrt
+from .elementwise import less, pick, power, sqrt
 from .errors import Hint
 from .materials import AnyWall
 from .pairs import Pair, hardness
@@ -103,7 +103,7 @@ class JacksonGreen(Restitution):
     wall
         Elasticity of the wall in the critical speed: a material, "rigid", or None for the damper's wall.
     yield_stress
-        Instead of the material's [Pa].
+        Instead of the materials' [Pa]; that of the one with the lower Poisson's ratio, or the softer one.
     extrapolate
         Use the law above 1000 critical speeds; counted in the run.
     """
@@ -128,7 +128,7 @@ class JacksonGreen(Restitution):
             sides = [body.material for body in (pair.below, pair.above) if body.material is not None]
             young, poisson = sides[0].young, sides[0].poisson
             for other in sides[1:]:
-                softer = other.poisson < poisson
+                softer = less(other.poisson, poisson, other.young, young)
                 young, poisson = pick(softer, other.young, young), pick(softer, other.poisson, poisson)
             return hardness(poisson, self.yield_stress), self.yield_stress / young
         body = pair.first_to_yield("the Jackson-Green law")

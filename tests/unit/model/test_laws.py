@@ -86,6 +86,20 @@ def test_wall_of_the_law_replaces_that_of_the_damper() -> None:
     assert law == pytest.approx(rb.JacksonGreen().critical_speed(wall_pair("rigid")), rel=1e-14)
 
 
+@pytest.mark.parametrize("law", [rb.JacksonGreen(), rb.JacksonGreen(yield_stress=1e9)])
+def test_both_walls_are_alike(law: rb.JacksonGreen) -> None:
+    """A wall that yields with the ball, but is stiffer, is the same wall on both sides."""
+    pair = wall_pair()
+    assert pair.below.material is not None
+    wall = rb.Body(pair.below.material.model_copy(update={"young": 1e13}))
+    ball = pair.above if pair.below.is_flat else pair.below
+    assert law.coefficients(rb.Pair(wall, ball)) == law.coefficients(rb.Pair(ball, wall))
+    assert ball.material is not None
+    strength = law.yield_stress or ball.material.yield_stress
+    assert strength is not None
+    assert law.coefficients(rb.Pair(wall, ball))[1]["yield_strain"] == strength / ball.material.young
+
+
 def test_yield_strain_of_steel() -> None:
     """eps_y = S_y / E of the body that yields first."""
     name, values = rb.JacksonGreen().coefficients(wall_pair())
