@@ -9,9 +9,12 @@ from rattlebox.model.materials import materials
 
 
 def show_materials() -> None:
-    """Print the library as a table."""
-    table = Table(Column("name", no_wrap=True), "what", "density\nkg/m³", "E\nGPa", "ν", "yield\nMPa", "source")
+    """Print the library as a table, and below it where the values come from."""
+    numbers = (Column(head, justify="right") for head in ("density\nkg/m³", "E\nGPa", "ν", "yield\nMPa"))
+    table = Table(Column("name", no_wrap=True), "what", *numbers)
+    sources = Table(Column("name", no_wrap=True), "source", box=None)
     for name, m in materials().items():
         strength = "" if m.yield_stress is None else f"{m.yield_stress / 1e6:g}"
-        table.add_row(name, m.title, f"{m.density:g}", f"{m.young / 1e9:g}", f"{m.poisson:g}", strength, m.source)
-    Console().print(table)
+        table.add_row(name, m.title, f"{m.density:g}", f"{m.young / 1e9:g}", f"{m.poisson:g}", strength)
+        sources.add_row(name, m.source)
+    Console().print(table, sources)

@@ -64,7 +64,7 @@ def _run(case: Case, raw: dict[str, Any]) -> Run:
     provenance = Provenance.now(method=case.method.kind, seed=case.seed)
     run = Run(arrays, case_toml=case.to_toml, provenance=provenance)
     if run.status == "finished" and run.closure > raw["closure_bound"]:
-        status, message = describe(LEDGER_OPEN, case.duration, "", run.closure)
+        status, message = describe(LEDGER_OPEN, case.duration, "", run.closure, case.method.kind)
         run = Run(replace(arrays, status=status, message=message), case_toml=case.to_toml, provenance=provenance)
     return run
 
@@ -91,7 +91,11 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
     base = _base_motion(case, time)
     stopped = raw["stopped_contact"]
     name, message = describe(
-        raw["status"], raw["stopped_at"], _contact_name(names, counts, stopped), raw["stopped_value"]
+        raw["status"],
+        raw["stopped_at"],
+        _contact_name(names, counts, stopped),
+        raw["stopped_value"],
+        case.method.kind,
     )
     by_damper = (time.size, d)
     impacts = {key: value for key, value in raw["impacts"].items() if key != "complete"}

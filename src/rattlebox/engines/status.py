@@ -1,4 +1,4 @@
-"""How a run can end, each with a sentence that says what to try."""
+"""How a run can end, each with a sentence on what happened and one on what to try with the method that ran."""
 
 from __future__ import annotations
 
@@ -6,35 +6,43 @@ STATUSES: tuple[tuple[str, str], ...] = (
     ("finished", "The run reached its end."),
     (
         "law_domain",
-        "{contact} was struck at {value:.6g} m/s, above the last speed its restitution law covers, at t = {time:.9g} s. "
-        "Use a law that covers it (Thornton, a table), or allow extrapolation (extrapolate = true) knowingly.",
+        "{contact} was struck at {value:.6g} m/s, above the last speed its restitution law covers, at t = {time:.9g} s.",
     ),
-    (
-        "too_many_events",
-        "The budget of events was spent at t = {time:.9g} s, likely by chattering. Raise max_events, shorten the run, "
-        "add damping to the contact, or use the Newton method, which lets chattering balls stick.",
-    ),
-    (
-        "step_too_small",
-        "A contact could not be integrated within the tolerance at t = {time:.9g} s. Loosen the tolerance, or check that "
-        "stiffnesses and masses are of the sizes you meant.",
-    ),
+    ("too_many_events", "The budget of events was spent at t = {time:.9g} s, likely by chattering."),
+    ("step_too_small", "A contact could not be integrated within the tolerance at t = {time:.9g} s."),
     ("interrupted", "The run was stopped at t = {time:.9g} s; what was computed until then is kept."),
-    (
-        "not_finite",
-        "The motion grew beyond all numbers at t = {time:.9g} s. Shorten the time steps of the TwoStep method.",
-    ),
+    ("not_finite", "The motion grew beyond all numbers at t = {time:.9g} s."),
     (
         "ledger_open",
-        "The run reached its end, but its energy ledger closes only to {value:.2g} of the energy put in: do not trust it. "
-        "Lower the tolerance, and compare with another method.",
+        "The run reached its end, but its energy ledger closes only to {value:.2g} of the energy put in: do not trust it.",
     ),
 )
 LEDGER_OPEN = [name for name, _ in STATUSES].index("ledger_open")
 
+_SIZES = "Check that stiffnesses, masses and speeds are of the sizes you meant."
+_ADVICE: dict[str, dict[str, str]] = {
+    "law_domain": {
+        "": "Use a law that covers it (Thornton, a table), or allow extrapolation (extrapolate = true) knowingly."
+    },
+    "too_many_events": {
+        "": "Raise max_events, shorten the run, or add damping to the contact.",
+        "event_driven": "Raise max_events, shorten the run, add damping to the contact, or use the Newton method, which lets "
+        "chattering balls stick.",
+        "newton": "Raise stick, so that slow impacts end earlier, raise max_events, shorten the run, or use the EventDriven "
+        "method, whose contacts take their time.",
+    },
+    "step_too_small": {"": "Loosen the tolerance. " + _SIZES},
+    "not_finite": {"": _SIZES, "two_step": "Shorten the time steps dt_flight and dt_contact."},
+    "ledger_open": {
+        "": "Compare with another method.",
+        "event_driven": "Lower the tolerance, and compare with another method.",
+    },
+}
+"""What to try, by status and kind of method; "" for every other method."""
 
-def describe(status: int, time: float, contact: str, value: float) -> tuple[str, str]:
-    """Return the name and the sentence of a core status.
+
+def describe(status: int, time: float, contact: str, value: float, method: str) -> tuple[str, str]:
+    """Return the name of a core status, and what happened with what to try.
 
     Parameters
     ----------
@@ -45,7 +53,11 @@ def describe(status: int, time: float, contact: str, value: float) -> tuple[str,
     contact
         Name of the contact concerned, if any.
     value
-        Approach speed there [m/s].
+        Approach speed there [m/s], or the closure of a ledger.
+    method
+        Kind of the method that ran, as in case files.
     """
-    name, sentence = STATUSES[status]
-    return name, sentence.format(time=time, contact=contact, value=value)
+    name, happened = STATUSES[status]
+    advice = _ADVICE.get(name, {})
+    sentences = happened.format(time=time, contact=contact, value=value), advice.get(method, advice.get("", ""))
+    return name, " ".join(sentences).strip()
