@@ -26,8 +26,8 @@ _ADVICE: dict[str, dict[str, str]] = {
     },
     "too_many_events": {
         "": "Raise max_events, shorten the run, or add damping to the contact.",
-        "event_driven": "Raise max_events, shorten the run, add damping to the contact, or use the Newton method, which lets "
-        "chattering balls stick.",
+        "event_driven": "Raise max_events, shorten the run, add damping to the contact, or use the Newton method, which "
+        "lets chattering balls stick.",
         "newton": "Raise stick, so that slow impacts end earlier, raise max_events, shorten the run, or use the EventDriven "
         "method, whose contacts take their time.",
     },
