@@ -1,0 +1,189 @@
+"""Steady motion under a harmonic load over its frequency: levels, up and down, jumps and coexisting states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.model.errors import CaseError
+from rattlebox.model.signals import Harmonic
+
+from .axes import Design
+from .follow import follow
+from .sweep import sweep
+from .task import SweepTask
+
+if TYPE_CHECKING:
+    import xarray
+
+    from rattlebox.model.case import Case
+
+Direction = Literal["up", "down", "fresh"]
+_MEASURES = "peak", "rms", "impacts_per_cycle"
+_LONGEST = 16  # cycles after which a motion is still seen to repeat
+
+
+def frequency_response(
+    case: Case,
+    frequencies: Any,
+    *,
+    levels: Any = None,
+    direction: Direction | Literal["both"] = "both",
+    cycles: tuple[int, int] = (200, 32),
+    measure: Sequence[str] = (),
+    point: str | None = None,
+    samples: int = 64,
+    tolerance: float = 1e-3,
+    threads: int | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> xarray.Dataset:
+    """Measure the steady motion under a harmonic load at each frequency, at one or several levels of the load.
+
+    Where two steady motions exist at one frequency, a sweep upwards and one downwards find both: each frequency goes on
+    from the state in which the one before ended, so that a motion is kept until it is lost, and the sweep jumps.
+
+    Parameters
+    ----------
+    case
+        The case, with one harmonic load or base motion.
+    frequencies
+        Rising: numbers [Hz], text with units, or linspace, geomspace.
+    levels
+        Amplitudes of the load or motion, as frequencies; default the case's own.
+    direction
+        "up", "down", "both"; or "fresh", each frequency from the start that the case says.
+    cycles
+        How many cycles of each frequency to skip until the motion is steady, and how many to look at.
+    measure
+        Names of further measures (rb.MEASURES).
+    point
+        Of the structure, that is watched; default the first damper's.
+    samples
+        In each cycle: `peak` is found to (pi/samples)^2/2, 0.12 % for 64.
+    tolerance
+        A motion is held to repeat when positions of structure and balls a number of cycles apart differ by less than
+        this part of their range.
+    threads
+        Threads that share the levels. Results do not depend on it, to the last bit.
+    progress
+        True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `direction`, `level` and `frequency` [Hz]: `status`; `peak` and `rms` [m]; `amplitude` [m] and `phase` [rad] of
+        the first harmonic, amplitude sin(2 pi f t + phase of the load + phase); `impacts_per_cycle`; `spread`, the largest
+        difference of positions one cycle apart, over their range; `period`, the number of cycles after which the motion
+        repeats, 0 when it does not within 16 or half the cycles looked at; the measures asked for. Over level and
+        frequency: `bare_amplitude` [m], of the structure without dampers.
+
+    Raises
+    ------
+    CaseError
+        When the case has no harmonic load or several, no structure that responds, or when an argument does not fit it.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> case = rb.Case(
+    ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+    ...     damper=rb.ImpactDamper(ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)),
+    ...     load=rb.Harmonic(amplitude="10 N", frequency="30 Hz"),
+    ...     duration="1 s",
+    ... )
+    >>> response = rb.frequency_response(case, rb.linspace("28 Hz", "36 Hz", 9), cycles=(50, 10))
+    >>> response.amplitude.dims
+    ('direction', 'level', 'frequency')
+    """
+    import xarray
+
+    if direction not in (*get_args(Direction), "both"):
+        raise CaseError(f'direction = {direction!r} is unknown\n  try: "up", "down", "both" or "fresh"')
+    if not (isinstance(samples, int) and samples >= 8):
+        raise CaseError(f"samples = {samples!r}: at least 8 in each cycle are needed\n  try: 64")
+    place, driver = _driver(case)
+    at, strength = f"{place}.frequency", f"{place}.amplitude"
+    level = {strength: [f"{driver.amplitude!r} {driver.unit}"] if levels is None else levels}
+    design = Design.of(case, [level, {at: frequencies}], source="frequency_response")
+    hertz = design.coords()[at][1]
+    if np.any(np.diff(hertz) <= 0):
+        raise CaseError("frequencies must rise from each to the next\n  try: numpy.unique")
+    bare = _bare(SweepTask(case, design, cycles=(0, 1), point=point))
+    options: dict[str, Any] = {
+        "measure": [*_MEASURES, *(name for name in measure if name not in _MEASURES)],
+        "cycles": cycles,
+        "samples": samples * cycles[1] + 1,
+        "point": point,
+        "motion": True,
+        "threads": threads,
+        "progress": progress,
+    }
+    ways = ("up", "down") if direction == "both" else (direction,)
+    found = []
+    for way in ways:
+        if way == "fresh":
+            maps = sweep(case, [level, {at: hertz}], **options)
+        else:
+            maps = follow(case, at, hertz[:: 1 if way == "up" else -1], beside=level, **options)
+        maps = maps.rename({at: "frequency", strength: "level"}).sortby("frequency")
+        found.append(_steady(maps.transpose("level", "frequency", ...), driver.phase, samples, tolerance))
+    whole = xarray.concat(found, dim=xarray.Variable("direction", list(ways), {"long_name": "direction"}))
+    whole["bare_amplitude"] = ("level", "frequency"), bare, {"units": "m", "long_name": "amplitude without dampers"}
+    whole.frequency.attrs["long_name"] = "frequency"
+    whole.level.attrs["long_name"] = "amplitude of the load" if place.startswith("load") else "amplitude of the base"
+    whole.attrs = {"title": "Frequency response", "case": case.to_toml(), "cycles": list(cycles)}
+    return whole
+
+
+def _driver(case: Case) -> tuple[str, Harmonic]:
+    """Path and signal of the one harmonic."""
+    if not case.modes.decay.size:
+        raise CaseError(f"a {case.structure.kind} structure does not respond\n  try: rb.SDOF, rb.Modal or rb.Matrices")
+    signals = [(f"{name}[{i}]", s) for name in ("loads", "base") for i, s in enumerate(getattr(case, name))]
+    harmonics = [(place, signal) for place, signal in signals if isinstance(signal, Harmonic)]
+    if len(harmonics) != 1:
+        given = f"there are {len(harmonics)}: {', '.join(place for place, _ in harmonics)}" if harmonics else "none"
+        raise CaseError(
+            f"a frequency response needs one harmonic load or base motion, but {given} is given\n  try: rb.Harmonic"
+        )
+    return harmonics[0]
+
+
+def _bare(task: SweepTask) -> NDArray[np.float64]:
+    """Amplitude of the structure without dampers, (levels, frequencies)."""
+    packed = task.packed
+    load = next(load for load in packed["loads"] if load["kind"] == "harmonic")
+    omega = load["frequency"]
+    dynamic = packed["mode_stiffness"] - omega**2 + 2j * packed["mode_decay"] * omega
+    response = np.sum(task.look.shape * load["shape"] / dynamic, axis=0)
+    return np.asarray(np.broadcast_to(np.abs(load["amplitude"] * response), task.design.shape))
+
+
+def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float) -> xarray.Dataset:
+    """Reduce samples of the motion to its first harmonic and to whether it repeats."""
+    z, place = maps.displacement.values, maps.ball_place.values
+    turns = np.exp(-2j * np.pi * np.arange(z.shape[-1] - 1) / samples)
+    harmonic = 2j / turns.size * (z[..., :-1] @ turns) * np.exp(-1j * phase)
+    parts = np.concatenate([z[..., None], place], axis=-1)
+    reach = np.ptp(parts, axis=-2).max(axis=-1)
+    strobes = parts[..., ::samples, :]
+    longest = min(_LONGEST, strobes.shape[-2] // 2)
+    with np.errstate(invalid="ignore"):
+        apart = np.stack(
+            [
+                np.abs(strobes[..., n:, :] - strobes[..., :-n, :]).max(axis=(-2, -1)) / reach
+                for n in range(1, longest + 1)
+            ]
+        )
+    repeats = apart < tolerance
+    period = np.where(repeats.any(axis=0), repeats.argmax(axis=0) + 1, 0)
+    over = "level", "frequency"
+    return maps.drop_vars(["displacement", "velocity", "ball_place", "ball_speed"]).assign(
+        amplitude=(over, np.abs(harmonic), {"units": "m", "long_name": "amplitude of the first harmonic"}),
+        phase=(over, np.angle(harmonic), {"units": "rad", "long_name": "phase to the load"}),
+        spread=(over, apart[0], {"units": "1", "long_name": "spread of strobes over the range of motion"}),
+        period=(over, period, {"units": "1", "long_name": "cycles after which the motion repeats"}),
+    )
