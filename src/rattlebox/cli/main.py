@@ -49,6 +49,31 @@ def run(
 
 
 @app.command()
+def sweep(
+    study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder of results (Zarr); default named after the study file.")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Threads; default one for each core.")] = None,
+    dask: Annotated[
+        str | None, typer.Option(help="Address or file of a Dask scheduler, to run on its workers.")
+    ] = None,
+) -> None:
+    """Run a study file: variants of a case over axes. The same command goes on after a stop."""
+    from rattlebox.cli.sweep import run_sweep
+
+    run_sweep(study, out, workers, dask)
+
+
+@app.command()
+def show(study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")]) -> None:
+    """Tell what is in a study, and how far it is."""
+    from rattlebox.cli.show import show_study
+
+    show_study(study)
+
+
+@app.command()
 def demo(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo"),
 ) -> None:

@@ -191,7 +191,7 @@ def _how_to_go_on(done: int, total: int, store: str | os.PathLike[str] | None) -
 
 def _block_size(task: Task, plan: Plan, on: Any, threads: int) -> int:
     with _aside() as (pool, stop):
-        each = _heard(pool.submit(_seconds_each, task, stop.is_set))
+        each: float = _heard(pool.submit(_seconds_each, task, stop.is_set))
     if on:
         workers = sum(on.nthreads().values()) or 1
         share = each * task.size / (workers * threads * _SHARE)
@@ -260,7 +260,7 @@ def _here(task: Task, todo: Sequence[Block], threads: int) -> Generator[tuple[Bl
 
 def _whole(values: Values | None) -> Values:
     if values is None:
-        raise KeyboardInterrupt  # the task heard of Ctrl-C before we did
+        raise RuntimeError("a block ended before its time, though nobody stopped it")
     return values
 
 

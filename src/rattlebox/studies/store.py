@@ -15,6 +15,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
+from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -36,6 +37,7 @@ Output = tuple[tuple[tuple[str, int], ...], Any, Mapping[str, Any]]
 
 _PROGRESS = "progress"
 _TOLD = 8  # differences on one screen
+_NOTHING = object()
 
 
 @dataclass(frozen=True)
@@ -252,19 +254,15 @@ class Store:
         progress.create_array("finished", shape=(len(blocks),), chunks=(len(blocks),), dtype="bool", fill_value=False)
 
     def _compare(self) -> None:
-        there, here = _flat(_attributes(self.path)["manifest"]), _flat(self._plan.manifest)
-        lines = [
-            f"  {name}: {there.get(name, 'nothing')} there, {here.get(name, 'nothing')} here"
-            for name in sorted(there.keys() | here.keys())
-            if there.get(name) != here.get(name)
-        ]
+        there, here = _attributes(self.path)["manifest"], self._plan.manifest
+        lines = [f"  {line}" for line in _differences(there, here)]
         if not lines:
             return
         if len(lines) > _TOLD:
             lines[_TOLD:] = [f"  and {len(lines) - _TOLD} more"]
         hint = "another folder, or remove this one"
         if len(lines) == 1 and there["core"] != here["core"]:
-            hint = f"RATTLEBOX_SIMD={json.loads(there['core'])} in the environment, or another folder"
+            hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another folder"
         raise CaseError("\n".join([f"{self.path} holds another study", *lines, f"  try: {hint}"]))
 
     @contextmanager
@@ -332,7 +330,7 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
 
     _check_format(path)
     study: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
-    return study
+    return study[list(_attributes(path)["manifest"]["outputs"])]  # in order
 
 
 def progress_of(path: str | os.PathLike[str]) -> Progress:
@@ -386,15 +384,25 @@ def _missing(kind: np.dtype[Any]) -> Any:
     return False if kind.kind == "b" else np.nan
 
 
-def _flat(tree: Any, above: str = "") -> dict[str, str]:
-    """Values by path."""
-    if isinstance(tree, str) and "\n" in tree:
+def _differences(there: Any, here: Any, path: str = "") -> Iterator[str]:
+    """Where two trees differ; of a list, the first place."""
+    if isinstance(there, str) and isinstance(here, str) and "\n" in there:
         with suppress(tomllib.TOMLDecodeError):
-            tree = tomllib.loads(tree)
-    if not isinstance(tree, dict):
-        return {above: json.dumps(tree, default=str)}
-    return {
-        path: text
-        for name, part in tree.items()
-        for path, text in _flat(part, f"{above}.{name}" if above else name).items()
-    }
+            there, here = tomllib.loads(there), tomllib.loads(here)
+    if isinstance(there, dict) and isinstance(here, dict):
+        for name in sorted(there.keys() | here.keys()):
+            below = f"{path}.{name}" if path else name
+            yield from _differences(there.get(name, _NOTHING), here.get(name, _NOTHING), below)
+    elif isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
+        places = (_differences(*pair, f"{path}[{i}]") for i, pair in enumerate(zip(there, here, strict=True)))
+        yield from islice(chain.from_iterable(places), 1)
+    elif there is not here and _shown(there) != _shown(here):
+        yield f"{path}: {_cut(_shown(there))} there, {_cut(_shown(here))} here"
+
+
+def _shown(value: Any) -> str:
+    return "nothing" if value is _NOTHING else json.dumps(value, default=str, ensure_ascii=False)
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= 40 else f"{text[:37]}..."

@@ -101,7 +101,7 @@ def test_another_study_is_refused_with_the_differences(tmp_path: Path, monkeypat
     )
     with pytest.raises(rb.CaseError, match=r"design\.first: 3\.6 there, 3\.5 here"):
         study(store, Logistic(Grid(first=3.5)))
-    with pytest.raises(rb.CaseError, match=r"design\.shape: \[6, 10\] there, \[6, 11\] here\n  try"):
+    with pytest.raises(rb.CaseError, match=r"design\.shape\[1\]: 10 there, 11 here\n  try"):
         study(store, Logistic(Grid(shape=(6, 11))))
     monkeypatch.setattr(rb, "__version__", "9.9")
     with pytest.raises(rb.CaseError, match=r'version: "[0-9.]+" there, "9\.9" here'):

@@ -1,0 +1,74 @@
+"""`rattlebox sweep`: one study file."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.console import Console
+
+from rattlebox.cli.show import statuses
+from rattlebox.model.errors import CaseError
+from rattlebox.studies.runner import Stopped
+from rattlebox.studies.studyfile import read_study
+from rattlebox.studies.sweep import sweep
+
+
+def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None) -> None:
+    """Run a study file into a store, or go on with one.
+
+    Parameters
+    ----------
+    path
+        Study file.
+    out
+        Folder of the store; default named after the study file.
+    workers
+        Threads of this process; default what the study file says, or one for each core.
+    dask
+        Address of a Dask scheduler, or the file that it wrote, to run there instead.
+    """
+    if dask and workers:
+        raise typer.BadParameter("counts threads of this machine; with --dask, the cluster's workers run the study")
+    study = read_study(path)
+    out = out or path.with_suffix(".zarr")
+    options = study.options
+    try:
+        with _cluster(dask) as client:
+            if client:
+                options.pop("threads", None)
+            elif workers:
+                options["threads"] = workers
+            result = sweep(study.case, study.axes, store=out, on=client, **options)
+    except Stopped as stopped:
+        typer.echo(str(stopped), err=True)
+        sys.exit(130)
+    console = Console()
+    counts = statuses(result)
+    told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
+    console.print(f"{sum(counts.values()):,} variants: {told}\nwritten to {out}", soft_wrap=True, highlight=False)
+
+
+@contextmanager
+def _cluster(address: str | None) -> Iterator[Any]:
+    if not address:
+        yield None
+        return
+    try:
+        from distributed import Client
+    except ImportError:
+        raise CaseError("Dask is not installed\n  try: python -m pip install 'rattlebox[cluster]'") from None
+    where = {"scheduler_file": address} if Path(address).is_file() else {"address": address}
+    try:
+        client: Any = Client(**where, timeout=10)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError, TypeError) as error:
+        raise CaseError(
+            f"no Dask scheduler answers at {address}: {error}\n  try: the address that 'dask scheduler' printed, "
+            "as tcp://10.0.0.1:8786"
+        ) from None
+    with client:
+        yield client

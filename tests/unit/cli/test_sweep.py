@@ -1,0 +1,119 @@
+"""The commands sweep and show, run as a user runs them."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.cli.main import main
+from rattlebox.studies.store import open_study
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
+STUDY = f"""\
+measure = ["impacts", "impact_share"]
+
+[case]
+file = "{EXAMPLE}"
+
+[axes]
+"damper.gap" = {{ from = "0.2 mm", to = "1 mm", count = 3 }}
+"damper.ball.material" = ["steel", "brass"]
+"""
+
+
+Answer = Callable[..., tuple[int | str | None, str, str]]
+
+
+@pytest.fixture
+def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A study file in the current folder, which is else empty."""
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(STUDY)
+    return Path("study.toml")
+
+
+@pytest.fixture
+def answer(study: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Answer:
+    """Run the command; return its exit code, what it prints, and what it says."""
+
+    def run(*arguments: object) -> tuple[int | str | None, str, str]:
+        monkeypatch.setattr(sys, "argv", ["rattlebox", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        return stop.value.code or 0, *capsys.readouterr()
+
+    return run
+
+
+def test_sweep_writes_what_it_says_and_show_tells_it(study: Path) -> None:
+    """A study file gives a store named after it, equal to single runs; away from a terminal no bar is drawn."""
+    command = [sys.executable, "-m", "rattlebox.cli"]
+    done = subprocess.run([*command, "sweep", study, "--workers", "2"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == "6 variants: 6 finished\nwritten to study.zarr\n"
+    data = open_study("study.zarr")
+    assert list(data.data_vars) == ["status", "impacts", "impact_share"]
+    case = rb.Case.from_file(EXAMPLE)
+    damper = case.dampers[0].model_copy(update={"gap": float(data["damper.gap"][1])})
+    run = rb.simulate(case.model_copy(update={"dampers": (damper,)}))
+    assert data.impacts.values[1, 0] == len(run.arrays.impacts)
+    told = subprocess.run([*command, "show", "study.zarr"], capture_output=True, text=True, check=False)
+    assert (told.returncode, told.stderr) == (0, "")
+    assert told.stdout.startswith("study.zarr: 6 variants, complete\n")
+    words = told.stdout.split()
+    for word in ("damper.gap", "200.0", "µm", "damper.ball.material", "brass", f"{np.max(data.impacts.values):.0f}"):
+        assert word in words
+    assert told.stdout.endswith("ended: 6 finished\n")
+
+
+def test_the_same_command_goes_on_and_another_study_is_refused(study: Path, answer: Answer) -> None:
+    """Run again, a finished study is told at once; after a change of the axes the store is left alone."""
+    first = answer("sweep", study, "-o", "maps/a.zarr")
+    assert first == (0, "6 variants: 6 finished\nwritten to maps/a.zarr\n", "")
+    before = Path("maps/a.zarr/impacts/c/0/0").stat().st_mtime_ns
+    assert answer("sweep", study, "-o", "maps/a.zarr") == first
+    study.write_text(STUDY.replace("0.2 mm", "0.3 mm"))
+    assert answer("sweep", study, "-o", "maps/a.zarr") == (
+        2,
+        "",
+        "error: maps/a.zarr holds another study\n"
+        "  design.columns.damper.gap.values[0]: 0.0002 there, 0.0003 here\n"
+        "  try: another folder, or remove this one\n",
+    )
+    assert Path("maps/a.zarr/impacts/c/0/0").stat().st_mtime_ns == before
+
+
+def test_runs_that_do_not_finish_are_counted(study: Path, answer: Answer) -> None:
+    """A study goes on past runs that cannot be finished; both commands tell how many there are of each kind."""
+    few = rb.Case.from_file(EXAMPLE).model_copy(update={"method": rb.EventDriven(max_events=20)})
+    few.to_file("few.toml")
+    study.write_text(STUDY.replace(str(EXAMPLE), "few.toml"))
+    assert answer("sweep", study)[:2] == (0, "6 variants: 6 too_many_events\nwritten to study.zarr\n")
+    assert answer("show", "study.zarr")[1].endswith("ended: 6 too_many_events\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("sweep", "nowhere.toml"), "there is no file nowhere.toml"),
+        (("sweep", "study.toml", "--workers", "0"), "--workers"),
+        (("sweep", "study.toml", "--workers", "2", "--dask", "tcp://127.0.0.1:1"), "cluster's workers run the study"),
+        (("sweep", "study.toml", "--dask", "there"), "no Dask scheduler answers at there"),
+        (("sweep", "study.toml", "-o", "study.toml"), "study.toml is a file; a study needs a folder"),
+        (("sweep", "study.toml", "-o", "."), "holds other files"),
+        (("show", "."), "is not a study"),
+        (("show", "nowhere.zarr"), "nowhere.zarr is not there"),
+    ],
+)
+def test_mistakes_are_told(answer: Answer, arguments: tuple[str, ...], said: str) -> None:
+    """What cannot be done is told on one screen, with exit code 2, no traceback and nothing written."""
+    code, _, message = answer(*arguments)
+    assert code == 2
+    assert said in " ".join(message.replace("│", " ").split())
+    assert "Traceback" not in message
+    assert len(message.splitlines()) < 24
+    assert [path.name for path in Path().iterdir()] == ["study.toml"]
