@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from rattlebox.engines.simulate import simulate, simulate_many
     from rattlebox.results import Run, load
     from rattlebox.studies.designs import geomspace, linspace, random_design, replicas
+    from rattlebox.studies.frequency_response import frequency_response
     from rattlebox.studies.measures import MEASURES
     from rattlebox.studies.sweep import sweep
 
@@ -39,6 +40,7 @@ _LATER = {
     "restitution_curve": "rattlebox.engines.curves",
     "Run": "rattlebox.results",
     "load": "rattlebox.results",
+    "frequency_response": "rattlebox.studies.frequency_response",
     "geomspace": "rattlebox.studies.designs",
     "linspace": "rattlebox.studies.designs",
     "random_design": "rattlebox.studies.designs",
@@ -79,6 +81,7 @@ __all__ = [
     "analysis",
     "chirp",
     "contact_pairs",
+    "frequency_response",
     "geomspace",
     "linspace",
     "load",

@@ -5,12 +5,14 @@ from .energy import plot_energy
 from .impacts import plot_impacts
 from .motion import plot_motion
 from .phase import plot_phase_portrait
+from .response import plot_frequency_response
 from .style import paper
 
 __all__ = [
     "paper",
     "plot_comparison",
     "plot_energy",
+    "plot_frequency_response",
     "plot_impacts",
     "plot_motion",
     "plot_phase_portrait",
