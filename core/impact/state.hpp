@@ -4,6 +4,7 @@
 // their velocities.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "impact/problem.hpp"
@@ -67,6 +68,21 @@ struct Ledger {
     std::vector<real> normal, plastic; // by damper
 
     explicit Ledger(const Problem& p) : normal(p.dampers.size(), 0.0), plastic(p.dampers.size(), 0.0) {}
+
+    void clear() {
+        load_work = base_work = viscous = 0;
+        std::fill(normal.begin(), normal.end(), 0.0);
+        std::fill(plastic.begin(), plastic.end(), 0.0);
+    }
+    void add(const Ledger& part) {
+        load_work += part.load_work;
+        base_work += part.base_work;
+        viscous += part.viscous;
+        for (std::size_t d = 0; d < normal.size(); ++d) {
+            normal[d] += part.normal[d];
+            plastic[d] += part.plastic[d];
+        }
+    }
 };
 
 } // namespace rattlebox

@@ -9,7 +9,7 @@ namespace rattlebox {
 
 class Touching : protected Progress {
     LoneContact lone_, sampler_;
-    Ledger after_;     // a contact that is not yet accepted
+    Ledger spent_;     // in one contact
     real fastest_ = 0; // of the balls relative to their cavities, at any hard impact so far
 
 protected:
@@ -81,15 +81,13 @@ protected:
         if (!lone_.prepare(contact(c), *law, loads_, state_, speed, zeta, next_stop() - state_.t))
             return false;
         if (!alone(c, speed, lone_.longest_time()) || !lone_.solve()) return false;
-        Ledger& after = after_;
-        after = ledger_;
+        spent_.clear(); // by itself: in the sums of a long run its rounding would drown
         const LoneContact::Instant end = lone_.end();
-        lone_.finish(end, scratch_, after);
+        lone_.finish(end, scratch_, spent_);
         const real stored = law->stored({}, end.x);
         const std::size_t d = damper_of(c);
-        const real residual = energy(scratch_) + stored - energy(state_) +
-                              (after.normal[d] - ledger_.normal[d]) + (after.viscous - ledger_.viscous) -
-                              (after.load_work - ledger_.load_work) - (after.base_work - ledger_.base_work);
+        const real residual = energy(scratch_) + stored - energy(state_) + spent_.normal[d] + spent_.viscous -
+                              spent_.load_work - spent_.base_work;
         const real size = contact(c).mass * speed * speed + energy(state_) * 1e-2;
         if (!(std::fabs(residual) < std::fmax(problem_.settings.tolerance, 64 * epsilon) * size))
             return false;
@@ -111,7 +109,7 @@ protected:
         while (sample_due(state_.t + end.time)) sample_lone(c, *law, speed, zeta);
         std::swap(state_.y, scratch_.y);
         state_.t += end.time;
-        ledger_ = after;
+        ledger_.add(spent_);
         if (stored > 0) {
             Memory memory = law->begin(e);
             released_.push_back({c, memory, static_cast<int>(result_.impacts.size()) - 1, stored});
@@ -319,7 +317,7 @@ protected:
 
 public:
     Touching(const Problem& problem, const std::atomic<bool>* stop)
-        : Progress(problem, stop), lone_(problem), sampler_(problem), after_(problem) {}
+        : Progress(problem, stop), lone_(problem), sampler_(problem), spent_(problem) {}
 };
 
 } // namespace rattlebox
