@@ -100,6 +100,8 @@ class LoneContact {
     Row a_, base_, x_, w_;
     std::vector<Row> slope_, integral_;
     std::vector<Row> q_, p_, u_, force_, signal_; // by mode or load
+    std::vector<Series> pull_;                    // each load about the start, good to this degree
+    int degree_ = 0;
 
     std::size_t q_row() const { return first_mode + modes_; }
     std::size_t base_row() const { return q_row() + modes_; }
@@ -114,8 +116,12 @@ class LoneContact {
         for (int i = 0; i < n; ++i) a_[i] = constant_;
         if (loads_->active())
             for (std::size_t l = 0; l < loads_->size(); ++l)
-                for (int i = 0; i < n; ++i)
-                    signal_[l][i] = loads_->piece(l).value(start_->t + integral_[clock][i]);
+                for (int i = 0; i < n; i += lane_count) {
+                    const Lanes t = integral_[clock].eight(i);
+                    Lanes sum = Lanes::all(pull_[l].c[degree_]);
+                    for (int k = degree_ - 1; k >= 0; --k) sum = sum * t + Lanes::all(pull_[l].c[k]);
+                    signal_[l].eight(i) = sum;
+                }
         for (std::size_t k = 0; k < modes_; ++k) {
             Row& f = force_[k];
             const real two_decay = 2 * problem_.modes[k].decay, stiffness = problem_.modes[k].stiffness;
@@ -132,6 +138,20 @@ class LoneContact {
             if (loads_->load(l).base)
                 for (int i = 0; i < n; ++i) base_[i] -= side_ * signal_[l][i];
         for (int i = 0; i < n; ++i) a_[i] += base_[i];
+    }
+
+    // Taylor series of the loads over the contact; false where they would not reach that far.
+    bool expand_loads(real length) {
+        const real turn = loads_->frequency() * length;
+        if (turn > 1) return false;
+        real term = turn;
+        for (degree_ = 1; degree_ < Series::order && term > 0.1 * epsilon; ++degree_)
+            term *= turn / (degree_ + 1);
+        for (std::size_t l = 0; l < loads_->size(); ++l) {
+            pull_[l] = Series{};
+            loads_->piece(l).add_taylor(start_->t, 1, degree_, pull_[l].c);
+        }
+        return true;
     }
 
     template <class T> static T fifth_power(T v) {
@@ -232,7 +252,7 @@ public:
     explicit LoneContact(const Problem& problem)
         : problem_(problem), modes_(problem.modes.size()), slope_(first_mode + 2 * modes_ + 1),
           integral_(slope_.size()), q_(modes_), p_(modes_), u_(modes_), force_(modes_),
-          signal_(problem.loads.size()) {}
+          signal_(problem.loads.size()), pull_(problem.loads.size()) {}
 
     // Prepares the contact c that touches in `start` at this speed; false where collocation is not the right
     // tool.
@@ -257,7 +277,7 @@ public:
         if (longest > available) return false;
         for (std::size_t k = 0; k < modes_; ++k)
             if (damper_->shape[k] != 0 && problem_.modes[k].rate() * longest > 1) return false;
-        if (loads.active() && loads.frequency() * longest > 1) return false;
+        if (loads.active() && !expand_loads(longest)) return false;
         constant_ = side_ * damper_->gravity;
         base_moves_ = false;
         if (loads.active() && side_ != 0)
