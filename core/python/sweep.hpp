@@ -143,7 +143,7 @@ inline nb::object sweep(const nb::dict& packed, const std::vector<std::size_t>& 
         sweep.size(), threads, 4,
         [&](std::size_t i, int thread, const std::atomic<bool>& stopped) { sweep.run(i, thread, stopped); },
         [&](std::size_t done) {
-            return progress.is_none() || !nb::cast<bool>(progress(done).is(nb::bool_(false)));
+            return progress.is_none() || !progress(done).is(nb::bool_(false));
         });
     if (!whole) return nb::none();
     return sweep.results();
