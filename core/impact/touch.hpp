@@ -1,6 +1,8 @@
 // What happens at a first touch: a lone contact solved whole, a soft contact that begins, or a hard impact.
 #pragma once
 
+#include <iterator>
+
 #include "base/solve.hpp"
 #include "impact/lone_contact.hpp"
 #include "impact/progress.hpp"
@@ -248,14 +250,17 @@ protected:
                 phase(c) = Phase::open;
     }
 
-    // Takes `change` from the closing rate of c. The contacts that are stuck meanwhile hold without rebound,
-    // where they need not pull: the impulses of all of them solve one linear system. So do those that only
-    // touch, if c does not rebound either. Returns the impulse in c.
-    real push_apart(int c, real change, bool rebounds) {
-        std::vector<int> held = system_.stuck;
+    // Takes `change` from the closing rate of c; returns the impulse. What is stuck meanwhile holds without
+    // rebound, where it need not pull, and so does what only touches, if c does not rebound either: the
+    // impulses of all solve one linear system. In a slow impact what is stuck may pull, by no more than that
+    // impact's impulse: or balls in two cavities would knock each other off for ever.
+    real push_apart(int c, real change, bool rebounds, bool slow) {
+        std::vector<int> held;
+        std::copy_if(system_.stuck.begin(), system_.stuck.end(), std::back_inserter(held),
+                     [&](int other) { return other != c; });
+        std::ptrdiff_t kept = slow ? static_cast<std::ptrdiff_t>(held.size()) : 0;
         for (int other = 0; other < problem_.contact_count() && !rebounds; ++other)
-            if (phase(other) == Phase::touching) held.push_back(other);
-        std::erase(held, c);
+            if (other != c && phase(other) == Phase::touching) held.push_back(other);
         held.push_back(c);
         std::vector<real> matrix, impulses;
         for (;;) {
@@ -267,8 +272,8 @@ protected:
                 for (std::size_t j = 0; j < n; ++j)
                     matrix[i * n + j] = system_.coupling(contact(held[i]), contact(held[j]));
             solve_definite(matrix, impulses);
-            const auto weakest = std::min_element(impulses.begin(), impulses.end() - 1);
-            if (n == 1 || !(*weakest < 0)) break;
+            const auto weakest = std::min_element(impulses.begin() + kept, impulses.end() - 1);
+            if (weakest == impulses.end() - 1 || !(*weakest < 0)) break;
             held.erase(held.begin() + (weakest - impulses.begin()));
         }
         for (std::size_t i = 0; i < held.size(); ++i) impulse(held[i], impulses[i]);
@@ -278,8 +283,9 @@ protected:
     void strike(int c, real speed, real e) {
         // Impacts that shrink without a force that presses (a row that collapses) end like those that do.
         fastest_ = std::fmax(fastest_, largest_speed());
-        if (speed < problem_.settings.stick * fastest_ || speed < blur()) e = 0;
-        const real push = push_apart(c, (1 + e) * speed, e > 0);
+        const bool slow = speed < problem_.settings.stick * fastest_ || speed < blur();
+        if (slow) e = 0;
+        const real push = push_apart(c, (1 + e) * speed, e > 0, slow);
         Impact line;
         line.contact = c;
         line.time = state_.t;
@@ -306,7 +312,7 @@ protected:
     // Holds c at rest from now on; returns the energy that was left in its rebound.
     real stick(int c) {
         const real rest = system_.approach(state_.y.data(), c);
-        const real lost = 0.5 * push_apart(c, rest, false) * rest;
+        const real lost = 0.5 * push_apart(c, rest, false, true) * rest;
         ledger_.normal[damper_of(c)] += lost;
         ++result_.counts.sticks;
         system_.stuck.push_back(c);

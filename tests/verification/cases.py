@@ -278,3 +278,44 @@ def hard_row(rng: np.random.Generator, balls: int) -> Any:
         method=rb.Newton(),
         output=rb.Output(rate=5000.0),
     )
+
+
+def hard_dampers(rng: np.random.Generator) -> Any:
+    """Return two or three dampers of one or two hard balls on a shaken structure."""
+    e = rng.choice([0.0, 0.2, 0.5, 0.9])
+    dampers = []
+    for k in range(rng.integers(2, 4)):
+        balls = rng.integers(1, 3)
+        dampers.append(
+            rb.ImpactDamper(
+                name=f"damper {k + 1}",
+                balls=[rb.Sphere(radius=r, material="steel") for r in rng.uniform(4e-3, 9e-3, balls)],
+                gap=rng.uniform(3e-4, 3e-3),
+                start=sorted(rng.uniform(-0.9, 0.9, balls)),
+                contact=rb.Tsuji(restitution=0.8),
+                gravity=rng.choice([0.0, -9.81]),
+            )
+        )
+    return rb.Case(
+        structure=rb.SDOF(mass=1.0, stiffness=4e3, damping_ratio=0.01),
+        dampers=dampers,
+        load=rb.Harmonic(amplitude=rng.uniform(2, 30), frequency=rng.uniform(4, 15)),
+        duration=1.0,
+        method=rb.Newton(restitution=e, max_events=100_000),
+    )
+
+
+def pile(balls: int, e: float) -> Any:
+    """Return hard balls that fall on each other on the floor of a fixed cavity."""
+    return rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ImpactDamper(
+            balls=[ball()] * balls,
+            gap=5e-3,
+            start=np.linspace(-0.9, 0.9, balls).tolist(),
+            gravity=-9.81,
+            contact=rb.Tsuji(restitution=0.5),
+        ),
+        duration=2.0,
+        method=rb.Newton(restitution=e, max_events=50_000),
+    )

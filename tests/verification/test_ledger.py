@@ -88,6 +88,24 @@ def test_hard_rows_collapse_stick_and_go_on(balls: int) -> None:
         assert gaps.min() >= -1e-12 * half
 
 
+def test_hard_balls_in_several_cavities_come_to_rest_on_each_other() -> None:
+    """Random hard dampers on one structure, with and without gravity, stick and finish, and balance to 1e-10."""
+    rng = np.random.default_rng(1)
+    for _ in range(24):
+        run = measures.simulate(cases.hard_dampers(rng))
+        assert run.status == "finished"
+        assert run.closure <= 1e-10
+
+
+@pytest.mark.parametrize("balls", [2, 3, 4, 5])
+@pytest.mark.parametrize("e", [0.0, 0.3, 0.5, 0.8])
+def test_a_pile_of_hard_balls_comes_to_rest(balls: int, e: float) -> None:
+    """Balls that fall on each other on the floor of a fixed cavity all end at rest on it."""
+    run = measures.simulate(cases.pile(balls, e))
+    assert run.status == "finished"
+    assert np.abs(run.arrays.ball_velocity[-1]).max() < 1e-9
+
+
 @pytest.mark.parametrize("method", ["newton", "event_driven"])
 def test_momentum_of_a_free_system_is_conserved(method: str) -> None:
     """A free cavity with a ball keeps its momentum to rounding, and hard impacts keep it too."""
