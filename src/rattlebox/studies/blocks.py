@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -69,3 +71,20 @@ class Blocks:
         corner = tuple(part.start for part in self.region(block))
         start = int(np.ravel_multi_index(corner, self.shape)) if self.shape else 0
         return start, start + math.prod(self.sides(block))
+
+    def variants(self, chosen: NDArray[np.bool_]) -> int:
+        """Return how many variants the chosen blocks hold.
+
+        Parameters
+        ----------
+        chosen
+            Of each block, (len(self),).
+        """
+        return int(self._sizes[chosen].sum())
+
+    @cached_property
+    def _sizes(self) -> NDArray[np.int64]:
+        sizes = np.ones(1, np.int64)
+        for edge, length in zip(self.box, self.shape, strict=True):
+            sizes = np.multiply.outer(sizes, np.minimum(edge, length - np.arange(0, length, edge))).ravel()
+        return sizes

@@ -143,25 +143,25 @@ def run_task(
     def cut() -> Blocks:
         return Blocks.of(plan.shape, block or _block_size(task, plan, on, threads))
 
-    done = 0
+    opened: list[Memory | Store] = []
     try:
         with ExitStack() as stack:
-            kept: Store | Memory = Memory(plan, cut()) if store is None else Store(store, plan, cut)
+            kept: Memory | Store = Memory(plan, cut()) if store is None else Store(store, plan, cut)
+            opened.append(kept)
             stack.enter_context(kept)
             tell = stack.enter_context(telling(progress, task.size))
-            blocks: list[Block] = [(i, *kept.blocks.range(i)) for i in range(len(kept.blocks))]
-            done = sum(stop - start for i, start, stop in blocks if kept.finished[i])
-            tell(done)
-            todo = [entry for entry in blocks if not kept.finished[entry[0]]]
+            keeper = stack.enter_context(ThreadPoolExecutor(1))  # ends what it has begun when Ctrl-C comes
+            tell(kept.done)
+            numbers = np.flatnonzero(~kept.finished).tolist()
+            todo: list[Block] = [(number, *kept.blocks.range(number)) for number in numbers]
             results = _on_cluster(on, task, todo, threads) if on else _here(task, todo, threads)
             stack.callback(results.close)
-            for (number, start, stop), values in results:
-                kept.write(number, values)
-                done += stop - start
-                tell(done)
+            for (number, _, _), values in results:
+                _heard(keeper.submit(kept.write, number, values))
+                tell(kept.done)
             return kept.result()
     except KeyboardInterrupt:
-        raise Stopped(_how_to_go_on(done, task.size, store)) from None
+        raise Stopped(_how_to_go_on(sum(kept.done for kept in opened), task.size, store)) from None
 
 
 def cores() -> int:

@@ -117,6 +117,11 @@ class Memory:
             region[...] = values[name].reshape(region.shape)
         self.finished[block] = True
 
+    @property
+    def done(self) -> int:
+        """Number of variants that are there."""
+        return self.blocks.variants(self.finished)
+
     def result(self) -> xr.Dataset:
         """Return all of it."""
         return self._plan.frame.assign(
@@ -183,6 +188,11 @@ class Store:
                 self._group[name][region] = values[name].reshape(*sides, *values[name].shape[1:])
             self.finished[block] = True
             self._mask[...] = self.finished
+
+    @property
+    def done(self) -> int:
+        """Number of variants that are there."""
+        return self.blocks.variants(self.finished)
 
     def result(self) -> xr.Dataset:
         """Return all of it, read from disk when it is used."""
@@ -299,7 +309,7 @@ class Progress:
     @property
     def done(self) -> int:
         """Number of variants that are there."""
-        return sum(math.prod(self.blocks.sides(int(block))) for block in np.flatnonzero(self.finished))
+        return self.blocks.variants(self.finished)
 
     @property
     def total(self) -> int:

@@ -21,6 +21,7 @@ def test_blocks_are_boxes_and_ranges_and_cover_all_variants(shape: list[int], si
         assert numbers[blocks.region(block)].shape == blocks.sides(block)
         assert numbers[blocks.region(block)].ravel().tolist() == list(range(start, stop))
         found += range(start, stop)
+        assert blocks.variants(np.arange(len(blocks)) == block) == stop - start
     assert found == list(range(math.prod(shape)))
 
 
