@@ -283,7 +283,7 @@ protected:
                         retry = true;
                     }
                 } else if (after.value <= 0) {
-                    if (after.rate >= 0 && before.value <= blur)
+                    if (after.rate >= 0 && (before.value <= blur || before.rate >= 0))
                         continue; // parting, by less than rounding can tell
                     consider(Event::touch, c, std::fmax(before.value, 0.0), value);
                 } else if (before.rate < 0 && after.rate > 0 &&

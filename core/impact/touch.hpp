@@ -23,6 +23,10 @@ protected:
         if (r.outside) return fail(Status::law_domain, c, speed);
         result_.counts.extrapolated += r.extrapolated;
         if (hard()) return strike(c, speed, r.e);
+        if (speed == 0) { // by rounding: what presses it, if anything, will tell
+            phase(c) = Phase::touching;
+            return;
+        }
         if (problem_.settings.collocation && collocate(c, speed, r.e)) return;
         begin_contact(c, speed, r.e, 0);
     }
