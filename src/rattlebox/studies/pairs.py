@@ -1,0 +1,248 @@
+"""Pairs of neighbouring motions, brought back to a small distance again and again while their separation is summed up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.engines.batch import Look, run_block
+from rattlebox.engines.pack import Packed
+from rattlebox.engines.status import LEDGER_OPEN, STATUSES
+
+if TYPE_CHECKING:
+    from .lyapunov import LyapunovTask
+
+Array = NDArray[np.float64]
+
+_FINISHED = [name for name, _ in STATUSES].index("finished")
+_TABLES = "times", "values", "speeds"
+_ALIGNING = 20  # legs in which a neighbour turns into the direction that grows most
+_TURN = 0.6180339887498949  # of a leg, on: contacts that are closed at one moment are open at another
+_PATIENCE = 8
+_SATURATED = 1e-3  # over the scale of distances
+_MERGED = 2e-15
+_CLOSED = 1e-12  # over the clearance
+
+
+class Pairs:
+    """Pairs of some variants of a study; arrays run over (variant, pair, member of the pair, component of the state).
+
+    Parameters
+    ----------
+    task
+        What is watched.
+    start, stop
+        Variants.
+    threads, cancelled
+        As for any task.
+    """
+
+    def __init__(
+        self, task: LyapunovTask, start: int, stop: int, threads: int, cancelled: Callable[[], bool] | None
+    ) -> None:
+        self._task, self._threads, self._cancelled = task, threads, cancelled or (lambda: False)
+        self._count = stop - start
+        shape = task.design.shape
+        members = np.unravel_index(np.arange(start, stop), shape) if shape else ()
+        self._packed: Packed = _taken(task.sweep.packed, shape, members)
+        self._modes = len(self._packed["mode_decay"])
+        self.status = np.full((self._count, task.pairs), _FINISHED)
+        self.period = self._each(_taken(np.asarray(task.sweep.look.period), shape, members))
+        duration = self._each(self._packed["settings"]["duration"])
+        length = duration - task.skip if task.cycles is None else task.cycles[1] * self.period
+        self.leg = length / task.count
+        self._skip = duration - length
+        self._end = duration
+        stiffness = self._each(np.max(self._packed["mode_stiffness"], axis=0, initial=0.0))
+        slowest = np.where(stiffness > 0, np.sqrt(stiffness), 2 * np.pi / length)
+        rate = 2 * np.pi / self.period if task.cycles else slowest
+        self._rng = np.random.default_rng(task.seed)
+        self._begin(rate)
+
+    def _each(self, number: Any) -> Array:
+        """A packed number of each variant, (variants, 1)."""
+        return np.array(np.broadcast_to(np.reshape(number, (-1, 1)), (self._count, 1)))
+
+    def _begin(self, rate: Array) -> None:
+        """Set the states at the start, what a component weighs in a distance, and the scale of distances."""
+        packed, pairs = self._packed, self._task.pairs
+
+        def rows(name: str, of: Sequence[Packed]) -> Array:
+            found = [np.broadcast_to(part[name], (len(part[name]), self._count, 1, 1)) for part in of]
+            return np.concatenate([np.zeros((0, self._count, 1, 1)), *found])
+
+        q, p = rows("mode_displacement", [packed]), rows("mode_velocity", [packed])
+        dampers = packed["dampers"]
+        mass, place, speed = (rows(name, dampers) for name in ("mass", "position", "velocity"))
+        clearance = [np.broadcast_to(d["clearance"], (len(d["mass"]), self._count, 1, 1)) for d in dampers]
+        reach = 0.5 * np.concatenate([np.zeros((0, self._count, 1, 1)), *clearance])
+        slow = 1 / rate[None, :, :, None]
+        offsets = self._task.reach * self._rng.uniform(-1, 1, pairs)[:, None] * (pairs > 1)
+        parts = np.stack([q, p], axis=1).reshape(-1, self._count, 1, 1), place, speed + offsets * reach / slow
+        self._start = np.moveaxis(
+            np.concatenate([np.broadcast_to(part, (len(part), self._count, pairs, 1)) for part in parts]), 0, -1
+        )
+        root = np.sqrt(mass)
+        modes = np.stack([np.ones_like(q), slow + 0 * q], axis=1).reshape(-1, self._count, 1, 1)
+        self._weights = np.moveaxis(np.concatenate([modes, root, root * slow]), 0, -1)
+        norm = np.linalg.norm(self._start * self._weights, axis=-1)[..., 0]
+        balls = (root * reach)[0, ..., 0] if len(root) else np.where(norm > 0, norm, 1.0)
+        self._scale = np.broadcast_to(balls, norm.shape)
+
+    def growth(self) -> Array | None:
+        """Logarithmic growth in each step of what is looked at, (variants, pairs, steps).
+
+        NaN where a run did not finish; None when it was stopped.
+        """
+        aligning = np.minimum(0.5 * self._skip, _ALIGNING * self.leg)
+        settled = self._settle(self._skip - aligning)
+        if settled is None:
+            return None
+        state, time = settled
+        state = self._parted(state)
+        grown = np.zeros(time.shape)
+        closed, halved = np.zeros(time.shape, int), np.zeros(time.shape, int)
+        alive = self.status == _FINISHED
+        times, sums = [time], [grown]
+        distance = self._task.distance * self._scale
+        while (going := alive & (self._end - time > 1e-9 * self.leg)).any():
+            if self._cancelled():
+                return None
+            to_next = (np.floor(time / self.leg + 1e-6) + 1) * self.leg - time
+            length = (to_next + self.leg * (2.0**closed - 1 + closed * _TURN % 1)) * 0.5**halved
+            length = np.where(going, np.minimum(length, self._end - time), 1e-3 * self.leg)
+            ended, alive = self._run(state, time, length, alive, going)
+            apart = (ended[:, :, 1] - ended[:, :, 0]) * self._weights[:, :, 0]
+            size = np.linalg.norm(apart, axis=-1)
+            largest = np.maximum(np.linalg.norm(ended[:, :, 0] * self._weights[:, :, 0], axis=-1), self._scale)
+            merged = going & alive & (size < _MERGED * largest)
+            size = np.where(size > 0, size, 1.0)
+            ended[:, :, 1] = ended[:, :, 0] + apart * (distance / size)[..., None] / self._weights[:, :, 0]
+            last = time + length >= self._end - 1e-9 * self.leg
+            fit = last | (self._room(ended) > _CLOSED).all(axis=-1)
+            far = (size > _SATURATED * self._scale) & (halved < _PATIENCE)
+            taken = going & alive & fit & ~far
+            closed = np.where(taken, 0, closed + (going & ~fit & ~far))
+            halved = np.where(taken, 0, halved + (going & far))
+            time = np.where(taken, time + length, time)
+            grown = np.where(merged, -np.inf, np.where(taken, grown + np.log(size / distance), grown))
+            state = np.where(taken[..., None, None], ended, state)
+            alive &= ~merged
+            times.append(time)
+            sums.append(grown)
+        return self._curves(np.array(times), np.array(sums))
+
+    def _curves(self, times: Array, sums: Array) -> Array:
+        steps = np.arange(self._task.count + 1)
+        curves = np.full((*self.status.shape, steps.size - 1), np.nan)
+        for variant, pair in np.argwhere((self.status == _FINISHED) | (self.status == LEDGER_OPEN)):
+            at = self._skip[variant, 0] + steps * self.leg[variant, 0]
+            if np.isinf(sums[-1, variant, pair]):
+                curves[variant, pair] = -np.inf
+            else:
+                curves[variant, pair] = np.diff(np.interp(at, times[:, variant, pair], sums[:, variant, pair]))
+        return curves
+
+    # ---- runs
+
+    def _settle(self, until: Array) -> tuple[Array, Array] | None:
+        """States at some time or soon after it, with all contacts open, and when that is."""
+        state, time = self._start, np.zeros(self.status.shape)
+        if not until.any():
+            return state, time
+        found, waiting = state.copy(), np.ones(time.shape, bool)
+        for attempt in range(_PATIENCE):
+            if self._cancelled():
+                return None
+            length = np.where(waiting, until + self.leg * (attempt * _TURN % 1), 1e-3 * self.leg)
+            ended, alive = self._run(state, np.zeros(time.shape), length, waiting, waiting)
+            taken = waiting & alive
+            time, found = np.where(taken, length, time), np.where(taken[..., None, None], ended, found)
+            waiting = taken & ~(self._room(ended) > _CLOSED).all(axis=-1)
+            if not waiting.any():
+                break
+        return found, time
+
+    def _run(
+        self, state: Array, time: Array, length: Array, alive: NDArray[np.bool_], going: NDArray[np.bool_]
+    ) -> tuple[Array, NDArray[np.bool_]]:
+        """Run everything from a state at a time on; what fails is noted and is alive no longer."""
+        rows = np.moveaxis(state, -1, 0)
+        first, dampers, wait = 2 * self._modes, [], time[..., None]
+        balls = (len(rows) - first) // 2
+        for damper in self._packed["dampers"]:
+            own = slice(first, first := first + len(damper["mass"]))
+            speeds = slice(own.start + balls, own.stop + balls)
+            dampers.append({**damper, "position": _flat(rows[own]), "velocity": _flat(rows[speeds])})
+        packed = {
+            **self._packed,
+            "mode_displacement": _flat(rows[0 : 2 * self._modes : 2]),
+            "mode_velocity": _flat(rows[1 : 2 * self._modes : 2]),
+            "dampers": dampers,
+            "loads": [_later(load, wait) for load in self._packed["loads"]],
+            "settings": {**self._packed["settings"], "duration": _flat(length[..., None])},
+        }
+        shape = state.shape[:-1]
+        result = run_block(packed, shape, 0, int(np.prod(shape)), Look(state=True), threads=self._threads)
+        assert result is not None  # nothing asks it to stop
+        status = result["status"].reshape(shape).max(axis=-1)
+        self.status = np.where(going & (status != _FINISHED), status, self.status)
+        alive = alive & ~(going & (status != _FINISHED) & (status != LEDGER_OPEN))
+        return result["state"].reshape(state.shape), alive
+
+    # ---- states
+
+    def _parted(self, state: Array) -> Array:
+        """States and neighbours of them in some direction that leads into no wall."""
+        pairs, size = self._task.pairs, state.shape[-1]
+        toward = self._rng.normal(size=(1, pairs, 1, size))
+        toward *= (self._task.distance * self._scale)[..., None, None] / np.linalg.norm(toward, axis=-1, keepdims=True)
+        toward = toward / self._weights
+        inside = [self._room(state + sign * toward).min(axis=-1, keepdims=True) >= 0 for sign in (1, -1)]
+        still = toward.copy()
+        still[..., 0 : 2 * self._modes : 2] = 0
+        still[..., 2 * self._modes : self._modes + size // 2] = 0
+        step = np.where(inside[0][..., None], toward, np.where(inside[1][..., None], -toward, still))
+        return np.concatenate([state, state + step], axis=2)
+
+    def _room(self, state: Array) -> Array:
+        """Narrowest gap of each state over its clearance."""
+        found = np.full(state.shape[:-1], np.inf)
+        first = 2 * self._modes
+        for damper in self._packed["dampers"]:
+            places = state[..., first : (first := first + len(damper["mass"]))]
+            centre = np.sum(np.moveaxis(damper["shape"], 0, -1) * state[..., 0 : 2 * self._modes : 2], axis=-1)
+            clearance = np.asarray(damper["clearance"])
+            ends = [places[..., 0] - centre + clearance / 2, centre + clearance / 2 - places[..., -1]]
+            found = np.minimum(found, np.minimum(*ends) / clearance)
+            if places.shape[-1] > 1:
+                found = np.minimum(found, np.diff(places, axis=-1).min(axis=-1) / clearance)
+        return found
+
+
+def _taken(node: Any, shape: tuple[int, ...], members: tuple[NDArray[np.intp], ...], key: str = "") -> Any:
+    """What some members of a batch have, with their number and two more axes in place of the grid's."""
+    if isinstance(node, dict):
+        return {name: _taken(item, shape, members, name) for name, item in node.items()}
+    if isinstance(node, list):
+        return [_taken(item, shape, members) for item in node]
+    if not isinstance(node, np.ndarray) or key in _TABLES or node.ndim == 0:
+        return node
+    own = node.ndim - len(shape)  # axes of a vector
+    places = tuple(place if n > 1 else 0 * place for place, n in zip(members, node.shape[own:], strict=True))
+    if all(n == 1 for n in node.shape[own:]):
+        return node.reshape(*node.shape[:own], 1, 1, 1)
+    return _flat(node[(slice(None),) * own + places])[..., None, None]
+
+
+def _later(load: Packed, wait: Array) -> Packed:
+    """A load as it is seen when time begins later."""
+    turned = {"phase": load["phase"] + np.asarray(load["frequency"]) * wait} if load["kind"] == "harmonic" else {}
+    return {**load, **turned, "start": _flat(load["start"] - wait), "stop": _flat(load["stop"] - wait)}
+
+
+def _flat(array: Array) -> Array:
+    return np.ascontiguousarray(array, dtype=float)
