@@ -125,7 +125,7 @@ def test_ctrl_c_stops_the_workers_too(scheduler: Path, tmp_path: Path) -> None:
         threading.Timer(1.0, press).start()
         with pytest.raises(Stopped, match="0 of 60 variants are in"):
             run_task(Logistic(pause=10), design=Grid(), on=client, store=tmp_path / "study.zarr", block=10)
-        assert time.perf_counter() - pressed[0] < 0.5
+        assert time.perf_counter() - pressed[0] < 1.0
         wait_for(lambda: sum(client.run(busy).values()) == 0)
         run_task(Logistic(), design=Grid(), on=client, store=tmp_path / "study.zarr")
     assert progress_of(tmp_path / "study.zarr").done == 60
