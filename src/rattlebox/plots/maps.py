@@ -192,10 +192,7 @@ def _map_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> Fi
     figure = PaperFigure(size, 0.78 if size == "column" else 0.56)
     axes = figure.subplots()
     draw_map(figure, axes, study, name, dims[0], dims[1])
-    look: dict[str, Any] = {"edgecolor": FAINT, "linewidth": pen(0.5)}
-    notes = [Patch(facecolor=gap.face, hatch=gap.hatch, label=gap.text, **look) for gap in _gaps(study, name)]
-    if notes:
-        figure.legend(handles=notes, loc="outside lower left", ncols=min(len(notes), 2), handlelength=1.4)
+    explain_gaps(figure, study, name)
     return figure
 
 
@@ -273,6 +270,27 @@ def colours() -> Any:
     return cm.batlow
 
 
+def explain_gaps(figure: Figure, study: xr.Dataset, name: str) -> None:
+    """Write below a map what its hatches mean, and how many runs each stands for.
+
+    Parameters
+    ----------
+    figure
+        Figure with the map.
+    study, name
+        What is drawn.
+    """
+    look: dict[str, Any] = {"edgecolor": FAINT, "linewidth": pen(0.5)}
+    notes = [Patch(facecolor=gap.face, hatch=gap.hatch, label=gap.text, **look) for gap in _gaps(study, name)]
+    if notes:
+        figure.legend(
+            handles=notes,
+            loc="outside lower left",
+            ncols=len(notes) if figure.get_figwidth() > 5 else 2,
+            handlelength=1.4,
+        )
+
+
 class _Axis(NamedTuple):
     """One axis of a figure."""
 
@@ -288,7 +306,9 @@ class _Axis(NamedTuple):
         values, text = np.asarray(coord.values), _capital(_spoken(coord))
         if values.dtype.kind not in "fiu":
             places = np.arange(values.size, dtype=float)
-            return cls(places, np.arange(values.size + 1) - 0.5, False, [str(value) for value in values], text, "")
+            return cls(
+                places, np.arange(values.size + 1, dtype=float) - 0.5, False, [str(value) for value in values], text, ""
+            )
         divisor, unit = _scale(coord, values)
         centres = values / divisor
         log = _grows_by_factor(centres)
@@ -422,8 +442,8 @@ def _unit(values: xr.DataArray) -> str:
 
 
 def _scale(values: xr.DataArray, array: Any) -> tuple[float, str]:
-    unit = _unit(values)
-    return scaled(array, unit) if unit else (1.0, "")
+    divisor, unit = scaled(array, _unit(values)) if _unit(values) else (1.0, "")
+    return divisor, unit.replace("^2", "²")
 
 
 def _spoken(values: xr.DataArray) -> str:

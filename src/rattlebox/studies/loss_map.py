@@ -1,0 +1,102 @@
+"""A damper on a shaker: what it takes up, and how heavy it seems, over amplitude and frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from rattlebox.model.errors import Hint
+from rattlebox.model.signals import Harmonic
+from rattlebox.model.structures import Shaker
+
+from .sweep import sweep
+
+if TYPE_CHECKING:
+    import os
+
+    import xarray
+
+    from rattlebox.model.case import Case
+
+MEASURES = ("loss_factor", "effective_mass", "damping_mass", "reduced_loss", "loss_per_cycle", "impacts_per_cycle")
+"""What a loss map holds of each amplitude and frequency."""
+
+
+def loss_map(
+    case: Case,
+    amplitudes: Any,
+    frequencies: Any,
+    *,
+    cycles: tuple[float, float] = (50, 50),
+    samples: int | None = None,
+    threads: int | None = None,
+    on: Any = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> xarray.Dataset:
+    """Shake a damper at every amplitude and frequency, and find what it takes up and how heavy it seems.
+
+    The force that drives the damper is its apparent mass m' - i m'' times the acceleration of the cavity, in the first
+    harmonic. The structure that carries the damper feels m' as added mass and pi m'' V^2 as loss in each cycle, V being the
+    amplitude of its velocity. A light ball hardly changes how a heavy structure moves, so one map serves for any of them.
+
+    Parameters
+    ----------
+    case
+        On a Shaker with one Harmonic motion, which is replaced.
+    amplitudes
+        Of the motion, a list or `rb.geomspace`: displacements [m], or accelerations [m/s^2] where the case's motion is one.
+    frequencies
+        Of the motion [Hz].
+    cycles
+        How many to skip, until the motion is steady, and to average over.
+    samples
+        Equally spaced in those averaged over, from which the masses are found; default 64 a cycle. The loss needs none.
+    threads, on, store, progress
+        As in `rb.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over amplitude and frequency: loss_factor m''/|m'|, effective_mass m' [kg], damping_mass m'' [kg], reduced_loss
+        (loss a cycle over m V^2), loss_per_cycle [J], impacts_per_cycle, status; and particle_mass m [kg].
+
+    Raises
+    ------
+    CaseError
+        When the case has no shaker or another motion, or an argument does not fit.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> case = rb.Case(
+    ...     structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="20 Hz")),
+    ...     damper=rb.ImpactDamper(ball=rb.Sphere(diameter="10 mm", material="steel"), gap="2 mm"),
+    ...     duration="1 s",
+    ...     method=rb.Newton(restitution=0.5),
+    ... )
+    >>> found = rb.loss_map(case, rb.geomspace("1 mm", "10 mm", 4), ["20 Hz", "40 Hz"])
+    >>> found.loss_factor.dims
+    ('structure.motion.amplitude', 'structure.motion.frequency')
+    """
+    motion = case.structure.motion if isinstance(case.structure, Shaker) else ()
+    if len(motion) != 1 or not isinstance(motion[0], Harmonic):
+        raise Hint(
+            "a loss map needs a case on a shaker with one harmonic motion",
+            "structure=rb.Shaker(motion=rb.Harmonic(...))",
+        )
+    if not case.dampers:
+        raise Hint("a loss map needs a case with a damper", "damper=rb.ImpactDamper(...)")
+    found = sweep(
+        case,
+        {"structure.motion.amplitude": amplitudes, "structure.motion.frequency": frequencies},
+        MEASURES,
+        cycles=cycles,
+        samples=samples,
+        threads=threads,
+        on=on,
+        store=store,
+        progress=progress,
+    )
+    mass = sum(ball.weight for damper in case.dampers for ball in damper.balls)
+    return found.assign(particle_mass=((), mass, {"units": "kg", "long_name": "mass of the particles"}))
