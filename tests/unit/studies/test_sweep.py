@@ -1,0 +1,163 @@
+"""Sweeps: measures of many variants equal those of single runs, to the last bit where they are the same numbers."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox import analysis
+from rattlebox.engines.core import core
+from rattlebox.model.paths import replaced
+from rattlebox.paper.seed import PLASTIC_RIGID, seed_case
+from rattlebox.studies.measures import MEASURES
+
+AXES = {"damper.gap": ["0.3 mm", "0.8 mm"], "load.amplitude": ["1 kN", "5 kN", "8 kN"]}
+
+
+@pytest.fixture(scope="module")
+def swept() -> Any:
+    """Every measure that needs no cycle, of six variants, at as many samples as the runs have."""
+    names = [name for name, measure in MEASURES.items() if not measure.cyclic]
+    return rb.sweep(seed_case(PLASTIC_RIGID, duration=2.0), AXES, names, samples=2001)
+
+
+def run_of(gap: str, amplitude: str) -> Any:
+    """Return the single run of a variant."""
+    case = seed_case(PLASTIC_RIGID, duration=2.0, rate=1000.0)
+    return rb.simulate(replaced(case, {"damper.gap": gap, "load.amplitude": amplitude}))
+
+
+def expected(run: Any) -> dict[str, float]:
+    """Return the measures of a run, from its data."""
+    a, log = run.arrays, run.arrays.impacts
+    z, v = a.displacement[:, 0], a.velocity[:, 0]
+    shares = run.ledger.shares
+    return {
+        "impacts": len(log),
+        "peak_contact_force": log.peak_force.max(initial=0),
+        "peak_overlap": log.peak_overlap.max(initial=0),
+        "largest_approach_speed": log.approach_speed.max(initial=0),
+        "mean_approach_speed": log.approach_speed.mean() if len(log) else np.nan,
+        "longest_contact": log.duration.max(initial=0),
+        "work": run.ledger.work[-1],
+        "viscous_loss": a.viscous_loss[-1],
+        "impact_loss": run.ledger.impact_loss[-1] + run.ledger.plastic_loss[-1],
+        "viscous_share": shares["viscous"],
+        "impact_share": shares["impact"] + shares["plastic"],
+        "motion_share": shares["motion"],
+        "peak": np.abs(z).max(),
+        "rms": np.sqrt(np.trapezoid(z**2, a.time) / a.time[-1]),
+        "peak_velocity": np.abs(v).max(),
+        "rms_velocity": np.sqrt(np.trapezoid(v**2, a.time) / a.time[-1]),
+        "settling_time": analysis.settling_time(a.time, z),
+    }
+
+
+def test_measures_are_those_of_single_runs(swept: Any) -> None:
+    """Each measure of each variant equals what the run of that variant says."""
+    assert not swept.status.any()
+    for i, gap in enumerate(AXES["damper.gap"]):
+        for j, amplitude in enumerate(AXES["load.amplitude"]):
+            variant = swept.isel({"damper.gap": i, "load.amplitude": j})
+            for name, value in expected(run_of(gap, amplitude)).items():
+                assert float(variant[name]) == pytest.approx(value, rel=1e-12, abs=1e-14, nan_ok=True), name
+            assert float(variant.closure) < 1e-12
+
+
+def test_all_measures_of_the_core_are_told() -> None:
+    """The table of measures and the core's list are the same, and agree on which need samples."""
+    assert {name: measure.samples for name, measure in MEASURES.items()} == core().measures()
+
+
+def test_cyclic_measures_refer_to_the_window() -> None:
+    """With cycles the run lasts as many as are skipped and looked at, whatever the frequency."""
+    case = rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=10.0)),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="5 mm", material="steel"), gap="1.5 mm", contact=rb.Tsuji(restitution=0.5)
+        ),
+        duration=1.0,
+        method=rb.Newton(restitution=0.5),
+    )
+    axes = {"structure.motion[0].frequency": [5.0, 10.0, 20.0]}
+    found = rb.sweep(case, axes, ["impacts_per_cycle", "loss_per_cycle", "reduced_loss"], cycles=(40, 10))
+    # Hard impacts know no time: all frequencies are the same motion.
+    assert np.ptp(found.impacts_per_cycle.values) == 0
+    assert found.impacts_per_cycle[0] > 0
+    assert found.reduced_loss.values == pytest.approx(float(found.reduced_loss[0]), rel=1e-9)
+    assert found.loss_per_cycle.values == pytest.approx(float(found.loss_per_cycle[0]) * np.array([1, 4, 16]), rel=1e-9)
+
+
+def test_skip_leaves_the_beginning_out() -> None:
+    """Impacts and losses before `skip` do not count."""
+    case = seed_case(duration=2.0, times=[0.5, 2.0])
+    run = rb.simulate(case)
+    found = rb.sweep(case, {"damper.gap": [case.dampers[0].gap]}, ["impacts", "impact_loss"], skip="0.5 s")
+    assert float(found.impacts[0]) == (run.arrays.impacts.time >= 0.5).sum()
+    assert float(found.impact_loss[0]) == pytest.approx(np.diff(run.ledger.impact_loss)[-1], rel=1e-10)
+
+
+def test_motion_and_last_impacts_on_request() -> None:
+    """Samples of the motion and the last impacts are those of the run; fewer impacts are padded at the front."""
+    case = seed_case(duration=0.2, times=np.linspace(0, 0.2, 41).tolist())
+    run = rb.simulate(case)
+    found = rb.sweep(case, {"damper.start": [0.0]}, ["impacts"], motion=True, samples=41, last=1000).isel(
+        {"damper.start": 0}
+    )
+    assert found.displacement.values == pytest.approx(run.arrays.displacement[:, 0], abs=1e-15)
+    assert found.ball_place.values == pytest.approx(run.arrays.relative_position, abs=1e-15)
+    speeds = found.last_approach_speed.values
+    assert np.array_equal(speeds[np.isfinite(speeds)], run.arrays.impacts.approach_speed)
+    assert np.isnan(speeds[0])
+
+
+def test_own_measures_are_functions_of_a_run() -> None:
+    """A function of a Run is computed for each variant, from the same run as the others."""
+
+    def third_speed(run: rb.Run) -> float:
+        return float(run.arrays.impacts.approach_speed[2])
+
+    case = seed_case(duration=0.3)
+    found = rb.sweep(case, {"damper.start": rb.linspace(-0.5, 0.5, 5)}, [third_speed], last=1000)
+    logged = [row[np.isfinite(row)][2] for row in found.last_approach_speed.values]
+    assert found.third_speed.values.tolist() == logged
+
+
+def test_threads_and_neighbours_change_no_bit() -> None:
+    """One thread or two, alone or among others: the same bits."""
+    case = seed_case(duration=1.0)
+    axes = {"damper.start": rb.linspace(-0.9, 0.9, 23)}
+    one = rb.sweep(case, axes, ["impact_share", "settling_time"], threads=1)
+    two = rb.sweep(case, axes, ["impact_share", "settling_time"], threads=2)
+    alone = rb.sweep(case, {"damper.start": [float(one["damper.start"][7])]}, ["impact_share", "settling_time"])
+    assert one.equals(two)
+    assert float(alone.impact_share[0]) == float(one.impact_share[7])
+
+
+def test_a_member_that_fails_carries_its_status() -> None:
+    """Where a law is left, the variant says so and has no numbers; the others have theirs."""
+    law = rb.Tsuji(restitution=rb.JacksonGreen(yield_stress="20 MPa"))
+    found = rb.sweep(seed_case(law, duration=0.2), {"load.amplitude": ["10 N", "5 kN"]}, ["impacts", "impact_share"])
+    names = found.status.attrs["flag_meanings"].split()
+    assert names[int(found.status[0])] == "finished"
+    assert names[int(found.status[1])] == "law_domain"
+    assert np.isnan(found.impacts.values).tolist() == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"measure": ["impact_shares"]}, "impact_share"),
+        ({"measure": [3]}, "function"),
+        ({"measure": ["loss_factor"]}, "harmonic"),
+        ({"skip": "9 s"}, "nothing of the run"),
+        ({"cycles": (10, 5)}, "harmonic"),
+        ({"skip": "9 kg"}, "s"),
+        ({"point": "tip"}, "mass"),
+    ],
+)
+def test_what_does_not_fit_is_told_before_anything_runs(options: dict[str, Any], told: str) -> None:
+    """Unknown measures, windows outside the run and cycles without a load are refused with a hint."""
+    with pytest.raises(rb.CaseError, match=told):
+        rb.sweep(seed_case(duration=1.0), {"damper.gap": ["1 mm"]}, **options)
