@@ -198,9 +198,9 @@ class Pairs:
     def _parted(self, state: Array) -> Array:
         """States and neighbours of them in some direction that leads into no wall."""
         pairs, size = self._task.pairs, state.shape[-1]
-        toward = self._rng.normal(size=(1, pairs, 1, size))
-        toward *= (self._task.distance * self._scale)[..., None, None] / np.linalg.norm(toward, axis=-1, keepdims=True)
-        toward = toward / self._weights
+        direction = self._rng.normal(size=(1, pairs, 1, size))
+        direction /= np.linalg.norm(direction, axis=-1, keepdims=True)
+        toward = (self._task.distance * self._scale)[..., None, None] * direction / self._weights
         inside = [self._room(state + sign * toward).min(axis=-1, keepdims=True) >= 0 for sign in (1, -1)]
         still = toward.copy()
         still[..., 0 : 2 * self._modes : 2] = 0
