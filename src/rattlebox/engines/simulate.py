@@ -11,7 +11,7 @@ import numpy as np
 
 from rattlebox.engines.core import core
 from rattlebox.engines.pack import pack
-from rattlebox.engines.status import LEDGER_OPEN, describe
+from rattlebox.engines.status import LEDGER_OPEN, NOT_FINITE, describe
 from rattlebox.results.arrays import ImpactArrays, RunArrays
 from rattlebox.results.provenance import Provenance
 from rattlebox.results.run import Run
@@ -60,11 +60,13 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
 
 
 def _run(case: Case, raw: dict[str, Any]) -> Run:
-    arrays = _arrays(case, raw)
+    with np.errstate(over="ignore", invalid="ignore"):  # motion beyond all numbers has a status
+        arrays = _arrays(case, raw)
     provenance = Provenance.now(method=case.method.kind, seed=case.seed)
     run = Run(arrays, case_toml=case.to_toml, provenance=provenance)
-    if run.status == "finished" and run.closure > raw["closure_bound"]:
-        status, message = describe(LEDGER_OPEN, case.duration, "", run.closure, case.method.kind)
+    if run.status == "finished" and not run.closure <= raw["closure_bound"]:
+        end = NOT_FINITE if np.isnan(run.closure) else LEDGER_OPEN
+        status, message = describe(end, case.duration, "", run.closure, case.method.kind)
         run = Run(replace(arrays, status=status, message=message), case_toml=case.to_toml, provenance=provenance)
     return run
 

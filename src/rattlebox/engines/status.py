@@ -17,7 +17,8 @@ STATUSES: tuple[tuple[str, str], ...] = (
         "The run reached its end, but its energy ledger closes only to {value:.2g} of the energy put in: do not trust it.",
     ),
 )
-LEDGER_OPEN = [name for name, _ in STATUSES].index("ledger_open")
+_NAMES = [name for name, _ in STATUSES]
+NOT_FINITE, LEDGER_OPEN = _NAMES.index("not_finite"), _NAMES.index("ledger_open")
 
 _SIZES = "Check that stiffnesses, masses and speeds are of the sizes you meant."
 _ADVICE: dict[str, dict[str, str]] = {

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -17,7 +18,7 @@ from .elementwise import Vector
 from .errors import CaseError, Hint, at, translate
 from .files import existing, read_toml
 from .materials import Material, materials
-from .methods import AnyMethod, EventDriven, Output
+from .methods import AnyMethod, EventDriven, Newton, Output
 from .modes import ModalModel
 from .pairs import contact_pairs
 from .signals import AnySignal, Harmonic, Record, Signal, Unit, as_several, signals_in
@@ -25,6 +26,8 @@ from .structures import AnyStructure, Shaker
 from .units import PositiveTime
 
 _MEMORY = 16e9  # bytes
+_NOT_COMPUTABLE = "cannot be computed for bodies of these sizes, masses and moduli"
+_USUAL = "numbers of usual sizes"
 
 
 class Case(Part):
@@ -83,6 +86,7 @@ class Case(Part):
                 if damper.label(index) in names:
                     raise Hint(f"two dampers are called {damper.label(index)!r}", "different names")
                 names.add(damper.label(index))
+                self._check_play(damper)
                 self._check_places(damper)
                 self._check_laws(damper, index)
         return self
@@ -143,6 +147,14 @@ class Case(Part):
                 record.where,
             )
 
+    def _check_play(self, damper: ImpactDamper) -> None:
+        if isinstance(self.method, Newton) and damper.clearance <= 1e-14 * damper.row:
+            raise Hint(
+                "hard impacts need some play: what the walls hold on both sides never flies",
+                'gap = "1 um", or the EventDriven method, whose contacts carry it',
+                ["gap"],
+            )
+
     def _check_places(self, damper: ImpactDamper) -> None:
         """Refuse balls that start inside a wall of the cavity, which may be displaced at the start."""
         with at("point"):
@@ -166,11 +178,13 @@ class Case(Part):
         for number, pair in enumerate(contact_pairs(self, index)):
             between = 0 < number < len(damper.balls) and damper.ball_contact is not None
             law = damper.ball_contact if between and damper.ball_contact is not None else damper.contact
-            with at("ball_contact" if between else "contact"):
-                law.coefficients(pair)
+            with at("ball_contact" if between else "contact"), _computable():
+                _, values = law.coefficients(pair)
+                _check_finite(values)
                 if law.restitution is not None:
                     with at("restitution"):
-                        law.restitution.coefficients(pair)
+                        _, values = law.restitution.coefficients(pair)
+                        _check_finite(values)
 
     @cached_property
     def modes(self) -> ModalModel:
@@ -274,6 +288,22 @@ class Case(Part):
             "additionalProperties": {"$ref": "#/$defs/Material"},
         }
         return schema
+
+
+@contextmanager
+def _computable() -> Iterator[None]:
+    """Complain where formulas divide by zero or leave double precision."""
+    try:
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            yield
+    except ArithmeticError:
+        raise Hint(_NOT_COMPUTABLE, _USUAL) from None
+
+
+def _check_finite(values: Mapping[str, Any]) -> None:
+    for name, value in values.items():
+        if not np.isfinite(value).all():
+            raise Hint(f"{_NOT_COMPUTABLE}: its {name.replace('_', ' ')} is no finite number", _USUAL)
 
 
 def _tidy(value: Any) -> Any:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import CaseError, Hint
+from .units import LARGEST
 
 Array = NDArray[np.float64]
 BINARY = (".npy", ".npz", ".mat")
@@ -134,9 +135,9 @@ def check_finite(array: Array, where: str) -> Array:
     Raises
     ------
     Hint
-        When a number in it is not finite; `where` says what is read.
+        When a number in it is not finite, or beyond all use; `where` says what is read.
     """
-    bad = np.argwhere(~np.isfinite(array))
+    bad = np.argwhere(~(np.abs(array) <= LARGEST))
     if len(bad):
         place = ", ".join(f"{word} {i + 1}" for word, i in zip(("row", "column"), bad[0], strict=False))
         raise Hint(f"{where} holds {array[tuple(bad[0])]} in {place or 'it'}")

@@ -16,7 +16,7 @@ from .errors import Hint, at, nearest
 from .files import absolute, check_finite, existing, read_arrays
 from .modes import ModalModel
 from .signals import AnySignal, Signal, Unit, signals_in
-from .units import SI, Damping, Frequency, Length, PositiveMass, Stiffness, Velocity, numbers
+from .units import LARGEST, SI, Damping, Frequency, Length, PositiveMass, Stiffness, Velocity, numbers
 
 if TYPE_CHECKING:
     from typing import Self
@@ -49,7 +49,7 @@ Numbers = Annotated[list[float], BeforeValidator(_numbers)]
 Matrix = Annotated[list[list[float]], BeforeValidator(_matrix)]
 Point = Annotated[int | list[float], BeforeValidator(_point)]
 _ratio_schema = WithJsonSchema({"type": "number", "minimum": 0, "description": "damping ratio"})
-Ratio = Annotated[float, Field(ge=0), _ratio_schema]
+Ratio = Annotated[float, Field(ge=0, le=LARGEST), _ratio_schema]
 
 
 class SDOF(Part):

@@ -17,6 +17,9 @@ from .errors import Hint, at, nearest
 if TYPE_CHECKING:
     import pint
 
+LARGEST = 1e30
+"""Numbers beyond it, and positive ones below its inverse, are slips: their powers would leave double precision."""
+
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
 # Factors of the commonest units, so that most case files need no unit registry. Exact powers of ten are applied as one
@@ -138,6 +141,8 @@ def _with_pint(number: float, text: str, units: tuple[str, ...]) -> Any:
 def _finite(value: float) -> float:
     if not math.isfinite(value):
         raise Hint("a finite number is needed")
+    if abs(value) > LARGEST:
+        raise Hint(f"no more than {LARGEST:g} in SI units is allowed")
     return value
 
 
@@ -162,9 +167,10 @@ def numbers(value: Any) -> NDArray[np.float64]:
     except (TypeError, ValueError, OverflowError):
         _find_what_is_no_number(value)
         raise Hint("rows of numbers of one length are needed") from None
-    bad = np.flatnonzero(~np.isfinite(array))
+    bad = np.flatnonzero(~(np.abs(array) <= LARGEST))
     if bad.size:
-        raise Hint(f"number {int(bad[0]) + 1} of {array.size} is not finite")
+        fault = f"more than {LARGEST:g}" if np.isfinite(array.flat[bad[0]]) else "not finite"
+        raise Hint(f"number {int(bad[0]) + 1} of {array.size} is {fault}")
     return array
 
 
@@ -216,6 +222,8 @@ def quantity(unit: str, description: str = "") -> Any:
 def _positive(value: float) -> float:
     if not value > 0:
         raise Hint("must be greater than zero")
+    if value < 1 / LARGEST:
+        raise Hint(f"no less than {1 / LARGEST:g} in SI units is allowed")
     return value
 
 
