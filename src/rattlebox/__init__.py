@@ -25,8 +25,10 @@ if TYPE_CHECKING:
     from rattlebox.engines.curves import restitution_curve
     from rattlebox.engines.simulate import simulate, simulate_many
     from rattlebox.results import Run, load
+    from rattlebox.studies.bifurcation import bifurcation
     from rattlebox.studies.designs import geomspace, linspace, random_design, replicas
     from rattlebox.studies.frequency_response import frequency_response
+    from rattlebox.studies.lyapunov import lyapunov
     from rattlebox.studies.measures import MEASURES
     from rattlebox.studies.sweep import sweep
 
@@ -41,6 +43,8 @@ _LATER = {
     "Run": "rattlebox.results",
     "load": "rattlebox.results",
     "frequency_response": "rattlebox.studies.frequency_response",
+    "bifurcation": "rattlebox.studies.bifurcation",
+    "lyapunov": "rattlebox.studies.lyapunov",
     "geomspace": "rattlebox.studies.designs",
     "linspace": "rattlebox.studies.designs",
     "random_design": "rattlebox.studies.designs",
@@ -79,12 +83,14 @@ __all__ = [
     "TwoStep",
     "alpha_of_restitution",
     "analysis",
+    "bifurcation",
     "chirp",
     "contact_pairs",
     "frequency_response",
     "geomspace",
     "linspace",
     "load",
+    "lyapunov",
     "materials",
     "random_design",
     "random_record",

@@ -3,6 +3,7 @@
 from .compare import plot_comparison
 from .energy import plot_energy
 from .impacts import plot_impacts
+from .lyapunov import plot_lyapunov
 from .motion import plot_motion
 from .phase import plot_phase_portrait
 from .response import plot_frequency_response
@@ -14,6 +15,7 @@ __all__ = [
     "plot_energy",
     "plot_frequency_response",
     "plot_impacts",
+    "plot_lyapunov",
     "plot_motion",
     "plot_phase_portrait",
 ]

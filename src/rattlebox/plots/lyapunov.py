@@ -1,0 +1,144 @@
+"""Lyapunov exponents: their convergence, and what they are over one or two axes of a study."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
+from matplotlib.figure import Figure
+
+from ..model.errors import CaseError
+from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, paper, pen, scaled
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+_REGULAR, _CHAOTIC = SERIES_COLOURS[:2]
+_LINES = 200  # of the convergence, at most
+
+
+def plot_lyapunov(study: xarray.Dataset, *, size: Size = "column") -> Figure:
+    """Draw Lyapunov exponents: a cycle where there is one, else a second.
+
+    Of one case, how the exponent converges; over one axis also the exponents with twice their standard error; over two axes
+    a map. Positive exponents, chaos, are warm and light, the others cold and dark. What is -inf lies at the lower edge.
+
+    Parameters
+    ----------
+    study
+        From `rattlebox.lyapunov`, over two axes at most.
+    size
+        Width of the figure: "column", "page" or "slide".
+
+    Raises
+    ------
+    CaseError
+        When there are more axes.
+    """
+    values = study.growth_per_cycle if "growth_per_cycle" in study else study.exponent
+    if values.ndim > 2:
+        raise CaseError(f"{' x '.join(map(str, values.dims))} are too many axes\n  try: study.sel(...), two at most")
+    with paper(size):
+        if values.ndim == 2:
+            figure = PaperFigure(size, 0.75 if size == "column" else 0.6)
+            _map(figure, values)
+            return figure
+        figure = PaperFigure(size, 0.6 if values.ndim == 0 else 1.1 if size == "column" else 0.45)
+        if values.ndim == 0:
+            _convergence(figure.subplots(), study, values)
+        else:
+            panels = figure.subplots(*((2, 1) if size == "column" else (1, 2)), sharey=True)
+            _exponents(panels[0], study, values)
+            _convergence(panels[1], study, values)
+    return figure
+
+
+def _text(values: xarray.DataArray) -> str:
+    return "Growth a cycle" if values.name == "growth_per_cycle" else "Exponent"
+
+
+def _unit(values: xarray.DataArray) -> str:
+    return "" if values.attrs["units"] == "1" else str(values.attrs["units"])
+
+
+def _floor(values: Any) -> tuple[float, float]:
+    """Limits of an axis that shows all finite values and zero."""
+    finite = np.asarray(values)[np.isfinite(values)]
+    low, high = min(0.0, finite.min(initial=0.0)), max(0.0, finite.max(initial=0.0))
+    margin = 0.06 * (high - low) or 1.0
+    return low - margin, high + margin
+
+
+def _convergence(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) -> None:
+    running = study.running_exponent
+    over = running.dims[-1]
+    times = study[over]
+    factor = values / study.exponent if values.name == "growth_per_cycle" else 1.0
+    lines = np.atleast_2d((running * factor).transpose(..., over).values)
+    ends = np.atleast_1d(values.values)
+    chosen = np.unique(np.linspace(0, len(lines) - 1, _LINES).astype(int))
+    for k in chosen:
+        colour = _CHAOTIC if ends[k] > 0 else _REGULAR
+        axes.plot(times, lines[k], color=colour, lw=pen(0.9 if len(chosen) == 1 else 0.4))
+    axes.axhline(0, color=INK, lw=pen(0.5), zorder=0)
+    if values.ndim == 0:
+        error = 2 * float(study.standard_error * factor)
+        axes.axhspan(float(values) - error, float(values) + error, color=FAINT, alpha=0.5, lw=0, zorder=0)
+    axes.set_ylim(*_floor(lines[:, lines.shape[1] // 10 :]))
+    axes.set_xlim(0, float(times[-1]))
+    label(axes, "x", "Cycles looked at" if over == "cycle" else "Time looked at", "" if over == "cycle" else "s")
+    label(axes, "y", _text(values), _unit(values))
+
+
+def _coordinate(values: xarray.DataArray, name: Any) -> tuple[Any, str, str]:
+    """Values, name and unit of an axis."""
+    axis = values[name]
+    if axis.dtype.kind not in "fiu":
+        return np.arange(axis.size), str(axis.attrs.get("long_name", name)), ""
+    unit = str(axis.attrs.get("units", "")).removeprefix("1")
+    divisor, shown = scaled(axis, unit) if unit else (1.0, "")
+    text = str(axis.attrs.get("long_name", name))
+    return axis.values / divisor, text[0].upper() + text[1:], shown
+
+
+def _exponents(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) -> None:
+    at, text, unit = _coordinate(values, values.dims[0])
+    error = 2 * np.nan_to_num(study.standard_error.values * (values / study.exponent).fillna(1.0).values)
+    chaotic = values.values > 0
+    for mask, colour, marker in ((chaotic, _CHAOTIC, "o"), (~chaotic, _REGULAR, "s")):
+        axes.errorbar(
+            at[mask], values.values[mask], error[mask], fmt=marker, color=colour, ms=pen(2), lw=pen(0.6), mew=0
+        )
+    limits = _floor(values)
+    lost = np.isneginf(values.values)
+    if lost.any():
+        axes.plot(at[lost], np.full(lost.sum(), limits[0]), "v", color=_REGULAR, ms=pen(3), clip_on=False)
+    axes.axhline(0, color=INK, lw=pen(0.5), zorder=0)
+    axes.margins(x=0.02)
+    label(axes, "x", text, unit)
+    label(axes, "y", _text(values), _unit(values))
+
+
+def _map(figure: Figure, values: xarray.DataArray) -> None:
+    axes = figure.subplots()
+    (y, y_text, y_unit), (x, x_text, x_unit) = (_coordinate(values, name) for name in values.dims)
+    finite = values.values[np.isfinite(values.values)]
+    low, high = np.quantile(finite, (0.02, 0.98)) if finite.size else (-1.0, 1.0)
+    norm = TwoSlopeNorm(0.0, min(low, -1e-9 * abs(high) - 1e-12), max(high, 1e-9 * abs(low) + 1e-12))
+    mesh = axes.pcolormesh(
+        x, y, np.clip(values.values, norm.vmin, norm.vmax), norm=norm, cmap=_colours(), rasterized=True
+    )
+    label(axes, "x", x_text, x_unit)
+    axes.set_ylabel(f"{y_text} ({y_unit})" if y_unit else y_text)
+    bar = figure.colorbar(mesh, ax=axes, extend="both", aspect=30, pad=0.02)
+    bar.outline.set_visible(False)
+    unit = _unit(values)
+    bar.set_label(f"{_text(values)} ({unit})" if unit else _text(values))
+
+
+def _colours() -> LinearSegmentedColormap:
+    """Lightness rises all the way, so that grey tells the order; the hue changes at zero, so that colour tells the sign."""
+    stops = [(0.0, "#0a1f3a"), (0.5, "#5f86a8"), (0.5, "#d1742c"), (1.0, "#fdf0d2")]
+    return LinearSegmentedColormap.from_list("sign", stops)
