@@ -1,22 +1,30 @@
-"""Times what a study of the seed's case costs. `python benchmarks/sweep.py` prints one JSON line a measurement.
+"""Times what a study of the seed's case costs: `python benchmarks/sweep.py [NAME ...]` prints a table.
 
-packing: a million variants packed by broadcasting, on a grid and in a random design; best of three, and the memory it
-took at most.
+packing   a million variants packed by broadcasting, on a grid and in a random design
+rate      impacts a second and core in an ensemble of start positions, 5 s each; two cores against one, in pairs
+memory    a million trajectories of 0.05 s: resident memory beyond the result
+dask      two workers of a Dask cluster against two threads, blocks of seconds
+scipy     the same ensemble by SciPy (LSODA, relative tolerance 1e-9), a few members extrapolated
+
+Everything is the best of three, or the median ratio of three pairs, each pair measured back to back.
 """
 
 from __future__ import annotations
 
-import json
 import resource
+import statistics
+import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+import rattlebox as rb
 from rattlebox.engines.pack import pack_batch
 from rattlebox.model.case import Case
-from rattlebox.paper.seed import CONSTANT, PLASTIC, seed_case
+from rattlebox.paper.seed import ALPHA, CONSTANT, DAMPING, GAP, MASS, PLASTIC, PULSE, RADIUS, STIFFNESS, seed_case
 
 MILLION = 1_000_000
 
@@ -59,10 +67,142 @@ def _peak() -> int:
     return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
+def starts(count: int) -> dict[str, Any]:
+    """Return start positions across the whole gap."""
+    return {"damper.start": rb.linspace(-1, 1, count)}
+
+
+def timed(work: Callable[[], Any]) -> tuple[float, Any]:
+    """Return seconds and what came of it."""
+    start = time.perf_counter()
+    result = work()
+    return time.perf_counter() - start, result
+
+
+def pairs(first: Callable[[], Any], second: Callable[[], Any]) -> float:
+    """Return the median ratio of the times of two jobs, each pair back to back, in turns."""
+    ratios = []
+    for turn in range(3):
+        a, b = (timed(first)[0], timed(second)[0]) if turn % 2 else (timed(second)[0], timed(first)[0])[::-1]
+        ratios.append(a / b)
+    return statistics.median(ratios)
+
+
+def rate(count: int = 20_000) -> Iterator[tuple[str, str]]:
+    """Measure impacts a second on one core, and what a second core gives."""
+    case = seed_case(CONSTANT, duration=5.0)
+
+    def run(threads: int) -> Any:
+        return rb.sweep(case, starts(count), ["impacts", "impact_share"], threads=threads, progress=False)
+
+    seconds, study = min((timed(lambda: run(1)) for _ in range(3)), key=lambda pair: pair[0])
+    impacts = float(study.impacts.sum())
+    yield (
+        f"ensemble of {count:,} starts, one core",
+        f"{impacts / seconds:,.0f} impacts/s, {1e6 * seconds / impacts:.2f} us each",
+    )
+    yield "two cores against one", f"{pairs(lambda: run(1), lambda: run(2)):.2f}"
+    hard = seed_case(CONSTANT, duration=5.0, method=rb.Newton())
+    work = partial(rb.sweep, hard, starts(count), ["impacts", "impact_share"], threads=1, progress=False)
+    seconds, study = min((timed(work) for _ in range(3)), key=lambda pair: pair[0])
+    yield "the same with hard impacts", f"{float(study.impacts.sum()) / seconds:,.0f} impacts/s"
+
+
+def memory() -> Iterator[tuple[str, str]]:
+    """Measure the memory of a million trajectories."""
+    case = seed_case(CONSTANT, duration=0.05)
+    rb.sweep(case, starts(1000), ["impacts", "impact_share"], progress=False)
+    before = _peak()
+    seconds, study = timed(lambda: rb.sweep(case, starts(MILLION), ["impacts", "impact_share"], progress=False))
+    beyond = (_peak() - before - study.nbytes) / 2**20
+    yield (
+        "a million trajectories",
+        f"{seconds:.1f} s, {beyond:.0f} MiB beyond the result of {study.nbytes / 2**20:.0f} MiB",
+    )
+
+
+def dask(count: int = 40_000) -> Iterator[tuple[str, str]]:
+    """Compare two Dask workers with two threads."""
+    from distributed import Client, LocalCluster
+
+    case = seed_case(CONSTANT, duration=5.0)
+    run = partial(rb.sweep, case, starts(count), ["impacts", "impact_share"], progress=False)
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        Client(cluster) as client,
+    ):
+        rb.sweep(case, starts(100), ["impacts"], on=client, progress=False)
+        yield (
+            "two Dask workers against two threads, time",
+            f"{pairs(partial(run, on=client), partial(run, threads=2)):.3f}",
+        )
+
+
+def scipy(count: int = 100_000, members: int = 3) -> Iterator[tuple[str, str]]:
+    """Extrapolate SciPy's time for the ensemble from a few members, against ours on one core."""
+    ours, _ = timed(
+        lambda: rb.sweep(seed_case(CONSTANT, duration=5.0), starts(2000), ["impact_share"], threads=1, progress=False)
+    )
+    theirs, _ = timed(lambda: [peer(start) for start in np.linspace(-0.9, 0.9, members)])
+    ratio = (theirs / members) / (ours / 2000)
+    yield (
+        f"SciPy LSODA 1e-9, {count:,} starts",
+        f"{theirs / members * count / 3600:.1f} h extrapolated, {ratio:,.0f} times ours",
+    )
+
+
+def peer(start: float) -> float:
+    """Run the seed's case with SciPy, stopping at each touch and release; returns the loss in the contacts."""
+    from scipy.integrate import solve_ivp
+
+    mass, ball, stiffness, damping, gap = MASS, 1.2, STIFFNESS, DAMPING, GAP
+    hertz = 4 / 3 * 200e9 / (2 * (1 - 0.3**2)) * RADIUS**0.5
+    dashpot = ALPHA * (mass * ball / (mass + ball) * hertz) ** 0.5
+
+    def right(t: float, y: Any) -> list[float]:
+        z, v, s, w, _ = y
+        depth = abs(s - z) - gap
+        side = 1.0 if s > z else -1.0
+        rate = side * (w - v)
+        normal = hertz * depth**1.5 if depth > 0 else 0.0
+        drag = dashpot * depth**0.25 * rate if depth > 0 else 0.0
+        push = 5000.0 * np.sin(np.pi * t / PULSE) if t < PULSE else 0.0
+        force = side * (normal + drag)
+        return [v, (push - stiffness * z - damping * v + force) / mass, w, -force / ball, drag * rate]
+
+    def touch(t: float, y: Any) -> float:
+        return float(abs(y[2] - y[0]) - gap)
+
+    touch.terminal = True  # type: ignore[attr-defined]
+    y = np.array([0.0, 0.0, start * gap, 0.0, 0.0])
+    t, stops = 0.0, [PULSE, 5.0]
+    while t < 5.0:
+        part = solve_ivp(right, (t, stops[0]), y, method="LSODA", rtol=1e-9, atol=1e-12, events=touch, max_step=1e-2)
+        t, y = part.t[-1], part.y[:, -1]
+        if t >= stops[0] and len(stops) > 1:
+            stops.pop(0)
+        elif part.status == 1:  # a moment on, so that the same touch is not found again
+            part = solve_ivp(right, (t, t + 1e-9), y, method="LSODA", rtol=1e-9, atol=1e-12)
+            t, y = part.t[-1], part.y[:, -1]
+    return float(y[4])
+
+
+def packings() -> Iterator[tuple[str, str]]:
+    """Measure the packing of a million variants."""
+    for design in (grid, random):
+        found = packing(design)
+        yield found["name"], f"{found['seconds']:.3f} s, {found['MiB']:.0f} MiB"
+
+
+PARTS = {"packing": packings, "rate": rate, "memory": memory, "dask": dask, "scipy": scipy}
+
+
 def main() -> None:
     """Measure and print."""
-    for design in (grid, random):
-        print(json.dumps(packing(design)))
+    print("| what | measured |\n|---|---|")
+    for name in sys.argv[1:] or PARTS:
+        for what, measured in PARTS[name]():
+            print(f"| {what} | {measured} |", flush=True)
 
 
 if __name__ == "__main__":
