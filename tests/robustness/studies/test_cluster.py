@@ -27,7 +27,10 @@ from rattlebox.studies.store import progress_of
 from . import fake
 from .fake import Grid, Logistic
 
-cloudpickle.register_pickle_by_value(fake)  # workers cannot import the tests
+EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
+
+for module in (fake, sys.modules[__name__]):  # workers cannot import the tests
+    cloudpickle.register_pickle_by_value(module)
 
 
 def bits(data: xr.Dataset) -> dict[str, bytes]:
@@ -97,16 +100,38 @@ def test_a_worker_is_killed_in_the_middle(scheduler: Path, tmp_path: Path) -> No
     assert bits(found) == bits(run_task(Logistic(), design=Grid()))
 
 
-def test_a_local_cluster() -> None:
-    """A cluster of processes on this machine gives the bits of this process; blocks are chosen by time."""
+@pytest.fixture(scope="module")
+def local() -> Iterator[Client]:
+    """Client of a cluster of processes on this machine."""
     with (
         LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
         Client(cluster) as client,
     ):
-        found = run_task(Logistic(), design=Grid(), on=client)
-        assert bits(found) == bits(run_task(Logistic(), design=Grid()))
-        with pytest.raises(ZeroDivisionError, match="a fault in the task"):
-            run_task(Logistic(broken=True), design=Grid(), on=client, block=20)
+        yield client
+
+
+def test_a_local_cluster(local: Client) -> None:
+    """A cluster of processes gives the bits of this process; blocks are chosen by time, and a fault arrives as it is."""
+    found = run_task(Logistic(), design=Grid(), on=local)
+    assert bits(found) == bits(run_task(Logistic(), design=Grid()))
+    with pytest.raises(ZeroDivisionError, match="a fault in the task"):
+        run_task(Logistic(broken=True), design=Grid(), on=local, block=20)
+
+
+def last_speed(run: rb.Run) -> float:
+    """Approach speed of the last impact [m/s]."""
+    return float(run.impacts.approach_speed[-1])
+
+
+def test_a_measure_of_ones_own(local: Client) -> None:
+    """A function of a Run travels to the workers with its study and gives the bits of this process."""
+    case = rb.Case.from_file(EXAMPLE)
+    axes = {"damper.start": rb.linspace(-0.5, 0.5, 5)}
+    found = rb.sweep(case, axes, [last_speed, "impacts"], on=local)
+    here = rb.sweep(case, axes, [last_speed, "impacts"])
+    assert bits(found) == bits(here)
+    damper = case.dampers[0].model_copy(update={"start": -0.25})
+    assert float(here.last_speed[1]) == last_speed(rb.simulate(case.model_copy(update={"dampers": (damper,)})))
 
 
 def test_ctrl_c_stops_the_workers_too(scheduler: Path, tmp_path: Path) -> None:

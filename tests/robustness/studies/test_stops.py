@@ -64,7 +64,7 @@ def test_killed_and_resumed_is_bit_for_bit_the_same(tmp_path: Path) -> None:
     assert not list(store.rglob("*.partial"))
 
 
-@pytest.mark.parametrize("after", [0.0, 0.002, 0.005, 0.01, 0.02, 0.03])
+@pytest.mark.parametrize("after", [0.0, 0.005, 0.02])
 def test_killed_while_the_store_is_made(tmp_path: Path, after: float) -> None:
     """A kill at any moment while the store is being made leaves nothing that is in the way."""
     store = tmp_path / "study.zarr"
