@@ -40,7 +40,7 @@ def plot_loss_map(study: xr.Dataset, *, size: Size = "page") -> Figure:
         When the size is unknown.
     """
     amplitude, frequency = "structure.motion.amplitude", "structure.motion.frequency"
-    ratio = (study["effective_mass"] / study["particle_mass"]).drop_attrs()
+    ratio = (study["effective_mass"] / study["particle_mass"]).drop_attrs(deep=False)
     shown = study.assign(mass_ratio=ratio)
     top = float(np.nanpercentile(study["loss_factor"], _SHOWN))
     panels = (

@@ -22,7 +22,9 @@ class _Rate(ProgressColumn):
 
 
 @contextmanager
-def telling(progress: bool | Callable[[int, int], object] | None, total: int) -> Iterator[Callable[[int], object]]:
+def telling(
+    progress: bool | Callable[[int, int], object] | None, total: int, what: str = "variants"
+) -> Iterator[Callable[[int], object]]:
     """Give a function to tell the number of variants that are done.
 
     Parameters
@@ -31,13 +33,15 @@ def telling(progress: bool | Callable[[int, int], object] | None, total: int) ->
         True or False for a bar, None for a bar on a terminal, or a function of the number done and of all.
     total
         Number of all.
+    what
+        What they are called.
     """
     if callable(progress):
         yield lambda done: progress(done, total)
         return
     console = Console(stderr=True)
     columns = (
-        TextColumn("{task.completed:,.0f} of {task.total:,.0f} variants"),
+        TextColumn(f"{{task.completed:,.0f}} of {{task.total:,.0f}} {what}"),
         BarColumn(),
         TaskProgressColumn(),
         _Rate(),

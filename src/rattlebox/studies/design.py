@@ -1,0 +1,450 @@
+"""The best design: parameters within bounds that make a measure small over load levels and start positions."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.model.errors import CaseError, Hint, nearest
+from rattlebox.model.paths import replaced
+from rattlebox.model.units import parse
+
+from .axes import Design
+from .bar import telling
+from .designs import whole
+from .extras import extra
+from .members import members
+from .runner import Stopped
+from .sweep import sweep
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rattlebox.model.case import Case
+    from rattlebox.results import Run
+
+Robust = Literal["worst", "mean", "median"]
+Vector = NDArray[np.float64]
+
+_MASS = "added_mass"
+
+
+def design(
+    case: Case,
+    parameters: Mapping[str, Any],
+    objective: Any = "settling_time",
+    *,
+    levels: Any = None,
+    starts: int | Sequence[Any] | None = None,
+    robust: Robust = "worst",
+    max_added_mass: float | str | None = None,
+    log: Sequence[str] = (),
+    trials: int = 100,
+    seed: int = 0,
+    skip: float | str = 0.0,
+    cycles: tuple[float, float] | None = None,
+    samples: int | None = None,
+    point: str | None = None,
+    threads: int | None = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> xr.Dataset:
+    """Find parameters of a case that make a measure small, or a trade-off between several.
+
+    Each trial is a sweep over all levels and starts, of which the worst counts. Optuna's tree of Parzen estimators proposes
+    the trials; the same seed gives the same ones, however often they were stopped.
+
+    Parameters
+    ----------
+    case
+        The case, with the values that stay as they are.
+    parameters
+        By path: a pair (smallest, largest) in round brackets, {"damper.gap": ("0.1 mm", "2 mm")}; or a list to choose from,
+        {"damper.ball.diameter": ["10 mm", "12 mm", "15 mm"], "damper.ball.material": ["steel", "brass"]}.
+    objective
+        What shall be small: the name of a measure (rb.MEASURES), "added_mass" (of the balls), or a function of a Run;
+        {"reduced_loss": "max"} for what shall be large. Several, in a list or a mapping, give a Pareto front.
+    levels
+        Axes of loads that the design must serve, {"load.amplitude": ["1 kN", "5 kN"]}, as for `rb.sweep`.
+    starts
+        Start positions of the ball; a number spreads so many evenly from wall to wall. Default the case's own.
+    robust
+        What counts of all levels and starts: the "worst", the "mean" or the "median".
+    max_added_mass
+        Limit of the mass of all balls [kg].
+    log
+        Paths of parameters that are searched in their logarithm.
+    trials
+        How many.
+    seed
+        The same seed gives the same trials.
+    skip, cycles, samples, point, threads
+        As in `rb.sweep`.
+    store
+        File that keeps all trials: the same call goes on after a stop, and one with more trials goes further.
+    progress
+        True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `trial`: the parameters, the objectives, added_mass, missing (share of the runs that gave no value: they did not
+        finish, or never settled) and feasible (nothing is missing, and the mass is within its limit). Over `front`: the
+        numbers of the best trial, or of those that no other is better than in everything, and their case files.
+
+    Raises
+    ------
+    CaseError
+        When an argument does not fit, Optuna is not installed, or the store holds the trials of another study.
+    Stopped
+        After Ctrl-C.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> from rattlebox.paper.seed import seed_case
+    >>> case = seed_case(duration=8.0, contact=rb.Tsuji(restitution=0.6))
+    >>> found = rb.design(case, {"damper.gap": ("0.1 mm", "2 mm")}, starts=3, trials=5)
+    >>> best = rb.Case.from_toml(found.case.item(0))
+    """
+    optuna = extra("optuna", "design")
+    search = _Search(
+        case=case,
+        parameters=[_Parameter.of(case, path, given, path in log) for path, given in _some(parameters).items()],
+        goals=_goals(objective),
+        axes=members(case, levels, starts),
+        robust=robust,
+        limit=None if max_added_mass is None else parse(max_added_mass, ("kg",))[0],
+        options={"skip": skip, "cycles": cycles, "samples": samples, "point": point},
+        threads=threads,
+    )
+    search.check(log)
+    count = whole(trials, "trials", 1)
+    done = 0
+    try:
+        with _quiet(optuna), _storage(optuna, store) as storage, telling(progress, count, "trials") as tell:
+            study = _study(optuna, storage, search, whole(seed, "seed", 0), store)
+            while (done := len(_told(optuna, study))) < count:
+                tell(done)
+                study.sampler = optuna.samplers.TPESampler(seed=_seed(seed, done))
+                search.run_trial(optuna, study)
+            tell(count)
+            return search.result(_told(optuna, study)[:count])
+    except KeyboardInterrupt:
+        kept = "which are lost; with a store, they would be kept"
+        if store is not None:
+            kept = f"which are in {os.fspath(store)}, and the same command goes on from there"
+        raise Stopped(f"stopped after {done} of {count} trials, {kept}") from None
+
+
+def _some(parameters: Any) -> Mapping[str, Any]:
+    if not isinstance(parameters, Mapping) or not parameters:
+        raise Hint("parameters: paths with bounds or choices are needed", '{"damper.gap": ("0.1 mm", "2 mm")}')
+    return parameters
+
+
+@dataclass(frozen=True)
+class _Parameter:
+    """What may be chosen of one parameter: numbers between two, or one of some things by name."""
+
+    path: str
+    bounds: tuple[float, float] | None
+    choices: dict[Any, Any]
+    log: bool
+    attrs: dict[str, str]
+
+    @classmethod
+    def of(cls, case: Case, path: str, given: Any, log: bool) -> _Parameter:
+        ranged = isinstance(given, tuple)
+        if ranged and len(given) != 2:
+            raise Hint(
+                f"parameters: {path} = {given!r:.60}: a pair (smallest, largest) is needed, or a list to choose from"
+            )
+        tried = Design.of(case, {path: list(given) if ranged else given}, source="parameters")
+        values, (_, names, attrs) = tried.columns[path], tried.coords()[path]
+        if not ranged:
+            return cls(path, None, dict(zip(names.tolist(), values.tolist(), strict=True)), False, attrs)
+        if values.dtype.kind != "f":
+            raise Hint(f"parameters: {path} is no number with bounds", "a list to choose from, in square brackets")
+        low, high = values.tolist()
+        if not low < high or (log and low <= 0):
+            least = " greater than zero" if log else ""
+            raise Hint(f"parameters: {path} = {given!r:.60}: the first must be the smaller one{least}")
+        return cls(path, (low, high), {}, log, attrs)
+
+    def propose(self, trial: Any) -> Any:
+        if self.bounds:
+            return trial.suggest_float(self.path, *self.bounds, log=self.log)
+        return self.choices[trial.suggest_categorical(self.path, list(self.choices))]
+
+    def describe(self) -> dict[str, Any]:
+        return {"bounds": self.bounds, "choices": [str(name) for name in self.choices], "log": self.log}
+
+
+@dataclass(frozen=True)
+class _Goal:
+    """One objective."""
+
+    measure: str | Callable[[Run], float]
+    largest: bool
+
+    @property
+    def name(self) -> str:
+        return self.measure if isinstance(self.measure, str) else getattr(self.measure, "__name__", repr(self.measure))
+
+    @property
+    def sign(self) -> float:
+        return -1.0 if self.largest else 1.0
+
+
+def _goals(objective: Any) -> list[_Goal]:
+    """The objectives with their directions."""
+    if isinstance(objective, str) or callable(objective):
+        objective = [objective]
+    given = dict(objective) if isinstance(objective, Mapping) else dict.fromkeys(objective, "min")
+    if not given:
+        raise Hint("objective: there is none", '"settling_time"')
+    for name, direction in given.items():
+        if direction not in ("min", "max"):
+            raise Hint(f"objective: {name} = {direction!r}", '"min" or "max"')
+    goals = [_Goal(measure, direction == "max") for measure, direction in given.items()]
+    if [goal.name for goal in goals] == [_MASS]:
+        raise Hint("objective: the smallest added mass is that of the smallest ball", '["added_mass", "settling_time"]')
+    return goals
+
+
+@dataclass(frozen=True)
+class _Search:
+    """What is looked for."""
+
+    case: Case
+    parameters: list[_Parameter]
+    goals: list[_Goal]
+    axes: list[Any]
+    robust: Robust
+    limit: float | None
+    options: dict[str, Any]
+    threads: int | None
+
+    def check(self, log: Sequence[str]) -> None:
+        """Try the case itself, and refuse what no trial could use."""
+        paths = [parameter.path for parameter in self.parameters]
+        for path in (log,) if isinstance(log, str) else log:
+            if path not in paths:
+                raise Hint(f"log = {path!r}: there is no parameter of that name", nearest(path, paths))
+        if self.robust not in _ROBUST:
+            raise Hint(f"robust = {self.robust!r}: there is no such choice", nearest(str(self.robust), _ROBUST))
+
+    @property
+    def measured(self) -> list[_Goal]:
+        """Objectives that need runs."""
+        return [goal for goal in self.goals if goal.name != _MASS]
+
+    def describe(self) -> dict[str, Any]:
+        """What tells this search from others, in JSON's types."""
+        axes = Design.of(self.case, self.axes, source="levels")
+        return {
+            "case": self.case.to_toml(),
+            "parameters": {parameter.path: parameter.describe() for parameter in self.parameters},
+            "objective": {goal.name: "max" if goal.largest else "min" for goal in self.goals},
+            "members": axes.describe(),
+            "robust": self.robust,
+            "max_added_mass": self.limit,
+            "options": self.options,
+        }
+
+    # ---- one trial
+
+    def run_trial(self, optuna: Any, study: Any) -> None:
+        """Let the sampler propose parameters, and tell it what they give."""
+        trial = study.ask()
+        values = {parameter.path: parameter.propose(trial) for parameter in self.parameters}
+        found, mass = np.full(len(self.measured), np.nan), np.nan
+        missing = 1.0
+        with suppress(CaseError):  # the parameters do not fit together
+            case = replaced(self.case, values)
+            mass = sum(ball.weight for damper in case.dampers for ball in damper.balls)
+            if self.limit is None or mass <= self.limit:
+                found, missing = self.judge(case)
+        excess = 0.0 if self.limit is None or not mass > self.limit else mass / self.limit - 1
+        trial.set_constraint("missing", missing)
+        trial.set_constraint(_MASS, excess)
+        trial.set_user_attr(_MASS, None if np.isnan(mass) else mass)
+        if missing or excess:
+            study.tell(trial, state=optuna.trial.TrialState.PRUNED)
+            return
+        values_of = dict(zip([goal.name for goal in self.measured], found.tolist(), strict=True)) | {_MASS: mass}
+        study.tell(trial, [values_of[goal.name] for goal in self.goals])
+
+    def judge(self, case: Case) -> tuple[Vector, float]:
+        """What counts of all runs of a design, and the share of the runs that have no value."""
+        runs = sweep(
+            case,
+            self.axes,
+            [goal.measure for goal in self.measured],
+            progress=False,
+            threads=self.threads,
+            **self.options,
+        )
+        values = np.array([runs[goal.name].values.ravel() for goal in self.measured])
+        gone = ~np.isfinite(values).all(axis=0) | (runs["status"].values.ravel() != 0)
+        if gone.any():
+            return np.full(len(values), np.nan), float(gone.mean())
+        signs = np.array([goal.sign for goal in self.measured])
+        return signs * _ROBUST[self.robust](signs[:, None] * values, axis=1), 0.0
+
+    # ---- all trials
+
+    def result(self, trials: Sequence[Any]) -> xr.Dataset:
+        """All trials, and the best ones."""
+        import xarray as xr
+
+        from .measures import MEASURES
+
+        masses = np.array([trial.user_attrs[_MASS] for trial in trials], dtype=float)
+        missing = np.array([trial.constraints["missing"] for trial in trials])
+        values = np.array([trial.values or [np.nan] * len(self.goals) for trial in trials])
+        about = {
+            name: value if isinstance(value, str) else json.dumps(value) for name, value in self.describe().items()
+        }
+        found = xr.Dataset(attrs={"title": "Rattlebox design", **about})
+        for parameter in self.parameters:
+            column = [trial.params[parameter.path] for trial in trials]
+            found = found.assign_coords({parameter.path: ("trial", column, parameter.attrs)})
+        for goal, column in zip(self.goals, values.T, strict=True):
+            attrs = {"units": "", "long_name": goal.name.replace("_", " ")}
+            if goal.name in MEASURES:
+                attrs = {"units": MEASURES[goal.name].units, "long_name": MEASURES[goal.name].long_name}
+            found[goal.name] = ("trial", column, attrs | {"goal": "max" if goal.largest else "min"})
+        mass = {"units": "kg", "long_name": "mass of the balls"}
+        found[_MASS] = ("trial", masses, found[_MASS].attrs | mass if _MASS in found else mass)
+        found["missing"] = ("trial", missing, {"units": "1", "long_name": "share of the runs without a value"})
+        feasible = np.array([trial.values is not None for trial in trials])
+        found["feasible"] = ("trial", feasible, {"long_name": "within the limits, with a value of each run"})
+        front = _front(values * np.array([goal.sign for goal in self.goals]), feasible)
+        cases = []
+        for number in front:
+            chosen = trials[number].params
+            values_of = {p.path: p.choices.get(chosen[p.path], chosen[p.path]) for p in self.parameters}
+            cases.append(replaced(self.case, values_of).to_toml())
+        return found.assign_coords(trial=np.arange(len(trials))).assign(
+            front=("front", front, {"long_name": "number of the trial"}),
+            case=("front", np.array(cases, dtype=object), {"long_name": "case file"}),
+        )
+
+
+_ROBUST: dict[str, Any] = {"worst": np.max, "mean": np.mean, "median": np.median}
+
+
+def _front(values: Vector, feasible: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Numbers of the best trial, or of those that none beats in everything, the best in the first objective first."""
+    numbers = np.flatnonzero(feasible)
+    if not numbers.size:
+        return numbers
+    own = values[numbers]
+    if own.shape[1] == 1:
+        return numbers[[own.argmin()]]
+    others = own[:, None, :]
+    beaten = ((others <= own).all(axis=2) & (others < own).any(axis=2)).any(axis=0)
+    kept = numbers[~beaten]
+    return kept[np.lexsort(values[kept].T[::-1])]
+
+
+# ---- Optuna
+
+
+@contextmanager
+def _quiet(optuna: Any) -> Iterator[None]:
+    before = optuna.logging.get_verbosity()
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    try:
+        yield
+    finally:
+        optuna.logging.set_verbosity(before)
+
+
+class _NoLock:
+    """The whole file is ours already; and a lock of Optuna's own outlives a process that is killed."""
+
+    def acquire(self) -> bool:
+        return True
+
+    def release(self) -> None:
+        pass
+
+
+@contextmanager
+def _storage(optuna: Any, store: str | os.PathLike[str] | None) -> Iterator[Any]:
+    """Where trials are kept: a journal, to which each trial adds some lines."""
+    if store is None:
+        yield None
+        return
+    from filelock import FileLock, Timeout
+
+    path = Path(store)
+    if path.is_dir():
+        raise CaseError(f"store = {path}: this is a folder; the trials need a file\n  try: {path / 'design.journal'}")
+    try:
+        with FileLock(f"{path}.lock", timeout=0):
+            _mend(path)
+            journal = optuna.storages.journal
+            yield optuna.storages.JournalStorage(journal.JournalFileBackend(str(path), lock_obj=_NoLock()))
+    except Timeout:
+        raise CaseError(f"{path} is being written by another process\n  try: another file, or wait") from None
+
+
+def _mend(path: Path) -> None:
+    """Cut off a line that was not written to its end."""
+    if path.exists():
+        with path.open("r+b") as file:
+            content = file.read()
+            file.truncate(content.rfind(b"\n") + 1)
+
+
+def _study(optuna: Any, storage: Any, search: _Search, seed: int, store: Any) -> Any:
+    """The study, with what other runs of the same have found."""
+    from rattlebox import __version__
+
+    about = json.loads(json.dumps({"version": __version__, "seed": seed, **search.describe()}))
+    try:
+        study = optuna.create_study(
+            storage=storage,
+            study_name="rattlebox",
+            load_if_exists=True,
+            directions=["maximize" if goal.largest else "minimize" for goal in search.goals],
+        )
+    except (ValueError, KeyError):
+        raise CaseError(f"store = {store}: this holds something else\n  try: a file that does not exist yet") from None
+    there = study.user_attrs.get("about")
+    if there is None:
+        study.set_user_attr("about", about)
+    elif there != about:
+        names = ", ".join(name for name in about if there.get(name) != about[name])
+        raise CaseError(
+            f"store = {store}: the trials there are of another study; different: {names}\n  try: another file"
+        )
+    for trial in study.get_trials(
+        deepcopy=False, states=(optuna.trial.TrialState.RUNNING,)
+    ):  # of a process that was stopped
+        study.tell(trial.number, state=optuna.trial.TrialState.FAIL)
+    return study
+
+
+def _told(optuna: Any, study: Any) -> list[Any]:
+    """The trials that are done."""
+    states = optuna.trial.TrialState
+    done: list[Any] = study.get_trials(deepcopy=False, states=(states.COMPLETE, states.PRUNED))
+    return done
+
+
+def _seed(seed: int, number: int) -> int:
+    """A seed of each trial of its own, so that it does not matter where a search was stopped."""
+    return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])

@@ -1,0 +1,48 @@
+"""The runs that judge one design together: load levels and start positions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.model.errors import Hint
+
+from .designs import whole
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
+
+def members(case: Case, levels: Any = None, starts: int | Sequence[Any] | None = None) -> list[Any]:
+    """Return the axes of the runs that judge one design together; there is always at least one.
+
+    Parameters
+    ----------
+    case
+        The case.
+    levels
+        Any axes, as for `rb.sweep`.
+    starts
+        Start positions of the only ball; a number spreads so many evenly from wall to wall.
+
+    Raises
+    ------
+    CaseError
+        When there are several balls, or less than two start positions are to be spread.
+    """
+    axes = (
+        []
+        if levels is None
+        else [levels]
+        if isinstance(levels, Mapping) or not isinstance(levels, Sequence)
+        else list(levels)
+    )
+    if starts is not None:
+        if [len(damper.balls) for damper in case.dampers] != [1]:
+            raise Hint("starts are of one ball, and the case has not exactly one", 'levels={"dampers[0].start": [...]}')
+        axes.append(
+            {"damper.start": starts if hasattr(starts, "__len__") else np.linspace(-1, 1, whole(starts, "starts", 2))}
+        )
+    return axes or [{"duration": [case.duration]}]
