@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -110,7 +111,7 @@ def follow(
             case,
             Design.of(case, axes),
             measures=_named(measure),
-            cycles=_whole(cycles),
+            cycles=whole_cycles(cycles),
             samples=samples,
             point=point,
             motion=motion,
@@ -138,14 +139,21 @@ def _named(measure: Sequence[str]) -> list[str]:
     return names
 
 
-def _whole(cycles: Any) -> tuple[int, int]:
+def whole_cycles(cycles: Any) -> tuple[int, int]:
+    """Return how many cycles to skip and to look at.
+
+    Raises
+    ------
+    Hint
+        When they are no two whole numbers, or there is nothing to look at.
+    """
     try:
-        skip, look = cycles
+        skip, look = (operator.index(number) for number in cycles)
     except (TypeError, ValueError):
         skip = look = -1
-    if skip != int(skip) or look != int(look) or skip < 0 or look < 1:
+    if skip < 0 or look < 1:
         raise Hint(f"cycles = {cycles!r}: whole numbers of cycles to skip and to look at are needed", "(200, 50)")
-    return int(skip), int(look)
+    return skip, look
 
 
 @dataclass

@@ -1,0 +1,169 @@
+"""How a motion under a harmonic load changes with a parameter, and where its period doubles, breaks or jumps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from rattlebox.model.errors import CaseError, Hint
+
+from .axes import Design
+from .follow import follow, whole_cycles
+from .orbits import period_of, reduced_strobes
+from .sweep import sweep
+from .task import SweepTask
+
+if TYPE_CHECKING:
+    import xarray
+
+    from rattlebox.model.case import Case
+
+Show = Literal["strobe", "impacts"]
+Direction = Literal["up", "down", "both", "fresh"]
+
+_IMPACTS = 8  # kept, for each cycle looked at
+_STEP = {"up": 1, "down": -1}
+
+
+def bifurcation(
+    case: Case,
+    path: Any,
+    values: Any,
+    *,
+    cycles: tuple[int, int] = (400, 48),
+    show: Show = "strobe",
+    direction: Direction = "both",
+    measure: Sequence[str] = (),
+    tolerance: float = 1e-4,
+    point: str | None = None,
+    threads: int | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> xarray.Dataset:
+    """Follow the motion under a harmonic load over a parameter, and look at it once a cycle or at each impact.
+
+    Parameters
+    ----------
+    case
+        The case, with dampers, under a harmonic load or motion. The cycle is that of the first one.
+    path
+        What varies, or a tuple of paths that vary together.
+    values
+        Rising: a list, an array, linspace or geomspace.
+    cycles
+        How many cycles of each value to skip until the motion is steady, and how many to look at.
+    show
+        "strobe" for the state once a cycle, "impacts" for phase and speed of each impact, too.
+    direction
+        "up" or "down", each value from the state in which the one before ended; "both", first up and then back down;
+        or "fresh", each value from the start that the case says.
+    measure
+        Names of further measures (rb.MEASURES).
+    tolerance
+        A motion is held to repeat when its strobes differ by less than this part of the gap, and of gap times
+        angular frequency.
+    point
+        Of the structure, that is watched; default the first damper's.
+    threads
+        Threads of this process, which "fresh" makes use of.
+    progress
+        True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `direction` and the parameter: `status`; `period`, the number of cycles after which the motion repeats, 0
+        where it does not within half the cycles looked at; `impacts_per_cycle` and the measures asked for. Further over
+        `cycle`: `displacement` and `velocity` of the point, and over `ball`: `ball_place` and
+        `ball_speed` in the cavity. With show="impacts", over `impact`, at most 8 a cycle looked at, NaN before the first:
+        `impact_phase` of the load [rad], `approach_speed` and `contact`.
+
+    Raises
+    ------
+    CaseError
+        When an argument does not fit the case.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> case = rb.Case(
+    ...     structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz")),
+    ...     damper=rb.ImpactDamper(
+    ...         ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", velocity=0.1, contact=rb.Tsuji(restitution=0.6)
+    ...     ),
+    ...     duration="1 s",
+    ... )
+    >>> maps = rb.bifurcation(case, "structure.motion.amplitude", rb.linspace("0.5 mm", "2 mm", 5), cycles=(40, 8))
+    >>> maps.ball_place.dims
+    ('direction', 'structure.motion.amplitude', 'cycle', 'ball')
+    """
+    import xarray
+
+    for name, given, known in (("show", show, Show), ("direction", direction, Direction)):
+        if given not in get_args(known):
+            raise Hint(f"{name} = {given!r} is unknown", ", ".join(f'"{one}"' for one in get_args(known)))
+    if not case.dampers:
+        raise CaseError("without a damper the motion is linear, and nothing bifurcates")
+    _, look = whole_cycles(cycles)
+    design = Design.of(case, {path: values}, source="bifurcation")
+    task = SweepTask(case, design, cycles=cycles, point=point)
+    _check_order(design, direction)
+    basic = ("impacts", "impacts_per_cycle")
+    options: dict[str, Any] = {
+        "cycles": cycles,
+        "measure": [*basic, *(name for name in measure if name not in basic)],
+        "samples": look + 1,
+        "motion": True,
+        "last": _IMPACTS * look if show == "impacts" else 0,
+        "point": point,
+        "threads": threads,
+        "progress": progress,
+    }
+    if direction == "fresh":
+        found = {"fresh": sweep(case, {path: values}, **options)}
+    else:
+        size = np.arange(design.size)
+        turns = {"up": size, "down": size[::-1]} if direction == "both" else {direction: size[:: _STEP[direction]]}
+        order = np.concatenate(list(turns.values()))
+        columns = tuple(column[order] for column in design.columns.values())
+        walked = follow(case, tuple(design.columns), columns, **options)
+        found = {}
+        for number, (way, places) in enumerate(turns.items()):
+            part = walked.isel({design.dims[0]: slice(number * design.size, (number + 1) * design.size)})
+            found[way] = part.isel({design.dims[0]: places})  # rising again
+    parts = [_looked_at(part, task, tolerance) for part in found.values()]
+    ways = xarray.Variable("direction", list(found), {"long_name": "direction"})
+    about = {"title": "Bifurcation diagram", "case": case.to_toml(), "cycles": list(cycles), "tolerance": tolerance}
+    return xarray.concat(parts, dim=ways).assign_attrs(about)
+
+
+def _check_order(design: Design, direction: str) -> None:
+    """Refuse values that do not rise."""
+    path, values = next(iter(design.columns.items()))
+    if values.dtype.kind == "f":
+        if np.any(np.diff(values) <= 0):
+            raise Hint(f"{path}: values must rise from each to the next", "numpy.unique")
+    elif direction != "fresh":
+        raise Hint(f"{path}: its values are no numbers that rise or fall", 'direction = "fresh"')
+
+
+def _looked_at(maps: xarray.Dataset, task: SweepTask, tolerance: float) -> xarray.Dataset:
+    """Take the strobes and the impacts of the cycles looked at, and find the periods."""
+    over, period = maps.status.dims, np.asarray(task.look.period)
+    maps = maps.isel(instant=slice(1, None)).rename(instant="cycle")
+    repeats, _ = period_of(reduced_strobes(maps, task.packed, period), tolerance)
+    maps["period"] = over, repeats, {"units": "1", "long_name": "cycles after which the motion repeats"}
+    if "last_time" in maps:
+        load = next(load for load in task.packed["loads"] if load["kind"] == "harmonic")
+        time = maps.last_time.where(maps.last_time >= _column(task.look.start))
+        phase = (_column(load["frequency"]) * time + _column(load["phase"])) % (2 * np.pi)
+        maps = maps.rename(last="impact", last_approach_speed="approach_speed", last_contact="contact")
+        maps["impact_phase"] = (*over, "impact"), phase.values, {"units": "rad", "long_name": "phase of the load"}
+        for name in ("approach_speed", "contact"):
+            maps[name] = maps[name].where(np.isfinite(maps.impact_phase))
+    return maps.drop_vars(["impacts", "last_time"], errors="ignore")
+
+
+def _column(number: Any) -> Any:
+    return np.asarray(number)[..., None] if np.ndim(number) else number
