@@ -180,6 +180,12 @@ def _core() -> str:
     return platform.machine() if level == "native" else level
 
 
+def _bits() -> str:
+    from rattlebox import __version__
+
+    return f"Rattlebox {__version__} and {_core()} instructions"
+
+
 def _how_to_go_on(done: int, total: int, store: str | os.PathLike[str] | None) -> str:
     if store is None:
         return f"stopped after {done:,} of {total:,} variants, which are lost; with a store, they would be kept"
@@ -274,7 +280,7 @@ def _on_cluster(client: Any, task: Task, todo: Sequence[Block], threads: int) ->
         warnings.filterwarnings("ignore", "Sending large graph")  # not scattered: what is lost there is gone for good
         shared = client.submit(pickle.loads, cloudpickle.dumps(task), pure=False)
     blocks = {
-        client.submit(_block, shared, *block[1:], threads, _core(), pure=False, priority=-block[0]): block
+        client.submit(_block, shared, *block[1:], threads, _bits(), pure=False, priority=-block[0]): block
         for block in todo
     }
     try:
@@ -292,13 +298,13 @@ def _on_cluster(client: Any, task: Task, todo: Sequence[Block], threads: int) ->
         client.cancel([shared, *blocks], force=True)
 
 
-def _block(task: Task, start: int, stop: int, threads: int, core: str) -> Values | None:
+def _block(task: Task, start: int, stop: int, threads: int, bits: str) -> Values | None:
     """Run a block on a worker."""
     worker: Any = import_module("distributed").get_worker()
-    if _core() != core:
+    if _bits() != bits:
         raise CaseError(
-            f"the worker {worker.address} computes with {_core()} instructions, the study with {core}: "
-            "the last bits would differ\n  try: the same RATTLEBOX_SIMD in the environment of all"
+            f"the worker {worker.address} computes with {_bits()}, the study with {bits}: results would differ\n"
+            "  try: the same version, and the same RATTLEBOX_SIMD in the environment of all"
         )
     tasks, key = worker.state.tasks, worker.get_current_task()
     return task.run(start, stop, threads=threads, cancelled=lambda: key not in tasks or tasks[key].state == "cancelled")
