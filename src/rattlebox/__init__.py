@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rattlebox.engines.curves import restitution_curve
     from rattlebox.engines.simulate import simulate, simulate_many
     from rattlebox.results import Run, load
+    from rattlebox.studies.basins import basins
     from rattlebox.studies.bifurcation import bifurcation
     from rattlebox.studies.designs import geomspace, linspace, random_design, replicas
     from rattlebox.studies.frequency_response import frequency_response
@@ -43,6 +44,7 @@ _LATER = {
     "Run": "rattlebox.results",
     "load": "rattlebox.results",
     "frequency_response": "rattlebox.studies.frequency_response",
+    "basins": "rattlebox.studies.basins",
     "bifurcation": "rattlebox.studies.bifurcation",
     "lyapunov": "rattlebox.studies.lyapunov",
     "geomspace": "rattlebox.studies.designs",
@@ -83,6 +85,7 @@ __all__ = [
     "TwoStep",
     "alpha_of_restitution",
     "analysis",
+    "basins",
     "bifurcation",
     "chirp",
     "contact_pairs",

@@ -1,0 +1,158 @@
+"""Bifurcation diagrams: strobes or impacts over a parameter, and after how many cycles the motion repeats."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from ..model.errors import Hint, nearest
+from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, legend_above, paper, pen, scaled
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+TEXTS = {
+    "ball_place": "Ball position in cavity",
+    "ball_speed": "Ball speed in cavity",
+    "displacement": "Displacement",
+    "velocity": "Velocity",
+    "approach_speed": "Approach speed",
+    "impact_phase": "Phase of the load at impact",
+}
+_PERIODS = ("1", "2", "3", "4", "more", "none")
+_PHASES = 0.5 * np.pi * np.arange(5)
+_PHASE_NAMES = ("0", "π/2", "π", "3π/2", "2π")
+
+
+def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, size: Size = "column") -> Figure:
+    """Draw a bifurcation diagram: each strobe or impact a dot over the parameter.
+
+    The strip below tells after how many cycles the motion repeats, one row for each direction.
+
+    Parameters
+    ----------
+    maps
+        From `rb.bifurcation`.
+    of
+        "ball_place", "ball_speed", "displacement" or "velocity" of the strobes, "approach_speed" or "impact_phase" of the
+        impacts; default the approach speed, or the place of the ball where impacts are not kept.
+    ball
+        Number of the ball, for a quantity of balls.
+    size
+        Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    Figure
+        With two panels.
+
+    Raises
+    ------
+    CaseError
+        When there is no such quantity or ball.
+    ValueError
+        When the size is unknown.
+    """
+    known = [name for name in TEXTS if name in maps]
+    of = of or ("approach_speed" if "approach_speed" in known else "ball_place")
+    if of not in known:
+        raise Hint(f"of = {of!r}: there is no such quantity of strobes or impacts", nearest(of, known))
+    values = maps[of]
+    if "ball" in values.dims:
+        if not 0 <= ball < values.sizes["ball"]:
+            raise Hint(f"ball = {ball!r}: there is no such ball", f"0 to {values.sizes['ball'] - 1}")
+        values = values.isel(ball=ball)
+    parameter = maps[next(str(dim) for dim in maps["period"].dims if dim != "direction")]
+    with paper(size):
+        figure = PaperFigure(size, 0.95 if size == "column" else 0.6)
+        ways = maps["direction"].values.tolist()
+        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(8 - len(ways) * 0.5, len(ways) * 0.6))
+        x, unit = _across(parameter)
+        _dots(upper, x, values, ways)
+        _strip(lower, x, maps)
+        label(lower, "x", _capital(str(parameter.attrs.get("long_name", parameter.name))), unit)
+        if parameter.dtype.kind not in "fiu":
+            lower.set_xticks(x, [str(value) for value in parameter.values])
+    return figure
+
+
+def _across(parameter: xr.DataArray) -> tuple[Any, str]:
+    """Places along the axis, and their unit."""
+    if parameter.dtype.kind not in "fiu":
+        return np.arange(parameter.size), ""
+    unit = str(parameter.attrs.get("units", "1"))
+    scale = scaled(parameter.values, unit) if unit != "1" else (1.0, "")
+    return parameter.values / scale[0], scale[1]
+
+
+def _dots(axes: Axes, x: Any, values: xr.DataArray, ways: list[str]) -> None:
+    unit = str(values.attrs.get("units", "1"))
+    divisor, shown = (1.0, "rad") if unit == "rad" else scaled(values.values, unit)
+    for number, way in reversed(list(enumerate(ways))):  # the first on top
+        y = values.isel(direction=number).values / divisor
+        axes.plot(
+            np.repeat(x, y[0].size),
+            y.ravel(),
+            linestyle="none",
+            marker="o",
+            markersize=pen(0.9 + 0.7 * number),
+            markeredgewidth=0,
+            color=SERIES_COLOURS[number],
+            label=way,
+            rasterized=True,
+        )
+    label(axes, "y", TEXTS[str(values.name)], shown)
+    axes.margins(y=0.04)
+    if unit == "rad":
+        axes.set_yticks(_PHASES, _PHASE_NAMES)
+        axes.set_ylim(-0.1, 2 * np.pi + 0.1)
+    if len(ways) > 1:
+        legend_above(axes, markerscale=pen(4.0), reverse=True)
+
+
+def _strip(axes: Axes, x: Any, maps: xr.Dataset) -> None:
+    """After how many cycles the motion repeats."""
+    from cmcrameri import cm  # type: ignore[import-untyped]
+
+    palette = ListedColormap([*cm.devon(np.linspace(0.95, 0.35, len(_PERIODS) - 1)), INK])
+    period = maps["period"].transpose("direction", ...).values
+    last = len(_PERIODS) - 1
+    kinds = np.where(period == 0, last, np.minimum(period, last) - 1).astype(float)
+    kinds[maps["status"].transpose("direction", ...).values != 0] = np.nan
+    edges = (
+        np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]]) if len(x) > 1 else np.array([x[0] - 0.5, x[0] + 0.5])
+    )
+    norm = BoundaryNorm(np.arange(-0.5, len(_PERIODS)), len(_PERIODS))
+    rows = np.arange(len(kinds) + 1)
+    axes.pcolormesh(edges, rows, kinds, cmap=palette, norm=norm, rasterized=True)
+    axes.hlines(rows[1:-1], edges[0], edges[-1], color="white", linewidth=pen(1.0))
+    axes.set_yticks(rows[:-1] + 0.5, maps["direction"].values.tolist())
+    axes.invert_yaxis()
+    axes.tick_params(axis="y", length=0)
+    marks = [
+        Patch(facecolor=palette(kind), edgecolor=FAINT, linewidth=pen(0.5), label=text)
+        for kind, text in enumerate(_PERIODS)
+        if (kinds == kind).any()
+    ]
+    if np.isnan(kinds).any():
+        marks.append(Patch(facecolor="white", edgecolor=FAINT, linewidth=pen(0.5), label="did not finish"))
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.legend(
+        handles=marks,
+        title="Cycles until the motion repeats",
+        loc="outside lower center",
+        ncols=len(marks),
+        handlelength=1.0,
+        columnspacing=1.0,
+        title_fontsize="small",
+    )
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,160 @@
+"""Which motion each start leads to, where several steady motions exist side by side."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.model.errors import CaseError, Hint
+
+from .axes import Axes, Design
+from .follow import whole_cycles
+from .orbits import attractors, period_of, reduced_strobes
+from .sweep import sweep
+from .task import SweepTask
+
+if TYPE_CHECKING:
+    import xarray
+
+    from rattlebox.model.case import Case
+
+NO_PERIOD, NOT_FINISHED = 0, -1
+
+
+def basins(
+    case: Case,
+    starts: Axes,
+    *,
+    cycles: tuple[int, int] = (400, 48),
+    measure: Sequence[str] = (),
+    tolerance: float = 1e-4,
+    apart: float = 1e-2,
+    point: str | None = None,
+    threads: int | None = None,
+    on: Any = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> xarray.Dataset:
+    """Find the steady motion under a harmonic load that each start leads to.
+
+    Motions are told apart by their strobes, the state once a cycle: two are one attractor when one repeats after as many
+    cycles as the other and passes through the same states. Motions without an impact are one attractor wherever the
+    ball is, as long as the structure moves alike.
+
+    Parameters
+    ----------
+    case
+        The case, with dampers, under a harmonic load or motion.
+    starts
+        Axes as of `rb.sweep`: {"damper.start": rb.linspace(-1, 1, 200), "damper.velocity": rb.linspace(-1, 1, 200)}, or
+        "structure.displacement", "load.phase", whatever may decide.
+    cycles
+        How many cycles to skip until motions are steady, and how many to look at. Periods up to half of these are found.
+    measure
+        Names of further measures (rb.MEASURES).
+    tolerance
+        A motion is held to repeat when its strobes differ by less than this part of the gap, and of gap times
+        angular frequency.
+    apart
+        Motions whose strobes differ by less than this, in the same measure, are one attractor.
+    point
+        Of the structure, that is watched; default the first damper's.
+    threads, on, store, progress
+        Where it runs, what is kept and told, as of `rb.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the starts: `status`; `attractor`, counted from 1 for that with the most starts, 0 where no period was found
+        (chaos, a longer period, a motion not yet steady, or one beyond 256 attractors), -1 where the run did not finish;
+        `period` in cycles, 0 where none was found; `impacts_per_cycle` and the measures asked for. Over `orbit`, the
+        attractors: `share` of all starts, `orbit_period`, `orbit_impacts_per_cycle`; over `strobe`, NaN beyond its period,
+        `orbit_displacement`, `orbit_velocity`, and over `ball` `orbit_ball_place`, `orbit_ball_speed` of the member that has
+        settled best.
+
+    Raises
+    ------
+    CaseError
+        When an argument does not fit the case.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> case = rb.Case(
+    ...     structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz")),
+    ...     damper=rb.ImpactDamper(
+    ...         ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+    ...     ),
+    ...     duration="1 s",
+    ... )
+    >>> starts = {"damper.start": rb.linspace(-1, 1, 5), "damper.velocity": rb.linspace("-0.1 m/s", "0.1 m/s", 5)}
+    >>> rb.basins(case, starts, cycles=(50, 8)).attractor.dims
+    ('damper.start', 'damper.velocity')
+    """
+    if not case.dampers:
+        raise CaseError("without a damper the motion is linear, and all starts lead to the same one")
+    for name, given in (("tolerance", tolerance), ("apart", apart)):
+        if not (isinstance(given, (int, float)) and 0 < given < 1):
+            raise Hint(f"{name} = {given!r}: a part of the gap between 0 and 1 is needed", "1e-3")
+    _, look = whole_cycles(cycles)
+    design = Design.of(case, starts, source="basins")
+    basic = ("impacts", "impacts_per_cycle")
+    maps = sweep(
+        case,
+        starts,
+        [*basic, *(name for name in measure if name not in basic)],
+        cycles=cycles,
+        samples=look + 1,
+        point=point,
+        motion=True,
+        threads=threads,
+        on=on,
+        store=store,
+        progress=progress,
+    ).load()
+    maps = maps.isel(instant=slice(1, None)).rename(instant="strobe")
+    task = SweepTask(case, design, cycles=cycles, point=point)
+    reduced = reduced_strobes(maps, task.packed, task.look.period)
+    period, residual = period_of(reduced, tolerance)
+    flat = reduced.reshape(design.size, look, -1)
+    label, best = attractors(flat, period.ravel(), residual.ravel(), apart)
+    label[maps.status.values.ravel() != 0] = NOT_FINISHED
+    about = {"title": "Basins of attraction", "case": case.to_toml(), "cycles": list(cycles), "tolerance": tolerance}
+    return _with_orbits(maps, label.reshape(design.shape), period, best).assign_attrs(about, **_plane(case))
+
+
+def _plane(case: Case) -> dict[str, float]:
+    """The gap [m] of a lone ball in a cavity whose motion is given: place and velocity are all its state."""
+    alone = not case.modes.decay.size and len(case.dampers) == 1 and len(case.dampers[0].balls) == 1
+    return {"gap": 0.5 * case.dampers[0].clearance} if alone else {}
+
+
+def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xarray.Dataset:
+    """Say which attractor each start has, and what each attractor is."""
+    over = maps.status.dims
+    strobes = ("displacement", "velocity", "ball_place", "ball_speed")
+    found = maps.drop_vars([*strobes, "impacts"]).assign(
+        attractor=(over, label, {"units": "1", "long_name": "attractor", "flag_values": [-1, 0]}),
+        period=(over, period, {"units": "1", "long_name": "cycles after which the motion repeats"}),
+    )
+    found.attractor.attrs["flag_meanings"] = "not_finished no_period"
+    lasts = period.ravel()[best]
+    share = np.array([np.mean(label == number) for number in range(1, len(best) + 1)])
+    own = {
+        "share": (share, "share of all starts"),
+        "orbit_period": (lasts, "cycles after which the orbit repeats"),
+        "orbit_impacts_per_cycle": (maps.impacts_per_cycle.values.ravel()[best], "impacts a cycle"),
+    }
+    for name, (values, text) in own.items():
+        found[name] = "orbit", values, {"units": "1", "long_name": text}
+    longest = int(lasts.max(initial=1))
+    within = np.arange(longest) < lasts[:, None]
+    for name in strobes:
+        values = maps[name].values.reshape(label.size, *maps[name].shape[label.ndim :])[best, :longest]
+        kept = np.where(within.reshape(*within.shape, *(1,) * (values.ndim - 2)), values, np.nan)
+        dims = ("orbit", "strobe", "ball")[: values.ndim]
+        found[f"orbit_{name}"] = dims, kept, maps[name].attrs
+    return found.assign_coords(orbit=("orbit", np.arange(1, len(best) + 1), {"units": "1", "long_name": "attractor"}))
