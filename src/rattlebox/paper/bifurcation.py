@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.case import Case
 from rattlebox.model.contacts import restitution_of_alpha
 from rattlebox.model.pairs import contact_pairs
@@ -21,6 +20,7 @@ from rattlebox.plots.style import INK, SERIES_COLOURS, PaperFigure, paper, pen
 from .figure import Reproduction
 from .harmonic import BALL, State, harmonic_case
 from .models import CONSTANT_E, MODELS, RIGID, described
+from .runs import simulate_many
 from .seed import ALPHA, DAMPING, GAP, MASS, STIFFNESS
 from .two_impacts import TwoImpacts, two_impacts
 

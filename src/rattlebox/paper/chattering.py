@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rattlebox.analysis import impacts_per_cycle
-from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.case import Case
 from rattlebox.model.pairs import contact_pairs
 from rattlebox.model.restitutions import JacksonGreen
@@ -23,6 +22,7 @@ from rattlebox.results import Run
 from .figure import Claim, Reproduction
 from .harmonic import harmonic_case, resonance, riding
 from .models import COLOURS, CONSTANT_E, MODELS, RIGID, STEEL, described
+from .runs import simulate_many
 from .seed import GAP
 
 SHOWN = CONSTANT_E, RIGID
@@ -52,8 +52,9 @@ def _case(model: str, amplitude: float) -> Case:
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the runs shown in time."""
-    return {model: _case(model, LOAD) for model in SHOWN}
+    """Return the runs shown in time, and those of the smallest load that is only counted."""
+    shown = {f"{model}, {LOAD:g} N": _case(model, LOAD) for model in MODELS}
+    return shown | {f"{model}, {LOADS[0]:g} N": _case(model, float(LOADS[0])) for model in MODELS}
 
 
 def data() -> xr.Dataset:

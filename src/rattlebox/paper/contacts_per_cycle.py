@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rattlebox.analysis import impacts_per_cycle
-from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.case import Case
 from rattlebox.plots.style import INK, SERIES_COLOURS, PaperFigure, paper, pen
 
 from .figure import Claim, Reproduction
 from .harmonic import State, harmonic_case, resonance
 from .models import MODELS, described
+from .runs import simulate_many
 from .seed import DAMPING, GAP, MASS, STIFFNESS
 
 AMPLITUDE = 20.0

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rattlebox.engines.simulate import simulate_many
-
+from .runs import simulate_many
 from .seed import GAP
 
 if TYPE_CHECKING:

@@ -48,7 +48,7 @@ class Reproduction:
     caption
         Says in one to four sentences what one sees, with the numbers of this dataset.
     cases
-        The exact cases behind the figure, by name; empty for a figure of formulas.
+        The exact cases behind the figure, by name; every run of `data` is one of them, but for the values of numbers.
     claims
         Judges the paper's statements that this figure bears on, from this dataset.
     """

@@ -10,7 +10,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.plots.style import FAINT, INK, PaperFigure, label, paper, pen, scaled
 from rattlebox.results import Run
@@ -18,6 +17,7 @@ from rattlebox.results import Run
 from .ensemble import band, ensemble, near
 from .figure import Claim, Reproduction
 from .models import COLOURS, CONSTANT_E, MODELS, STYLES, described
+from .runs import simulate
 from .seed import START, seed_case
 
 CLAIMED = 100.0

@@ -15,7 +15,6 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from rattlebox.analysis import phase_portrait
-from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.case import Case
 from rattlebox.model.pairs import contact_pairs
 from rattlebox.model.restitutions import JacksonGreen
@@ -24,6 +23,7 @@ from rattlebox.plots.style import FAINT, INK, PaperFigure, label, paper, pen, sc
 from .ensemble import band, ensemble, near
 from .figure import Claim, Reproduction
 from .models import described
+from .runs import simulate_many
 from .seed import CONSTANT, GAP, PLASTIC, START, seed_case
 
 AMPLITUDE = 100.0

@@ -9,7 +9,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from rattlebox.analysis import amplitude_spectrum
-from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.plots.style import FAINT, INK, PaperFigure, label, paper, pen
 from rattlebox.results import Run
@@ -17,6 +16,7 @@ from rattlebox.results import Run
 from .ensemble import band, ensemble, near
 from .figure import Claim, Reproduction
 from .models import COLOURS, CONSTANT_E, MODELS, RIGID, STEEL, described
+from .runs import simulate
 from .seed import MASS, START, STIFFNESS, seed_case
 
 DURATION, RATE = 10.0, 2000.0

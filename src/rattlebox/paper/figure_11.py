@@ -10,13 +10,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
 from rattlebox.analysis import peak_reduction, rms_reduction, settling_time
-from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.plots.style import FAINT, INK, SERIES_COLOURS, PaperFigure, label, paper, pen, scaled
 
 from .ensemble import band, ensemble, near
 from .figure import Claim, Reproduction
 from .models import described
+from .runs import simulate
 from .seed import CONSTANT, PLASTIC, START, seed_case
 
 AMPLITUDE = 100.0

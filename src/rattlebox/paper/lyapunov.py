@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rattlebox.analysis import lyapunov_exponent
-from rattlebox.engines.simulate import simulate, simulate_many
 from rattlebox.model.case import Case
 from rattlebox.model.contacts import restitution_of_alpha
 from rattlebox.plots.style import FAINT, INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, PaperFigure, paper, pen
@@ -24,6 +23,7 @@ from .figure import Claim, Reproduction, Verdict
 from .harmonic import BALL, State, harmonic_case
 from .models import COLOURS as MODEL_COLOURS
 from .models import MODELS, described
+from .runs import simulate, simulate_many
 from .seed import ALPHA, DAMPING, GAP, MASS, START, STIFFNESS, seed_case
 from .two_impacts import two_impacts
 
@@ -76,11 +76,16 @@ def _pulse(model: str, case: int, amplitude: float, offset: float) -> Case:
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the cases of the constant model and of the harmonic loads, each without its neighbours."""
-    model = next(iter(MODELS))
-    pulses = {f"{load:g} N, case {case}": _pulse(model, case, load, 0.0) for load in PULSES for case in START}
-    steady = {f"{f:g} Hz, to settle": _settling(f) for f in (IRREGULAR, REGULAR)}
-    return pulses | steady
+    """Return the paper's cases, and under harmonic loads the runs that settle and the first of the pairs after them."""
+    pulses = {
+        f"{load:g} N, {model}, case {case}": _pulse(model, case, load, 0.0)
+        for load in PULSES
+        for model in MODELS
+        for case in START
+    }
+    settling = {f"{f:g} Hz, to settle": _settling(f) for f in (IRREGULAR, REGULAR)}
+    steady = {f"{f:g} Hz, settled": _watched(f, State()) for f in (IRREGULAR, REGULAR)}
+    return pulses | settling | steady | {KINDS[2]: _watched(REGULAR, State(), ball=False)}
 
 
 def _settling(frequency: float) -> Case:

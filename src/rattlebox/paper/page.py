@@ -13,6 +13,7 @@ from typing import NamedTuple, get_args
 from markupsafe import Markup, escape
 
 from .figure import Claim, Verdict
+from .runs import Files
 
 GENERATOR = '<meta name="generator" content="Rattlebox">'
 """Marks a page as ours."""
@@ -49,7 +50,7 @@ class Made:
     svg, png, tables
         Files.
     cases
-        Case files by name.
+        Case files by name, and the studies of the runs that differ from them.
     computing, drawing
         Time taken [s].
     """
@@ -63,7 +64,7 @@ class Made:
     svg: str
     png: str
     tables: tuple[Table, ...]
-    cases: Mapping[str, str]
+    cases: Mapping[str, Files]
     computing: float
     drawing: float
 
@@ -71,6 +72,11 @@ class Made:
     def label(self) -> str:
         """How the page calls the figure."""
         return f"{'Figures' if ',' in self.number else 'Figure'} {self.number}"
+
+    @property
+    def further(self) -> int:
+        """Number of runs in study files."""
+        return sum(files.runs for files in self.cases.values())
 
 
 def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float) -> str:

@@ -11,7 +11,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.model.contacts import Contact, Ending, Tsuji, alpha_of_restitution, restitution_of_alpha
 from rattlebox.model.dampers import Sphere
@@ -23,6 +22,7 @@ from rattlebox.plots.style import FAINT, INK, SERIES_COLOURS, SERIES_MARKERS, Pa
 from .ensemble import Band, band, ensemble, near
 from .figure import Claim, Reproduction
 from .models import described
+from .runs import simulate
 from .seed import ALPHA, CONSTANT, GAP, MASS, PLASTIC, PLASTIC_RIGID, RADIUS, START, STIFFNESS, seed_case
 
 _CAVITY, _SIZE = 67.14e-3, 33.17e-3

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from .figure import Reproduction
 from .page import GENERATOR, Column, Made, Table, render
+from .runs import noting, write_runs
 from .tables import write_tables
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def write_report(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> Path:
-    """Compute the paper and write it as a page, with each figure as SVG, PNG and CSV and its cases as files.
+    """Compute the paper and write it as a page, with each figure as SVG, PNG and CSV and its runs as case and study files.
 
     Parameters
     ----------
@@ -177,7 +178,8 @@ def _made(module: str, folder: Path) -> Made:
     figure = reproduction(module)
     try:
         began = time.perf_counter()
-        data = figure.data()
+        with noting() as runs:
+            data = figure.data()
         computed = time.perf_counter()
         png, svg = _drawn(figure, data, folder / _FIGURE_FOLDER)
         drawn = time.perf_counter()
@@ -192,7 +194,7 @@ def _made(module: str, folder: Path) -> Made:
             svg=svg.relative_to(folder).as_posix(),
             png=png.relative_to(folder).as_posix(),
             tables=tuple(_described(path.relative_to(folder), table) for path, table in tables.items()),
-            cases=_cases(figure, folder),
+            cases=write_runs(figure.cases(), runs, folder, _CASE_FOLDER, figure.name),
             computing=computed - began,
             drawing=drawn - computed,
         )
@@ -215,16 +217,6 @@ def _drawn(figure: Reproduction, data: xr.Dataset, folder: Path) -> tuple[Path, 
     with paper("page"), mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": figure.name}):
         Figure.savefig(drawing, svg, metadata={"Date": None})
     return png, svg
-
-
-def _cases(figure: Reproduction, folder: Path) -> dict[str, str]:
-    """Write the case files of a figure."""
-    paths = {}
-    for name, case in figure.cases().items():
-        slug = re.sub(r"[^a-z0-9.]+", "_", name.lower()).strip("_.")
-        paths[name] = f"{_CASE_FOLDER}/{figure.name}_{slug}.toml"
-        case.to_file(folder / paths[name])
-    return paths
 
 
 def _described(path: Path, table: xr.Dataset) -> Table:
