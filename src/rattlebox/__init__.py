@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from rattlebox import analysis
     from rattlebox.engines.curves import restitution_curve
     from rattlebox.engines.simulate import simulate, simulate_many
+    from rattlebox.plots.basins import plot_basins
+    from rattlebox.plots.bifurcation import plot_bifurcation
     from rattlebox.results import Run, load
     from rattlebox.studies.basins import basins
     from rattlebox.studies.bifurcation import bifurcation
@@ -46,6 +48,8 @@ _LATER = {
     "frequency_response": "rattlebox.studies.frequency_response",
     "basins": "rattlebox.studies.basins",
     "bifurcation": "rattlebox.studies.bifurcation",
+    "plot_basins": "rattlebox.plots.basins",
+    "plot_bifurcation": "rattlebox.plots.bifurcation",
     "lyapunov": "rattlebox.studies.lyapunov",
     "geomspace": "rattlebox.studies.designs",
     "linspace": "rattlebox.studies.designs",
@@ -95,6 +99,8 @@ __all__ = [
     "load",
     "lyapunov",
     "materials",
+    "plot_basins",
+    "plot_bifurcation",
     "random_design",
     "random_record",
     "replicas",

@@ -1,5 +1,7 @@
 """Figures in one style."""
 
+from .basins import plot_basins
+from .bifurcation import plot_bifurcation
 from .compare import plot_comparison
 from .energy import plot_energy
 from .impacts import plot_impacts
@@ -11,6 +13,8 @@ from .style import paper
 
 __all__ = [
     "paper",
+    "plot_basins",
+    "plot_bifurcation",
     "plot_comparison",
     "plot_energy",
     "plot_frequency_response",
