@@ -12,7 +12,8 @@ from rattlebox.model.errors import CaseError
 from rattlebox.model.signals import Harmonic
 
 from .axes import Design
-from .follow import follow
+from .follow import follow, whole_cycles
+from .orbits import period_of
 from .sweep import sweep
 from .task import SweepTask
 
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 Direction = Literal["up", "down", "fresh"]
 _MEASURES = "peak", "rms", "impacts_per_cycle"
-_LONGEST = 16  # cycles after which a motion is still seen to repeat
 
 
 def frequency_response(
@@ -42,8 +42,9 @@ def frequency_response(
 ) -> xarray.Dataset:
     """Measure the steady motion under a harmonic load at each frequency, at one or several levels of the load.
 
-    Where two steady motions exist at one frequency, a sweep upwards and one downwards find both: each frequency goes on
-    from the state in which the one before ended, so that a motion is kept until it is lost, and the sweep jumps.
+    Where two steady motions exist at one frequency, a sweep upwards and one downwards often find both: each begins as the
+    case says at its end of the band, and each further frequency goes on from the state in which the one before ended,
+    so that a motion is kept until it is lost, and the sweep jumps.
 
     Parameters
     ----------
@@ -77,8 +78,8 @@ def frequency_response(
         Over `direction`, `level` and `frequency` [Hz]: `status`; `peak` and `rms` [m]; `amplitude` [m] and `phase` [rad] of
         the first harmonic, amplitude sin(2 pi f t + phase of the load + phase); `impacts_per_cycle`; `spread`, the largest
         difference of positions one cycle apart, over their range; `period`, the number of cycles after which the motion
-        repeats, 0 when it does not within 16 or half the cycles looked at; the measures asked for. Over level and
-        frequency: `bare_amplitude` [m], of the structure without dampers.
+        repeats, 0 when it does not within half the cycles looked at; the measures asked for. Over level and frequency:
+        `bare_amplitude` [m], of the structure without dampers.
 
     Raises
     ------
@@ -104,6 +105,7 @@ def frequency_response(
         raise CaseError(f'direction = {direction!r} is unknown\n  try: "up", "down", "both" or "fresh"')
     if not (isinstance(samples, int) and samples >= 8):
         raise CaseError(f"samples = {samples!r}: at least 8 in each cycle are needed\n  try: 64")
+    _, look = whole_cycles(cycles)
     place, driver = _driver(case)
     at, strength = f"{place}.frequency", f"{place}.amplitude"
     level = {strength: [f"{driver.amplitude!r} {driver.unit}"] if levels is None else levels}
@@ -115,7 +117,7 @@ def frequency_response(
     options: dict[str, Any] = {
         "measure": [*_MEASURES, *(name for name in measure if name not in _MEASURES)],
         "cycles": cycles,
-        "samples": samples * cycles[1] + 1,
+        "samples": samples * look + 1,
         "point": point,
         "motion": True,
         "threads": threads,
@@ -167,23 +169,16 @@ def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float) 
     z, place = maps.displacement.values, maps.ball_place.values
     turns = np.exp(-2j * np.pi * np.arange(z.shape[-1] - 1) / samples)
     harmonic = 2j / turns.size * (z[..., :-1] @ turns) * np.exp(-1j * phase)
+    place = np.where(maps.impacts_per_cycle.values[..., None, None] > 0, place, 0.0)  # a ball that hits nothing drifts
     parts = np.concatenate([z[..., None], place], axis=-1)
-    reach = np.ptp(parts, axis=-2).max(axis=-1)
-    strobes = parts[..., ::samples, :]
-    longest = min(_LONGEST, strobes.shape[-2] // 2)
-    with np.errstate(invalid="ignore"):
-        apart = np.stack(
-            [
-                np.abs(strobes[..., n:, :] - strobes[..., :-n, :]).max(axis=(-2, -1)) / reach
-                for n in range(1, longest + 1)
-            ]
-        )
-    repeats = apart < tolerance
-    period = np.where(repeats.any(axis=0), repeats.argmax(axis=0) + 1, 0)
+    with np.errstate(invalid="ignore"):  # of runs that failed
+        strobes = parts[..., ::samples, :] / np.ptp(parts, axis=-2).max(axis=-1)[..., None, None]
+        period, _ = period_of(strobes, tolerance)
+        spread = np.abs(np.diff(strobes, axis=-2)).max(axis=(-2, -1))
     over = "level", "frequency"
     return maps.drop_vars(["displacement", "velocity", "ball_place", "ball_speed"]).assign(
         amplitude=(over, np.abs(harmonic), {"units": "m", "long_name": "amplitude of the first harmonic"}),
         phase=(over, np.angle(harmonic), {"units": "rad", "long_name": "phase to the load"}),
-        spread=(over, apart[0], {"units": "1", "long_name": "spread of strobes over the range of motion"}),
+        spread=(over, spread, {"units": "1", "long_name": "spread of strobes over the range of motion"}),
         period=(over, period, {"units": "1", "long_name": "cycles after which the motion repeats"}),
     )
