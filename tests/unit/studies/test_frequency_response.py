@@ -1,0 +1,109 @@
+"""Frequency responses: what they hold, what they refuse, and that they find what coexists."""
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+QUICK = {"cycles": (60, 8), "samples": 16, "progress": False}
+
+
+def case(**changes):
+    """A small ball with hard impacts in a light, weakly damped structure."""
+    parts = {
+        "structure": rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+        "damper": rb.ImpactDamper(
+            ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+        ),
+        "load": rb.Harmonic(amplitude="5 N", frequency="30 Hz"),
+        "duration": "1 s",
+        "method": rb.Newton(),
+    }
+    return rb.Case(**{**parts, **changes})
+
+
+def test_motions_that_coexist_are_found():
+    """Upwards the ball lies still until the structure reaches it; downwards it goes on hitting the walls."""
+    response = rb.frequency_response(case(), rb.linspace("28 Hz", "30 Hz", 11), progress=False, cycles=(150, 16))
+    up, down = (response.sel(direction=way).isel(level=0) for way in ("up", "down"))
+    assert up.impacts_per_cycle[0] == 0
+    assert down.impacts_per_cycle[0] > 2
+    assert up.period[0] == 1
+    assert up.amplitude[0] == pytest.approx(float(response.bare_amplitude[0, 0]), rel=1e-3)
+    assert down.amplitude[0] > 1.2 * up.amplitude[0]
+    assert up.amplitude[-1] == pytest.approx(float(down.amplitude[-1]), rel=0.05)
+
+
+def test_what_it_holds():
+    """Dimensions, units and names are there for every variable, and further measures are kept."""
+    response = rb.frequency_response(
+        case(), ["29 Hz", "31 Hz"], levels=["2 N", 5.0, "0.01 kN"], measure=["loss_per_cycle"], direction="up", **QUICK
+    )
+    assert response.sizes == {"direction": 1, "level": 3, "frequency": 2}
+    assert response.level.values == pytest.approx([2, 5, 10])
+    assert (response.level.units, response.frequency.units) == ("N", "Hz")
+    assert {"status", "peak", "rms", "amplitude", "phase", "spread", "period", "loss_per_cycle"} <= set(response)
+    assert all({"units", "long_name"} <= set(v.attrs) for n, v in response.items() if n != "status")
+
+
+def test_fresh_begins_each_time_as_the_case_says():
+    """Without a sweep each frequency is a run of its own."""
+    both = rb.frequency_response(case(), [29.2, 30.2], direction="fresh", **QUICK)
+    alone = rb.frequency_response(case(), [30.2], direction="up", **QUICK)
+    assert both.peak.values[0, 0, 1] == alone.peak.values[0, 0, 0]
+
+
+def test_threads_leave_the_bits():
+    """Results are the same bits for any number of threads."""
+    one, two = (rb.frequency_response(case(), [30, 31], levels=[5, 10, 20], threads=n, **QUICK) for n in (1, 2))
+    assert one.drop_attrs().equals(two.drop_attrs())
+
+
+def test_base_motion():
+    """Under base acceleration the relative displacement is that of the linear oscillator, in another phase."""
+    shaken = case(damper=[], load=[], base=rb.Harmonic(amplitude="2 m/s^2", frequency="30 Hz"))
+    response = rb.frequency_response(shaken, [20.0, 31.0, 45.0], cycles=(400, 8), progress=False)
+    omega = 2 * np.pi * response.frequency.values
+    exact = -2 / (40e3 - omega**2 + 2j * 0.01 * 200 * omega)
+    assert response.amplitude.values[0, 0] == pytest.approx(abs(exact), rel=1e-6)
+    assert response.phase.values[0, 0] == pytest.approx(np.angle(exact), abs=1e-6)
+    assert response.level.units == "m/s^2"
+
+
+def test_a_run_that_fails_is_told():
+    """A level at which a law ends carries a status and no numbers, and the others go on."""
+    weak = case(
+        method=rb.EventDriven(),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="14 mm", material="lead"),
+            gap="1 mm",
+            contact=rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid")),
+        ),
+    )
+    response = rb.frequency_response(weak, [31.0, 32.0], levels=[0.1, 1e6], direction="up", **QUICK)
+    assert (response.status[0, 0] == 0).all()
+    assert (response.status[0, 1] != 0).all()
+    assert np.isnan(response.amplitude[0, 1]).all()
+    assert (response.period[0, 1] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("changes", "options", "said"),
+    [
+        ({}, {"direction": "left"}, '"up", "down", "both" or "fresh"'),
+        ({}, {"samples": 3}, "at least 8"),
+        ({}, {"cycles": (10.5, 8)}, "whole numbers of cycles"),
+        ({}, {"frequencies": [31, 30]}, "must rise"),
+        ({}, {"frequencies": ["30 m"]}, "frequency"),
+        ({}, {"levels": ["1 m"]}, "amplitude"),
+        ({"load": rb.HalfSine(amplitude=1.0, duration=0.1)}, {}, "one harmonic load"),
+        ({"load": [rb.Harmonic(amplitude=1.0, frequency=f) for f in (1, 2)]}, {}, "loads[0], loads[1]"),
+        ({"structure": rb.Fixed(), "load": []}, {}, "does not respond"),
+        ({}, {"measure": ["impact"]}, "impacts"),
+    ],
+)
+def test_bad_input_is_answered(changes, options, said):
+    """What does not fit is told with what would."""
+    with pytest.raises(rb.CaseError) as error:
+        rb.frequency_response(case(**changes), **{"frequencies": [30.0, 31.0], **QUICK, **options})
+    assert said in str(error.value)
