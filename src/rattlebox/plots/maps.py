@@ -11,11 +11,10 @@ from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
 from ..model.errors import CaseError, Hint, nearest
 from ..model.units import parse
-from ..results.quantities import quantity
+from .shown import Shown, Vector, name_of, plain, unit_of, value_of
 from .style import (
     FAINT,
     INK,
@@ -23,20 +22,16 @@ from .style import (
     SERIES_STYLES,
     PaperFigure,
     Size,
-    label,
     legend_above,
     letters,
     paper,
     pen,
-    scaled,
     shorten,
 )
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
-
-Vector = NDArray[np.float64]
 
 _BAND = "replica"
 _HATCHES = ("////", "....", "xxxx", "\\\\\\\\", "++++", "oooo", "****")
@@ -133,7 +128,7 @@ def select(study: xr.Dataset, at: Mapping[str, Any]) -> tuple[xr.Dataset, str]:
             raise CaseError(f"at = {name!r}: the study has no such axis\n  {nearest(name, known)}")
         coord = study[name]
         number = _position(coord, name, value)
-        words.append(f"{_spoken(coord)} {_value(coord, coord.values[number])}")
+        words.append(f"{name_of(coord)} {value_of(coord, coord.values[number])}")
         study = study.isel({coord.dims[0]: number})
     return study, ", ".join(words)
 
@@ -146,12 +141,12 @@ def _position(coord: xr.DataArray, name: str, value: Any) -> int:
             raise CaseError(f"at: {name} = {value!r} is not in the study\n  {nearest(str(value), map(str, values))}")
         return int(values.tolist().index(value))
     try:
-        number = parse(value, (_unit(coord) or "1",))[0]
+        number = parse(value, (unit_of(coord) or "1",))[0]
     except Hint as hint:
         raise CaseError(f"at: {name} = {value!r}\n  {hint}") from None
     low, high = float(values.min()), float(values.max())
     if not low - 1e-6 * abs(low) <= number <= high + 1e-6 * abs(high):
-        shown = f"{_value(coord, low)} to {_value(coord, high)}"
+        shown = f"{value_of(coord, low)} to {value_of(coord, high)}"
         raise CaseError(f"at: {name} = {value!r} lies outside the study\n  try: {shown}")
     return int(np.argmin(np.abs(values - number)))
 
@@ -181,7 +176,7 @@ def _check_axes(study: xr.Dataset, name: str, dims: list[str], kind: str | None)
         if len(dims) == 1:
             raise CaseError(f"a map needs two axes, but {name} {which}\n  try: kind lines")
         last = study[dims[-1]]
-        one = _value(last, last.values[0])
+        one = value_of(last, last.values[0])
         raise CaseError(f"{name} {which}; two axes can be drawn\n  try: at {dims[-1]} = {one}")
 
 
@@ -207,7 +202,7 @@ def draw_map(
     norm: Normalize | None = None,
     text: str | None = None,
     extend: Literal["neither", "both", "min", "max"] = "neither",
-) -> Vector:
+) -> None:
     """Draw a measure in colours over two axes, with hatches where runs did not finish.
 
     Parameters
@@ -226,23 +221,17 @@ def draw_map(
         Label of the colour bar; default from the attributes.
     extend
         Ends of the colour bar that are open.
-
-    Returns
-    -------
-    array
-        The values as they are shown, (y, x), over the divisor of their unit.
     """
     values = study[name]
     if _BAND in values.dims:
         values = values.median(_BAND)
-    array = values.transpose(y, x).values.astype(float)
-    divisor, unit = _scale(values, array)
+    measure = Shown.of(values.transpose(y, x))
     across, up = _Axis.of(study[x]), _Axis.of(study[y])
     mesh = axes.pcolormesh(
-        across.edges, up.edges, array / divisor, cmap=colours(), norm=norm, rasterized=True, shading="flat"
+        across.edges, up.edges, measure.numbers, cmap=colours(), norm=norm, rasterized=True, shading="flat"
     )
     for gap in _gaps(study, name):
-        where = gap.where.transpose(y, x, ...).values.reshape((*array.shape, -1)).any(axis=-1)
+        where = gap.where.transpose(y, x, ...).values.reshape((*measure.numbers.shape, -1)).any(axis=-1)
         left, low = across.edges[:-1], up.edges[:-1]
         right, high = across.edges[1:], up.edges[1:]
         cells = [
@@ -256,11 +245,8 @@ def draw_map(
     up.finish(axes, "y")
     bar = figure.colorbar(mesh, ax=axes, aspect=28, pad=0.02, extend=extend)
     bar.outline.set_visible(False)
-    said = _capital(_spoken(values)) if text is None else text
-    if _BAND in study[name].dims:
-        said = f"{said}, median"
-    bar.set_label(f"{said} ({unit})" if unit else said)
-    return array / divisor
+    said = measure.with_unit if text is None else text
+    bar.set_label(f"{said}, median" if _BAND in study[name].dims else said)
 
 
 def colours() -> Any:
@@ -292,44 +278,23 @@ def explain_gaps(figure: Figure, study: xr.Dataset, name: str) -> None:
 
 
 class _Axis(NamedTuple):
-    """One axis of a figure."""
+    """An axis of a map, with the edges of its cells."""
 
-    centres: Vector
+    shown: Shown
     edges: Vector
     log: bool
-    names: list[str] | None
-    text: str
-    unit: str
 
     @classmethod
     def of(cls, coord: xr.DataArray) -> _Axis:
-        values, text = np.asarray(coord.values), _capital(_spoken(coord))
-        if values.dtype.kind not in "fiu":
-            places = np.arange(values.size, dtype=float)
-            return cls(
-                places, np.arange(values.size + 1, dtype=float) - 0.5, False, [str(value) for value in values], text, ""
-            )
-        divisor, unit = _scale(coord, values)
-        centres = values / divisor
-        log = _grows_by_factor(centres)
-        inner = np.log(centres) if log else centres
+        shown = Shown.of(coord)
+        log = shown.names is None and _grows_by_factor(shown.numbers)
+        inner = np.log(shown.numbers) if log else shown.numbers
         between = 0.5 * (inner[1:] + inner[:-1])
         edges = np.concatenate(([2 * inner[0] - between[0]], between, [2 * inner[-1] - between[-1]]))
-        return cls(centres, np.asarray(np.exp(edges) if log else edges, dtype=float), log, None, text, unit)
+        return cls(shown, np.asarray(np.exp(edges) if log else edges, dtype=float), log)
 
     def finish(self, axes: Axes, which: Literal["x", "y"]) -> None:
-        axis = axes.xaxis if which == "x" else axes.yaxis
-        if self.log:
-            (axes.set_xscale if which == "x" else axes.set_yscale)("log")
-            axis.set_major_formatter(_plain)
-        if self.names is not None:
-            axis.set_ticks(self.centres.tolist(), [shorten(name, 16) for name in self.names])
-        label(axes, which, self.text, self.unit)
-
-
-def _plain(value: float, _: Any = None) -> str:
-    """A number as one writes it: 0.1, 10."""
-    return f"{value:g}"
+        self.shown.along(axes, which, log=self.log)
 
 
 def _grows_by_factor(values: Vector) -> bool:
@@ -347,17 +312,17 @@ def _lines_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> 
     axes = figure.subplots()
     along, *others = sorted(dims, key=lambda dim: study.sizes[dim], reverse=True)
     across, values = _Axis.of(study[along]), study[name]
-    divisor, unit = _scale(values, values.values)
+    measure = Shown.of(values)
     looks: list[dict[str, Any]] = [{"color": SERIES_COLOURS[0]}]
     for other in others:
         looks = _series(figure, axes, study[other])
         values = values.transpose(other, ...)
     for member, look in zip(values if others else [values], looks, strict=True):
-        look |= {"linestyle": "", "marker": "o"} if across.names is not None else {}
-        _draw_line(axes, across.centres, member / divisor, look)
+        look |= {"linestyle": "", "marker": "o"} if across.shown.names else {}
+        _draw_line(axes, across.shown.numbers, member / measure.divisor, look)
     marks = _mark_gaps(axes, study, name, along, across)
     across.finish(axes, "x")
-    label(axes, "y", _capital(_spoken(values)), unit)
+    measure.along(axes, "y")
     legend_above(axes)
     if marks:
         figure.legend(handles=marks, loc="outside lower left", ncols=2, handlelength=1.0)
@@ -378,28 +343,29 @@ def _series(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[dict[str, A
     from matplotlib.cm import ScalarMappable
 
     if coord.size <= len(SERIES_COLOURS):
-        names = [f"{_spoken(coord)} {_value(coord, value)}" for value in coord.values]
+        names = [f"{name_of(coord)} {value_of(coord, value)}" for value in coord.values]
         looks = zip(SERIES_COLOURS, SERIES_STYLES, names, strict=False)
         return [{"color": colour, "linestyle": style, "label": text} for colour, style, text in looks]
     axis = _Axis.of(coord)
     dark = LinearSegmentedColormap.from_list("dark", colours()(np.linspace(0, 0.85, 256)))
-    norm = (LogNorm if axis.log else Normalize)(float(axis.centres.min()), float(axis.centres.max()))
+    places = axis.shown.numbers
+    norm = (LogNorm if axis.log else Normalize)(float(places.min()), float(places.max()))
     bar = figure.colorbar(ScalarMappable(norm, dark), ax=axes, aspect=28, pad=0.02)
     if axis.log:
-        bar.ax.yaxis.set_major_formatter(_plain)
+        bar.ax.yaxis.set_major_formatter(plain)
     bar.outline.set_visible(False)
-    bar.set_label(f"{axis.text} ({axis.unit})" if axis.unit else axis.text)
-    return [{"color": dark(norm(value))} for value in axis.centres]
+    bar.set_label(axis.shown.with_unit)
+    return [{"color": dark(norm(value))} for value in places]
 
 
 def _mark_gaps(axes: Axes, study: xr.Dataset, name: str, along: str, across: _Axis) -> list[Line2D]:
     """Mark on the axis where there is no value."""
     marks = []
     for number, gap in enumerate(_gaps(study, name)):
-        here = gap.where.transpose(along, ...).values.reshape(across.centres.size, -1).any(axis=1)
+        here = gap.where.transpose(along, ...).values.reshape(across.shown.numbers.size, -1).any(axis=1)
         look: dict[str, Any] = {"marker": gap.marker, "color": INK, "linestyle": ""}
         height = np.full(here.sum(), 0.02 + 0.03 * number)
-        axes.plot(across.centres[here], height, transform=axes.get_xaxis_transform(), clip_on=False, **look)
+        axes.plot(across.shown.numbers[here], height, transform=axes.get_xaxis_transform(), clip_on=False, **look)
         marks.append(Line2D([], [], label=gap.text, **look))
     return marks
 
@@ -431,28 +397,3 @@ def _gaps(study: xr.Dataset, name: str) -> list[_Gap]:
             found.append((known, states == status, "none", "" if status < 0 else _HATCHES[number], _MARKERS[number]))
     found.append(("no value", ~finished, _GREY, "", "|"))
     return [_Gap(f"{text} ({int(where.sum())})", where, *look) for text, where, *look in found if where.any()]
-
-
-# ---- words
-
-
-def _unit(values: xr.DataArray) -> str:
-    unit = str(values.attrs.get("units", ""))
-    return "" if unit == "1" else unit
-
-
-def _scale(values: xr.DataArray, array: Any) -> tuple[float, str]:
-    divisor, unit = scaled(array, _unit(values)) if _unit(values) else (1.0, "")
-    return divisor, unit.replace("^2", "²")
-
-
-def _spoken(values: xr.DataArray) -> str:
-    return str(values.attrs.get("long_name", values.name)).replace("_", " ")
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
-def _value(coord: xr.DataArray, value: Any) -> str:
-    return quantity(float(value), _unit(coord)) if coord.dtype.kind in "fiu" else str(value)

@@ -1,0 +1,93 @@
+"""Variables of a dataset as a figure shows them: in a fitting unit, named by their attributes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from matplotlib.ticker import NullFormatter
+from numpy.typing import NDArray
+
+from ..results.quantities import quantity
+from .style import label, scaled, shorten
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+Vector = NDArray[np.float64]
+
+_LETTERS = 16  # of names beside ticks
+
+
+class Shown(NamedTuple):
+    """Numbers in a unit with prefix; or places in a list of names.
+
+    Attributes
+    ----------
+    numbers
+        Values over the divisor, or numbers of names.
+    divisor, unit
+        Of the values; no unit for pure numbers and names.
+    text
+        What the variable is.
+    names
+        None for numbers.
+    """
+
+    numbers: Vector
+    divisor: float
+    unit: str
+    text: str
+    names: list[str] | None
+
+    @classmethod
+    def of(cls, values: xr.DataArray) -> Shown:
+        """Read values, their `units` and `long_name`."""
+        spoken = name_of(values).replace("^2", "²")
+        text = spoken[:1].upper() + spoken[1:]
+        if values.dtype.kind not in "fiu":
+            names = list(dict.fromkeys(map(str, values.values.ravel())))
+            places = {name: float(place) for place, name in enumerate(names)}
+            numbers = np.array([places[str(value)] for value in values.values.ravel()])
+            return cls(numbers.reshape(values.shape), 1.0, "", text, names)
+        divisor, unit = scaled(values.values, unit_of(values)) if unit_of(values) else (1.0, "")
+        return cls(np.asarray(values.values / divisor, dtype=float), divisor, unit.replace("^2", "²"), text, None)
+
+    @property
+    def with_unit(self) -> str:
+        """The text with its unit, on one line."""
+        return f"{self.text} ({self.unit})" if self.unit else self.text
+
+    def along(self, axes: Axes, which: Literal["x", "y"], *, log: bool = False) -> None:
+        """Label an axis of a figure, name its ticks, make it logarithmic."""
+        axis = axes.xaxis if which == "x" else axes.yaxis
+        if log:
+            (axes.set_xscale if which == "x" else axes.set_yscale)("log")
+            axis.set_major_formatter(plain)
+            decade = np.nanmax(self.numbers) < 10 * np.nanmin(self.numbers)
+            axis.set_minor_formatter(plain if decade else NullFormatter())
+        if self.names is not None:
+            axis.set_ticks(range(len(self.names)), [shorten(name, _LETTERS) for name in self.names])
+        label(axes, which, self.text, self.unit)
+
+
+def plain(value: float, _: Any = None) -> str:
+    """Write a number of a logarithmic axis as one does: 0.1, 10."""
+    return f"{value:g}"
+
+
+def name_of(values: xr.DataArray) -> str:
+    """Return what a variable is called."""
+    return str(values.attrs.get("long_name", values.name)).replace("_", " ")
+
+
+def unit_of(values: xr.DataArray) -> str:
+    """Return the SI unit of a variable, "" for pure numbers."""
+    unit = str(values.attrs.get("units", ""))
+    return "" if unit == "1" else unit
+
+
+def value_of(coord: xr.DataArray, value: Any) -> str:
+    """Write one value of a coordinate with its unit."""
+    return quantity(float(value), unit_of(coord)) if coord.dtype.kind in "fiu" else str(value)
