@@ -91,7 +91,9 @@ def frequency_response(
     >>> import rattlebox as rb
     >>> case = rb.Case(
     ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
-    ...     damper=rb.ImpactDamper(ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm"),
+    ...     damper=rb.ImpactDamper(
+    ...         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+    ...     ),
     ...     load=rb.Harmonic(amplitude="10 N", frequency="30 Hz"),
     ...     duration="1 s",
     ... )

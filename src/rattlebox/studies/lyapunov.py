@@ -100,7 +100,9 @@ def lyapunov(
     >>> import rattlebox as rb
     >>> case = rb.Case(
     ...     structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
-    ...     damper=rb.ImpactDamper(ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm"),
+    ...     damper=rb.ImpactDamper(
+    ...         ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+    ...     ),
     ...     load=rb.Harmonic(amplitude="10 N", frequency="30 Hz"),
     ...     duration="1 s",
     ... )
@@ -158,6 +160,7 @@ class LyapunovTask:
         CaseError
             With what to try.
         """
+        packed = self.sweep.packed
         for name, least in (("pairs", 1), ("count", 2)):
             value = getattr(self, name)
             if not (isinstance(value, int) and value >= least):
@@ -167,9 +170,9 @@ class LyapunovTask:
             raise CaseError(f"distance = {self.distance!r} is not between 1e-12 and 1e-4\n  try: 1e-7")
         if not 0 <= self.reach <= 1:
             raise CaseError(f"reach = {self.reach!r} is not between 0 and 1\n  try: 1e-3")
-        if np.ndim(self.sweep.packed["settings"]["duration"]) and self.cycles is None:
+        if np.ndim(packed["settings"]["duration"]) and self.cycles is None:
             raise CaseError("the duration differs between variants\n  try: cycles, or one duration for all")
-        if any(load["kind"] == "record" for load in self.sweep.packed["loads"]):
+        if any(load["kind"] == "record" for load in packed["loads"]):
             raise CaseError(
                 "motions under a record cannot be started anew in its middle\n"
                 "  try: rattlebox.analysis.lyapunov_exponent with pairs of runs"

@@ -1,0 +1,157 @@
+"""Lyapunov exponents: over axes, in any phase of the load, of motions that stick, and against pairs left to themselves."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox import analysis
+from rattlebox.studies.axes import Design
+
+QUICK = {"cycles": (60, 60), "pairs": 3, "progress": False}
+
+
+def case(**changes):
+    """A small ball with hard impacts in a light, weakly damped structure."""
+    parts = {
+        "structure": rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+        "damper": rb.ImpactDamper(
+            ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+        ),
+        "load": rb.Harmonic(amplitude="5 N", frequency="31 Hz"),
+        "duration": "1 s",
+        "method": rb.Newton(),
+    }
+    return rb.Case(**{**parts, **changes})
+
+
+def inelastic(restitution):
+    """A ball on a shaker, which it leaves once a cycle."""
+    return rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1.5 mm", frequency="15 Hz")),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="10 mm", material="steel"),
+            gap="20 mm",
+            start=-1.0,
+            gravity=-9.81,
+            contact=rb.Tsuji(restitution=0.5),
+        ),
+        duration="1 s",
+        method=rb.Newton(restitution=restitution),
+    )
+
+
+def test_variants_know_nothing_of_each_other():
+    """A variant has the same bits alone, among others, on disk and with any number of threads."""
+    axes = {"load.frequency": [29.0, 31.0, 33.0], "damper.gap": ["0.8 mm", "1 mm"]}
+    one, two = (rb.lyapunov(case(), axes, threads=n, **QUICK) for n in (1, 2))
+    assert one.drop_attrs().equals(two.drop_attrs())
+    variant = Design.of(case(), axes).case_at(case(), 3)
+    alone = rb.lyapunov(variant, **QUICK)
+    assert float(alone.exponent) == float(one.exponent[1, 1])
+    assert (alone.running_exponent.values == one.running_exponent.values[1, 1]).all()
+
+
+def test_study_on_disk(tmp_path):
+    """With a store the result is the same, and is there when asked for again."""
+    axes = {"load.frequency": [29.0, 33.0]}
+    kept = rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **QUICK).load()
+    again = rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **QUICK).load()
+    here = rb.lyapunov(case(), axes, **QUICK)
+    for found in (kept, again):
+        assert (found.exponent.values == here.exponent.values).all()
+        assert (found.running_exponent.values == here.running_exponent.values).all()
+    with pytest.raises(rb.CaseError, match="pairs"):
+        rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **{**QUICK, "pairs": 4})
+
+
+def test_units_and_names():
+    """Each variable says what it is, the exponent is the growth over the cycle, and the last average is it."""
+    found = rb.lyapunov(case(), {"load.frequency": [30.0, 33.0]}, **QUICK)
+    assert all({"units", "long_name"} <= set(v.attrs) for n, v in found.items() if n != "status")
+    assert found.growth_per_cycle.values == pytest.approx(found.exponent.values / [30.0, 33.0])
+    assert (found.running_exponent[:, -1] == found.exponent).all()
+    assert found.cycle.values == pytest.approx(np.arange(1, 61))
+
+
+def test_the_phase_of_the_strobe_does_not_matter():
+    """Soft contacts that are closed whenever a cycle ends are waited for, and the exponent stays what it is."""
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="14 mm", material="steel"),
+        gap="1 mm",
+        contact=rb.Linear(contact_time="1 ms", restitution=0.6),
+    )
+    turned = {"load.phase": np.linspace(0, math.pi, 9)[:-1]}  # a contact lasts a sixteenth of half a cycle
+    soft = case(damper=damper, method=rb.EventDriven(), load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"))
+    found = rb.lyapunov(soft, turned, cycles=(200, 200), pairs=2, progress=False)
+    impacts = rb.sweep(soft, turned, ["impacts_per_cycle"], cycles=(200, 200), progress=False)
+    assert impacts.impacts_per_cycle.values == pytest.approx(2.0)
+    assert float(found.growth_per_cycle[0]) < -0.05
+    assert np.ptp(found.growth_per_cycle.values) < 1e-4
+
+
+def test_motions_that_stick_forget_everything():
+    """A ball that comes to rest on a shaker leaves it at the same moment whatever it did before: -inf."""
+    found = rb.lyapunov(inelastic(0.0), **QUICK)
+    assert float(found.exponent) == -math.inf
+    assert np.isneginf(found.running_exponent).all()
+    assert np.isnan(found.standard_error)
+    assert float(rb.lyapunov(inelastic(0.85), **QUICK).exponent) > 1
+
+
+def test_chaos_agrees_with_pairs_left_to_themselves():
+    """Pairs that are never brought back, begun at many places of the attractor, part with the same exponent."""
+    brought_back = rb.lyapunov(case(), cycles=(150, 600), pairs=8, progress=False)
+    shared = {"ball": rb.Sphere(radius="14 mm", material="steel"), "gap": "1 mm", "contact": rb.Tsuji(restitution=0.6)}
+    taken = rb.Output(times=np.arange(150, 150 + 3 * 96, 3) / 31)
+    a = rb.simulate(case(duration=440 / 31, output=taken)).arrays
+    states = [s[-96:, 0] for s in (a.displacement, a.velocity, a.relative_position, a.ball_velocity)]
+
+    def motions(shift):
+        cases = [
+            case(
+                structure=rb.SDOF(mass=1.0, stiffness=40e3, damping_ratio=0.01, displacement=z, velocity=v),
+                damper=rb.ImpactDamper(start=(z + y + shift) / 1e-3, velocity=w, **shared),
+                duration=20 / 31,
+                output=rb.Output(times=np.arange(21) / 31),
+            )
+            for z, v, y, w in zip(*states, strict=True)
+        ]
+        found = [run.arrays for run in rb.simulate_many(cases)]
+        parts = [(b.displacement, b.velocity / 200, b.ball_position, b.ball_velocity / 200) for b in found]
+        return np.array([np.hstack(part) for part in parts])
+
+    apart = np.linalg.norm(motions(1e-12) - motions(0.0), axis=2)
+    alone = analysis.lyapunov_exponent(np.arange(3, 21) / 31, apart[:, 3:], saturation=1e-5)
+    error = math.hypot(float(brought_back.standard_error), float(alone.standard_error))
+    assert float(brought_back.exponent) > 30
+    assert error < 2
+    assert float(alone.exponent) == pytest.approx(float(brought_back.exponent), abs=3 * error)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"pairs": 0}, "pairs = 0"),
+        ({"steps": 1}, "steps = 1"),
+        ({"distance": 1.0}, "1e-7"),
+        ({"reach": -1.0}, "reach"),
+        ({"cycles": (10, 0)}, "longer"),
+        ({"axes": {"load.frequenzy": [30.0]}}, "frequency"),
+        ({"axes": {"duration": [1.0, 2.0]}, "cycles": None}, "duration"),
+    ],
+)
+def test_bad_input_is_answered(options, said):
+    """What does not fit is told with what would, before anything runs."""
+    with pytest.raises(rb.CaseError, match=said):
+        rb.lyapunov(case(), **{**QUICK, **options})
+
+
+def test_loads_that_cannot_be_begun_anew_are_refused():
+    """Under a record, and with cycles of a load that has none, the answer names another way."""
+    record = rb.Record(times=[0.0, 1.0], values=[1.0, 0.0])
+    with pytest.raises(rb.CaseError, match="pairs of runs"):
+        rb.lyapunov(case(load=record))
+    with pytest.raises(rb.CaseError, match="harmonic"):
+        rb.lyapunov(case(load=rb.HalfSine(amplitude=1.0, duration=0.01)), **QUICK)
