@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import Formatter
 from numpy.typing import NDArray
 
 from ..results.quantities import quantity
@@ -65,11 +65,19 @@ class Shown(NamedTuple):
         if log:
             (axes.set_xscale if which == "x" else axes.set_yscale)("log")
             axis.set_major_formatter(plain)
-            decade = np.nanmax(self.numbers) < 10 * np.nanmin(self.numbers)
-            axis.set_minor_formatter(plain if decade else NullFormatter())
+            axis.set_minor_formatter(_Between())
         if self.names is not None:
             axis.set_ticks(range(len(self.names)), [shorten(name, _LETTERS) for name in self.names])
         label(axes, which, self.text, self.unit)
+
+
+class _Between(Formatter):
+    """Labels between the powers of ten, the more, the shorter the axis."""
+
+    def __call__(self, value: float, pos: int | None = None) -> str:
+        low, high = self.axis.get_view_interval()  # type: ignore[union-attr]
+        digit = f"{value:e}"[0]
+        return plain(value) if high < 3 * low or (high < 30 * low and digit in "25") else ""
 
 
 def plain(value: float, _: Any = None) -> str:

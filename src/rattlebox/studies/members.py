@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,17 +32,10 @@ def members(case: Case, levels: Any = None, starts: int | Sequence[Any] | None =
     CaseError
         When there are several balls, or less than two start positions are to be spread.
     """
-    axes = (
-        []
-        if levels is None
-        else [levels]
-        if isinstance(levels, Mapping) or not isinstance(levels, Sequence)
-        else list(levels)
-    )
+    axes = list(levels) if isinstance(levels, (list, tuple)) else [] if levels is None else [levels]
     if starts is not None:
         if [len(damper.balls) for damper in case.dampers] != [1]:
             raise Hint("starts are of one ball, and the case has not exactly one", 'levels={"dampers[0].start": [...]}')
-        axes.append(
-            {"damper.start": starts if hasattr(starts, "__len__") else np.linspace(-1, 1, whole(starts, "starts", 2))}
-        )
+        one_by_one = hasattr(starts, "__len__")
+        axes.append({"damper.start": starts if one_by_one else np.linspace(-1, 1, whole(starts, "starts", 2))})
     return axes or [{"duration": [case.duration]}]
