@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.errors import CaseError
 
 from .axes import Axes, Design
 from .follow import whole_cycles
-from .orbits import attractors, period_of, reduced_strobes
+from .orbits import attractors, check_part, period_of, reduced_strobes
 from .sweep import sweep
 from .task import SweepTask
 
@@ -96,9 +96,8 @@ def basins(
     """
     if not case.dampers:
         raise CaseError("without a damper the motion is linear, and all starts lead to the same one")
-    for name, given in (("tolerance", tolerance), ("apart", apart)):
-        if not (isinstance(given, (int, float)) and 0 < given < 1):
-            raise Hint(f"{name} = {given!r}: a part of the gap between 0 and 1 is needed", "1e-3")
+    check_part("tolerance", tolerance)
+    check_part("apart", apart)
     _, look = whole_cycles(cycles)
     design = Design.of(case, starts, source="basins")
     basic = ("impacts", "impacts_per_cycle")

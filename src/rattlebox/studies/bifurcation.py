@@ -11,7 +11,7 @@ from rattlebox.model.errors import CaseError, Hint
 
 from .axes import Design
 from .follow import follow, whole_cycles
-from .orbits import period_of, reduced_strobes
+from .orbits import check_part, period_of, reduced_strobes
 from .sweep import sweep
 from .task import SweepTask
 
@@ -105,6 +105,7 @@ def bifurcation(
             raise Hint(f"{name} = {given!r} is unknown", ", ".join(f'"{one}"' for one in get_args(known)))
     if not case.dampers:
         raise CaseError("without a damper the motion is linear, and nothing bifurcates")
+    check_part("tolerance", tolerance)
     _, look = whole_cycles(cycles)
     design = Design.of(case, {path: values}, source="bifurcation")
     task = SweepTask(case, design, cycles=cycles, point=point)

@@ -1,0 +1,153 @@
+"""Bifurcation diagrams: directions, strobes, impacts, and what cannot be drawn."""
+
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.studies.follow import follow
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "bifurcation.py"
+AMPLITUDE = "structure.motion.amplitude"
+QUIET = {"progress": False}
+
+
+def shaken(*, method=None, **damper):
+    """Return a ball that a shaker throws to and fro."""
+    return rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz", phase=0.3)),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="10 mm", material="steel"),
+            gap="1 mm",
+            velocity=0.1,
+            contact=rb.Tsuji(restitution=0.6),
+            **damper,
+        ),
+        duration="1 s",
+        method=method or rb.Newton(),
+    )
+
+
+def test_both_goes_up_and_then_back_down():
+    """The way down begins where the way up has ended; both are sorted by the parameter."""
+    values = np.linspace(0.5e-3, 1.5e-3, 5)
+    options = {"cycles": (20, 8), "show": "impacts", **QUIET}
+    both = rb.bifurcation(shaken(), AMPLITUDE, values, **options)
+    assert both.direction.values.tolist() == ["up", "down"]
+    assert both.ball_place.dims == ("direction", AMPLITUDE, "cycle", "ball")
+    assert both.ball_place.shape == (2, 5, 8, 1)
+    np.testing.assert_array_equal(both[AMPLITUDE], values)
+    up = rb.bifurcation(shaken(), AMPLITUDE, values, direction="up", **options)
+    for name in up.data_vars:
+        np.testing.assert_array_equal(up[name][0], both[name][0])
+    there_and_back = np.concatenate([values, values[::-1]])
+    walked = follow(shaken(), AMPLITUDE, there_and_back, cycles=(20, 8), samples=9, motion=True, **QUIET)
+    np.testing.assert_array_equal(both.ball_place[1], walked.ball_place.values[:4:-1, 1:])
+
+
+def test_directions_differ_where_motions_coexist():
+    """Below the doubling, an asymmetric motion with three impacts lives beside the one with two; a sweep keeps its own."""
+    values = np.linspace(0.9e-3, 1.3e-3, 21)
+    maps = rb.bifurcation(shaken(), AMPLITUDE, values, cycles=(200, 16), **QUIET)
+    near = maps.sel({AMPLITUDE: 1.0e-3}, method="nearest")
+    assert near.impacts_per_cycle.values == pytest.approx([2, 3], abs=0.1)
+
+
+def test_strobes_and_impacts_are_those_of_a_run():
+    """Strobes, phases and speeds of impacts agree with a run of the same case."""
+    case = shaken(method=rb.EventDriven())
+    maps = rb.bifurcation(case, AMPLITUDE, [1.5e-3], cycles=(3, 4), show="impacts", direction="fresh", **QUIET)
+    maps = maps.isel({"direction": 0, AMPLITUDE: 0})
+    motion = rb.Harmonic(amplitude="1.5 mm", frequency="10 Hz", phase=0.3)
+    times = np.linspace(0.4, 0.7, 4)
+    run = rb.simulate(
+        case.model_copy(
+            update={"structure": rb.Shaker(motion=motion), "duration": 0.7, "output": rb.Output(times=list(times))}
+        )
+    )
+    np.testing.assert_allclose(maps.ball_speed[:, 0], run.arrays.relative_velocity[1:, 0], rtol=1e-8)
+    late = run.arrays.impacts.time >= 0.3
+    kept = maps.impact_phase.dropna("impact")
+    phase = (2 * np.pi * 10 * run.arrays.impacts.time[late] + 0.3) % (2 * np.pi)
+    np.testing.assert_allclose(kept, phase, rtol=1e-8)
+    np.testing.assert_allclose(maps.approach_speed.dropna("impact"), run.arrays.impacts.approach_speed[late], rtol=1e-8)
+
+
+def test_names_can_be_compared_fresh():
+    """What has no order is run from the case's own start, linked parameters together."""
+    paths = ("damper.ball.material", "damper.gap")
+    maps = rb.bifurcation(
+        shaken(), paths, (["steel", "brass"], ["1 mm", "2 mm"]), cycles=(5, 4), direction="fresh", **QUIET
+    )
+    assert maps.period.dims == ("direction", "damper.ball.material")
+    assert maps["damper.gap"].values.tolist() == [1e-3, 2e-3]
+
+
+@pytest.mark.parametrize(
+    ("path", "values", "options", "said"),
+    [
+        (AMPLITUDE, [1e-3, 1e-3], {}, "must rise"),
+        (AMPLITUDE, [2e-3, 1e-3], {}, "must rise"),
+        ("damper.ball.material", ["steel", "brass"], {}, "no numbers that rise or fall"),
+        (AMPLITUDE, [1e-3], {"show": "strobes"}, "show = 'strobes' is unknown"),
+        (AMPLITUDE, [1e-3], {"direction": "left"}, "direction = 'left' is unknown"),
+        (AMPLITUDE, [1e-3], {"cycles": (10, 0)}, "whole numbers of cycles"),
+        (AMPLITUDE, [1e-3], {"tolerance": 0}, "tolerance = 0"),
+    ],
+)
+def test_what_cannot_be_followed_is_told(path, values, options, said):
+    """Bad arguments are told before anything runs."""
+    with pytest.raises(rb.CaseError, match=said):
+        rb.bifurcation(shaken(), path, values, **{"cycles": (3, 1), **options})
+
+
+def test_nothing_bifurcates_without_damper_or_cycle():
+    """A case without a damper or without a harmonic load is refused."""
+    structure = rb.SDOF(mass="1 kg", stiffness="4 kN/m", damping_ratio=0.01)
+    bare = rb.Case(structure=structure, load=rb.Harmonic(amplitude="1 N", frequency="10 Hz"), duration="1 s")
+    with pytest.raises(rb.CaseError, match="without a damper"):
+        rb.bifurcation(bare, "load.amplitude", [1.0, 2.0])
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+    )
+    free = rb.Case(structure=structure, damper=damper, duration="1 s")
+    with pytest.raises(rb.CaseError, match="cycles need a harmonic load"):
+        rb.bifurcation(free, "damper.gap", [1e-3, 2e-3])
+
+
+@pytest.mark.parametrize("size", ["column", "page"])
+@pytest.mark.parametrize("of", [None, "ball_place", "ball_speed", "displacement", "velocity", "impact_phase"])
+def test_every_quantity_is_drawn(of, size):
+    """Each quantity is drawn, dots for every direction, with nothing off the paper."""
+    maps = rb.bifurcation(shaken(), AMPLITUDE, [0.5e-3, 1e-3, 1.5e-3], cycles=(20, 8), show="impacts", **QUIET)
+    figure = rb.plot_bifurcation(maps, of, size=size)
+    figure.draw_without_rendering()
+    upper, lower = figure.axes
+    assert lower.get_xlabel() == "Structure motion amplitude (mm)"
+    down, up = (line.get_ydata() for line in upper.lines)
+    values = maps["approach_speed" if of is None else of]
+    assert up.size == down.size == values.isel(direction=0).size
+    box, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
+    assert box.x0 > -0.01 and box.y0 > -0.01 and box.x1 < width + 0.01 and box.y1 < height + 0.01
+
+
+def test_unknown_quantity_is_refused():
+    """A quantity that was not kept is answered with those that were."""
+    maps = rb.bifurcation(shaken(), AMPLITUDE, [1e-3], cycles=(3, 2), **QUIET)
+    with pytest.raises(rb.CaseError, match="no such quantity"):
+        rb.plot_bifurcation(maps, "approach_speed")
+    with pytest.raises(rb.CaseError, match="no such ball"):
+        rb.plot_bifurcation(maps, "ball_place", ball=1)
+
+
+def test_example(tmp_path, monkeypatch):
+    """The example finds the least amplitude that keeps two impacts a cycle, as theory has it."""
+    monkeypatch.chdir(tmp_path)
+    maps = runpy.run_path(str(EXAMPLE))["maps"]
+    down = maps.sel(direction="down")
+    two = down[AMPLITUDE].where((down.period == 1) & np.isclose(down.impacts_per_cycle, 2))
+    rho = 2 / np.pi * (1 - 0.6) / (1 + 0.6)
+    assert float(two.min()) == pytest.approx(1e-3 * rho / np.sqrt(1 + rho**2), abs=15e-6)
+    assert (tmp_path / "bifurcation.png").stat().st_size > 5000

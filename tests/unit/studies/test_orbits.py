@@ -1,0 +1,74 @@
+"""Motions told apart by their strobes."""
+
+import numpy as np
+
+from rattlebox.studies.orbits import attractors, period_of
+
+
+def orbit(*points, turns=24, shift=0, blur=0.0, seed=0):
+    """Return strobes of an orbit through some points, begun at one of them, with noise."""
+    points = np.roll(np.array(points, dtype=float), -shift, axis=0)
+    strobes = np.resize(points, (turns, points.shape[1]))
+    return strobes + blur * np.random.default_rng(seed).uniform(-1, 1, strobes.shape)
+
+
+def test_period_is_the_least_number_of_cycles():
+    """A motion that repeats every cycle does so every second one as well, and counts as period one."""
+    strobes = np.stack(
+        [
+            orbit([0, 0]),
+            orbit([0, 0], [1, 0]),
+            orbit([0, 0], [0, 1], [1, 0]),
+            np.random.default_rng(1).uniform(-1, 1, (24, 2)),
+            orbit([0, 0], [1, 0], blur=1e-5),
+            np.full((24, 2), np.nan),
+        ]
+    )
+    period, residual = period_of(strobes, 1e-4)
+    assert period.tolist() == [1, 2, 3, 0, 2, 0]
+    assert residual[0] == 0
+    assert 0 < residual[4] < 2e-5
+    assert residual[3] > 1e-4
+
+
+def test_longest_period_is_half_of_what_is_seen():
+    """A motion must be seen twice before it counts as one that repeats."""
+    points = [[k, 0] for k in range(6)]
+    assert period_of(orbit(*points, turns=11), 1e-4)[0] == 0
+    assert period_of(orbit(*points, turns=12), 1e-4)[0] == 6
+
+
+def test_motions_of_one_orbit_are_one_attractor():
+    """Phase within the period and noise do not matter, other points do; the largest comes first."""
+    two, other = ([0, 0], [1, 0]), ([0, 0], [0, 1])
+    strobes = np.stack(
+        [
+            orbit(*other, blur=1e-6),
+            orbit(*two, blur=1e-5, seed=1),
+            orbit(*two, shift=1),
+            np.random.default_rng(1).uniform(-1, 1, (24, 2)),
+            orbit(*two, blur=1e-5, seed=2),
+            orbit([0, 0]),
+        ]
+    )
+    period, residual = period_of(strobes, 1e-4)
+    label, best = attractors(strobes, period, residual, 1e-2)
+    assert label.tolist() == [3, 1, 1, 0, 1, 2]
+    assert best[0] == 2
+
+
+def test_a_motion_for_each_start_is_cut_off():
+    """Where each start keeps a motion of its own, 256 of them are told apart and the rest counts as none."""
+    strobes = np.stack([orbit([k, 0]) for k in range(300)])
+    label, best = attractors(strobes, *period_of(strobes, 1e-4), 1e-2)
+    assert len(best) == 256
+    assert np.sum(label == 0) == 44
+    assert sorted(label[label > 0].tolist()) == list(range(1, 257))
+
+
+def test_nothing_that_repeats():
+    """Without a motion that repeats there is no attractor."""
+    strobes = np.random.default_rng(1).uniform(-1, 1, (3, 24, 2))
+    label, best = attractors(strobes, *period_of(strobes, 1e-4), 1e-2)
+    assert label.tolist() == [0, 0, 0]
+    assert best.size == 0
