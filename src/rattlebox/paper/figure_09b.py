@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .figure import Claim, Reproduction
-from .figure_09a import AMPLITUDE, cases, draw_portraits, portraits
+from .figure_09a import AMPLITUDE, MEMBERS, WINDOW, cases, draw_portraits, outside, portraits
 from .seed import DAMPING, MASS, PULSE, STIFFNESS
 
 
@@ -20,7 +20,7 @@ def data() -> xr.Dataset:
 
 def draw(data: xr.Dataset) -> Figure:
     """Draw the portraits of the structure."""
-    return draw_portraits(data, ("Displacement", "Velocity"))
+    return draw_portraits(data, ("Displacement", "Velocity"), walls=False)
 
 
 def _amplitude(data: xr.Dataset) -> xr.DataArray:
@@ -45,11 +45,14 @@ def caption(data: xr.Dataset) -> str:
         for model in data.model.values
     )
     return (
-        f"The structure in the first {data.time[-1]:g} s after a pulse of {AMPLITUDE:g} N. Case 1 is a spiral from "
+        f"The structure in the first {data.time[-1]:g} s after a pulse of {AMPLITUDE:g} N: single runs above, below them "
+        f"median and band of {MEMBERS} starts within 1 µm (largest displacement in windows of {WINDOW:g} s). Case 1 is a "
+        "spiral from "
         f"{1e6 * float(first.sel(model='constant', case=1)):.1f} µm into a stable focus, at a rate of "
         f"{_decay(centred):.3f} per second; the viscous damper alone gives C/(2M) = {DAMPING / (2 * MASS):.4f}. In cases "
         f"2 and 3 each contact moves the structure to another spiral, inwards or outwards: after {data.time[-1]:g} s the "
-        f"amplitude is {kicked}, against {1e6 * float(last.sel(model='constant', case=1)):.1f} µm without any contact."
+        f"amplitude is {kicked}, against {1e6 * float(last.sel(model='constant', case=1)):.1f} µm without any contact. "
+        f"{outside(data)}".rstrip()
     )
 
 

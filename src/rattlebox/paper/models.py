@@ -21,6 +21,20 @@ COLOURS: Mapping[str, str] = dict(zip(MODELS, SERIES_COLOURS, strict=False))
 STYLES: Mapping[str, Any] = dict(zip(MODELS, SERIES_STYLES, strict=False))
 
 
+def by_model(texts: Mapping[str, str]) -> str:
+    """Say what each model gives.
+
+    Parameters
+    ----------
+    texts
+        By model, such as "5 %".
+    """
+    return (
+        f"{texts[CONSTANT_E]} with constant restitution; with the elasto-plastic model {texts[STEEL]} (steel wall) or "
+        f"{texts[RIGID]} (rigid wall)"
+    )
+
+
 def described(dims: Any, values: Any, units: str, long_name: str) -> tuple[Any, ...]:
     """Return a variable of a dataset with its unit and meaning.
 
