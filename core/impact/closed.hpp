@@ -187,7 +187,7 @@ protected:
                 fail(Status::too_many_events);
             if (!running()) return unload_system(y_);
             integrator_.start(system_, y_.data());
-            note_forces();
+            if (problem_.settings.peaks) note_forces();
             // One step whose error is within the bound, not beyond the next stop.
             for (int tries = 0;; ++tries) {
                 integrator_.step(system_, y_.data(), h, trial_.data());
@@ -305,7 +305,7 @@ protected:
                 h *= 0.25;
                 continue;
             }
-            note_peaks(end);
+            if (problem_.settings.peaks) note_peaks(end);
             while (sample_due(state_.t + trial_[clock])) {
                 const real due = problem_.sample_times[next_sample_] - state_.t;
                 if (due < trial_[clock]) {

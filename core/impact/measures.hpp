@@ -205,36 +205,39 @@ public:
 struct Measure {
     const char* name;
     bool samples; // needs the motion, not only its ends
+    bool peaks;   // needs the peaks of each impact
     real (*value)(const Observer&);
 };
 
 inline constexpr Measure measures[] = {
-    {"impacts", false, [](const Observer& o) { return o.impacts(); }},
-    {"impacts_per_cycle", false, [](const Observer& o) { return o.impacts() / o.cycles(); }},
-    {"peak_contact_force", false, [](const Observer& o) { return o.peak_force(); }},
-    {"peak_overlap", false, [](const Observer& o) { return o.peak_overlap(); }},
-    {"largest_approach_speed", false, [](const Observer& o) { return o.largest_approach_speed(); }},
-    {"mean_approach_speed", false, [](const Observer& o) { return o.mean_approach_speed(); }},
-    {"longest_contact", false, [](const Observer& o) { return o.longest_contact(); }},
-    {"work", false, [](const Observer& o) { return o.load_work(o.last()) + o.base_work(o.last()); }},
-    {"viscous_loss", false, [](const Observer& o) { return o.viscous(o.last()); }},
-    {"impact_loss", false, [](const Observer& o) { return o.impact(o.last()); }},
-    {"viscous_share", false, [](const Observer& o) { return o.share(o.viscous(o.last())); }},
-    {"impact_share", false, [](const Observer& o) { return o.share(o.impact(o.last())); }},
-    {"motion_share", false, [](const Observer& o) { return o.share(o.motion(o.last())); }},
-    {"closure", false, [](const Observer& o) { return o.closure(); }},
-    {"peak", true, [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).q; }); }},
-    {"rms", true, [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).q; }); }},
-    {"peak_velocity", true,
+    {"impacts", false, false, [](const Observer& o) { return o.impacts(); }},
+    {"impacts_per_cycle", false, false, [](const Observer& o) { return o.impacts() / o.cycles(); }},
+    {"peak_contact_force", false, true, [](const Observer& o) { return o.peak_force(); }},
+    {"peak_overlap", false, true, [](const Observer& o) { return o.peak_overlap(); }},
+    {"largest_approach_speed", false, false, [](const Observer& o) { return o.largest_approach_speed(); }},
+    {"mean_approach_speed", false, false, [](const Observer& o) { return o.mean_approach_speed(); }},
+    {"longest_contact", false, false, [](const Observer& o) { return o.longest_contact(); }},
+    {"work", false, false, [](const Observer& o) { return o.load_work(o.last()) + o.base_work(o.last()); }},
+    {"viscous_loss", false, false, [](const Observer& o) { return o.viscous(o.last()); }},
+    {"impact_loss", false, false, [](const Observer& o) { return o.impact(o.last()); }},
+    {"viscous_share", false, false, [](const Observer& o) { return o.share(o.viscous(o.last())); }},
+    {"impact_share", false, false, [](const Observer& o) { return o.share(o.impact(o.last())); }},
+    {"motion_share", false, false, [](const Observer& o) { return o.share(o.motion(o.last())); }},
+    {"closure", false, false, [](const Observer& o) { return o.closure(); }},
+    {"peak", true, false,
+     [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).q; }); }},
+    {"rms", true, false,
+     [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).q; }); }},
+    {"peak_velocity", true, false,
      [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).p; }); }},
-    {"rms_velocity", true,
+    {"rms_velocity", true, false,
      [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).p; }); }},
-    {"settling_time", true, [](const Observer& o) { return o.settling(0.05); }},
-    {"loss_per_cycle", false, [](const Observer& o) { return o.impact(o.last()) / o.cycles(); }},
-    {"reduced_loss", true, [](const Observer& o) { return o.reduced_loss(); }},
-    {"effective_mass", true, [](const Observer& o) { return o.apparent_mass().real(); }},
-    {"damping_mass", true, [](const Observer& o) { return -o.apparent_mass().imag(); }},
-    {"loss_factor", true,
+    {"settling_time", true, false, [](const Observer& o) { return o.settling(0.05); }},
+    {"loss_per_cycle", false, false, [](const Observer& o) { return o.impact(o.last()) / o.cycles(); }},
+    {"reduced_loss", true, false, [](const Observer& o) { return o.reduced_loss(); }},
+    {"effective_mass", true, false, [](const Observer& o) { return o.apparent_mass().real(); }},
+    {"damping_mass", true, false, [](const Observer& o) { return -o.apparent_mass().imag(); }},
+    {"loss_factor", true, false,
      [](const Observer& o) {
          const std::complex<real> mass = o.apparent_mass();
          return -mass.imag() / std::fabs(mass.real());

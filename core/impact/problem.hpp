@@ -43,6 +43,8 @@ struct Settings {
     bool adaptive_inner = false;              // two_step: dopri5 instead of rk4
     bool collocation = true;                  // event_driven: lone contacts by collocation in phase
 
+    bool peaks = true; // of force and overlap are found for the impact log
+
     // What the ledger may miss of the energy put in; none for fixed steps, whose error it measures.
     real closure_bound() const {
         if (method == Method::two_step) return infinity;

@@ -98,7 +98,6 @@ protected:
         if (!(std::fabs(residual) < std::fmax(problem_.settings.tolerance, 64 * epsilon) * size))
             return false;
 
-        const LoneContact::Instant deepest = lone_.look(lone_.deepest_position());
         Impact line;
         line.contact = c;
         line.time = state_.t;
@@ -106,8 +105,11 @@ protected:
         if (law->needs_restitution()) line.restitution = e;
         line.separation_speed = -end.rate;
         line.duration = end.time;
-        line.peak_overlap = square(square(deepest.x));
-        line.peak_force = zeta == 0 ? deepest.force : lone_.peak_force();
+        if (problem_.settings.peaks) {
+            const LoneContact::Instant deepest = lone_.look(lone_.deepest_position());
+            line.peak_overlap = square(square(deepest.x));
+            line.peak_force = zeta == 0 ? deepest.force : lone_.peak_force();
+        }
         line.energy_lost = end.lost + stored;
         line.complete = true;
         result_.impacts.push_back(line);

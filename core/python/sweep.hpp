@@ -1,6 +1,7 @@
 // Runs the members of a batch and keeps of each only what was asked for.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 
@@ -77,6 +78,8 @@ public:
             reader.number(worker->window.period, window, "period");
             reader.vector(worker->window.shape, window["shape"]);
             worker->window.samples = nb::cast<int>(window["samples"]);
+            worker->problem.settings.peaks = std::any_of(wanted_.measures.begin(), wanted_.measures.end(),
+                                                         [](const Measure* m) { return m->peaks; });
             workers_.push_back(std::move(worker));
         }
         const Problem& problem = workers_.at(0)->problem;
@@ -142,9 +145,7 @@ inline nb::object sweep(const nb::dict& packed, const std::vector<std::size_t>& 
     const bool whole = work_off(
         sweep.size(), threads, 4,
         [&](std::size_t i, int thread, const std::atomic<bool>& stopped) { sweep.run(i, thread, stopped); },
-        [&](std::size_t done) {
-            return progress.is_none() || !progress(done).is(nb::bool_(false));
-        });
+        [&](std::size_t done) { return progress.is_none() || !progress(done).is(nb::bool_(false)); });
     if (!whole) return nb::none();
     return sweep.results();
 }
