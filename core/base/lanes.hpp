@@ -16,7 +16,8 @@ inline constexpr int register_width = 4;
 inline constexpr int register_width = 2;
 #endif
 
-template <int n> struct Pack {
+// may_alias: they are laid over arrays of numbers.
+template <int n> struct __attribute__((may_alias)) Pack {
     Pack<n / 2> low, high;
 
     static Pack all(real v) { return {Pack<n / 2>::all(v), Pack<n / 2>::all(v)}; }
@@ -32,8 +33,8 @@ template <int n> struct Pack {
     friend real largest(const Pack& a) { return largest(larger(a.low, a.high)); }
 };
 
-template <> struct Pack<register_width> {
-    typedef real Register __attribute__((vector_size(register_width * sizeof(real))));
+template <> struct __attribute__((may_alias)) Pack<register_width> {
+    typedef real Register __attribute__((vector_size(register_width * sizeof(real)), may_alias));
     Register v;
 
     static Pack all(real v) { return {Register{} + v}; }
