@@ -1,0 +1,199 @@
+"""Which parameters a measure depends on: Sobol indices, by SALib."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.model.errors import CaseError, Hint
+
+from .designs import RandomDesign, random_design, whole
+from .extras import extra
+from .members import members
+from .sweep import sweep
+
+if TYPE_CHECKING:
+    import os
+
+    import xarray as xr
+
+    from rattlebox.model.case import Case
+    from rattlebox.results import Run
+
+_LEAST = 0.5  # of the points, that must have a value
+
+
+@dataclass(frozen=True)
+class _Crossed(RandomDesign):
+    """Points that differ in one parameter at a time, as Sobol indices need them."""
+
+    def points(self) -> NDArray[np.float64]:
+        """Return the points in the unit cube, (count, parameters)."""
+        width = len(self.ranges)
+        sample: NDArray[np.float64] = extra("SALib.sample.sobol", "design").sample(
+            _problem(width), self.count // (width + 2), calc_second_order=False, seed=self.seed
+        )
+        return sample
+
+
+def sensitivity(
+    case: Case,
+    bounds: Mapping[str, Any],
+    measure: str | Callable[[Run], float] | Sequence[str | Callable[[Run], float]] = "impact_share",
+    n: int = 256,
+    *,
+    levels: Any = None,
+    starts: int | Sequence[Any] | None = None,
+    log: Sequence[str] = (),
+    confidence: float = 0.95,
+    seed: int = 0,
+    skip: float | str = 0.0,
+    cycles: tuple[float, float] | None = None,
+    samples: int | None = None,
+    point: str | None = None,
+    threads: int | None = None,
+    on: Any = None,
+    store: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> xr.Dataset:
+    """Find how much of the variance of a measure comes from each of some parameters.
+
+    The parameters vary independently within their bounds. The first-order index of one is the share of the variance that
+    goes when that parameter is known; the total index is the share that stays when all others are. They differ where
+    parameters act together.
+
+    Parameters
+    ----------
+    case
+        The case, with the values that do not vary.
+    bounds
+        By path: a pair (smallest, largest), or a list to choose from where the parameter is no number, as for
+        `rb.random_design`.
+    measure
+        Name of a measure (rb.MEASURES) or function of a Run, or several.
+    n
+        Base points, a power of two; there are n (parameters + 2) points in all.
+    levels, starts
+        Each point is the mean over all of these, as for `rb.design`: of a chaotic measure, let the ball start at several
+        places, or chaos counts as interaction.
+    log
+        Paths whose values are spread evenly in their logarithm.
+    confidence
+        Level of the confidence intervals, by bootstrap.
+    seed
+        The same seed gives the same points and intervals.
+    skip, cycles, samples, point, threads, on, store, progress
+        As in `rb.sweep`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `measure` and `parameter`: first and total indices with the half widths first_confidence and
+        total_confidence; over `measure`: mean and variance, and the number of base points that were left_out because a run
+        of theirs gave no value.
+
+    Raises
+    ------
+    CaseError
+        When an argument does not fit, SALib is not installed, nothing varies, or more than half of the base points have no
+        value.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> from rattlebox.paper.seed import seed_case
+    >>> bounds = {"damper.gap": ("0.1 mm", "2 mm"), "load.amplitude": ("1 kN", "5 kN")}
+    >>> found = rb.sensitivity(seed_case(duration=1.0), bounds, "impact_share", 64)
+    >>> found.total.dims
+    ('measure', 'parameter')
+    """
+    if whole(n, "n", 8) & (n - 1):
+        raise Hint(f"n = {n}: a power of two is needed", f"{2 ** n.bit_length()}")
+    if not 0 < confidence < 1:
+        raise Hint(f"confidence = {confidence!r}: must lie between 0 and 1", "0.95")
+    ranges = random_design(bounds, n * (len(bounds) + 2), seed=seed, log=log)
+    points = _Crossed(ranges.ranges, ranges.count, ranges.method, ranges.seed, ranges.log)
+    runs = sweep(
+        case,
+        [points, *members(case, levels, starts)],
+        measure,  # type: ignore[arg-type]
+        skip=skip,
+        cycles=cycles,
+        samples=samples,
+        point=point,
+        threads=threads,
+        on=on,
+        store=store,
+        progress=progress,
+    )
+    return _indices(runs, list(bounds), n, confidence, seed)
+
+
+def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed: int) -> xr.Dataset:
+    """Sobol indices of every measure of a sweep."""
+    import xarray as xr
+
+    names = [str(name) for name in runs.data_vars if name != "status"]
+    rows = [_of_measure(runs, name, len(paths), n, confidence, seed) for name in names]
+    found = xr.Dataset(
+        {
+            name: (
+                ("measure", "parameter")[: 1 + np.ndim(rows[0][name])],
+                [row[name] for row in rows],
+                {"long_name": text},
+            )
+            for name, text in _LONG.items()
+        },
+        coords={"parameter": paths, "measure": names},
+    )
+    about = {"confidence": confidence, "n": n, "seed": seed, "case": runs.attrs["case"]}
+    return found.assign_attrs(title="Rattlebox sensitivity", **about)
+
+
+def _of_measure(runs: xr.Dataset, name: str, width: int, n: int, confidence: float, seed: int) -> dict[str, Any]:
+    """Sobol indices of one measure."""
+    values = runs[name].where(runs["status"] == 0)
+    values = values.mean([dim for dim in values.dims if dim != "sample"], skipna=False)
+    by_base = values.values.reshape(n, width + 2)
+    kept = np.isfinite(by_base).all(axis=1)
+    left_out = int((~kept).sum())
+    if left_out > _LEAST * n:
+        raise CaseError(
+            f"{name}: of {n} base points, {left_out} have a run without a value\n"
+            "  try: narrower bounds or a longer duration; rb.sweep over rb.random_design shows where"
+        )
+    output = by_base[kept].ravel()
+    if np.ptp(output) == 0:
+        raise CaseError(f"{name} is {output[0]:.6g} at every point: nothing depends on anything\n  try: wider bounds")
+    analyze = extra("SALib.analyze.sobol", "design").analyze
+    # SALib takes a seed of 0 for none.
+    indices = analyze(_problem(width), output, calc_second_order=False, conf_level=confidence, seed=seed + 1)
+    return {
+        "first": indices["S1"],
+        "total": indices["ST"],
+        "first_confidence": indices["S1_conf"],
+        "total_confidence": indices["ST_conf"],
+        "mean": output.mean(),
+        "variance": output.var(),
+        "left_out": left_out,
+    }
+
+
+_LONG = {
+    "first": "first-order index",
+    "total": "total index",
+    "first_confidence": "half width of the interval of the first-order index",
+    "total_confidence": "half width of the interval of the total index",
+    "mean": "mean over all points",
+    "variance": "variance over all points",
+    "left_out": "base points without a value",
+}
+
+
+def _problem(width: int) -> dict[str, Any]:
+    """The unit cube, as SALib wants it told."""
+    return {"num_vars": width, "names": [str(number) for number in range(width)], "bounds": [[0.0, 1.0]] * width}
