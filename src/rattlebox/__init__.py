@@ -26,13 +26,20 @@ if TYPE_CHECKING:
     from rattlebox.engines.simulate import simulate, simulate_many
     from rattlebox.plots.basins import plot_basins
     from rattlebox.plots.bifurcation import plot_bifurcation
+    from rattlebox.plots.design import plot_design
+    from rattlebox.plots.loss_map import plot_loss_map
+    from rattlebox.plots.maps import plot_map
+    from rattlebox.plots.sensitivity import plot_sensitivity
     from rattlebox.results import Run, load
     from rattlebox.studies.basins import basins
     from rattlebox.studies.bifurcation import bifurcation
+    from rattlebox.studies.design import design
     from rattlebox.studies.designs import geomspace, linspace, random_design, replicas
     from rattlebox.studies.frequency_response import frequency_response
+    from rattlebox.studies.loss_map import loss_map
     from rattlebox.studies.lyapunov import lyapunov
     from rattlebox.studies.measures import MEASURES
+    from rattlebox.studies.sensitivity import sensitivity
     from rattlebox.studies.sweep import sweep
 
 __version__ = "0.1.0"
@@ -50,6 +57,13 @@ _LATER = {
     "bifurcation": "rattlebox.studies.bifurcation",
     "plot_basins": "rattlebox.plots.basins",
     "plot_bifurcation": "rattlebox.plots.bifurcation",
+    "plot_design": "rattlebox.plots.design",
+    "plot_loss_map": "rattlebox.plots.loss_map",
+    "plot_map": "rattlebox.plots.maps",
+    "plot_sensitivity": "rattlebox.plots.sensitivity",
+    "design": "rattlebox.studies.design",
+    "loss_map": "rattlebox.studies.loss_map",
+    "sensitivity": "rattlebox.studies.sensitivity",
     "lyapunov": "rattlebox.studies.lyapunov",
     "geomspace": "rattlebox.studies.designs",
     "linspace": "rattlebox.studies.designs",
@@ -93,19 +107,26 @@ __all__ = [
     "bifurcation",
     "chirp",
     "contact_pairs",
+    "design",
     "frequency_response",
     "geomspace",
     "linspace",
     "load",
+    "loss_map",
     "lyapunov",
     "materials",
     "plot_basins",
     "plot_bifurcation",
+    "plot_design",
+    "plot_loss_map",
+    "plot_map",
+    "plot_sensitivity",
     "random_design",
     "random_record",
     "replicas",
     "restitution_curve",
     "restitution_of_alpha",
+    "sensitivity",
     "simulate",
     "simulate_many",
     "sweep",

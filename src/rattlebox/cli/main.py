@@ -74,6 +74,23 @@ def show(study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")]
 
 
 @app.command()
+def plot(
+    study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="File to write: PNG, SVG or PDF.")] = Path("study.png"),
+    kind: Annotated[str | None, typer.Option(help="map or lines; default what fits.")] = None,
+    of: Annotated[str | None, typer.Option(help="Measure; default the first.")] = None,
+    at: Annotated[
+        list[str] | None, typer.Option(help='Value of a further axis, "load.amplitude=5 kN"; repeat for more.')
+    ] = None,
+    size: Annotated[str, typer.Option(help="column, page or slide.")] = "column",
+) -> None:
+    """Draw a measure of a study over one or two of its axes."""
+    from rattlebox.cli.plot import plot_study
+
+    plot_study(study, out, kind=kind, of=of, at=at or (), size=size)
+
+
+@app.command()
 def demo(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo"),
 ) -> None:
