@@ -77,7 +77,7 @@ def show(study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")]
 def plot(
     study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")],
     out: Annotated[Path, typer.Option("--out", "-o", help="File to write: PNG, SVG or PDF.")] = Path("study.png"),
-    kind: Annotated[str | None, typer.Option(help="map or lines; default what fits.")] = None,
+    kind: Annotated[str | None, typer.Option(help="map or lines; default a map of two long axes.")] = None,
     of: Annotated[str | None, typer.Option(help="Measure; default the first.")] = None,
     at: Annotated[
         list[str] | None, typer.Option(help='Value of a further axis, "load.amplitude=5 kN"; repeat for more.')

@@ -59,7 +59,8 @@ def plot_map(
     of
         Name of the measure; default the first.
     kind
-        "map" in colours over two axes, "lines" over one, one line for each value of the other; default what fits.
+        "map" in colours over two axes, "lines" over one, one line for each value of the other; default a map where both
+        axes have more than six values.
     at
         Values of further axes, {"load.amplitude": "5 kN"}; the nearest one in the study is taken.
     size
@@ -92,12 +93,15 @@ def plot_map(
     dims = [str(dim) for dim in chosen[name].dims if dim != _BAND]
     _check_axes(chosen, name, dims, kind)
     with paper(size):
-        if kind == "map" or (kind is None and len(dims) == 2):
+        many = len(dims) == 2 and min(chosen.sizes[dim] for dim in dims) > len(SERIES_COLOURS)
+        if kind == "map" or (kind is None and many):
             figure = _map_figure(chosen, name, dims, size)
         else:
             figure = _lines_figure(chosen, name, dims, size)
         if told:
-            figure.suptitle(shorten(told, letters(figure.axes[0])), x=0.01, ha="left", fontsize="medium")
+            figure.suptitle(
+                shorten(told[0].upper() + told[1:], letters(figure.axes[0])), x=0.01, ha="left", fontsize="medium"
+            )
     return figure
 
 
@@ -333,7 +337,8 @@ def _draw_line(axes: Axes, places: Vector, member: xr.DataArray, look: dict[str,
     """Draw a line, or the median of replicas within their band."""
     middle = member
     if _BAND in member.dims:
-        low, middle, high = member.quantile([0.1, 0.5, 0.9], _BAND)
+        some = member.notnull().any(_BAND)
+        low, middle, high = member.where(some, 0.0).quantile([0.1, 0.5, 0.9], _BAND).where(some)
         axes.fill_between(places, low.values, high.values, color=look["color"], alpha=0.25, linewidth=0)
     axes.plot(places, middle.values, **look)
 

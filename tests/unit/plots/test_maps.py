@@ -1,0 +1,174 @@
+"""Maps and lines of studies: what is drawn is what is in the study, and what is missing is named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.collections import PolyCollection, QuadMesh
+from matplotlib.figure import Figure
+
+import rattlebox as rb
+
+GAPS = np.linspace(1e-4, 2e-3, 12)
+FORCES = np.geomspace(100.0, 5000.0, 9)
+
+
+def study(members: int = 0) -> xr.Dataset:
+    """Return a study over gap and amplitude, perhaps with replicas."""
+    shape = (GAPS.size, FORCES.size, *([members] if members else []))
+    share = np.random.default_rng(3).random(shape)
+    status = np.zeros(shape, "int8")
+    status[-1, -2:] = 2
+    status[0, 0] = -128
+    share[status != 0] = np.nan
+    share[4, 4] = np.nan
+    dims = ("damper.gap", "load.amplitude", *(["replica"] if members else []))
+    return xr.Dataset(
+        {
+            "status": (dims, status, {"flag_meanings": "finished law_domain too_many_events"}),
+            "share": (dims, share, {"units": "1", "long_name": "share lost in the damper"}),
+            "peak": (dims, 1e-3 * share, {"units": "m", "long_name": "peak displacement"}),
+        },
+        coords={
+            "damper.gap": ("damper.gap", GAPS, {"units": "m", "long_name": "damper gap"}),
+            "load.amplitude": ("load.amplitude", FORCES, {"units": "N", "long_name": "load amplitude"}),
+        },
+    )
+
+
+def inside(figure: Figure) -> bool:
+    """Whether all that is drawn lies on the paper."""
+    figure.draw_without_rendering()
+    box = figure.get_tightbbox()
+    width, height = figure.get_size_inches()
+    return bool(box.x0 > -0.01 and box.y0 > -0.01 and box.x1 < width + 0.01 and box.y1 < height + 0.01)
+
+
+def told(figure: Figure) -> list[str]:
+    """Return the texts of the legend below the figure."""
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+def test_map_shows_the_values() -> None:
+    """Each cell of a map has the value of its variant, in the unit of the colour bar."""
+    figure = rb.plot_map(study(), "peak")
+    mesh = next(item for item in figure.axes[0].collections if isinstance(item, QuadMesh))
+    assert np.ma.filled(mesh.get_array(), np.nan) == pytest.approx(1e3 * study().peak.values.T, nan_ok=True)
+    assert figure.axes[1].get_ylabel() == "Peak displacement (mm)"
+    assert figure.axes[0].get_xlabel() == "Damper gap (mm)"
+    assert figure.axes[0].get_ylabel() == "Load amplitude\n(kN)"
+    assert inside(figure)
+
+
+def test_axis_that_grows_by_a_factor_is_logarithmic() -> None:
+    """Values that grow by a factor are evenly spaced, and their cells meet halfway between."""
+    figure = rb.plot_map(study(), kind="map")
+    axes = figure.axes[0]
+    assert (axes.get_xscale(), axes.get_yscale()) == ("linear", "log")
+    ratio = (FORCES[1] / FORCES[0]) ** 0.5
+    assert axes.get_ylim() == pytest.approx((FORCES[0] / ratio / 1e3, FORCES[-1] * ratio / 1e3))
+
+
+def test_what_is_missing_is_named() -> None:
+    """Runs that did not finish are hatched, those without a value grey, and all are counted."""
+    figure = rb.plot_map(study())
+    patches = [item for item in figure.axes[0].collections if isinstance(item, PolyCollection)]
+    assert [len(item.get_paths()) for item in patches] == [1, 2, 1]
+    assert [bool(item.get_hatch()) for item in patches] == [False, True, False]
+    assert told(figure) == ["not computed yet (1)", "too many events (2)", "no value (1)"]
+
+
+@pytest.mark.parametrize("size", ["column", "page", "slide"])
+@pytest.mark.parametrize("kind", ["map", "lines"])
+def test_everything_is_on_the_paper(kind: Any, size: Any, tmp_path: Path) -> None:
+    """Maps and lines of every size are saved without a warning, with all on the paper."""
+    figure = rb.plot_map(study(), kind=kind, size=size)
+    figure.savefig(tmp_path / "figure.png")
+    assert (tmp_path / "figure.png").stat().st_size > 5000
+    assert inside(figure)
+
+
+def test_lines_show_the_values() -> None:
+    """One line for each value of the shorter axis, named by it, with marks where there is no value."""
+    few = study().isel({"load.amplitude": [0, 4, 8]})
+    figure = rb.plot_map(few, "share")
+    lines = figure.axes[0].get_lines()[:3]
+    for line, values in zip(lines, few.share.values.T, strict=True):
+        assert np.asarray(line.get_xdata()) == pytest.approx(1e3 * GAPS)
+        assert np.asarray(line.get_ydata()) == pytest.approx(values, nan_ok=True)
+    assert [line.get_label() for line in lines] == [
+        "load amplitude 100.0 N",
+        "load amplitude 707.1 N",
+        "load amplitude 5.000 kN",
+    ]
+    assert "too many events (1)" in told(figure)
+
+
+def test_replicas_give_median_and_band() -> None:
+    """Of replicas, lines show the median within 10 to 90 %, and maps the median."""
+    many = study(21)
+    line = rb.plot_map(many, at={"load.amplitude": "100 N"}).axes[0].get_lines()[0]
+    middle = many.share.isel({"load.amplitude": 0}).median("replica")
+    assert np.asarray(line.get_ydata()) == pytest.approx(middle.values, nan_ok=True)
+    figure = rb.plot_map(many, kind="map")
+    mesh = next(item for item in figure.axes[0].collections if isinstance(item, QuadMesh))
+    assert np.ma.filled(mesh.get_array(), np.nan) == pytest.approx(many.share.median("replica").values.T, nan_ok=True)
+    assert figure.axes[1].get_ylabel().endswith("median")
+
+
+def test_names_stand_beside_their_values() -> None:
+    """An axis of names has them at its ticks."""
+    whole = study().isel({"load.amplitude": [0, 1]})
+    named = whole.assign_coords({"load.amplitude": ["steel", "brass"]}).rename(
+        {"load.amplitude": "damper.ball.material"}
+    )
+    figure = rb.plot_map(named, kind="map")
+    assert [text.get_text() for text in figure.axes[0].get_yticklabels()] == ["steel", "brass"]
+    assert rb.plot_map(named, at={"damper.ball.material": "brass"}).axes[0].get_lines()
+
+
+def test_at_takes_the_nearest_value() -> None:
+    """A further axis is fixed at the value nearest to the one asked for, which the title tells."""
+    figure = rb.plot_map(study(), at={"load.amplitude": "1.1 kN"})
+    nearest = int(np.abs(FORCES - 1100).argmin())
+    line = figure.axes[0].get_lines()[0]
+    assert np.asarray(line.get_ydata()) == pytest.approx(study().share.values[:, nearest], nan_ok=True)
+    assert figure.get_suptitle() == f"Load amplitude {FORCES[nearest] / 1e3:.3f} kN"
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"of": "sharre"}, "did you mean 'share'"),
+        ({"kind": "mapp"}, "did you mean 'map'"),
+        ({"at": {"load.amplitud": 1}}, "did you mean 'load.amplitude'"),
+        ({"at": {"load.amplitude": "9 kN"}}, "try: 100.0 N to 5.000 kN"),
+        ({"at": {"load.amplitude": "9 mm"}}, "a force (N) is needed, not a length"),
+        ({"at": {"load.amplitude": "1 kN"}, "kind": "map"}, "try: kind lines"),
+        ({"at": {"load.amplitude": "1 kN", "damper.gap": "1 mm"}}, "nothing varies"),
+    ],
+)
+def test_clear_refusals(options: dict[str, Any], said: str) -> None:
+    """What cannot be drawn is refused with what to try."""
+    with pytest.raises(rb.CaseError) as caught:
+        rb.plot_map(study(), **options)
+    assert said in str(caught.value)
+
+
+def test_more_axes_than_two_are_refused() -> None:
+    """A study over three axes asks for a value of one of them, and takes it."""
+    three = xr.concat([study(), study()], xr.DataArray([1.0, 2.0], dims="structure.mass", name="structure.mass"))
+    with pytest.raises(rb.CaseError, match=r"varies along .*\n  try: at load.amplitude = 100"):
+        rb.plot_map(three)
+    assert rb.plot_map(three, at={"structure.mass": 2.0})
+
+
+def test_samples_of_the_motion_are_refused() -> None:
+    """What is no one number of a run is no measure."""
+    with_motion = study().assign(displacement=study().share.expand_dims(sample=5))
+    with pytest.raises(rb.CaseError, match="runs along sample"):
+        rb.plot_map(with_motion, "displacement")
