@@ -16,8 +16,8 @@ def test_size_of_the_ball(data):
     """As a radius the printed size gives 6 % of the structure's mass and 0.8 mm of clearance, as a diameter neither."""
     assert float(data.mass_share.sel(size="radius")) * 20 == pytest.approx(1.200037, abs=6e-7)
     np.testing.assert_allclose(data.clearance, [0.8e-3, 33.97e-3], rtol=1e-12)
-    assert int(data.impacts.sel(size="diameter", start=1)) == 0
-    assert int(data.impacts.sel(size="radius", start=1)) > 100
+    assert float(data.impacts.sel(size="diameter", start=1).max()) == 0
+    assert float(data.impacts.sel(size="radius", start=1).min()) > 100
 
 
 def test_elastic_limits(data):
