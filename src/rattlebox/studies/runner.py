@@ -11,7 +11,7 @@ import time
 import warnings
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from importlib import import_module
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, Protocol
@@ -276,6 +276,7 @@ def _whole(values: Values | None) -> Values:
 def _on_cluster(client: Any, task: Task, todo: Sequence[Block], threads: int) -> Generator[tuple[Block, Values]]:
     """Run blocks wherever there is a worker; those of workers that die are run again by others."""
     cloudpickle, dask = import_module("cloudpickle"), import_module("distributed")
+    broken = import_module("distributed.comm").CommClosedError
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Sending large graph")  # not scattered: what is lost there is gone for good
         shared = client.submit(pickle.loads, cloudpickle.dumps(task), pure=False)
@@ -292,10 +293,11 @@ def _on_cluster(client: Any, task: Task, todo: Sequence[Block], threads: int) ->
             f"the cluster gave up: {error.allowed_failures + 1} workers in turn died of one block\n"
             "  try: workers with more memory, or smaller blocks"
         ) from None
-    except dask.CancelledError as error:
+    except (dask.CancelledError, broken) as error:
         raise CaseError(f"the cluster is lost: {error}\n  try: whether its scheduler is running") from None
     finally:
-        client.cancel([shared, *blocks], force=True)
+        with suppress(broken):
+            client.cancel([shared, *blocks], force=True)
 
 
 def _block(task: Task, start: int, stop: int, threads: int, bits: str) -> Values | None:

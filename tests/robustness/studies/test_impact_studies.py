@@ -75,4 +75,4 @@ def test_ctrl_c_stops_the_core(tmp_path: Path) -> None:
     threading.Timer(0.5, press).start()
     with pytest.raises(Stopped, match="0 of 100,000 variants"):
         run_task(SweepTask(case, design, ["impacts"]), design=design, store=tmp_path / "study.zarr", block=100_000)
-    assert time.perf_counter() - pressed[0] < 1.0  # 0.2 s where nothing else runs
+    assert time.perf_counter() - pressed[0] < 2.0  # 0.2 s where nothing else runs

@@ -100,7 +100,7 @@ def test_ctrl_c_is_quick(tmp_path: Path) -> None:
     threading.Timer(0.3, press).start()
     with pytest.raises(Stopped, match="0 of 60 variants are in"):
         run_task(Logistic(pause=10), design=Grid(), store=tmp_path / "study.zarr", block=30)
-    assert time.perf_counter() - pressed[0] < 1.0  # 0.2 s where nothing else runs
+    assert time.perf_counter() - pressed[0] < 2.0  # 0.2 s where nothing else runs
     threading.Timer(0.3, press).start()
     with pytest.raises(Stopped, match="which are lost"):
         run_task(Logistic(pause=10), design=Grid())
