@@ -10,7 +10,7 @@ from .exact import shaken
 
 AMPLITUDE = "structure.motion.amplitude"
 STEP = 5e-4
-"""Between two values; thresholds lie halfway between two, so that each is found to half a step or not at all."""
+"""Between two values; thresholds lie halfway between two."""
 
 
 def around(threshold, below, above):

@@ -1,0 +1,41 @@
+"""Steady motions found by basins of attraction, against exact orbits."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+from . import cases
+from .exact import shaken
+
+RESTITUTION, GAMMA = 0.8, 0.9
+
+
+def state(orbit: shaken.TableOrbit, since: float) -> tuple[float, float]:
+    """Height of the ball over the table and its rate, some time after an impact."""
+    table = orbit.phase + since
+    height = orbit.gamma * (math.sin(orbit.phase) - math.sin(table)) + orbit.launch * since - 0.5 * since**2
+    return height, orbit.launch - since - orbit.gamma * math.cos(table)
+
+
+def test_bouncing_balls_coexist() -> None:
+    """Orbits that bounce every cycle and every second one exist side by side, and both are found to 1e-8."""
+    case = cases.table(shaken.table_orbit(RESTITUTION, GAMMA, 1), 1)
+    begin = case.structure.motion[0].phase
+    gap = cases.TABLE_GAP
+    starts = {
+        "damper.start": np.linspace(0, 12, 7) / gap - 1,
+        "damper.velocity": np.linspace(-4, 4, 7),
+    }
+    maps = rb.basins(case, starts, cycles=(300, 16), tolerance=1e-9, apart=1e-4, progress=False)
+    for cycles in (1, 2):
+        orbit = shaken.table_orbit(RESTITUTION, GAMMA, cycles)
+        known = (maps.orbit_period == cycles) & np.isclose(maps.orbit_impacts_per_cycle, 1 / cycles)
+        found = maps.isel(orbit=np.flatnonzero(known)).squeeze("orbit")  # one and no more
+        strobes = [state(orbit, (begin - orbit.phase) % (2 * math.pi) + 2 * math.pi * k) for k in range(cycles)]
+        heights = found.orbit_ball_place.values[:cycles, 0] + gap
+        rates = found.orbit_ball_speed.values[:cycles, 0]
+        ours = sorted(zip(heights.tolist(), rates.tolist(), strict=True))
+        assert ours == [pytest.approx(exact, abs=1e-8) for exact in sorted(strobes)]
