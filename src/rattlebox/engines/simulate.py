@@ -11,7 +11,7 @@ import numpy as np
 
 from rattlebox.engines.core import core
 from rattlebox.engines.pack import pack
-from rattlebox.engines.status import LEDGER_OPEN, NOT_FINITE, describe
+from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
 from rattlebox.results.arrays import ImpactArrays, RunArrays
 from rattlebox.results.provenance import Provenance
 from rattlebox.results.run import Run
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
+
+
+_MOST_EVENTS = 200_000
 
 
 def simulate(case: Case) -> Run:
@@ -54,9 +57,35 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
     list of Run
         In the order of the cases. Ctrl-C ends the runs in progress with the status "interrupted".
     """
-    count = max(1, min(len(cases), threads or os.cpu_count() or 1))
-    results = core().simulate([pack(case) for case in cases], count)
+    packed = [pack(case) for case in cases]
+    results = _simulated(packed, threads)
+    free = [k for k, case in enumerate(cases) if not case.output.is_chosen and _is_short(results[k])]
+    again = [{**packed[k], "sample_times": _with_contacts(packed[k]["sample_times"], results[k])} for k in free]
+    for k, result in zip(free, _simulated(again, threads), strict=True):
+        if result["status"] == results[k]["status"]:
+            results[k] = {**result, "seconds": results[k]["seconds"] + result["seconds"]}
     return [_run(case, result) for case, result in zip(cases, results, strict=True)]
+
+
+def _simulated(packed: list[Any], threads: int | None) -> list[dict[str, Any]]:
+    count = max(1, min(len(packed), threads or os.cpu_count() or 1))
+    return list(core().simulate(packed, count)) if packed else []
+
+
+def _is_short(raw: dict[str, Any]) -> bool:
+    """Whether the samples that the impacts ask for are affordable; a run that was stopped by hand is left as it is."""
+    events: int = raw["counts"]["events"]
+    return raw["impacts"]["time"].size > 0 and events <= _MOST_EVENTS and raw["status"] != INTERRUPTED
+
+
+def _with_contacts(times: NDArray[np.float64], raw: dict[str, Any]) -> NDArray[np.float64]:
+    """Add begin, middle and end of each contact, and the middle of each flight, which may be a parabola."""
+    touch = raw["impacts"]["time"]
+    duration = np.nan_to_num(raw["impacts"]["duration"])
+    opened = np.maximum(touch + duration, np.nextafter(touch, np.inf))  # hard impacts end where they begin
+    following = np.append(touch, raw["stopped_at"])[np.searchsorted(touch, opened)]
+    every = np.concatenate([times, touch, 0.5 * (touch + opened), opened, 0.5 * (opened + following)])
+    return np.unique(every[every <= times[-1]])
 
 
 def _run(case: Case, raw: dict[str, Any]) -> Run:

@@ -18,7 +18,7 @@ STATUSES: tuple[tuple[str, str], ...] = (
     ),
 )
 _NAMES = [name for name, _ in STATUSES]
-NOT_FINITE, LEDGER_OPEN = _NAMES.index("not_finite"), _NAMES.index("ledger_open")
+INTERRUPTED, NOT_FINITE, LEDGER_OPEN = map(_NAMES.index, ("interrupted", "not_finite", "ledger_open"))
 
 _SIZES = "Check that stiffnesses, masses and speeds are of the sizes you meant."
 _ADVICE: dict[str, dict[str, str]] = {

@@ -21,7 +21,7 @@ from .materials import Material, materials
 from .methods import AnyMethod, EventDriven, Newton, Output
 from .modes import ModalModel
 from .pairs import contact_pairs
-from .signals import AnySignal, Harmonic, Record, Signal, Unit, as_several, signals_in
+from .signals import AnySignal, HalfSine, Harmonic, Record, Signal, Unit, as_several, signals_in
 from .structures import AnyStructure, Shaker
 from .units import PositiveTime
 
@@ -201,8 +201,16 @@ class Case(Part):
         return tuple(signals)
 
     def sample_times(self) -> Vector:
-        """Return the times of the output, (T,) [s]."""
-        return self.output.sample_times(self.duration)
+        """Return the times of the output that are known before the run, (T,) [s]."""
+        if self.output.is_chosen:
+            return self.output.sample_times(self.duration)
+        signals = (*self.loads, *self.base_acceleration())
+        frequencies = [signal.frequency for signal in signals if isinstance(signal, Harmonic)]
+        frequencies += list(np.sqrt(self.modes.stiffness) / (2 * np.pi))
+        even = self.output.sample_times(self.duration, max(frequencies, default=0.0))
+        pulses = [s.start + np.linspace(0, s.duration, 21) for s in signals if isinstance(s, HalfSine)]
+        times = np.unique(np.concatenate([even, *pulses]))
+        return times[times <= self.duration]
 
     # ---- files
 

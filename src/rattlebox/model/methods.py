@@ -87,7 +87,12 @@ def _times(value: Any) -> Any:
 
 
 class Output(Part):
-    """At which times motion and energies are recorded; 0 and the end always are.
+    """At which times motion and energies are recorded; 0 and the end always are. Output does not change the run.
+
+    Without a choice the times are such that pictures of the motion are true: evenly spaced, 2001 of them or 20 in each
+    period of the fastest mode or harmonic (up to 100 001); 20 in each pulse; and, in runs of up to 200 000 events, begin,
+    middle and end of every contact and the middle of every flight, for which the run is repeated. Spectra and the like need
+    evenly spaced times: give a rate.
 
     Parameters
     ----------
@@ -115,13 +120,26 @@ class Output(Part):
             raise Hint("output times must not be negative")
         return times
 
-    def sample_times(self, duration: float) -> Vector:
-        """Return the times for a run of this duration, (T,) [s]."""
+    @property
+    def is_chosen(self) -> bool:
+        """Whether the user has chosen the times."""
+        return self.rate is not None or self.times is not None
+
+    def sample_times(self, duration: float, fastest: float = 0.0) -> Vector:
+        """Return the times for a run, (T,) [s]; without a choice the evenly spaced ones.
+
+        Parameters
+        ----------
+        duration
+            Of the run [s].
+        fastest
+            Highest frequency in it [Hz], which matters where the user has made no choice.
+        """
         if self.times is not None:
             inside = [t for t in self.times if 0 < t < duration]
             return np.array([0.0, *inside, duration])
         if self.rate is None:
-            return np.linspace(0.0, duration, 2001)
+            return np.linspace(0.0, duration, 1 + int(np.clip(20 * duration * fastest, 2000, 100_000)))
         count = int(np.floor(duration * self.rate * (1 + 1e-12)))
         times = np.arange(count + 1) / self.rate
         return times if abs(times[-1] - duration) <= 1e-9 / self.rate else np.append(times, duration)

@@ -59,7 +59,7 @@ def seed_case(
     duration
         Of the run [s].
     times, rate
-        Output times [s], or samples a second [Hz]; default 2001 samples.
+        Output times [s], or samples a second [Hz]; default those that suit pictures of the motion.
     method
         Default event-driven.
     wall

@@ -28,6 +28,7 @@ from .style import (
 
 MOST_SERIES = len(SERIES_COLOURS)
 LETTERS_ASIDE = 14
+FAR = 3.0  # a wall at this many times the balls' travel is out of sight
 
 
 def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float] | None = None) -> Figure:
@@ -131,6 +132,8 @@ def draw_structure(axes: Axes, arrays: RunArrays, shown: slice, time: Scale, len
 def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, shown: slice, time: Scale, length: Scale) -> None:
     """Draw the place of the balls of one damper in its cavity, as departures from the packed, centred row.
 
+    A wall that the balls stay far away from is left out.
+
     Parameters
     ----------
     axes
@@ -147,8 +150,10 @@ def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, shown: slice, time: 
     own = np.flatnonzero(arrays.ball_damper == damper)
     half = arrays.clearance[damper] / 2
     x = (arrays.relative_position - arrays.ball_centre)[shown][:, own]
-    for wall in (-half, half):
-        axes.axhline(wall / length.divisor, color=INK, linewidth=pen(0.7), zorder=0)
+    low, high = float(x.min()), float(x.max())
+    travel = FAR * (high - low) or 2 * half
+    for wall in (wall for wall in (-half, half) if low - travel <= wall <= high + travel):
+        axes.axhline(wall / length.divisor, color=INK, linewidth=pen(0.5), zorder=3)
     for k in range(min(len(own), MOST_SERIES)):
         axes.plot(
             arrays.time[shown] / time.divisor,

@@ -10,6 +10,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
+import rattlebox as rb
 from rattlebox.plots import paper, plot_comparison
 from rattlebox.plots.style import CHANNEL_COLOURS, WIDTHS, Scale, scaled
 from rattlebox.results import Run
@@ -146,6 +147,14 @@ def test_impacts_without_force_or_restitution(run: Run) -> None:
     bare = Run(replace(run.arrays, impacts=replace(log, peak_force=nan, restitution=nan)))
     assert len(bare.plot.impacts().axes) == 1
     assert len(bare.plot.impacts(log=True).axes) == 1
+
+
+def test_wall_far_away_is_left_out() -> None:
+    """A ball that bounces on the floor of a high cavity fills the panel; the lid is not drawn."""
+    case = rb.Case.from_file(Path(__file__).parents[3] / "examples" / "shaker.toml")
+    (axes,) = rb.simulate(case).plot.motion().axes
+    assert [line.get_ydata()[0] for line in axes.lines[:-1]] == [pytest.approx(-50)]
+    assert np.diff(axes.get_ylim()) < 2
 
 
 def test_walls_stand_where_the_ball_turns(two_dampers: Run) -> None:
