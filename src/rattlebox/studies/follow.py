@@ -21,7 +21,7 @@ from .axes import Axes, Design
 from .bar import telling
 from .blocks import Blocks
 from .measures import MEASURES
-from .runner import cores
+from .runner import Stopped, cores
 from .store import Memory, Plan
 from .task import SweepTask
 
@@ -80,7 +80,7 @@ def follow(
     threads
         Threads that share the variants beside each other. Results do not depend on it, to the last bit.
     progress
-        True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
+        True or False for a bar, or a function of the numbers of values done and in all; default a bar on a terminal.
 
     Returns
     -------
@@ -92,6 +92,8 @@ def follow(
     ------
     CaseError
         When an axis or a measure does not fit the case, or the loads do not repeat after a cycle.
+    Stopped
+        After Ctrl-C.
 
     Notes
     -----
@@ -124,10 +126,15 @@ def follow(
     outputs = {name: output for name, output in task.outputs.items() if name != "state"}
     plan = Plan(design.dims, design.shape, outputs, design.coords(), {**task.describe(), "design": design.describe()})
     kept = Memory(plan, Blocks.of(design.shape, walk.lanes))
-    with telling(progress, task.size) as tell:
-        for number, found in enumerate(walk.steps()):
-            kept.write(number, found)
-            tell((number + 1) * walk.lanes)
+    done = 0
+    try:
+        with telling(progress, walk.values, what="values") as tell:
+            for found in walk.steps():
+                kept.write(done, found)
+                done += 1
+                tell(done)
+    except KeyboardInterrupt:
+        raise Stopped(f"stopped after {done} of {walk.values} values, which are lost") from None
     return kept.result()
 
 

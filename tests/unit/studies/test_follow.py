@@ -1,5 +1,9 @@
 """Values of a parameter that are followed one after the other."""
 
+import signal
+import threading
+import time
+
 import numpy as np
 import pytest
 
@@ -145,6 +149,20 @@ def test_what_cannot_be_followed_is_told(path, options, said):
     """Bad arguments are told before anything runs."""
     with pytest.raises(rb.CaseError, match=said):
         follow(shaken(), path, [0.5e-3, 0.6e-3], **{"cycles": (3, 1), **options})
+
+
+def test_stops_at_once():
+    """Ctrl-C ends a value that would take hours within a second, and says where."""
+    begun = []
+
+    def interrupt():
+        begun.append(time.perf_counter())
+        signal.raise_signal(signal.SIGINT)
+
+    threading.Timer(0.5, interrupt).start()
+    with pytest.raises(KeyboardInterrupt, match="stopped after 0 of 2 values"):
+        follow(shaken(method=rb.Newton()), "damper.gap", [0.5e-3, 1e-3], cycles=(10**8, 1), **QUIET)
+    assert time.perf_counter() - begun[0] < 1.0
 
 
 def test_loads_that_do_not_repeat_are_refused():
