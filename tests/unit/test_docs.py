@@ -16,7 +16,7 @@ def examples(page):
     return re.findall(pattern, page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 
-@pytest.mark.parametrize("name", ["analysis", "basins", "bifurcation", "sweep"])
+@pytest.mark.parametrize("name", ["analysis", "basins", "bifurcation", "frequency_response", "lyapunov", "sweep"])
 def test_examples_print_what_the_page_says(name, tmp_path, monkeypatch):
     """Run from top to bottom, every example prints the text that follows it."""
     monkeypatch.chdir(tmp_path)

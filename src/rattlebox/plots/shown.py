@@ -51,7 +51,9 @@ class Shown(NamedTuple):
             places = {name: float(place) for place, name in enumerate(names)}
             numbers = np.array([places[str(value)] for value in values.values.ravel()])
             return cls(numbers.reshape(values.shape), 1.0, "", text, names)
-        divisor, unit = scaled(values.values, unit_of(values)) if unit_of(values) else (1.0, "")
+        own, factor = _prefixable(unit_of(values))
+        divisor, unit = scaled(factor * values.values, own) if own else (1.0, "")
+        divisor /= factor
         return cls(np.asarray(values.values / divisor, dtype=float), divisor, unit.replace("^2", "²"), text, None)
 
     @property
@@ -77,7 +79,7 @@ class _Between(Formatter):
     def __call__(self, value: float, pos: int | None = None) -> str:
         low, high = self.axis.get_view_interval()  # type: ignore[union-attr]
         digit = f"{value:e}"[0]
-        return plain(value) if high < 3 * low or (high < 30 * low and digit in "25") else ""
+        return plain(value) if high < 3 * low or (high < 100 * low and digit in "25") else ""
 
 
 def plain(value: float, _: Any = None) -> str:
@@ -98,4 +100,12 @@ def unit_of(values: xr.DataArray) -> str:
 
 def value_of(coord: xr.DataArray, value: Any) -> str:
     """Write one value of a coordinate with its unit."""
-    return quantity(float(value), unit_of(coord)) if coord.dtype.kind in "fiu" else str(value)
+    if coord.dtype.kind not in "fiu":
+        return str(value)
+    unit, factor = _prefixable(unit_of(coord))
+    return quantity(factor * float(value), unit)
+
+
+def _prefixable(unit: str) -> tuple[str, float]:
+    """The unit that takes prefixes, and how many of it are in the SI unit: nobody writes mkg."""
+    return ("g", 1e3) if unit == "kg" else (unit, 1.0)

@@ -1,0 +1,27 @@
+"""Choose clearance and ball of an impact damper for pulses of two strengths, wherever the ball happens to lie."""
+
+import rattlebox as rb
+
+case = rb.Case(
+    structure=rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping="25.3 N s/m"),
+    damper=rb.ImpactDamper(
+        ball=rb.Sphere(diameter="50 mm", material="steel"),
+        gap="0.4 mm",
+        contact=rb.Tsuji(restitution=0.6),
+    ),
+    load=rb.HalfSine(amplitude="5 kN", duration="1 ms"),
+    duration="6 s",
+)
+found = rb.design(
+    case,
+    {
+        "damper.gap": ("0.1 mm", "2 mm"),
+        "damper.ball.diameter": ["20 mm", "30 mm", "40 mm", "50 mm", "60 mm"],
+    },
+    ["added_mass", "settling_time"],
+    levels={"load.amplitude": ["2 kN", "5 kN"]},
+    starts=3,
+    trials=40,
+)
+rb.plot_design(found).savefig("design.png")
+rb.Case.from_toml(found.case.item(-1)).to_file("fastest.toml")

@@ -1,0 +1,23 @@
+"""Shake a ball in a cavity at every amplitude and frequency, and draw how much it takes up and how heavy it seems."""
+
+import rattlebox as rb
+
+case = rb.Case(
+    structure=rb.Shaker(motion=rb.Harmonic(amplitude="100 m/s^2", frequency="50 Hz")),
+    damper=rb.ImpactDamper(
+        ball=rb.Sphere(diameter="20 mm", material="steel"),
+        gap="1 mm",
+        start=-1.0,
+        gravity="-9.81 m/s^2",
+        contact=rb.Tsuji(restitution=0.6),
+    ),
+    duration="1 s",
+    method=rb.Newton(max_events=100_000),
+)
+found = rb.loss_map(
+    case,
+    rb.geomspace("15 m/s^2", "500 m/s^2", 25),
+    rb.geomspace("10 Hz", "200 Hz", 21),
+    cycles=(40, 20),
+)
+rb.plot_loss_map(found).savefig("loss_map.png")
