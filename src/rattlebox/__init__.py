@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from rattlebox.plots.bifurcation import plot_bifurcation
     from rattlebox.plots.design import plot_design
     from rattlebox.plots.loss_map import plot_loss_map
+    from rattlebox.plots.lyapunov import plot_lyapunov
     from rattlebox.plots.maps import plot_map
+    from rattlebox.plots.response import plot_frequency_response
     from rattlebox.plots.sensitivity import plot_sensitivity
     from rattlebox.results import Run, load
     from rattlebox.studies.basins import basins
@@ -58,7 +60,9 @@ _LATER = {
     "plot_basins": "rattlebox.plots.basins",
     "plot_bifurcation": "rattlebox.plots.bifurcation",
     "plot_design": "rattlebox.plots.design",
+    "plot_frequency_response": "rattlebox.plots.response",
     "plot_loss_map": "rattlebox.plots.loss_map",
+    "plot_lyapunov": "rattlebox.plots.lyapunov",
     "plot_map": "rattlebox.plots.maps",
     "plot_sensitivity": "rattlebox.plots.sensitivity",
     "design": "rattlebox.studies.design",
@@ -118,7 +122,9 @@ __all__ = [
     "plot_basins",
     "plot_bifurcation",
     "plot_design",
+    "plot_frequency_response",
     "plot_loss_map",
+    "plot_lyapunov",
     "plot_map",
     "plot_sensitivity",
     "random_design",

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap, TwoSlopeNorm
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from ..model.errors import CaseError
 from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, paper, pen, scaled
@@ -23,7 +24,8 @@ def plot_lyapunov(study: xarray.Dataset, *, size: Size = "column") -> Figure:
     """Draw Lyapunov exponents: a cycle where there is one, else a second.
 
     Of one case, how the exponent converges; over one axis also the exponents with twice their standard error; over two axes
-    a map. Positive exponents, chaos, are warm and light, the others cold and dark. What is -inf lies at the lower edge.
+    a map. Positive exponents, chaos, are warm and light, negative ones cold and dark, and grey those that are above zero by
+    no more than neighbours show that part in proportion to time. What is -inf lies at the lower edge.
 
     Parameters
     ----------
@@ -43,7 +45,7 @@ def plot_lyapunov(study: xarray.Dataset, *, size: Size = "column") -> Figure:
     with paper(size):
         if values.ndim == 2:
             figure = PaperFigure(size, 0.75 if size == "column" else 0.6)
-            _map(figure, values)
+            _map(figure, study, values)
             return figure
         figure = PaperFigure(size, 0.6 if values.ndim == 0 else 1.1 if size == "column" else 0.45)
         if values.ndim == 0:
@@ -63,6 +65,12 @@ def _unit(values: xarray.DataArray) -> str:
     return "" if values.attrs["units"] == "1" else str(values.attrs["units"])
 
 
+def _resolution(study: xarray.Dataset) -> float:
+    """Growth of a separation in proportion to time, from the first step to the last."""
+    steps = study[study.running_exponent.dims[-1]].values
+    return float(np.log(steps.size) / steps[-1])
+
+
 def _floor(values: Any) -> tuple[float, float]:
     """Limits of an axis that shows all finite values and zero."""
     finite = np.asarray(values)[np.isfinite(values)]
@@ -80,7 +88,7 @@ def _convergence(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) ->
     ends = np.atleast_1d(values.values)
     chosen = np.unique(np.linspace(0, len(lines) - 1, _LINES).astype(int))
     for k in chosen:
-        colour = _CHAOTIC if ends[k] > 0 else _REGULAR
+        colour = _REGULAR if ends[k] <= 0 else _CHAOTIC if ends[k] > _resolution(study) else FAINT
         axes.plot(times, lines[k], color=colour, lw=pen(0.9 if len(chosen) == 1 else 0.4))
     axes.axhline(0, color=INK, lw=pen(0.5), zorder=0)
     if values.ndim == 0:
@@ -106,8 +114,8 @@ def _coordinate(values: xarray.DataArray, name: Any) -> tuple[Any, str, str]:
 def _exponents(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) -> None:
     at, text, unit = _coordinate(values, values.dims[0])
     error = 2 * np.nan_to_num(study.standard_error.values * (values / study.exponent).fillna(1.0).values)
-    chaotic = values.values > 0
-    for mask, colour, marker in ((chaotic, _CHAOTIC, "o"), (~chaotic, _REGULAR, "s")):
+    grown, told = values.values > 0, values.values > _resolution(study)
+    for mask, colour, marker in ((told, _CHAOTIC, "o"), (grown & ~told, FAINT, "D"), (~grown, _REGULAR, "s")):
         axes.errorbar(
             at[mask], values.values[mask], error[mask], fmt=marker, color=colour, ms=pen(2), lw=pen(0.6), mew=0
         )
@@ -121,7 +129,7 @@ def _exponents(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) -> N
     label(axes, "y", _text(values), _unit(values))
 
 
-def _map(figure: Figure, values: xarray.DataArray) -> None:
+def _map(figure: Figure, study: xarray.Dataset, values: xarray.DataArray) -> None:
     axes = figure.subplots()
     (y, y_text, y_unit), (x, x_text, x_unit) = (_coordinate(values, name) for name in values.dims)
     finite = values.values[np.isfinite(values.values)]
@@ -130,6 +138,12 @@ def _map(figure: Figure, values: xarray.DataArray) -> None:
     mesh = axes.pcolormesh(
         x, y, np.clip(values.values, norm.vmin, norm.vmax), norm=norm, cmap=_colours(), rasterized=True
     )
+    neutral = (values.values > 0) & (values.values <= _resolution(study))
+    if neutral.any():
+        grey = np.where(neutral, 0.0, np.nan)
+        axes.pcolormesh(x, y, grey, cmap=ListedColormap([FAINT]), rasterized=True)
+        patch = Patch(color=FAINT, label="too near zero to tell")
+        axes.legend(handles=[patch], loc="lower left", bbox_to_anchor=(0.0, 1.0))
     label(axes, "x", x_text, x_unit)
     axes.set_ylabel(f"{y_text} ({y_unit})" if y_unit else y_text)
     bar = figure.colorbar(mesh, ax=axes, extend="both", aspect=30, pad=0.02)

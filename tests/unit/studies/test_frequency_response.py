@@ -1,10 +1,14 @@
 """Frequency responses: what they hold, what they refuse, and that they find what coexists."""
 
+import runpy
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import rattlebox as rb
 
+EXAMPLE = Path(__file__).parents[3] / "examples" / "frequency_response.py"
 QUICK = {"cycles": (60, 8), "samples": 16, "progress": False}
 
 
@@ -32,6 +36,16 @@ def test_motions_that_coexist_are_found():
     assert up.amplitude[0] == pytest.approx(float(response.bare_amplitude[0, 0]), rel=1e-3)
     assert down.amplitude[0] > 1.2 * up.amplitude[0]
     assert up.amplitude[-1] == pytest.approx(float(down.amplitude[-1]), rel=0.05)
+
+
+def test_example():
+    """Upwards the ball lies still until the bare structure swings almost as far as the clearance."""
+    one = runpy.run_path(str(EXAMPLE))["response"].isel(level=0)
+    still = one.impacts_per_cycle.sel(direction="up").values == 0
+    last = int(np.flatnonzero(still)[-1])
+    assert still[:last].all()
+    assert 0.95 < one.bare_amplitude[last] / 1e-3 < 1 < one.bare_amplitude[last + 2] / 1e-3
+    assert (one.impacts_per_cycle.sel(direction="down") > 2).all()
 
 
 def test_what_it_holds():

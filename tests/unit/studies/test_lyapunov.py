@@ -1,14 +1,18 @@
 """Lyapunov exponents: over axes, in any phase of the load, of motions that stick, and against pairs left to themselves."""
 
 import math
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rattlebox as rb
 from rattlebox import analysis
+from rattlebox.paper.two_impacts import two_impacts
 from rattlebox.studies.axes import Design
 
+EXAMPLE = Path(__file__).parents[3] / "examples" / "lyapunov.py"
 QUICK = {"cycles": (60, 60), "pairs": 3, "progress": False}
 
 
@@ -40,6 +44,17 @@ def inelastic(restitution):
         duration="1 s",
         method=rb.Newton(restitution=restitution),
     )
+
+
+def test_example():
+    """The last windows of order hold the motion with two impacts a cycle, with its exact multiplier; chaos comes first."""
+    found = runpy.run_path(str(EXAMPLE))["study"].growth_per_cycle
+    ball = rb.Sphere(radius="14 mm", material="steel").weight
+    exact = two_impacts(
+        mass=1.0, stiffness=40e3, damping=4.0, ball=ball, clearance=2e-3, restitution=0.6, amplitude=5.0, frequency=33.0
+    )[0]
+    assert float(found[-1]) == pytest.approx(2 * math.log(exact.multiplier), rel=1e-4)
+    assert (found[:2] > 0.5).all()
 
 
 def test_variants_know_nothing_of_each_other():
