@@ -71,9 +71,11 @@ def loss_map(
     >>> import rattlebox as rb
     >>> case = rb.Case(
     ...     structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="20 Hz")),
-    ...     damper=rb.ImpactDamper(ball=rb.Sphere(diameter="10 mm", material="steel"), gap="2 mm"),
+    ...     damper=rb.ImpactDamper(
+    ...         ball=rb.Sphere(diameter="10 mm", material="steel"), gap="2 mm", contact=rb.Tsuji(restitution=0.5)
+    ...     ),
     ...     duration="1 s",
-    ...     method=rb.Newton(restitution=0.5),
+    ...     method=rb.Newton(),
     ... )
     >>> found = rb.loss_map(case, rb.geomspace("1 mm", "10 mm", 4), ["20 Hz", "40 Hz"])
     >>> found.loss_factor.dims

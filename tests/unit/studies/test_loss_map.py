@@ -1,0 +1,101 @@
+"""Loss maps: what they hold, how they are drawn, what they refuse."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "loss_map.py"
+AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
+
+
+def shaken(**changes: Any) -> rb.Case:
+    """Return a ball in a shaken cavity."""
+    parts: dict[str, Any] = {
+        "structure": rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz")),
+        "damper": rb.ImpactDamper(
+            ball=rb.Sphere(radius="10 mm", material="steel"),
+            gap="1 mm",
+            velocity=0.1,
+            contact=rb.Tsuji(restitution=0.6),
+        ),
+        "duration": "1 s",
+        "method": rb.Newton(),
+    }
+    return rb.Case(**(parts | changes))
+
+
+@pytest.fixture(scope="module")
+def found() -> Any:
+    """Return a small map."""
+    return rb.loss_map(shaken(), ["0.5 mm", "1 mm", "2 mm"], ["10 Hz", "20 Hz"], cycles=(40, 20), progress=False)
+
+
+def test_loss_and_masses_agree(found: Any) -> None:
+    """The loss from the impacts is that from the force on the cavity, and both are those of the loss factor."""
+    assert (found.status == 0).all()
+    mass = 7850 * 4 / 3 * np.pi * 0.01**3
+    assert float(found.particle_mass) == pytest.approx(mass)
+    by_force = np.pi * found.damping_mass / mass
+    assert found.reduced_loss[:2].values == pytest.approx(by_force[:2].values, rel=1e-3)
+    # A motion that does not repeat ends with another energy than it began with.
+    assert found.reduced_loss.values == pytest.approx(by_force.values, rel=1 / 20)
+    assert found.loss_factor.values == pytest.approx(np.abs(found.damping_mass / found.effective_mass).values)
+    speed = 2 * np.pi * found[FREQUENCY] * found[AMPLITUDE]
+    assert (found.reduced_loss * mass * speed**2).values == pytest.approx(found.loss_per_cycle.values)
+
+
+def test_map_is_a_sweep(found: Any) -> None:
+    """Each number is that of a sweep at that amplitude and frequency, in the unit of the case's motion."""
+    assert found.loss_factor.dims == (AMPLITUDE, FREQUENCY)
+    assert found[AMPLITUDE].attrs["units"] == "m"
+    one = rb.sweep(
+        shaken(), {AMPLITUDE: ["2 mm"], FREQUENCY: ["20 Hz"]}, "effective_mass", cycles=(40, 20), progress=False
+    )
+    assert float(one.effective_mass.item()) == float(found.effective_mass[2, 1])
+    faster = shaken(structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 m/s^2", frequency="10 Hz")))
+    by_acceleration = rb.loss_map(faster, ["10 m/s^2"], ["10 Hz"], cycles=(2, 2), progress=False)
+    assert by_acceleration[AMPLITUDE].attrs["units"] == "m/s^2"
+
+
+@pytest.mark.parametrize("size", ["column", "page", "slide"])
+def test_plot(found: Any, size: Any, tmp_path: Path) -> None:
+    """Three panels are drawn in every size, without a warning; the mass is over that of the particles."""
+    figure = rb.plot_loss_map(found, size=size)
+    figure.savefig(tmp_path / "map.png")
+    bars = [axes.get_ylabel() for axes in figure.axes[3:]]
+    assert bars == ["Loss factor $m''/|m'|$", "Effective mass $m'/m$", "Loss a cycle $/\\,mV^2$"]
+    assert (tmp_path / "map.png").stat().st_size > 5000
+
+
+@pytest.mark.parametrize(
+    ("changes", "amplitudes", "said"),
+    [
+        ({"structure": rb.Fixed()}, ["1 mm"], "a shaker with one harmonic motion"),
+        ({"damper": []}, ["1 mm"], "a case with a damper"),
+        ({}, ["1 m/s^2"], "a length"),
+        ({}, ["-1 mm", "0 mm", 1e400], "finite"),
+    ],
+)
+def test_clear_refusals(changes: dict[str, Any], amplitudes: Any, said: str) -> None:
+    """A case without a shaker or a damper, or amplitudes in another unit, are refused with what to try."""
+    with pytest.raises(rb.CaseError, match=said):
+        rb.loss_map(shaken(**changes), amplitudes, ["10 Hz"])
+
+
+def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the example, a ball rides along at low frequency, and the most is lost where the shaker moves by a quarter gap."""
+    monkeypatch.chdir(tmp_path)
+    found = runpy.run_path(str(EXAMPLE))["found"]
+    slow = found.isel({FREQUENCY: 0, AMPLITUDE: -1})
+    assert float(slow.effective_mass / slow.particle_mass) == pytest.approx(1, abs=0.02)
+    best = found.isel(found.reduced_loss.argmax([AMPLITUDE])).sel({FREQUENCY: slice(60, 200)})
+    travel = best[AMPLITUDE] / (2 * np.pi * best[FREQUENCY]) ** 2
+    assert float(travel.median()) == pytest.approx(0.25e-3, rel=0.05)
+    assert (tmp_path / "loss_map.png").stat().st_size > 5000
