@@ -100,6 +100,12 @@ def _convergence(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) ->
     label(axes, "y", _text(values), _unit(values))
 
 
+def _name(axis: Any, names: xarray.DataArray) -> None:
+    """Write names along an axis that has no numbers."""
+    if names.dtype.kind not in "fiu":
+        axis.set_ticks(range(names.size), [str(name) for name in names.values])
+
+
 def _coordinate(values: xarray.DataArray, name: Any) -> tuple[Any, str, str]:
     """Values, name and unit of an axis."""
     axis = values[name]
@@ -125,6 +131,7 @@ def _exponents(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) -> N
         axes.plot(at[lost], np.full(lost.sum(), limits[0]), "v", color=_REGULAR, ms=pen(3), clip_on=False)
     axes.axhline(0, color=INK, lw=pen(0.5), zorder=0)
     axes.margins(x=0.02)
+    _name(axes.xaxis, values[values.dims[0]])
     label(axes, "x", text, unit)
     label(axes, "y", _text(values), _unit(values))
 
@@ -146,6 +153,8 @@ def _map(figure: Figure, study: xarray.Dataset, values: xarray.DataArray) -> Non
         axes.legend(handles=[patch], loc="lower left", bbox_to_anchor=(0.0, 1.0))
     label(axes, "x", x_text, x_unit)
     axes.set_ylabel(f"{y_text} ({y_unit})" if y_unit else y_text)
+    for axis, name in zip((axes.yaxis, axes.xaxis), values.dims, strict=True):
+        _name(axis, values[name])
     bar = figure.colorbar(mesh, ax=axes, extend="both", aspect=30, pad=0.02)
     bar.outline.set_visible(False)
     unit = _unit(values)
