@@ -90,14 +90,19 @@ protected:
     void set_scales() {
         const real tolerance = problem_.settings.tolerance;
         scale_.assign(system_.size(), infinity);
-        real speed = 0;
-        for (std::size_t j = 0; j < system_.active.size(); ++j) {
-            const Active& a = system_.active[j];
-            speed = std::max(speed, a.speed);
-            const real depth = contact(a.contact).normal.visit(
+        real speed = 0, deepest = 0;
+        const auto depth = [&](const Active& a) {
+            const real scale = contact(a.contact).normal.visit(
                 [&](const auto& law) { return std::sqrt(std::sqrt(law.overlap_scale(a.speed))); });
-            scale_[system_.x_index(j)] = tolerance * std::max(depth, std::fabs(a.x));
+            return std::max(scale, std::fabs(a.x));
+        };
+        for (const Active& a : system_.active) {
+            speed = std::max(speed, a.speed);
+            deepest = std::max(deepest, depth(a));
         }
+        // A contact that starts from rest has no depth of its own to measure by.
+        for (std::size_t j = 0; j < system_.active.size(); ++j)
+            scale_[system_.x_index(j)] = tolerance * std::max(depth(system_.active[j]), 0.1 * deepest);
         if (system_.active.empty())
             for (real y : state_.y) speed = std::max(speed, std::fabs(y));
         if (speed == 0) speed = 1;
