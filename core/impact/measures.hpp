@@ -111,17 +111,39 @@ public:
     }
     real share(real part) const { return supplied() > 0 ? part / supplied() : not_a_number; }
 
-    real closure() const {
-        real worst = 0, load = 0, base = 0, height = 0;
+    struct Balance {
+        real residual = 0, supplied = 0,
+             handled = 0; // largest residual; energy put in; all that was added up
+    };
+
+    Balance balance() const {
+        Balance found;
+        real load = 0, base = 0, height = 0;
         const real before = motion(0) + gravity(0);
         for (std::size_t i = 0; i < count(); ++i) {
-            worst = std::fmax(worst, std::fabs(motion(i) + gravity(i) - before - load_work(i) - base_work(i) +
-                                               viscous(i) + impact(i)));
+            const real residual =
+                motion(i) + gravity(i) - before - load_work(i) - base_work(i) + viscous(i) + impact(i);
+            found.residual = std::fmax(found.residual, std::fabs(residual));
+            found.handled = std::fmax(
+                found.handled, motion(i) + std::fabs(gravity(i)) + samples().viscous[i] +
+                                   std::fabs(samples().load_work[i]) + std::fabs(samples().base_work[i]));
             load = std::fmax(load, std::fabs(load_work(i)));
             base = std::fmax(base, std::fabs(base_work(i)));
             height = std::fmax(height, std::fabs(gravity(i) - gravity(0)));
         }
-        return worst == 0 ? 0 : worst / (load + base + motion(0) + height);
+        found.supplied = load + base + motion(0) + height;
+        return found;
+    }
+
+    real closure() const {
+        const Balance b = balance();
+        return b.residual == 0 ? 0 : b.residual / b.supplied;
+    }
+
+    // Does the ledger close, as far as rounding can tell?
+    bool closes(real bound) const {
+        const Balance b = balance();
+        return !(b.residual > bound * b.supplied && b.residual > 1e-10 * b.handled);
     }
 
     // ---- impacts

@@ -39,7 +39,7 @@ class Sweep {
         status_[i] = static_cast<std::int8_t>(result.status);
         if (result.status != Status::finished) return;
         const Observer seen(worker.problem, result, worker.window);
-        if (seen.closure() > worker.problem.settings.closure_bound())
+        if (!seen.closes(worker.problem.settings.closure_bound()))
             status_[i] = static_cast<std::int8_t>(Status::ledger_open);
         for (std::size_t m = 0; m < values_.size(); ++m) values_[m][i] = wanted_.measures[m]->value(seen);
         for (std::size_t s = 0; wanted_.motion && s < samples_; ++s) {

@@ -93,7 +93,7 @@ def _run(case: Case, raw: dict[str, Any]) -> Run:
         arrays = _arrays(case, raw)
     provenance = Provenance.now(method=case.method.kind, seed=case.seed)
     run = Run(arrays, case_toml=case.to_toml, provenance=provenance)
-    if run.status == "finished" and not run.closure <= raw["closure_bound"]:
+    if run.status == "finished" and not run.ledger.closes(raw["closure_bound"]):
         end = NOT_FINITE if np.isnan(run.closure) else LEDGER_OPEN
         status, message = describe(end, case.duration, "", run.closure, case.method.kind)
         run = Run(replace(arrays, status=status, message=message), case_toml=case.to_toml, provenance=provenance)

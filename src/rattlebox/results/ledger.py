@@ -100,6 +100,16 @@ class Ledger:
             return 0.0
         return float(worst / reference) if reference != 0.0 else float("inf")
 
+    def closes(self, bound: float) -> bool:
+        """Whether the closure is within a bound, or the residual is no more than rounding.
+
+        Of a ball that rests and takes nothing up, rounding is all there is.
+        """
+        arrays = self.arrays
+        handled = self.motion + np.abs(self.gravity) + arrays.viscous_loss
+        handled = handled + np.abs(arrays.load_work) + np.abs(arrays.base_work)
+        return self.closure <= bound or float(np.max(np.abs(self.residual))) <= 1e-10 * float(np.max(handled))
+
     @cached_property
     def shares(self) -> dict[str, float]:
         """Shares of the energy supplied by the end: viscous, impact, plastic, and left in the motion.
