@@ -27,6 +27,10 @@ _MERGED = 2e-15
 _CLOSED = 1e-12  # over the clearance
 
 
+class _Stopped(Exception):
+    """Someone asked to stop."""
+
+
 class Pairs:
     """Pairs of some variants of a study; arrays run over (variant, pair, member of the pair, component of the state).
 
@@ -97,20 +101,26 @@ class Pairs:
 
         NaN where a run did not finish; None when it was stopped.
         """
-        aligning = np.minimum(0.5 * self._skip, _ALIGNING * self.leg)
-        settled = self._settle(self._skip - aligning)
-        if settled is None:
+        try:
+            return self._curves(*self._sums())
+        except _Stopped:
             return None
-        state, time = settled
+
+    @property
+    def _whole(self) -> NDArray[np.bool_]:
+        """Pairs of which no run has failed."""
+        return np.isin(self.status, (_FINISHED, LEDGER_OPEN))
+
+    def _sums(self) -> tuple[Array, Array]:
+        """Times at which neighbours were brought back, and growth until then, (times, variants, pairs)."""
+        state, time = self._settle(self._skip - np.minimum(0.5 * self._skip, _ALIGNING * self.leg))
         state = self._parted(state)
         grown = np.zeros(time.shape)
         closed, halved = np.zeros(time.shape, int), np.zeros(time.shape, int)
-        alive = self.status == _FINISHED
+        alive = self._whole
         times, sums = [time], [grown]
         distance = self._task.distance * self._scale
         while (going := alive & (self._end - time > 1e-9 * self.leg)).any():
-            if self._cancelled():
-                return None
             to_next = (np.floor(time / self.leg + 1e-6) + 1) * self.leg - time
             length = (to_next + self.leg * (2.0**closed - 1 + closed * _TURN % 1)) * 0.5**halved
             length = np.where(going, np.minimum(length, self._end - time), 1e-3 * self.leg)
@@ -133,12 +143,12 @@ class Pairs:
             alive &= ~merged
             times.append(time)
             sums.append(grown)
-        return self._curves(np.array(times), np.array(sums))
+        return np.array(times), np.array(sums)
 
     def _curves(self, times: Array, sums: Array) -> Array:
         steps = np.arange(self._task.count + 1)
         curves = np.full((*self.status.shape, steps.size - 1), np.nan)
-        for variant, pair in np.argwhere((self.status == _FINISHED) | (self.status == LEDGER_OPEN)):
+        for variant, pair in np.argwhere(self._whole):
             at = self._skip[variant, 0] + steps * self.leg[variant, 0]
             if np.isinf(sums[-1, variant, pair]):
                 curves[variant, pair] = -np.inf
@@ -148,15 +158,13 @@ class Pairs:
 
     # ---- runs
 
-    def _settle(self, until: Array) -> tuple[Array, Array] | None:
+    def _settle(self, until: Array) -> tuple[Array, Array]:
         """States at some time or soon after it, with all contacts open, and when that is."""
         state, time = self._start, np.zeros(self.status.shape)
         if not until.any():
             return state, time
         found, waiting = state.copy(), np.ones(time.shape, bool)
         for attempt in range(_PATIENCE):
-            if self._cancelled():
-                return None
             length = np.where(waiting, until + self.leg * (attempt * _TURN % 1), 1e-3 * self.leg)
             ended, alive = self._run(state, np.zeros(time.shape), length, waiting, waiting)
             taken = waiting & alive
@@ -186,11 +194,15 @@ class Pairs:
             "settings": {**self._packed["settings"], "duration": _flat(length[..., None])},
         }
         shape = state.shape[:-1]
-        result = run_block(packed, shape, 0, int(np.prod(shape)), Look(state=True), threads=self._threads)
-        assert result is not None  # nothing asks it to stop
+        look, size = Look(state=True), int(np.prod(shape))
+        result = run_block(
+            packed, shape, 0, size, look, threads=self._threads, progress=lambda _: not self._cancelled()
+        )
+        if result is None or self._cancelled():
+            raise _Stopped
         status = result["status"].reshape(shape).max(axis=-1)
         self.status = np.where(going & (status != _FINISHED), status, self.status)
-        alive = alive & ~(going & (status != _FINISHED) & (status != LEDGER_OPEN))
+        alive = alive & ~(going & ~np.isin(status, (_FINISHED, LEDGER_OPEN)))
         return result["state"].reshape(state.shape), alive
 
     # ---- states

@@ -2,6 +2,7 @@
 
 import math
 import runpy
+import time
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import rattlebox as rb
 from rattlebox import analysis
 from rattlebox.paper.two_impacts import two_impacts
 from rattlebox.studies.axes import Design
+from rattlebox.studies.lyapunov import LyapunovTask
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "lyapunov.py"
 QUICK = {"cycles": (60, 60), "pairs": 3, "progress": False}
@@ -170,3 +172,11 @@ def test_loads_that_cannot_be_begun_anew_are_refused():
         rb.lyapunov(case(load=record))
     with pytest.raises(rb.CaseError, match="harmonic"):
         rb.lyapunov(case(load=rb.HalfSine(amplitude=1.0, duration=0.01)), **QUICK)
+
+
+def test_it_stops_when_asked():
+    """Long work ends soon after it is told to, also while motions settle."""
+    task = LyapunovTask(case(), Design.of(case(), {"load.frequency": np.linspace(29, 33, 64)}), cycles=(20000, 20000))
+    begun = time.perf_counter()
+    assert task.run(0, 64, threads=1, cancelled=lambda: time.perf_counter() - begun > 0.3) is None
+    assert time.perf_counter() - begun < 1.5
