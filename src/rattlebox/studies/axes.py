@@ -168,13 +168,18 @@ class _Direction:
     offsets: list[Values] = field(default_factory=list)
 
 
+def materials_in(case: Case) -> dict[str, Material]:
+    """Return the materials of a case by name."""
+    parts = [get(case, path) for path in all_paths(case)]
+    return {part.name: part for part in parts if isinstance(part, Material)}
+
+
 class _Reader:
     """Turns what a user says into a design."""
 
     def __init__(self, case: Case, source: str) -> None:
         self.case, self.source = case, source
-        parts = [get(case, path) for path in all_paths(case)]
-        self.materials = {part.name: part for part in parts if isinstance(part, Material)}
+        self.materials = materials_in(case)
 
     def design(self, axes: Any) -> Design:
         """Read axes, put them together and try some variants."""
@@ -393,7 +398,7 @@ def _coordinates(direction: _Direction) -> Iterator[tuple[str, tuple[str, Column
     for values in direction.values:
         path = values.parameter.path
         attrs = {"long_name": _spoken(path)} | ({} if values.unit is None else {"units": values.unit})
-        yield path, (name, _labels(values.array) if values.unit is None else values.array, attrs)
+        yield path, (name, labels(values.array) if values.unit is None else values.array, attrs)
     for values in direction.offsets:
         path = f"{values.parameter.path}.offset"
         yield path, (name, values.array, {"units": str(values.unit), "long_name": _spoken(path)})
@@ -403,8 +408,8 @@ def _spoken(path: str) -> str:
     return path.replace(".", " ").replace("_", " ")
 
 
-def _labels(items: Column) -> Column:
-    """Texts that tell objects apart."""
+def labels(items: Column) -> Column:
+    """Return texts that tell objects apart."""
     different = {id(item): item for item in items}
     texts = {key: _label(item) for key, item in different.items()}
     first: dict[str, Any] = {}

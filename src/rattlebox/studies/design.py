@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -17,13 +18,15 @@ from rattlebox.model.errors import CaseError, Hint, nearest
 from rattlebox.model.paths import replaced
 from rattlebox.model.units import parse
 
-from .axes import Design
+from .axes import Design, labels, materials_in
 from .bar import telling
 from .designs import whole
 from .extras import extra
 from .members import members
+from .parameters import Parameter
 from .runner import Stopped
-from .sweep import sweep
+from .sweep import known, sweep
+from .task import SweepTask
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -162,23 +165,29 @@ class _Parameter:
     attrs: dict[str, str]
 
     @classmethod
-    def of(cls, case: Case, path: str, given: Any, log: bool) -> _Parameter:
+    def of(cls, case: Case, path: Any, given: Any, log: bool) -> _Parameter:
+        parameter = Parameter(case, path, "parameters", materials_in(case))
         ranged = isinstance(given, tuple)
         if ranged and len(given) != 2:
-            raise Hint(
-                f"parameters: {path} = {given!r:.60}: a pair (smallest, largest) is needed, or a list to choose from"
-            )
-        tried = Design.of(case, {path: list(given) if ranged else given}, source="parameters")
-        values, (_, names, attrs) = tried.columns[path], tried.coords()[path]
+            raise parameter.wrong("a pair (smallest, largest) is needed, or a list to choose from", "", None, given)
+        values = parameter.values(list(given) if ranged else given)
+        if parameter.is_start and values.unit == "m":
+            raise parameter.wrong("a length, but the gap may vary", "fractions of the gap, -1 to 1", None, given)
+        attrs = {"long_name": parameter.path.replace(".", " ").replace("_", " ")}
+        if values.unit is not None:
+            attrs["units"] = values.unit
         if not ranged:
-            return cls(path, None, dict(zip(names.tolist(), values.tolist(), strict=True)), False, attrs)
-        if values.dtype.kind != "f":
-            raise Hint(f"parameters: {path} is no number with bounds", "a list to choose from, in square brackets")
-        low, high = values.tolist()
+            names = labels(values.array) if values.unit is None else values.array
+            return cls(
+                parameter.path, None, dict(zip(names.tolist(), values.array.tolist(), strict=True)), False, attrs
+            )
+        if values.unit is None:
+            raise parameter.wrong("it has no bounds, being no number", "a list to choose from, in square brackets")
+        low, high = values.array.tolist()
         if not low < high or (log and low <= 0):
-            least = " greater than zero" if log else ""
-            raise Hint(f"parameters: {path} = {given!r:.60}: the first must be the smaller one{least}")
-        return cls(path, (low, high), {}, log, attrs)
+            least = " and greater than zero" if log else ""
+            raise parameter.wrong(f"the first must be the smaller one{least}", "", None, given)
+        return cls(parameter.path, (low, high), {}, log, attrs)
 
     def propose(self, trial: Any) -> Any:
         if self.bounds:
@@ -235,13 +244,22 @@ class _Search:
     threads: int | None
 
     def check(self, log: Sequence[str]) -> None:
-        """Try the case itself, and refuse what no trial could use."""
+        """Refuse what no trial could use."""
         paths = [parameter.path for parameter in self.parameters]
         for path in (log,) if isinstance(log, str) else log:
             if path not in paths:
                 raise Hint(f"log = {path!r}: there is no parameter of that name", nearest(path, paths))
         if self.robust not in _ROBUST:
             raise Hint(f"robust = {self.robust!r}: there is no such choice", nearest(str(self.robust), _ROBUST))
+        measures = known([goal.measure for goal in self.measured])
+        skip = parse(self.options["skip"], ("s",))[0]
+        task = SweepTask(self.case, self.members, measures=measures, **(self.options | {"skip": skip}))
+        assert task.look
+
+    @cached_property
+    def members(self) -> Design:
+        """The runs of a trial."""
+        return Design.of(self.case, self.axes, source="levels")
 
     @property
     def measured(self) -> list[_Goal]:
@@ -250,12 +268,11 @@ class _Search:
 
     def describe(self) -> dict[str, Any]:
         """What tells this search from others, in JSON's types."""
-        axes = Design.of(self.case, self.axes, source="levels")
         return {
             "case": self.case.to_toml(),
             "parameters": {parameter.path: parameter.describe() for parameter in self.parameters},
             "objective": {goal.name: "max" if goal.largest else "min" for goal in self.goals},
-            "members": axes.describe(),
+            "members": self.members.describe(),
             "robust": self.robust,
             "max_added_mass": self.limit,
             "options": self.options,
@@ -402,11 +419,14 @@ def _storage(optuna: Any, store: str | os.PathLike[str] | None) -> Iterator[Any]
 
 
 def _mend(path: Path) -> None:
-    """Cut off a line that was not written to its end."""
-    if path.exists():
-        with path.open("r+b") as file:
-            content = file.read()
-            file.truncate(content.rfind(b"\n") + 1)
+    """Cut off a line that was not written to its end, of a journal of ours."""
+    if not path.exists():
+        return
+    with path.open("r+b") as file:
+        content = file.read()
+        if not b'{"op_code":'.startswith(content[:11]):
+            raise CaseError(f"store = {path}: this holds something else\n  try: a file that does not exist yet")
+        file.truncate(content.rfind(b"\n") + 1)
 
 
 def _study(optuna: Any, storage: Any, search: _Search, seed: int, store: Any) -> Any:
@@ -414,15 +434,12 @@ def _study(optuna: Any, storage: Any, search: _Search, seed: int, store: Any) ->
     from rattlebox import __version__
 
     about = json.loads(json.dumps({"version": __version__, "seed": seed, **search.describe()}))
-    try:
-        study = optuna.create_study(
-            storage=storage,
-            study_name="rattlebox",
-            load_if_exists=True,
-            directions=["maximize" if goal.largest else "minimize" for goal in search.goals],
-        )
-    except (ValueError, KeyError):
-        raise CaseError(f"store = {store}: this holds something else\n  try: a file that does not exist yet") from None
+    study = optuna.create_study(
+        storage=storage,
+        study_name="rattlebox",
+        load_if_exists=True,
+        directions=["maximize" if goal.largest else "minimize" for goal in search.goals],
+    )
     there = study.user_attrs.get("about")
     if there is None:
         study.set_user_attr("about", about)

@@ -96,7 +96,7 @@ def sweep(
     task = SweepTask(
         case,
         design,
-        measures=_known(measure),
+        measures=known(measure),
         skip=parse(skip, ("s",))[0],
         cycles=cycles,
         samples=samples,
@@ -108,7 +108,19 @@ def sweep(
     return run_task(task, design=design, store=store, on=on, threads=threads, progress=progress)
 
 
-def _known(measure: Any) -> list[Any]:
+def known(measure: Any) -> list[Any]:
+    """Return measures as a list.
+
+    Parameters
+    ----------
+    measure
+        One or several: names, functions of a Run.
+
+    Raises
+    ------
+    CaseError
+        When there is no such measure, with the nearest name.
+    """
     asked = [measure] if isinstance(measure, str) or callable(measure) else list(measure)
     for name in asked:
         if isinstance(name, str) and name not in MEASURES:

@@ -1,0 +1,285 @@
+"""Designs: what is found, that a stop changes nothing, what is refused."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import runpy
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rattlebox as rb
+from rattlebox.studies.runner import Stopped
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "design.py"
+GAP, RADIUS = "damper.gap", "damper.ball.radius"
+BOUNDS: dict[str, Any] = {GAP: ("0.1 mm", "2 mm"), RADIUS: ("10 mm", "40 mm")}
+
+
+def struck(**changes: Any) -> rb.Case:
+    """Return an impact damper under a pulse."""
+    parts: dict[str, Any] = {
+        "structure": rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping="25.3 N s/m"),
+        "damper": rb.ImpactDamper(
+            ball=rb.Sphere(radius="30 mm", material="steel"), gap="0.4 mm", contact=rb.Tsuji(restitution=0.6)
+        ),
+        "load": rb.HalfSine(amplitude="5 kN", duration="1 ms"),
+        "duration": "2 s",
+    }
+    return rb.Case(**(parts | changes))
+
+
+def searched(**changes: Any) -> xr.Dataset:
+    """Return a short search."""
+    options: dict[str, Any] = {
+        "objective": {"added_mass": "min", "impact_share": "max"},
+        "levels": {"load.amplitude": ["2 kN", "5 kN"]},
+        "starts": 3,
+        "max_added_mass": "1 kg",
+        "log": [GAP],
+        "trials": 24,
+        "seed": 5,
+        "progress": False,
+    }
+    return rb.design(struck(), BOUNDS, **(options | changes))
+
+
+def test_objective_is_the_worst_of_all_members() -> None:
+    """What a trial is told is the worst, mean or median of a sweep over levels and starts of its case."""
+    found = rb.design(
+        struck(),
+        {GAP: ("0.1 mm", "2 mm")},
+        {"impact_share": "max"},
+        levels={"load.amplitude": ["2 kN", "5 kN"]},
+        starts=[-1, 0.5],
+        trials=2,
+        progress=False,
+    )
+    for trial in range(2):
+        gap = float(found[GAP][trial])
+        axes = {"load.amplitude": ["2 kN", "5 kN"], "damper.start": [-1, 0.5], GAP: [gap]}
+        members = rb.sweep(struck(), axes, "impact_share", progress=False)
+        assert float(found.impact_share[trial]) == float(members.impact_share.min())
+
+
+@pytest.mark.parametrize(("robust", "of"), [("mean", np.mean), ("median", np.median), ("worst", np.max)])
+def test_robust(robust: Any, of: Any) -> None:
+    """Mean, median and worst are those of the members."""
+    found = rb.design(struck(), {GAP: ("0.4 mm", "1 mm")}, "rms", starts=3, robust=robust, trials=1, progress=False)
+    gap = float(found[GAP][0])
+    members = rb.sweep(struck(), {"damper.start": [-1.0, 0.0, 1.0], GAP: [gap]}, "rms", progress=False)
+    assert float(found.rms[0]) == of(members.rms.values.ravel())
+
+
+def test_front_beats_all_others() -> None:
+    """No allowed trial is better than one on the front in everything, and each other is beaten by one."""
+    found = searched()
+    allowed = found.isel(trial=found.feasible.values)
+    best = found.isel(trial=found.front.values)
+    both = np.array([allowed.added_mass, -allowed.impact_share]).T
+    for values in np.array([best.added_mass, -best.impact_share]).T:
+        assert not ((both <= values).all(axis=1) & (both < values).any(axis=1)).any()
+    assert set(found.front.values) <= set(allowed.trial.values)
+    assert (np.diff(best.added_mass) > 0).all()
+    assert best.sizes["trial"] == found.sizes["front"] >= 2
+
+
+def test_best_case_is_the_trial() -> None:
+    """The case file of a trial on the front has its parameters, its mass and its objective."""
+    found = searched(objective="impact_share", trials=8)
+    case = rb.Case.from_toml(found.case.item())
+    best = found.isel(trial=int(found.front.item()))
+    assert float(best.impact_share) == np.nanmin(found.impact_share)
+    assert case.dampers[0].gap == float(best[GAP])
+    assert case.dampers[0].balls[0].weight == float(best.added_mass)
+
+
+def test_mass_limit_holds() -> None:
+    """Trials over the limit are not run, and none of them is the best; those within are found soon."""
+    found = searched()
+    heavy = found.added_mass > 1.0
+    assert heavy.any()
+    assert not found.feasible.values[heavy].any()
+    assert np.isnan(found.impact_share.values[heavy]).all()
+    assert found.feasible.values[12:].mean() > found.feasible.values[:12].mean() - 0.2
+
+
+def test_runs_without_a_value_rule_a_trial_out() -> None:
+    """A trial one of whose runs never settles counts as not allowed, with the share of such runs."""
+    found = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
+    assert not found.feasible.any()
+    assert (found.missing == 1).all()
+    assert found.sizes["front"] == 0
+
+
+def test_choices_and_misfits() -> None:
+    """Numbers and names are chosen from lists; parameters that do not fit together rule a trial out."""
+    parameters = {
+        "damper.ball.material": ["steel", "brass"],
+        "damper.ball.diameter": ["20 mm", "30 mm", "40 mm"],
+        "damper.cavity_length": ["25 mm", "42 mm"],
+    }
+    found = rb.design(struck(), parameters, "rms", trials=20, progress=False)
+    assert set(found["damper.ball.material"].values) == {"steel", "brass"}
+    assert set(found["damper.ball.diameter"].values) <= {0.02, 0.03, 0.04}
+    misfit = (found["damper.ball.diameter"] > found["damper.cavity_length"]).values
+    assert misfit.any()
+    assert (found.feasible.values == ~misfit).all()
+    assert (found.missing.values[misfit] == 1).all()
+
+
+def test_own_measure() -> None:
+    """A function of a Run is an objective, too."""
+
+    def last_place(run: Any) -> float:
+        return float(abs(run.arrays.displacement[-1, 0]))
+
+    found = rb.design(struck(), {GAP: ("0.1 mm", "2 mm")}, last_place, trials=2, progress=False)
+    gap = float(found[GAP][0])
+    run = rb.simulate(struck(damper=struck().dampers[0].model_copy(update={"gap": gap})))
+    assert float(found.last_place[0]) == pytest.approx(last_place(run))
+
+
+def test_same_seed_same_trials() -> None:
+    """A seed decides the trials, whatever the number of threads; another one gives others."""
+    assert searched().identical(searched(threads=1))
+    assert not searched(trials=3)[GAP].equals(searched(trials=3, seed=6)[GAP])
+
+
+def test_a_stop_changes_nothing(tmp_path: Path) -> None:
+    """After Ctrl-C, a line cut off and a call with fewer trials, the same call ends as one that never stopped."""
+    store = tmp_path / "design.journal"
+
+    def interrupt(done: int, total: int) -> None:
+        if done == 11:
+            raise KeyboardInterrupt
+
+    searched(trials=5, store=store)
+    with pytest.raises(Stopped, match=r"11 of 24 trials, .*design.journal.* goes on"):
+        searched(store=store, progress=interrupt)
+    with store.open("ab") as file:
+        file.write(b'{"op_code":4,"wor')
+    told: list[int] = []
+    assert searched(store=store, progress=lambda done, total: told.append(done)).identical(searched())
+    assert told[0] == 11 and told[-1] == 24
+    assert searched(trials=5, store=store).identical(searched(trials=5))
+
+
+def _search_into(store: str) -> None:
+    searched(store=store, trials=400)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
+def test_kill_loses_nothing(tmp_path: Path) -> None:
+    """After kill -9 in the middle, the trials are those of an undisturbed search."""
+    store = tmp_path / "design.journal"
+    process = multiprocessing.get_context("spawn").Process(target=_search_into, args=(str(store),))
+    process.start()
+    deadline = time.monotonic() + 60
+    while not store.exists() or store.stat().st_size < 20_000:
+        assert time.monotonic() < deadline and process.is_alive()
+        time.sleep(0.01)
+    assert process.pid is not None
+    os.kill(process.pid, signal.SIGKILL)
+    process.join()
+    assert searched(store=store).identical(searched())
+
+
+def test_another_study_is_refused(tmp_path: Path) -> None:
+    """A store of another case, seed or parameters is refused with what differs; so is one of something else."""
+    store = tmp_path / "design.journal"
+    searched(trials=2, store=store)
+    with pytest.raises(rb.CaseError, match="different: seed"):
+        searched(trials=2, store=store, seed=1)
+    with pytest.raises(rb.CaseError, match="different: parameters\n"):
+        searched(trials=2, store=store, log=[])
+    other = tmp_path / "notes.txt"
+    other.write_text("buy milk\n")
+    with pytest.raises(rb.CaseError, match="holds something else"):
+        searched(trials=2, store=other)
+    assert other.read_text() == "buy milk\n"
+    with pytest.raises(rb.CaseError, match="this is a folder"):
+        searched(trials=2, store=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "options", "said"),
+    [
+        ({"damper.gapp": (1e-4, 1e-3)}, {}, "did you mean 'gap'"),
+        ({GAP: (1e-3, 1e-4)}, {}, "the first must be the smaller one"),
+        ({GAP: ("1 mm", "1 kg")}, {}, "a length"),
+        ({GAP: (1e-4, 1e-3, 1e-2)}, {}, "a pair"),
+        ({GAP: 1e-3}, {}, "a list of values is needed"),
+        ({"damper.start": ("0.1 mm", "0.2 mm")}, {}, "fractions of the gap"),
+        ({"damper.ball.material": ("steel", "brass")}, {}, "a list to choose from"),
+        ({"damper.ball.material": ["steel", "bras"]}, {}, "brass"),
+        ({"damper.start": (0, 1)}, {"log": ["damper.start"]}, "greater than zero"),
+        (BOUNDS, {"log": ["damper.gapp"]}, "did you mean 'damper.gap'"),
+        (BOUNDS, {"objective": "settling"}, "settling_time"),
+        (BOUNDS, {"objective": {"rms": "least"}}, '"min" or "max"'),
+        (BOUNDS, {"objective": "added_mass"}, "smallest ball"),
+        (BOUNDS, {"objective": []}, "there is none"),
+        (BOUNDS, {"robust": "best"}, "worst"),
+        (BOUNDS, {"starts": 1}, "at least 2"),
+        (BOUNDS, {"trials": 0}, "at least 1"),
+        (BOUNDS, {"max_added_mass": "1 m"}, "a mass"),
+        (BOUNDS, {"levels": {"load.amplitud": [1.0]}}, "did you mean 'amplitude'"),
+        (BOUNDS, {"cycles": (1, 1)}, "cycles need a harmonic load"),
+        ({}, {}, "paths with bounds or choices"),
+    ],
+)
+def test_clear_refusals(parameters: Any, options: dict[str, Any], said: str) -> None:
+    """What does not fit is refused before any trial, with what to try."""
+    with pytest.raises(rb.CaseError) as caught:
+        rb.design(struck(), parameters, progress=False, **options)
+    assert said in str(caught.value)
+
+
+def test_without_optuna(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where Optuna is missing, the answer is the command that installs it."""
+    monkeypatch.setitem(sys.modules, "optuna", None)
+    with pytest.raises(rb.CaseError, match=r"pip install 'rattlebox\[design\]'"):
+        rb.design(struck(), BOUNDS)
+
+
+def test_optuna_is_silent(capfd: pytest.CaptureFixture[str]) -> None:
+    """Nothing is written but our own bar, and Optuna's own level is as before."""
+    import optuna
+
+    before = optuna.logging.get_verbosity()
+    searched(trials=2)
+    assert capfd.readouterr() == ("", "")
+    assert optuna.logging.get_verbosity() == before
+
+
+@pytest.mark.parametrize("size", ["column", "page", "slide"])
+@pytest.mark.parametrize("objective", ["impact_share", ["added_mass", "impact_share"]])
+def test_plot(objective: Any, size: Any, tmp_path: Path) -> None:
+    """Searches for one and for several objectives are drawn without a warning, with the best trials marked."""
+    found = searched(objective=objective, trials=12)
+    figure = rb.plot_design(found, size=size)
+    figure.savefig(tmp_path / "design.png")
+    assert len(figure.axes) == 3
+    marked = figure.axes[1].get_lines()[-1]
+    assert len(np.asarray(marked.get_xdata())) == found.sizes["front"]
+
+
+def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the example, heavier balls settle sooner, and the heaviest in less than half the time of the structure alone."""
+    monkeypatch.chdir(tmp_path)
+    found = runpy.run_path(str(EXAMPLE))["found"]
+    best = found.isel(trial=found.front.values)
+    assert (np.diff(best.settling_time) < 0).all()
+    bare = 3 * 2 * 20 / 25.3  # ln 20 time constants of the envelope
+    assert float(best.settling_time[0]) < bare
+    assert float(best.settling_time[-1]) < 0.45 * bare
+    heaviest = rb.Case.from_file(tmp_path / "fastest.toml")
+    assert heaviest.dampers[0].gap == pytest.approx(0.85e-3, rel=0.2)
+    assert (tmp_path / "design.png").stat().st_size > 5000
