@@ -23,11 +23,13 @@ def extra(module: str, extra: str) -> Any:
     CaseError
         When it is not installed, with the command that installs it.
     """
+    library = module.partition(".")[0]
     try:
-        return import_module(module)
+        import_module(library)
     except ModuleNotFoundError as error:
-        if error.name != module.partition(".")[0]:
+        if error.name != library:
             raise
         raise CaseError(
-            f"this needs {error.name}, which is not installed\n  try: pip install 'rattlebox[{extra}]'"
+            f"this needs {library}, which is not installed\n  try: pip install 'rattlebox[{extra}]'"
         ) from None
+    return import_module(module)

@@ -1,0 +1,158 @@
+"""Sensitivities: indices of functions that are known, what is drawn, what is refused."""
+
+from __future__ import annotations
+
+import runpy
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import rattlebox as rb
+from rattlebox.studies.sensitivity import _indices
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "sensitivity.py"
+BOUNDS: dict[str, Any] = {"damper.gap": ("0.2 mm", "1 mm"), "load.amplitude": ("4 kN", "6 kN")}
+
+
+def struck(**changes: Any) -> rb.Case:
+    """Return an impact damper under a pulse."""
+    parts: dict[str, Any] = {
+        "structure": rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping="25.3 N s/m"),
+        "damper": rb.ImpactDamper(
+            ball=rb.Sphere(radius="30 mm", material="steel"), gap="0.4 mm", contact=rb.Tsuji(restitution=0.6)
+        ),
+        "load": rb.HalfSine(amplitude="5 kN", duration="1 ms"),
+        "duration": "1 s",
+    }
+    return rb.Case(**(parts | changes))
+
+
+def test_points_are_those_of_a_sweep() -> None:
+    """Mean and variance are those of the runs, and a parameter without influence has no index."""
+    bounds = BOUNDS | {"structure.velocity": (0.0, 1e-12)}
+    found = rb.sensitivity(struck(), bounds, "impact_share", 64, progress=False)
+    assert found.total.sel(measure="impact_share", parameter="structure.velocity") < 1e-3
+    assert 0 < float(found["mean"][0]) < 1
+    assert (found.total.sel(parameter=list(BOUNDS)) > 0.05).all()
+
+
+def test_same_seed_same_indices() -> None:
+    """A seed decides points and intervals, whatever the number of threads or the state of NumPy's own generator."""
+    first = rb.sensitivity(struck(), BOUNDS, n=16, seed=0, threads=2, progress=False)
+    np.random.seed(7)  # noqa: NPY002
+    again = rb.sensitivity(struck(), BOUNDS, n=16, seed=0, threads=1, progress=False)
+    assert first.identical(again)
+    other = rb.sensitivity(struck(), BOUNDS, n=16, seed=1, progress=False)
+    assert not first.total.equals(other.total)
+
+
+def test_several_measures_names_and_logarithms() -> None:
+    """Measures have a row each; choices and logarithmic ranges are parameters, too."""
+    bounds = BOUNDS | {"damper.ball.material": ["steel", "brass", "glass"]}
+    found = rb.sensitivity(struck(), bounds, ["peak_contact_force", "impacts"], 16, log=["damper.gap"], progress=False)
+    assert found.total.dims == ("measure", "parameter")
+    assert found.measure.values.tolist() == ["peak_contact_force", "impacts"]
+    assert found.parameter.values.tolist() == list(bounds)
+    assert (found.left_out == 0).all()
+
+
+def test_means_over_starts() -> None:
+    """With starts, each point is the mean over them: the mean of all is that of as many sweeps."""
+    found = rb.sensitivity(struck(), BOUNDS, "impacts", 8, starts=[-1, 1], progress=False)
+    single = [rb.sensitivity(struck(), BOUNDS, "impacts", 8, starts=[s, s], progress=False)["mean"] for s in (-1, 1)]
+    assert float(found["mean"][0]) == pytest.approx(np.mean(single))
+
+
+def test_goes_on_from_a_store(tmp_path: Path) -> None:
+    """With a store the runs are on disk, and the same call takes them from there."""
+    store = tmp_path / "study.zarr"
+    first = rb.sensitivity(struck(), BOUNDS, n=8, store=store, progress=False)
+    told: list[int] = []
+    again = rb.sensitivity(struck(), BOUNDS, n=8, store=store, progress=lambda done, total: told.append(done))
+    assert first.equals(again)
+    assert told == [32]
+    with pytest.raises(rb.CaseError, match="another study"):
+        rb.sensitivity(struck(), BOUNDS, n=8, seed=1, store=store)
+
+
+def runs(values: Any, status: Any = 0) -> xr.Dataset:
+    """Return what a sweep might."""
+    array = np.asarray(values, dtype=float)
+    ended = np.broadcast_to(np.asarray(status, dtype="int8"), array.shape)
+    return xr.Dataset({"status": ("sample", ended), "f": ("sample", array)}, attrs={"case": ""})
+
+
+def test_points_without_a_value_are_left_out() -> None:
+    """A run without a value takes its base point along; too many of them are refused."""
+    rng = np.random.default_rng(1)
+    values = rng.random(32 * 4)
+    status = np.zeros(128)
+    status[5] = 2
+    values[77] = np.nan
+    found = _indices(runs(values, status), ["a", "b"], 32, 0.95, 0)
+    assert int(found.left_out[0]) == 2
+    assert np.isfinite(found.total).all()
+    with pytest.raises(rb.CaseError, match="of 32 base points, 32 have a run without a value"):
+        _indices(runs(values, 1), ["a", "b"], 32, 0.95, 0)
+
+
+@pytest.mark.parametrize(
+    ("bounds", "options", "said"),
+    [
+        ({"damper.gapp": (1e-4, 1e-3)}, {}, "did you mean 'gap'"),
+        ({"damper.gap": ("1 mm", "0.1 mm")}, {}, "the first value must be the smaller one"),
+        (BOUNDS, {"n": 100}, "a power of two"),
+        (BOUNDS, {"n": 4}, "at least 8"),
+        (BOUNDS, {"measure": "shares"}, "there is no measure 'shares'"),
+        (BOUNDS, {"confidence": 95}, "between 0 and 1"),
+        (BOUNDS, {"log": ["gap"]}, "there is no range of that name"),
+        (BOUNDS, {"measure": "settling_time"}, "have a run without a value"),
+        ({"damper.gap": ("50 mm", "60 mm")}, {}, "nothing depends on anything"),
+        ({}, {}, "ranges: paths with values are needed"),
+    ],
+)
+def test_clear_refusals(bounds: Any, options: dict[str, Any], said: str) -> None:
+    """What does not fit is refused with what to try, and so is what gives no indices."""
+    with pytest.raises(rb.CaseError) as caught:
+        rb.sensitivity(struck(), bounds, **({"n": 8, "progress": False} | options))
+    assert said in str(caught.value)
+
+
+def test_without_salib(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where SALib is missing, the answer is the command that installs it."""
+    for name in [name for name in sys.modules if name.startswith("SALib")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "SALib", None)
+    with pytest.raises(rb.CaseError, match=r"needs SALib.*\n.*pip install 'rattlebox\[design\]'"):
+        rb.sensitivity(struck(), BOUNDS, n=8)
+
+
+@pytest.mark.parametrize("size", ["column", "page", "slide"])
+def test_plot(size: Any, tmp_path: Path) -> None:
+    """Bars have the lengths of the indices, the most important parameter on top, and are saved without a warning."""
+    found = rb.sensitivity(struck(), BOUNDS, ["impacts", "rms"], 16, progress=False)
+    figure = rb.plot_sensitivity(found, size=size)
+    figure.savefig(tmp_path / "bars.png")
+    axes = figure.axes[0]
+    lengths = [patch.get_width() for patch in axes.patches]
+    order = np.argsort(found.total.mean("measure").values)
+    expected = [*found.first.values[0, order], *found.total.values[0, order]]
+    assert lengths == pytest.approx(expected)
+    assert [text.get_text() for text in axes.get_yticklabels()] == list(found.parameter.values[order])
+
+
+def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the example, the start decides nothing of the share taken up, but some of the largest force."""
+    monkeypatch.chdir(tmp_path)
+    found = runpy.run_path(str(EXAMPLE))["found"]
+    start = found.total.sel(parameter="damper.start")
+    assert float(start.sel(measure="impact_share")) < 0.01
+    assert float(start.sel(measure="peak_contact_force")) == pytest.approx(0.085, abs=0.05)
+    shares = found.first.sel(measure="impact_share")
+    assert float(shares.sum()) == pytest.approx(1, abs=0.1)
+    assert str(shares.idxmax().item()) == "damper.contact.restitution"
+    assert (tmp_path / "sensitivity.png").stat().st_size > 5000
