@@ -1,0 +1,148 @@
+"""Loss maps, designs and sensitivities against exact values."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+from . import cases
+from .exact import printed, shaken
+
+AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_design_finds_the_best_clearance(seed: int) -> None:
+    """A ball that sticks takes most from a shaken cavity, 4 m A^2 w^2 a cycle, at a clearance of pi times the amplitude."""
+    found = rb.design(
+        cases.sticky_load(1.0, 1.0),
+        {"damper.gap": ("0.2 m", "4 m")},
+        {"reduced_loss": "max"},
+        cycles=(10, 20),
+        trials=80,
+        seed=seed,
+        progress=False,
+    )
+    best = rb.Case.from_toml(found.case.item())
+    assert float(found.reduced_loss.max()) == pytest.approx(4, rel=1e-5)
+    # The loss is flat at its top: 1e-5 of it is some 4e-3 of the clearance.
+    assert 2 * best.dampers[0].gap == pytest.approx(np.pi, rel=5e-3)
+
+
+def test_trials_have_the_exact_loss() -> None:
+    """Every trial below the best clearance has the loss of collect-and-collide."""
+    found = rb.design(
+        cases.sticky_load(1.0, 1.0),
+        {"damper.gap": ("0.2 m", "1.5 m")},
+        {"reduced_loss": "max"},
+        cycles=(10, 20),
+        trials=12,
+        progress=False,
+    )
+    exact = [shaken.collect_and_collide(1 / (2 * gap)) for gap in found["damper.gap"].values]
+    assert found.reduced_loss.values == pytest.approx(exact, rel=1e-9)
+
+
+def test_loss_map_of_an_inelastic_ball() -> None:
+    """Effective mass and loss of an inelastic ball on a shaker are the published ones, whatever the frequency."""
+    case = cases.inelastic_ball(1.2, 1.0)
+    gammas = np.array(list(printed.APPARENT_MASS))
+    # g = 1: at twice the frequency a quarter of the amplitude is the same motion.
+    for ratio in (1.0, 2.0):
+        found = rb.loss_map(
+            case, gammas / ratio**2, [ratio / (2 * np.pi)], cycles=(10, 20), samples=20 * 4096 + 1, progress=False
+        )
+        exact = np.array([shaken.inelastic_ball(gamma).apparent_mass() for gamma in gammas])
+        assert found.effective_mass[:, 0].values == pytest.approx(exact[:, 0], abs=1e-6)
+        assert found.damping_mass[:, 0].values == pytest.approx(exact[:, 1], abs=1e-6)
+        assert found.effective_mass[:, 0].values == pytest.approx(
+            [m for m, _ in printed.APPARENT_MASS.values()], abs=2e-6
+        )
+        assert found.reduced_loss[:, 0].values == pytest.approx(np.pi * exact[:, 1], rel=1e-8)
+
+
+def test_loss_map_of_two_impacts_a_cycle() -> None:
+    """Above its threshold a ball that hits both walls once a cycle loses what the exact orbit loses, at any frequency."""
+    e = 0.6
+    ratios = np.array([1.2, 1.5, 2.0]) * shaken.threshold(e)
+    for ratio in ratios.tolist():
+        orbit = shaken.two_impacts(e, ratio)
+        found = rb.loss_map(
+            cases.shaken_cavity(orbit, 1.0), [float(orbit.amplitude)], ["1 rad/s"], cycles=(0, 20), progress=False
+        )
+        exact = (1 - e**2) * orbit.approach**2 / orbit.amplitude**2
+        assert float(found.reduced_loss.item()) == pytest.approx(exact, rel=1e-8)
+        assert float(found.impacts_per_cycle.item()) == 2
+
+
+def struck() -> rb.Case:
+    """Return a structure without damping or damper under a short pulse."""
+    return rb.Case(
+        structure=rb.SDOF(mass=2.0, stiffness=200.0, damping=0.0),
+        load=rb.HalfSine(amplitude=3.0, duration=1e-4),
+        duration="1 s",
+    )
+
+
+def pulse_indices(low: float, high: float, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
+    """First-order and total indices of F^2 / M for uniform F in low to high and M in first to last."""
+
+    def moment(power: int, a: float, b: float) -> float:
+        return np.log(b / a) / (b - a) if power == -1 else (b ** (power + 1) - a ** (power + 1)) / (power + 1) / (b - a)
+
+    force = moment(2, low, high), moment(4, low, high)
+    mass = moment(-1, first, last), moment(-2, first, last)
+    of_force, of_mass = force[1] / force[0] ** 2 - 1, mass[1] / mass[0] ** 2 - 1
+    total = (1 + of_force) * (1 + of_mass) - 1
+    return np.array([of_force, of_mass]) / total, np.array([of_force * (1 + of_mass), of_mass * (1 + of_force)]) / total
+
+
+def test_sensitivity_of_the_energy_of_a_pulse() -> None:
+    """The work of a short pulse goes as F^2 / M: the indices of force and mass are exact, that of the stiffness is none."""
+    bounds = {"load.amplitude": (2.0, 4.0), "structure.mass": (1.0, 5.0), "structure.stiffness": (100.0, 300.0)}
+    found = rb.sensitivity(struck(), bounds, "work", n=1024, progress=False).isel(measure=0)
+    first, total = pulse_indices(2.0, 4.0, 1.0, 5.0)
+    assert first.sum() < 1 < total.sum()
+    assert found.first.values == pytest.approx([*first, 0], abs=0.03)
+    assert found.total.values == pytest.approx([*total, 0], abs=0.03)
+    assert np.all(np.abs(found.first.values[:2] - first) < 2 * found.first_confidence.values[:2])
+    assert np.all(np.abs(found.total.values[:2] - total) < 2 * found.total_confidence.values[:2])
+    impulse = 3.0 * 1e-4 * 2 / np.pi  # mean of F^2 is 28/3, of 1/M ln 5 / 4
+    assert float(found["mean"]) == pytest.approx(impulse**2 / 9 * 28 / 3 * np.log(5) / 4 / 2, rel=0.01)
+
+
+def test_indices_converge() -> None:
+    """With sixteen times the points, the indices come at least three times closer to the exact ones."""
+    bounds = {"load.amplitude": (2.0, 4.0), "structure.mass": (1.0, 5.0)}
+    exact = np.concatenate(pulse_indices(2.0, 4.0, 1.0, 5.0))
+
+    def off(n: int) -> float:
+        errors = []
+        for seed in range(4):
+            found = rb.sensitivity(struck(), bounds, "work", n=n, seed=seed, progress=False).isel(measure=0)
+            errors.append(np.concatenate((found.first, found.total)) - exact)
+        return float(np.sqrt(np.mean(np.square(errors))))
+
+    assert off(512) < off(32) / 3
+
+
+def test_sensitivity_of_a_published_function() -> None:
+    """The indices of sin x + 7 sin^2 y + 0.1 z^4 sin x over -pi to pi are found, z having a total index only."""
+
+    def ishigami(run: Any) -> float:
+        x, y, z = run.arrays.velocity[0, 0], run.arrays.displacement[0, 0], run.arrays.ball_velocity[0, 0]
+        return float(np.sin(x) + 7 * np.sin(y) ** 2 + 0.1 * z**4 * np.sin(x))
+
+    case = rb.Case(
+        structure=rb.SDOF(mass=1.0, stiffness=1.0),
+        damper=rb.ImpactDamper(ball=cases.ball(1.0), gap=10.0, contact=rb.Tsuji(restitution=0.5)),
+        duration=1e-3,
+        method=rb.Newton(),
+        output=rb.Output(times=[0.0]),
+    )
+    bounds = dict.fromkeys(("structure.velocity", "structure.displacement", "damper.velocity"), (-np.pi, np.pi))
+    found = rb.sensitivity(case, bounds, ishigami, n=2048, progress=False).isel(measure=0)
+    assert found.first.values == pytest.approx([0.3139, 0.4424, 0.0], abs=0.01)
+    assert found.total.values == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.01)
