@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,9 @@ from rattlebox.model.contacts import restitution_of_alpha
 from rattlebox.model.pairs import contact_pairs
 from rattlebox.model.restitutions import JacksonGreen
 from rattlebox.plots.style import INK, SERIES_COLOURS, PaperFigure, paper, pen
+from rattlebox.results import Run
 
+from .ensemble import band, ensemble, near
 from .figure import Reproduction
 from .harmonic import BALL, State, harmonic_case
 from .models import CONSTANT_E, MODELS, RIGID, described
@@ -28,20 +31,21 @@ AMPLITUDE, FREQUENCY = 20.0, 18.0
 """Of the load, while the other one varies [N], [Hz]."""
 FREQUENCIES = np.arange(120, 241) / 10
 AMPLITUDES = np.arange(8, 161) / 2
-DURATION = 40.0
+DURATION = 30.0
 """Of each run [s]; the last impacts count."""
 HITS = 60
 """Impacts kept of each run."""
+MEMBERS = 6
 SHOWN = CONSTANT_E, RIGID
 """Models of the rows."""
 
 
-def _case(model: str, amplitude: float, frequency: float) -> Case:
+def _case(model: str, amplitude: float, frequency: float, offset: float = 0.0) -> Case:
     return harmonic_case(
         MODELS[model],
         amplitude=amplitude,
         frequency=frequency,
-        state=State(ball_position=GAP),
+        state=State(ball_position=GAP * near(1.0, offset)),
         duration=DURATION,
         times=(0.0,),
     )
@@ -55,12 +59,11 @@ def cases() -> Mapping[str, Case]:
 def data() -> xr.Dataset:
     """Collect the last impacts of each run, and the exact motion with two impacts a cycle."""
     loads = [(AMPLITUDE, f) for f in FREQUENCIES] + [(a, FREQUENCY) for a in AMPLITUDES]
-    runs = simulate_many([_case(model, float(a), float(f)) for model in SHOWN for a, f in loads])
-    speeds = np.full((len(runs), HITS), np.nan)
-    for row, run in zip(speeds, runs, strict=True):
-        last = run.arrays.impacts.approach_speed[-HITS:]
-        row[: last.size] = last
-    by_model = speeds.reshape(len(SHOWN), len(loads), HITS)
+    grid = [(model, float(a), float(f)) for model in SHOWN for a, f in loads]
+    by_model = _speeds(simulate_many([_case(*point) for point in grid])).reshape(len(SHOWN), len(loads), HITS)
+    many = [_speeds(ensemble(partial(_case, *point), MEMBERS)) for point in grid]
+    spread = np.reshape([band(speeds[np.isfinite(speeds)]) for speeds in many], (*by_model.shape[:2], 3))
+    alike = np.reshape([_alike(speeds).mean() for speeds in many], by_model.shape[:2])
     exact = np.array([_exact(float(a), float(f)) for a, f in loads])
     border = FREQUENCIES.size
     variables: dict[str, Any] = {
@@ -70,7 +73,13 @@ def data() -> xr.Dataset:
     }
     for name, part in (("frequency", slice(border)), ("amplitude", slice(border, None))):
         variables[f"speed_over_{name}"] = described(
-            ("model", name, "hit"), by_model[:, part], "m/s", "relative speed at impact"
+            ("model", name, "hit"), by_model[:, part], "m/s", "relative speed at impact, one run"
+        )
+        variables[f"spread_over_{name}"] = described(
+            ("model", name, "quantile"), spread[:, part], "m/s", "relative speed at impact, ensemble of start positions"
+        )
+        variables[f"alike_over_{name}"] = described(
+            ("model", name), alike[:, part], "", "share of the starts whose last impacts are all alike"
         )
         for column, kind in enumerate(("stable", "unstable")):
             variables[f"{kind}_over_{name}"] = described(
@@ -82,9 +91,24 @@ def data() -> xr.Dataset:
             "model": described("model", list(SHOWN), "", "contact model"),
             "frequency": described("frequency", FREQUENCIES, "Hz", "frequency of the load"),
             "amplitude": described("amplitude", AMPLITUDES, "N", "amplitude of the load"),
+            "quantile": described("quantile", [0.1, 0.5, 0.9], "", "quantile of the ensemble"),
             "hit": described("hit", np.arange(HITS), "", "number of the kept impact"),
         },
     )
+
+
+def _speeds(runs: Sequence[Run]) -> NDArray[np.float64]:
+    """Speeds of the last impacts of each run, (run, hit), NaN where there are fewer [m/s]."""
+    speeds = np.full((len(runs), HITS), np.nan)
+    for row, run in zip(speeds, runs, strict=True):
+        last = run.arrays.impacts.approach_speed[-HITS:]
+        row[: last.size] = last
+    return speeds
+
+
+def _alike(speeds: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether the speeds of a run are all alike, to a hundredth."""
+    return np.asarray(np.ptp(speeds, axis=-1) < 0.01 * speeds.mean(axis=-1))
 
 
 def _critical_speed() -> float:
@@ -120,6 +144,14 @@ def draw(data: xr.Dataset) -> Figure:
         for row, model in zip(panels, data.model.values, strict=True):
             for axes, name in zip(row, ("frequency", "amplitude"), strict=True):
                 speeds = data[f"speed_over_{name}"].sel(model=model)
+                low, median, high = (
+                    1e3 * data[f"spread_over_{name}"].sel(model=model).transpose("quantile", name).values
+                )
+                look: dict[str, Any] = {"color": SERIES_COLOURS[0], "zorder": 0.5}
+                axes.fill_between(
+                    data[name], low, high, alpha=0.2, lw=0, label="starts within 1 µm, 10 to 90 %", **look
+                )
+                axes.plot(data[name], median, lw=pen(0.6), label="their median", **look)
                 at = np.repeat(data[name].values, data.hit.size)
                 axes.plot(at, 1e3 * speeds.values.ravel(), ".", ms=1.3, mew=0, color=INK, rasterized=True)
                 if model == CONSTANT_E:
@@ -136,8 +168,8 @@ def draw(data: xr.Dataset) -> Figure:
         panels[0, 1].set_xlim(float(data.amplitude[0]), float(data.amplitude[-1]))
         panels[-1, 0].set_xlabel(f"Frequency of the load of {float(data.amplitude_at):g} N (Hz)")
         panels[-1, 1].set_xlabel(f"Amplitude of the load at {float(data.frequency_at):g} Hz (N)")
-        lines = [line for axes in panels[:, 0] for line in axes.get_legend_handles_labels()[0]]
-        figure.legend(handles=lines, loc="outside upper left", ncols=3)
+        lines = {line.get_label(): line for axes in panels[:, 0] for line in axes.get_legend_handles_labels()[0]}
+        figure.legend(handles=list(lines.values()), loc="outside upper left", ncols=3)
     return figure
 
 
@@ -164,8 +196,8 @@ def settled(data: xr.Dataset, name: str) -> xr.DataArray:
     name
         "frequency" or "amplitude".
     """
-    speeds = data[f"speed_over_{name}"]
-    return (speeds.max("hit") - speeds.min("hit")) < 0.01 * speeds.mean("hit")
+    speeds = data[f"speed_over_{name}"].transpose(..., "hit")
+    return speeds.isel(hit=0).copy(data=_alike(speeds.values))
 
 
 def caption(data: xr.Dataset) -> str:
@@ -175,16 +207,20 @@ def caption(data: xr.Dataset) -> str:
     off = np.abs(one.speed_over_frequency.mean("hit") / one.stable_over_frequency - 1)
     met = settled(one, "frequency") & (off < 0.05)
     lost = one.frequency.where(~stable & (one.frequency > float(one.frequency.where(stable).min())), drop=True)
+    shares = np.concatenate([one[f"alike_over_{name}"] for name in ("frequency", "amplitude")])
     alike = int(settled(one, "frequency").sel(frequency=lost).sum())
     return (
         f"Relative speeds of the last {data.hit.size} impacts of runs of {DURATION:g} s, over the frequency and over the "
-        "amplitude of the load; the ball starts at the leading wall. A single dot is a motion in which all impacts are "
+        f"amplitude of the load: dots of one run that starts at the leading wall, median and band of {MEMBERS} starts "
+        f"within 1 µm of it. A single dot is a motion in which all impacts are "
         "alike, a few dots are one that repeats after several impacts, a cloud is one without visible order. With "
         f"constant restitution the exact motion with two impacts a cycle is stable at {int(stable.sum())} of "
         f"{stable.size} frequencies; at {int(met.sum())} of them the run settles on it, "
         f"{100 * float(off.where(met).median()):.1f} % off in speed because contacts take time, at the others on another "
         f"motion. From {float(lost.min()):g} to {float(lost.max()):g} Hz it is unstable; there all impacts are alike in "
-        f"{alike} of {lost.size} runs."
+        f"{alike} of {lost.size} runs. Over "
+        f"frequency and amplitude, all starts of the constant model come to impacts all alike at {np.sum(shares == 1)} of "
+        f"{shares.size} loads, none at {np.sum(shares == 0)}, and at the others a micrometre decides which do."
     )
 
 

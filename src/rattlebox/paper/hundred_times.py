@@ -157,10 +157,14 @@ def _panel(axes: Axes, data: xr.Dataset) -> None:
     label(axes, "x", "Yield stress", "MPa")
 
 
+def _wall(model: str) -> str:
+    return model.removeprefix("elasto-plastic, ")
+
+
 def _up_to(reached: xr.DataArray) -> list[str]:
     """Each model with the yield stress up to which it reaches something."""
     highest = reached.yield_stress.where(reached).max("yield_stress").dropna("model")
-    return [f"{model} up to {float(highest.sel(model=model)) / 1e6:.0f} MPa" for model in highest.model.values]
+    return [f"{_wall(model)} up to {float(highest.sel(model=model)) / 1e6:.0f} MPa" for model in highest.model.values]
 
 
 def caption(data: xr.Dataset) -> str:
@@ -210,8 +214,9 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             statement="The damper dissipates about 100 times faster with the elasto-plastic model than with constant "
             "restitution.",
             where="section 5.1, figure 7c",
-            ours=f"{float(every.max()):.0f} times at most with the printed yield stress: {MEASURES[measure]} ({model}); "
-            f"{CLAIMED:.0f} times " + (f"only in {' and '.join(softer)}" if softer else "with no yield stress"),
+            ours=f"{float(every.max()):.0f} times at most with the printed yield stress: {MEASURES[measure]}, "
+            f"{_wall(model)}; {CLAIMED:.0f} times "
+            + (f"only in {' and '.join(softer)}" if softer else "with no yield stress"),
             reading=" or ".join(readings) if readings else "every reading of faster, steel and rigid wall",
             verdict="reproduced" if readings else "not reproducible",
         ),

@@ -36,7 +36,7 @@ _EACH = ("reading", "start", "level")
 _MEMBERS = 16
 
 _ROWS = (
-    *(f"{name}, 33.17 mm as the {size}" for name in ("m/M", "2 $d_0$") for size in _RADII),
+    *(f"{name}, 33.17 mm as the {size}" for name in ("m/M", "2 d0") for size in _RADII),
     "e of the printed α",
     "ω = √(K/(M+m))",
     "ω = √(K/M)",

@@ -8,10 +8,10 @@ import pytest
 from rattlebox.paper.figure_02 import FIGURE
 
 
-@pytest.fixture(scope="module")
-def data():
+@pytest.fixture
+def data(computed):
     """Compute the figure once."""
-    return FIGURE.data()
+    return computed("figure_02").data
 
 
 @pytest.mark.parametrize(

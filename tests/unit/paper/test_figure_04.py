@@ -6,10 +6,10 @@ import pytest
 from rattlebox.paper import figure_04
 
 
-@pytest.fixture(scope="module")
-def data():
+@pytest.fixture
+def data(computed):
     """Return the data of the figure."""
-    return figure_04.FIGURE.data()
+    return computed("figure_04").data
 
 
 def test_both_schemes_lose_the_known_share(data):

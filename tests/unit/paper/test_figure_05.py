@@ -6,10 +6,10 @@ import pytest
 from rattlebox.paper.figure_05 import FIGURE
 
 
-@pytest.fixture(scope="module")
-def data():
+@pytest.fixture
+def data(computed):
     """Compute the figure once."""
-    return FIGURE.data()
+    return computed("figure_05").data
 
 
 def test_elastic_limits(data):

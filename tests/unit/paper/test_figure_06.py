@@ -6,10 +6,10 @@ import pytest
 from rattlebox.paper.figure_06 import FIGURE
 
 
-@pytest.fixture(scope="module")
-def data():
+@pytest.fixture
+def data(computed):
     """Compute the figure once."""
-    return FIGURE.data()
+    return computed("figure_06").data
 
 
 def test_speeds_after_hits(data):

@@ -3,16 +3,16 @@
 import pytest
 
 import rattlebox as rb
-from rattlebox.paper import figure_07a, figure_07b, figure_07c, figure_07de
+from rattlebox.paper import figure_07a, figure_07de
 from rattlebox.paper.seed import DAMPING, MASS, PLASTIC_RIGID, seed_case
 
 PULSE_WORK = 0.2532  # J, of 5000 N
 
 
-@pytest.fixture(scope="module", params=[figure_07a, figure_07b])
-def energies(request):
+@pytest.fixture(params=["figure_07a", "figure_07b"])
+def energies(request, computed):
     """Return the data of figures 7a and 7b."""
-    return request.param.FIGURE.data()
+    return computed(request.param).data
 
 
 def test_pulse_gives_the_structure_its_work(energies):
@@ -33,9 +33,9 @@ def test_band_of_energies_is_ordered_and_falls(energies):
     assert (structure.isel(window=-1) < 0.1 * structure.isel(window=0)).all()
 
 
-def test_smoothness_is_judged_by_the_data():
+def test_smoothness_is_judged_by_the_data(computed):
     """The verdict follows the numbers: with rises below those of constant restitution it turns."""
-    data = figure_07a.FIGURE.data()
+    data = computed("figure_07a").data
     (claim,) = figure_07a.FIGURE.claims(data)
     assert claim.verdict == "not reproducible"
     smooth = data.assign(rises=data.rises.where(data.judged == "constant restitution", 0.0))
@@ -43,10 +43,10 @@ def test_smoothness_is_judged_by_the_data():
     assert claim.verdict == "reproduced"
 
 
-@pytest.fixture(scope="module")
-def losses():
+@pytest.fixture
+def losses(computed):
     """Return the data of figure 7c."""
-    return figure_07c.FIGURE.data()
+    return computed("figure_07c").data
 
 
 @pytest.mark.parametrize(
@@ -77,10 +77,10 @@ def test_first_contact_has_the_ratio_of_the_two_laws(losses):
     assert float(ratio) == pytest.approx((1 - e**2) / (1 - 0.991170**2), rel=1e-3)
 
 
-@pytest.fixture(scope="module")
-def shares():
+@pytest.fixture
+def shares(computed):
     """Return the data of figures 7d and 7e."""
-    return figure_07de.FIGURE.data()
+    return computed("figure_07de").data
 
 
 @pytest.mark.parametrize(

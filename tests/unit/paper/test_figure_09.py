@@ -9,16 +9,16 @@ from rattlebox.paper import figure_09a, figure_09b
 from rattlebox.paper.seed import GAP, PLASTIC_RIGID, seed_case
 
 
-@pytest.fixture(scope="module")
-def ball() -> xr.Dataset:
+@pytest.fixture
+def ball(computed) -> xr.Dataset:
     """Portraits of the ball."""
-    return figure_09a.data()
+    return computed("figure_09a").data
 
 
-@pytest.fixture(scope="module")
-def structure() -> xr.Dataset:
+@pytest.fixture
+def structure(computed) -> xr.Dataset:
     """Portraits of the structure."""
-    return figure_09b.data()
+    return computed("figure_09b").data
 
 
 def test_pulse_moves_the_structure_less_than_the_clearance(structure: xr.Dataset) -> None:

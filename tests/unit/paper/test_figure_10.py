@@ -12,10 +12,10 @@ from rattlebox.paper.seed import DAMPING, MASS, PULSE, STIFFNESS
 BIN = 2 * np.pi / 10.0
 
 
-@pytest.fixture(scope="module")
-def data() -> xr.Dataset:
+@pytest.fixture
+def data(computed) -> xr.Dataset:
     """Spectra of all models."""
-    return figure_10.data()
+    return computed("figure_10").data
 
 
 def test_ball_rides_along_at_resonance(data: xr.Dataset) -> None:

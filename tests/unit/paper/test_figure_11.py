@@ -8,10 +8,10 @@ from rattlebox.paper import figure_11
 from rattlebox.paper.seed import DAMPING, MASS, STIFFNESS
 
 
-@pytest.fixture(scope="module")
-def data() -> xr.Dataset:
+@pytest.fixture
+def data(computed) -> xr.Dataset:
     """Responses, settling times and reductions."""
-    return figure_11.data()
+    return computed("figure_11").data
 
 
 def test_bare_structure_decays_as_it_must(data: xr.Dataset) -> None:

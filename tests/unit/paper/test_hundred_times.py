@@ -6,10 +6,10 @@ from rattlebox.paper import hundred_times
 from rattlebox.paper.models import RIGID, STEEL
 
 
-@pytest.fixture(scope="module")
-def data():
+@pytest.fixture
+def data(computed):
     """Return the data of the figure."""
-    return hundred_times.FIGURE.data()
+    return computed("hundred_times").data
 
 
 @pytest.mark.parametrize(("model", "known"), [(STEEL, 0.0032 / 0.054), (RIGID, 0.069 / 0.054)])

@@ -6,10 +6,10 @@ import pytest
 from rattlebox.paper.readings import FIGURE
 
 
-@pytest.fixture(scope="module")
-def data():
+@pytest.fixture
+def data(computed):
     """Compute the figure once."""
-    return FIGURE.data()
+    return computed("readings").data
 
 
 def test_size_of_the_ball(data):

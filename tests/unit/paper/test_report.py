@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import rattlebox as rb
 from rattlebox.paper import write_report
 from rattlebox.paper.figure import Claim
 from rattlebox.paper.page import GENERATOR, Made, place, render, system, typeset
@@ -78,21 +77,22 @@ def read_back(data, tables):
     )
 
 
-@pytest.mark.parametrize("module", FIGURES)
-def test_data_of_a_figure_reads_back_from_csv(module, tmp_path):
+def test_data_of_a_figure_reads_back_from_csv(every, tmp_path):
     """All that a figure draws has unit and meaning, and stands in its CSV files without a digit lost."""
-    data = reproduction(module).data()
-    for name, variable in data.variables.items():
+    for name, variable in every.data.variables.items():
         assert {"units", "long_name"} <= variable.attrs.keys(), name
-    xr.testing.assert_identical(read_back(data, write_tables(data, tmp_path, module)), data)
+    tables = write_tables(every.data, tmp_path, every.module)
+    xr.testing.assert_identical(read_back(every.data, tables), every.data)
 
 
-@pytest.mark.parametrize("module", FIGURES)
-def test_cases_of_a_figure_can_be_run_again(module, tmp_path):
-    """Each case of a figure reads back equal from its file."""
-    for case in reproduction(module).cases().values():
-        case.to_file(tmp_path / "case.toml")
-        assert rb.Case.from_file(tmp_path / "case.toml") == case
+def test_words_are_for_people(every):
+    """Captions and claims say no "nan", claims are short, and every claim says where it stands and how it is read."""
+    claims = every.figure.claims(every.data)
+    for text in (every.figure.caption(every.data), *(text for claim in claims for text in claim)):
+        assert text.strip()
+        assert not re.search(r"\b(nan|inf|None|True|False)\b|[{}\[\]]", text), text
+    for claim in claims:
+        assert len(claim.statement) < 130 and len(claim.ours) < 230 and len(claim.reading) < 130, claim
 
 
 def test_figures_have_numbers_and_files_of_their_own():

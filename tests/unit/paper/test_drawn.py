@@ -1,0 +1,222 @@
+"""Figures draw what their datasets hold, and nothing else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import permutations, product
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection, QuadMesh
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FixedLocator
+
+PREFIXES = {"": 1.0, "p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
+EQUAL = 1e-9
+"""Relative difference that a change of unit may leave."""
+
+
+class Scale(NamedTuple):
+    """What an axis says: its SI unit, and what a number on it is worth in that."""
+
+    unit: str
+    factor: float
+
+
+class Mark(NamedTuple):
+    """An artist: points (n, 2) in the numbers of the axes, NaN where it says nothing."""
+
+    name: str
+    points: np.ndarray
+    area: bool = False
+    """Its edges may come from several columns."""
+    values: np.ndarray | None = None
+    """Numbers shown by colour."""
+    map: bool = False
+    """Each colour belongs to its point."""
+
+
+def marks(axes: Axes) -> Iterator[Mark]:
+    """Return everything drawn in axes that stands for numbers."""
+    for artist in axes.get_children():
+        name = f"{type(artist).__name__} {artist.get_label()}"
+        if isinstance(artist, Line2D):
+            yield Mark(name, _in_data(axes, artist, np.array(artist.get_xydata(), dtype=float)))
+        elif isinstance(artist, LineCollection):
+            bars = artist.get_array() is None
+            yield Mark(name, np.concatenate(artist.get_segments() or [np.empty((0, 2))]), bars, artist.get_array())
+        elif isinstance(artist, PathCollection):
+            yield Mark(name, np.asarray(artist.get_offsets(), dtype=float), False, artist.get_array())
+        elif isinstance(artist, QuadMesh):
+            corners = artist.get_coordinates()
+            centres = (corners[1:, 1:] + corners[:-1, :-1]) / 2
+            shown = np.ma.filled(artist.get_array().astype(float), np.nan).ravel()
+            yield Mark(name, centres.reshape(-1, 2)[np.isfinite(shown)], False, shown[np.isfinite(shown)], True)
+        elif isinstance(artist, PolyCollection):
+            yield Mark(name, np.concatenate([path.vertices for path in artist.get_paths()] or [np.empty((0, 2))]), True)
+        elif isinstance(artist, Rectangle) and artist is not axes.patch:
+            yield Mark(name, _seen(axes, _in_data(axes, artist, artist.get_bbox().get_points())), True)
+        else:
+            assert type(artist).__module__.rpartition(".")[2] in {"text", "spines", "axis", "legend", "patches"}, name
+
+
+def _in_data(axes: Axes, artist: Any, points: np.ndarray) -> np.ndarray:
+    """Points with NaN for coordinates that count in the axes, as one of `axhline` does."""
+    own = artist.get_transform().contains_branch_seperately(axes.transData)
+    return np.where(own, points, np.nan)
+
+
+def _seen(axes: Axes, points: np.ndarray) -> np.ndarray:
+    """Points with NaN for edges beyond the axes."""
+    low, high = np.sort([axes.get_xlim(), axes.get_ylim()], axis=1).T
+    return np.where((points > low) & (points < high), points, np.nan)
+
+
+def scale(axes: Axes, which: str, units: set[str]) -> Scale | None:
+    """Return what the label of an axis, or of one that shares it, says of its numbers; None for named rows."""
+    own: Axis = getattr(axes, f"{which}axis")
+    words = [text.get_text() for text in own.get_majorticklabels()]
+    if isinstance(own.get_major_locator(), FixedLocator) and any(re.search("[a-z]", word) for word in words):
+        return None
+    shared = getattr(axes, f"get_shared_{which}_axes")().get_siblings(axes)
+    labels = [getattr(one, f"{which}axis").get_label_text() for one in (axes, *shared)]
+    told = re.findall(r"\(([^()]*)\)", next(filter(None, labels), ""))
+    for unit, (prefix, factor) in product(units - {""}, PREFIXES.items()):
+        if prefix + unit in told:
+            return Scale(unit, factor)
+    return Scale("", 0.01 if "%" in told else 1.0)
+
+
+def same(*groups: np.ndarray) -> list[np.ndarray]:
+    """Return numbers that stand for the values of arrays: the same for values that are equal but for rounding."""
+    every = np.concatenate([np.ravel(group) for group in groups])
+    order = np.argsort(every, kind="stable")
+    ranked = every[order]
+    apart = np.diff(ranked) > EQUAL * np.maximum(np.abs(ranked[1:]), np.abs(ranked[:-1]))
+    ids = np.empty(every.size, dtype=np.int64)
+    ids[order] = np.concatenate([[0], np.cumsum(apart)])
+    return np.split(ids, np.cumsum([np.size(group) for group in groups])[:-1])
+
+
+def rows(first: xr.DataArray, second: xr.DataArray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the values of two variables side by side, as in their table; None for two that have no table."""
+    if first.size > 1 and second.size > 1 and not set(first.dims) & set(second.dims):
+        return None
+    one, other = xr.broadcast(first, second)
+    return one.values.ravel(), other.transpose(*one.dims).values.ravel()
+
+
+def strangers(figure: Figure, data: xr.Dataset) -> list[str]:
+    """Return what is drawn in a figure and does not stand in its dataset, point by point in one row of its tables.
+
+    A change of unit must be told in the label of the axis, rows must have names; lines across the axes may also be at
+    zero or at one; areas may begin at zero.
+    """
+    numbers = [data[name] for name in data.variables if data[name].dtype.kind in "iuf"]
+    units = {variable.units for variable in numbers}
+    found = []
+    for place, axes in enumerate(figure.axes):
+        if axes.get_label() == "<colorbar>":
+            continue
+        scales = [scale(axes, which, units) for which in "xy"]
+        for mark in marks(axes):
+            if not _known(mark, scales, numbers):
+                found.append(f"axes {place}: {mark.name}")
+    return found
+
+
+def _known(mark: Mark, scales: list[Scale | None], numbers: list[xr.DataArray]) -> bool:
+    def column(which: int, points: np.ndarray) -> tuple[np.ndarray, list[xr.DataArray]] | None:
+        told = scales[which]
+        if told is None or not np.isfinite(points[:, which]).any():
+            return None
+        return points[:, which] * told.factor, [variable for variable in numbers if variable.units == told.unit]
+
+    if mark.values is not None and not any(_within(mark.values, variable) for variable in numbers):
+        return False
+    whole = np.isfinite(mark.points).all(axis=1)
+    if whole.any():  # where a coordinate has no number, nothing is drawn
+        points = mark.points[whole]
+        x, y = column(0, points), column(1, points)
+        if mark.map and x is not None and y is not None:
+            return any(_mapped(x[0], y[0], mark.values, variable) for variable in numbers)
+        if x is not None and y is not None:
+            return _paired(mark, *x, *y)
+        only = x or y
+        parts = only[0] if only is not None and mark.area else [only[0] if only is not None else ()]
+        return only is None or all(any(_within(part, variable) for variable in only[1]) for part in parts)
+    for which in range(2):
+        told = column(which, mark.points)
+        for value in np.unique(told[0][np.isfinite(told[0])]) if told else ():
+            if value not in (0.0, 1.0) and not any(_within(value, variable) for variable in told[1]):
+                return False
+    return True
+
+
+def _within(values: Any, variable: xr.DataArray) -> bool:
+    drawn, known = same(np.asarray(values, dtype=float), variable.values[np.isfinite(variable.values)])
+    return bool(np.isin(drawn, known).all())
+
+
+def _mapped(x: np.ndarray, y: np.ndarray, values: Any, variable: xr.DataArray) -> bool:
+    """Whether each point has the value that stands at it in the table of a variable."""
+    found = []
+    for first, second in permutations([variable[dim] for dim in variable.dims if variable[dim].dtype.kind in "if"], 2):
+        table = xr.broadcast(first, second, variable)
+        ids = [same(drawn, one.values) for drawn, one in zip((x, y, values), table, strict=True)]
+        key = [sum(i.astype(object) * 10 ** (12 * k) for k, i in enumerate(part)) for part in zip(*ids, strict=True)]
+        found.append(set(key[0]) <= set(key[1]))
+    return any(found)
+
+
+def _paired(mark: Mark, x: np.ndarray, first: list[xr.DataArray], y: np.ndarray, second: list[xr.DataArray]) -> bool:
+    """Whether each point is a row of a table: all of a line in one pair of columns, of an area each in any."""
+    left = np.full(x.size, True)
+    for one in first:
+        if not np.isin(*same(x, one.values[np.isfinite(one.values)])).any():
+            continue
+        if mark.area:
+            left &= ~((y == 0) & np.isin(*same(x, one.values[np.isfinite(one.values)])))
+        for other in second:
+            table = rows(one, other)
+            if table is None:
+                continue
+            full = np.isfinite(table[0]) & np.isfinite(table[1])
+            x_drawn, x_known = same(x, table[0][full])
+            y_drawn, y_known = same(y, table[1][full])
+            width = int(max(y_drawn.max(), y_known.max(initial=0))) + 1
+            met = np.isin(x_drawn * width + y_drawn, x_known * width + y_known)
+            if met.all():
+                return True
+            if mark.area:
+                left &= ~met
+    return not left.any()
+
+
+def test_every_number_drawn_stands_in_the_dataset(every):
+    """Each point of each line, bar, area and map is a row of the figure's tables, but for the unit told at the axis."""
+    assert strangers(every.figure.draw(every.data), every.data) == []
+
+
+def test_a_wrong_number_is_found(computed):
+    """Of a figure drawn from data that are off by a millionth, everything that stands for numbers is a stranger."""
+    _, figure, data, _ = computed("figure_07c")
+    off = data.map(lambda variable: variable * (1 + 1e-6), keep_attrs=True)
+    drawn = figure.draw(off)
+    telling = [mark for axes in drawn.axes for mark in marks(axes) if np.any(np.nan_to_num(mark.points) % 1)]
+    assert len(strangers(drawn, data)) == len(telling) > 10
+
+
+def test_a_wrong_unit_is_found(computed):
+    """Numbers in millijoules at an axis that says joules are strangers."""
+    _, figure, data, _ = computed("figure_07c")
+    drawn = figure.draw(data)
+    assert drawn.axes[0].get_ylabel().endswith("(mJ)")
+    drawn.axes[0].set_ylabel("Energy lost in impacts (J)")
+    assert {place.partition(":")[0] for place in strangers(drawn, data)} == {"axes 0"}
