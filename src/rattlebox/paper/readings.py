@@ -105,7 +105,7 @@ def data() -> xr.Dataset:
     """Compute what each reading gives."""
     radii = np.array(list(_RADII.values()))
     shares = [[_shares(make, start) for start in START.values()] for make in READINGS.values()]
-    met = [[_impacts(partial(_sized, radius), start) for start in START.values()] for radius in radii]
+    met = [[_impacts(partial(_sized, radius), start) for start in START.values()] for radius in _RADII.values()]
     weak = [_impacts(lambda start: seed_case(start=start, amplitude=100.0), start) for start in START.values()]
     # The printed size in either way, mass and clearance as printed; then restitution and resonances.
     given = (
