@@ -235,7 +235,7 @@ protected:
     // What rounding leaves of the difference of two equal velocities.
     real blur() const {
         const real* v = velocities(problem_, state_.y.data());
-        real largest = 0;
+        real largest = fastest_;
         for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i)
             largest = std::fmax(largest, std::fabs(v[i]));
         for (const Damper& damper : problem_.dampers)

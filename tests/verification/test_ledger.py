@@ -85,7 +85,10 @@ def test_hard_rows_collapse_stick_and_go_on(balls: int) -> None:
         place = run.arrays.relative_position - run.arrays.ball_centre
         half = 0.5 * run.arrays.clearance[0]
         gaps = np.hstack([place[:, :1] + half, np.diff(place, axis=1), half - place[:, -1:]])
-        assert gaps.min() >= -1e-12 * half
+        # Two that touch drift by what rounding leaves of their speeds' difference, and as much again goes unseen.
+        fastest = max(np.abs(run.arrays.ball_velocity).max(), run.arrays.impacts.approach_speed.max())
+        drift = 2 * 16 * np.finfo(float).eps * fastest * case.duration
+        assert gaps.min() >= -drift
 
 
 def test_hard_balls_in_several_cavities_come_to_rest_on_each_other() -> None:
