@@ -1,4 +1,4 @@
-"""No contact is missed: first touches of random flights against an independent search."""
+"""No first touch is missed: random flights, many of them grazing, against an independent motion and search."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +12,6 @@ import rattlebox as rb
 from . import cases
 
 Array = NDArray[np.float64]
-FLIGHTS = 10_000
 DURATION = 1.0
 GRID = 4001
 CLOSE = 1e-9
@@ -192,15 +191,28 @@ def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray
     return time, side, doubt
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
+KINDS = pytest.mark.parametrize(
     ("modes", "harmonic", "share"),
     [(1, False, 0.35), (1, True, 0.25), (3, False, 0.25), (4, True, 0.15)],
     ids=["one mode, pulse", "one mode, steady load", "three modes, pulse", "four modes, steady load"],
 )
-def test_no_first_touch_is_missed(modes: int, harmonic: bool, share: float) -> None:
+
+
+@KINDS
+def test_no_first_touch_of_some_is_missed(modes: int, harmonic: bool, share: float) -> None:
     """Every first touch of a brute-force search is found, at its time, and no other is invented."""
-    count = int(FLIGHTS * share)
+    compare(modes, harmonic, int(400 * share))
+
+
+@pytest.mark.slow
+@KINDS
+def test_no_first_touch_of_ten_thousand_is_missed(modes: int, harmonic: bool, share: float) -> None:
+    """The same for ten thousand flights."""
+    compare(modes, harmonic, int(10_000 * share))
+
+
+def compare(modes: int, harmonic: bool, count: int) -> None:
+    """Compare the first touches of random flights."""
     flights = random_flights(modes, harmonic, count, seed=100 * modes + harmonic)
     parts = np.array_split(np.arange(count), max(1, count // 250))
     found = [first_touches(flights, part) for part in parts]

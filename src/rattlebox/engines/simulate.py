@@ -81,8 +81,8 @@ def _is_short(raw: dict[str, Any]) -> bool:
 def _with_contacts(times: NDArray[np.float64], raw: dict[str, Any]) -> NDArray[np.float64]:
     """Add begin, middle and end of each contact, and the middle of each flight, which may be a parabola."""
     touch = raw["impacts"]["time"]
-    duration = np.nan_to_num(raw["impacts"]["duration"])
-    opened = np.maximum(touch + duration, np.nextafter(touch, np.inf))  # hard impacts end where they begin
+    # One ulp later, so that hard impacts, which end where they begin, have velocities before and after.
+    opened = np.nextafter(touch + np.nan_to_num(raw["impacts"]["duration"]), np.inf)
     following = np.append(touch, raw["stopped_at"])[np.searchsorted(touch, opened)]
     every = np.concatenate([times, touch, 0.5 * (touch + opened), opened, 0.5 * (opened + following)])
     return np.unique(every[every <= times[-1]])

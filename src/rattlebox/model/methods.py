@@ -11,7 +11,7 @@ from .base import Part
 from .elementwise import Vector
 from .errors import Hint, at
 from .restitutions import AnyRestitution
-from .units import PositiveFrequency, PositiveTime, parse
+from .units import PositiveFrequency, PositiveTime, numbers, parse
 
 
 class EventDriven(Part):
@@ -79,6 +79,8 @@ AnyMethod = Annotated[EventDriven | TwoStep | Newton, Field(discriminator="kind"
 def _times(value: Any) -> Any:
     if value is None:
         return None
+    if isinstance(value, np.ndarray) and value.dtype.kind in "iuf":
+        return tuple(np.unique(numbers(value)).tolist())
     times = set()
     for index, item in enumerate(np.asarray(value, dtype=object).ravel().tolist()):
         with at(index):

@@ -26,7 +26,7 @@ def test_flights_are_drawn_from_wall_to_wall(method: Any) -> None:
     assert np.array_equal(a.time[begin], log.time)
     assert side * a.relative_position[begin, 0] == pytest.approx(half, rel=1e-9)
     assert side * a.relative_velocity[begin, 0] == pytest.approx(log.approach_speed, rel=1e-6, abs=1e-9)
-    opened = log.time + np.maximum(log.duration, np.spacing(log.time))
+    opened = np.nextafter(log.time + log.duration, np.inf)
     end = np.searchsorted(a.time, opened)
     assert -side * a.relative_velocity[end, 0] == pytest.approx(log.separation_speed, rel=1e-6, abs=1e-9)
     inside = side * a.relative_position[begin + 1, 0] - half
