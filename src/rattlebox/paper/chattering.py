@@ -290,7 +290,8 @@ def caption(data: xr.Dataset) -> str:
         f"complete chatter. "
         + _why(speed, float(data.critical_speed))
         + " Below, after settling (median and band of the "
-        f"starts, marks: one run): contacts last from {loads.min():g} N on, and fewer fit into a cycle; with a steel wall "
+        f"starts; marks: one run, which need not lie in the band of so few): contacts "
+        f"last from {loads.min():g} N on, and fewer fit into a cycle; with a steel wall "
         + (f"from {steel.amplitude.values[steel.held].min():g} N on." if steel.held.any() else "none lasts.")
     )
 

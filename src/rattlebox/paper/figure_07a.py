@@ -17,7 +17,7 @@ from rattlebox.results import Run
 
 from .ensemble import band, ensemble, near
 from .figure import Claim, Reproduction
-from .models import CONSTANT_E, MODELS, RIGID, STEEL, described
+from .models import CONSTANT_E, MODELS, RIGID, STEEL, by_model, described
 from .runs import simulate
 from .seed import START, seed_case
 
@@ -181,8 +181,8 @@ def caption(data: xr.Dataset) -> str:
     ]
     return (
         "Energies of structure and ball after a pulse of 5000 N on the centred ball: one run, and median and band of 64 "
-        "runs that start within 1 µm; left, the beginning, instant by instant (medians dotted); right, means over one "
-        f"period. {_parted(data)} Medians, {'; '.join(said)}."
+        "runs that start within 1 µm; left, the beginning (medians dotted); right, the run instant by instant, the band of "
+        f"means over one period, which the run therefore leaves. {_parted(data)} Medians, {'; '.join(said)}."
     )
 
 
@@ -205,16 +205,16 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
     bound = data.rises.sel(quantile=0.1, judged=CONSTANT_E)
     smoother = [model for model in (STEEL, RIGID) if rises.sel(judged=model) < bound]
     contacts = data.late_contacts.sel(quantile=0.5)
-    said = [
-        f"{float(rises.sel(judged=model)):.2g} times in {float(contacts.sel(judged=model)):.0f} contacts ({model})"
+    given = {
+        model: f"{float(rises.sel(judged=model)):.2g} in {float(contacts.sel(judged=model)):.0f} contacts"
         for model in data.judged.values
-    ]
+    }
     return (
         Claim(
             statement="After 2 s the structure's energy runs more smoothly with the elasto-plastic model than with "
             "constant restitution.",
             where="section 5.1, figures 7a and 7b",
-            ours=f"after 2 s the ball gives back the structure's energy at 2 s {', '.join(said)}; medians",
+            ours=f"energy that the ball gives back after 2 s, over the structure's at 2 s (medians): {by_model(given)}",
             reading=" or ".join(smoother) if smoother else "steel wall and rigid wall",
             verdict="reproduced" if smoother else "not reproducible",
         ),

@@ -164,7 +164,7 @@ def _all_made(modules: Sequence[str], folder: Path, workers: int) -> Iterator[tu
     # Ctrl-C ends them at once and without a word.
     on_ctrl_c = (signal.SIGINT, signal.SIG_DFL)
     with ProcessPoolExecutor(min(workers, len(modules)), get_context("spawn"), signal.signal, on_ctrl_c) as pool:
-        running = {pool.submit(_made, module, folder): module for module in modules}
+        running = {pool.submit(_made, module, folder): module for module in reversed(modules)}  # the last take longest
         try:
             for done in as_completed(running):
                 yield running[done], done.result()
