@@ -171,8 +171,8 @@ def _parted(data: xr.Dataset) -> str:
     none, wide = (high - low) == 0, (high - low) > APART
     return (
         f"The band has no width at {100 * float(none.mean()):.0f} % of all frequencies and models, where all starts come to "
-        f"the same count; it is wider than {APART:g} contacts at {100 * float(wide.mean()):.0f} %, where, as where the single run "
-        "lies outside, a micrometre decides in which motion a run ends."
+        f"the same count; it is wider than {APART:g} contacts at {100 * float(wide.mean()):.0f} %; there, and where the "
+        "single run lies outside, a micrometre decides in which motion a run ends."
     )
 
 

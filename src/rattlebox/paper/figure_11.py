@@ -237,7 +237,8 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             "section 5.1, figure 11",
             f"the RMS falls by {_rms(data, first)} in {first:g} s, by {_rms(data, last)} in {last:g} s, the peak by "
             f"{abs(100 * float(data.peak_reduction.sel(quantile=0.5).max())):.1f} %; it settles below "
-            f"{100 * SETTLED:g} % after {' and '.join(f'{float(time):.1f} s' for time in at.settled_median)}, {bare:.1f} s without damper",
+            f"{100 * SETTLED:g} % after {' and '.join(f'{float(time):.1f} s' for time in at.settled_median)}, "
+            f"{bare:.1f} s without damper",
             f"case 3 touching the leading wall, {AMPLITUDE:g} N; both models, steel or rigid wall",
             "reproduced" if sooner else "reproduced in kind" if weaker else "not reproducible",
         ),
