@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -33,11 +34,11 @@ _MEMBERS = 16
 
 def cases() -> Mapping[str, Case]:
     """Return the paper's case with either wall, from each start."""
-    return {
-        f"{wall} wall, case {k}": seed_case(_CONTACTS[wall], start=start)
-        for wall in WALLS
-        for k, start in START.items()
-    }
+    return {f"{wall} wall, case {k}": _case(wall, start) for wall in WALLS for k, start in START.items()}
+
+
+def _case(wall: str, start: float, offset: float = 0.0) -> Case:
+    return seed_case(_CONTACTS[wall], start=near(start, offset), times=[0.0])
 
 
 def data() -> xr.Dataset:
@@ -80,7 +81,7 @@ def data() -> xr.Dataset:
 
 def _met(wall: str, start: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Approach speeds and restitutions of all impacts of an ensemble."""
-    runs = ensemble(lambda offset: seed_case(_CONTACTS[wall], start=near(start, offset)), _MEMBERS)
+    runs = ensemble(partial(_case, wall, start), _MEMBERS)
     impacts = [run.impacts.isel(impact=run.impacts.restitution.notnull().values) for run in runs]
     speeds, values = ([log[name].values for log in impacts] for name in ("approach_speed", "restitution"))
     return np.concatenate(speeds), np.concatenate(values)

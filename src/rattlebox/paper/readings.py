@@ -56,6 +56,11 @@ def _as_if_fixed(law: JacksonGreen) -> Tsuji:
     return Tsuji(restitution=law.model_copy(update={"yield_stress": strength}), ending="zero_overlap")
 
 
+def _recorded(contact: Contact = CONSTANT, **options: Any) -> Case:
+    """The paper's case, of which only the end is recorded."""
+    return seed_case(contact, times=[10.0], **options)
+
+
 def _with(case: Case, **parts: Any) -> Case:
     """Change parts of the damper."""
     return case.model_copy(update={"dampers": (case.dampers[0].model_copy(update=parts),)})
@@ -64,18 +69,18 @@ def _with(case: Case, **parts: Any) -> Case:
 def _sized(radius: float, start: float) -> Case:
     """Let the printed size be another one in the printed cavity; the start is within a micrometre of START."""
     gap = _CAVITY / 2 - radius
-    case = seed_case(start=round(start) + (start - round(start)) * GAP / gap)
+    case = _recorded(start=round(start) + (start - round(start)) * GAP / gap)
     return _with(case, balls=(Sphere(radius=radius, material="steel"),), gap=gap)
 
 
 def _soft(start: float) -> Case:
     """Take A = (4/3) E* R* as it is printed, in SI units."""
     steel = _STEEL.model_copy(update={"young": _STEEL.young * sqrt(RADIUS)})
-    return _with(seed_case(start=start), balls=(Sphere(radius=RADIUS, material=steel, mass=_BALL),))
+    return _with(_recorded(start=start), balls=(Sphere(radius=RADIUS, material=steel, mass=_BALL),))
 
 
 def _contact(contact: Contact, wall: Literal["rigid"] | None = None) -> Callable[[float], Case]:
-    return lambda start: seed_case(contact, start=start, wall=wall)
+    return lambda start: _recorded(contact, start=start, wall=wall)
 
 
 READINGS: Mapping[str, Callable[[float], Case]] = {
@@ -106,7 +111,7 @@ def data() -> xr.Dataset:
     radii = np.array(list(_RADII.values()))
     shares = [[_shares(make, start) for start in START.values()] for make in READINGS.values()]
     met = [[_impacts(partial(_sized, radius), start) for start in START.values()] for radius in _RADII.values()]
-    weak = [_impacts(lambda start: seed_case(start=start, amplitude=100.0), start) for start in START.values()]
+    weak = [_impacts(lambda start: _recorded(start=start, amplitude=100.0), start) for start in START.values()]
     # The printed size in either way, mass and clearance as printed; then restitution and resonances.
     given = (
         4 / 3 * pi * radii**3 * _STEEL.density / MASS,
@@ -117,7 +122,7 @@ def data() -> xr.Dataset:
         [JacksonGreen().critical_speed(pair) * sqrt(_REDUCED / mass) for mass in (_REDUCED, _BALL)]
         for pair in _WALLS.values()
     ]
-    first = simulate(seed_case()).impacts.isel(impact=0)
+    first = simulate(_recorded()).impacts.isel(impact=0)
     deepest = float(first.peak_overlap)
     stiffness = PAIR.hertz_stiffness
     gamma = ALPHA * sqrt(_REDUCED * stiffness) * deepest**0.25

@@ -14,7 +14,7 @@ from rattlebox.paper.figure import Reproduction
 from rattlebox.paper.report import FIGURES, reproduction
 from rattlebox.paper.runs import noting
 
-HEAVY = {"readings", "contacts_per_cycle", "bifurcation", "chattering", "lyapunov"}
+HEAVY = {"contacts_per_cycle", "bifurcation", "chattering", "lyapunov"}
 """Modules whose data take some seconds."""
 
 
