@@ -108,10 +108,15 @@ def asked() -> Iterator[Line]:
 
 
 def jackson_green() -> Iterator[Line]:
-    """Yield speeds of a ball in a fixed cavity after n hits, over the critical speed."""
+    """Yield restitution, and speeds of a ball in a fixed cavity after n hits, over the critical speed."""
     strain = cases.YIELD / cases.YOUNG
     critical = restitution_laws.jackson_green_speed(cases.RADIUS, cases.MASS, cases.MODULUS, cases.YIELD, cases.POISSON)
     contact = rb.Tsuji(restitution=rb.JacksonGreen())
+    for ratio in printed.JACKSON_GREEN:
+        # At the very end of the law a rounded speed would lie beyond it.
+        case = cases.single_impact(contact, ratio * critical * (1 - 1e-14), 3e-4)
+        exact = restitution_laws.jackson_green(ratio, strain)
+        yield Line("2", f"Jackson-Green, V/V_c = {ratio}: restitution", exact, first_impact(case)[0], 1e-10)
     log = simulate(cases.still_cavity(contact, 10 * critical, 0.2)).arrays.impacts
     for hits in printed.JACKSON_GREEN_HITS:
         exact = restitution_laws.jackson_green_after(10, hits, strain)
@@ -132,6 +137,10 @@ def thornton() -> Iterator[Line]:
     for ratio in printed.THORNTON:
         case = cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4)
         yield Line("3", f"Thornton, V/V_y = {ratio}", restitution_laws.thornton(ratio), first_impact(case)[0], 1e-10)
+    ratio = 1e8
+    tail = first_impact(cases.single_impact(rb.Thornton(yield_pressure=pressure), ratio * critical, 3e-4))[0]
+    # The next term of the expansion is of first order in V_y / V.
+    yield Line("3", "Thornton, tail: e (V/V_y)^(1/4) at 1e8", restitution_laws.THORNTON_TAIL, tail * ratio**0.25, 1e-7)
 
 
 def stable(key: tuple[float, float, float]) -> masri_caughey.Orbit:
@@ -172,8 +181,21 @@ def impact_damper() -> Iterator[Line]:
         # times the condition of the eigenvalue.
         yield Line("4", f"{name}: multiplier", exact, damper_multiplier(orbit), 1e-7)
         if exact < 1:
-            run = simulate(cases.impact_damper(orbit, 40.0))
-            yield Line("4", f"{name}: approach speed", orbit.approach, run.arrays.impacts.approach_speed[-1], 1e-10)
+            a = simulate(cases.impact_damper(orbit, 40.0)).arrays
+            yield Line("4", f"{name}: approach speed", orbit.approach, a.impacts.approach_speed[-1], 1e-10)
+            yield Line("4", f"{name}: ball velocity w", orbit.speed, a.ball_velocity[-1, 0], 1e-10)
+            yield Line("4", f"{name}: max|x|/50", orbit.largest() / 50, largest_displacement(orbit) / 50, 1e-9)
+
+
+def largest_displacement(orbit: masri_caughey.Orbit) -> float:
+    """Return the largest displacement of the structure in half a cycle, from samples and a parabola at the top."""
+    span = orbit.half_period
+    case = cases.impact_damper(orbit, 1.0)
+    case = case.model_copy(update={"output": rb.Output(times=np.linspace(0, span, 4001))})
+    x = np.abs(simulate(case).arrays.displacement[:, 0])
+    k = int(x.argmax())
+    left, mid, right = x[k - 1 : k + 2]
+    return float(mid + (right - left) ** 2 / (8 * (2 * mid - left - right)))
 
 
 SOFT_KEY = (0.1, 0.25, 20)
@@ -249,6 +271,16 @@ def slow_manifold() -> Iterator[Line]:
                 log.approach_speed[-1],
                 1e-9,
             )
+        yield Line("5", f"shaken cavity, e {e}: threshold", shaken.threshold(e), shaken_threshold(e), 1e-7)
+
+
+def shaken_threshold(e: float) -> float:
+    """Return the least amplitude with two impacts a cycle, from runs above it: amplitude^2 is a parabola of the speed."""
+    amplitudes = [above * shaken.threshold(e) for above in (1.01, 1.1, 1.3)]
+    runs = [simulate(cases.shaken_cavity(shaken.two_impacts(e, a), 20.0)) for a in amplitudes]
+    speeds = [run.arrays.impacts.approach_speed[-1] for run in runs]
+    curve, slope, start = np.polyfit(speeds, np.square(amplitudes), 2)
+    return float(np.sqrt(start - slope**2 / (4 * curve)))
 
 
 def collect_and_collide() -> Iterator[Line]:
@@ -294,6 +326,9 @@ def vibrating_table() -> Iterator[Line]:
         log = simulate(cases.table(orbit, 30.0)).arrays.impacts
         name = f"vibrating table, e {e}, {n} cycles"
         yield Line("7", f"{name}: approach speed", orbit.approach, log.approach_speed[-1], 1e-10)
+        # The table's velocity at the impact does not depend on its acceleration; where the orbit begins it is the largest.
+        phase = log.time[-1] + orbit.phase + math.pi * n
+        yield Line("7", f"{name}: begin", shaken.table_bounds(e, n)[0], orbit.gamma * math.cos(phase), 1e-9)
         yield Line("7", f"{name}: doubling", shaken.table_bounds(e, n)[1], doubling(e, n), 1e-7)
 
 

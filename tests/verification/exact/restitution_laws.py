@@ -28,6 +28,10 @@ def jackson_green_speed(radius: float, mass: float, modulus: float, yield_stress
     return math.sqrt(4 * overlap * force / (5 * mass))
 
 
+THORNTON_TAIL = math.sqrt(6 * math.sqrt(3) / 5) * (2 * math.sqrt(6 / 5)) ** -0.25
+"""e (V / V_y)^(1/4) for V / V_y to infinity."""
+
+
 def thornton(ratio: float) -> float:
     """Restitution at V / V_y = ratio."""
     if ratio <= 1:
