@@ -1,0 +1,68 @@
+"""The builds of the core for each instruction set: which one is picked, and that all give the verified numbers."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import rattlebox as rb
+from rattlebox.engines import core
+
+HERE = Path(__file__).parent
+V3 = {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"}
+V4 = V3 | {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}
+
+
+@pytest.mark.parametrize("level", ["v1", "v3", "v4", "native"])
+def test_every_build_gives_the_verified_numbers(level: str) -> None:
+    """Reference solution and lines of the verification table hold with each build that this processor can run."""
+    if level not in core.supported():
+        pytest.skip(f"{level} is not built, or this processor cannot run it")
+    if level == core.choice()[0]:
+        pytest.skip(f"{level} is what all other tests run with")
+    environment = {**os.environ, "RATTLEBOX_SIMD": level}
+    tell = "from rattlebox.engines.core import core; print(core().__name__)"
+    name = subprocess.run([sys.executable, "-c", tell], env=environment, capture_output=True, text=True, check=True)
+    assert name.stdout.strip() == f"rattlebox.engines._core_{level}"
+    files = ["test_reference_w1.py", "test_known_solutions.py::test_run_has_the_exact_value"]
+    lines = "reference or tsuji or jackson_green or thornton or slow_manifold or chatter or oscillator_with_stop"
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-k", lines]
+    done = subprocess.run(
+        [*command, *(str(HERE / file) for file in files)],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout[-3000:]
+
+
+@pytest.mark.parametrize(
+    ("flags", "level", "why"),
+    [
+        (V4, "v4", "the best that was built"),
+        (V3, "v3", "lacks instructions of v4"),
+        (V4 - {"fma"}, "v1", "lacks instructions of v4"),
+        (set(), "v1", "could not be read"),
+    ],
+)
+def test_best_build_is_picked(flags: set[str], level: str, why: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A processor gets the best build whose instructions it has, and is told why."""
+    monkeypatch.delenv("RATTLEBOX_SIMD", raising=False)
+    monkeypatch.setattr(core, "_processor_flags", lambda: flags)
+    monkeypatch.setattr(core, "built", lambda: ("v4", "v3", "v1"))
+    chosen, reason = core.choice.__wrapped__()
+    assert chosen == level
+    assert why in reason
+
+
+def test_build_that_cannot_run_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Asking for a build that the processor cannot run names those that it can."""
+    monkeypatch.setenv("RATTLEBOX_SIMD", "v4")
+    monkeypatch.setattr(core, "_processor_flags", lambda: V3)
+    monkeypatch.setattr(core, "built", lambda: ("v4", "v3", "v1"))
+    with pytest.raises(rb.CaseError, match="offer: v3, v1"):
+        core.choice.__wrapped__()
