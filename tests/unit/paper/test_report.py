@@ -3,6 +3,7 @@
 import base64
 import csv
 import html.parser
+import os
 import re
 from itertools import pairwise
 from pathlib import Path
@@ -105,8 +106,9 @@ def test_figures_have_numbers_and_files_of_their_own():
 
 @pytest.fixture(scope="module", params=["one", pytest.param("all", marks=pytest.mark.slow)])
 def report(request, tmp_path_factory):
-    """Return the page of a report on one figure or on all, and what was told on the way."""
+    """Return the page of a report on one figure or on all, what was told on the way, and the processor time."""
     told = []
+    before = sum(os.times()[:4])
     folder = tmp_path_factory.mktemp("reports") / "report"
     page = write_report(
         folder,
@@ -114,12 +116,18 @@ def report(request, tmp_path_factory):
         workers=1 if request.param == "one" else 2,
         progress=lambda *news: told.append(news),
     )
-    return page, told
+    return page, told, sum(os.times()[:4]) - before
+
+
+def test_report_takes_two_minutes_on_two_cores(report):
+    """The work of all figures, however many processes share it, fits into two minutes of two cores."""
+    *_, seconds = report
+    assert 0 < seconds < 2 * 120
 
 
 def test_page_holds_together(report):
     """The page is sound HTML without repeated ids, its headings do not skip a level, its links lead somewhere."""
-    page, _ = report
+    page, *_ = report
     read = Page(page.read_text(encoding="utf-8"))
     assert len(set(read.ids)) == len(read.ids)
     levels = [int(heading[1]) for heading in read.headings]
@@ -134,7 +142,7 @@ def test_page_holds_together(report):
 
 def test_page_needs_nothing_from_elsewhere(report):
     """Neither the page nor its pictures load anything from a network."""
-    page, _ = report
+    page, *_ = report
     text = page.read_text(encoding="utf-8")
     assert not re.search(r"""(?:src|href|url\()\s*=?\s*["']?(?:https?:)?//""", text)
     for picture in Page(text).pictures:
@@ -143,12 +151,14 @@ def test_page_needs_nothing_from_elsewhere(report):
         links = [value for node in drawn.iter() for key, value in node.items() if key.endswith("href")]
         assert all(link.startswith(("#", "data:")) for link in links)
         assert re.match(r"Figures? \w+", picture["alt"])
+        stem = f"figures/{picture['aria-describedby'].removesuffix('_caption')}"
+        assert f'swipe it sideways, or <a href="{stem}.svg">' in text
         assert picture["aria-describedby"] in text
 
 
 def test_every_file_is_written_and_offered(report):
     """SVG, PNG, CSV and case files lie beside the page, and the page links each of them."""
-    page, _ = report
+    page, *_ = report
     folder = page.parent
     written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} - {"index.html"}
     linked = {address for address in Page(page.read_text(encoding="utf-8")).addresses if address[0].isalpha()}
@@ -158,7 +168,7 @@ def test_every_file_is_written_and_offered(report):
 
 def test_progress_is_told(report):
     """After each figure the caller hears how many of how many are done."""
-    page, told = report
+    page, told, _ = report
     count = len(list(page.parent.glob("figures/*.svg")))
     assert [(done, total) for done, total, _ in told] == [(k + 1, count) for k in range(count)]
     assert f"figure {FIGURE}" in {last for _, _, last in told}
@@ -166,7 +176,7 @@ def test_progress_is_told(report):
 
 def test_figures_are_the_same_in_every_run(report, tmp_path):
     """A second report has the same drawings, data and cases to the last bit, in worker processes too."""
-    page, _ = report
+    page, *_ = report
     again = write_report(tmp_path, only=[FIGURE, "5"], workers=2)
     for path in page.parent.glob("*/figure_02*"):
         if path.suffix != ".png":
