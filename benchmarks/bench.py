@@ -2,21 +2,20 @@
 
     python benchmarks/bench.py [--peers FOLDER] [--repeat N]
 
-FOLDER holds w1_scipy.py and its like, each printing one JSON line with cpu_s. Times are the best of N; accuracy is measured
-against a solution in 113-bit arithmetic.
+FOLDER holds the scripts that peers.py names; those that can run here do, the others are told. Times of ours are the best of
+N, in the core; of the peers, CPU time of one run. Accuracy is measured against a solution in 113-bit arithmetic. The program
+that calls ode45 at every step is timed step by step, and its 5 s are extrapolated from the number of steps.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import subprocess
-import sys
-import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
+import peers
 
 import rattlebox as rb
 from rattlebox.engines.core import choice, core
@@ -35,9 +34,9 @@ def errors(times: np.ndarray, z_at_1: float | None) -> tuple[float, float]:
     return float(np.abs(found - exact).max()), float("nan") if z_at_1 is None else abs(z_at_1 - sample[1])
 
 
-def ours(name: str, method: object, repeat: int) -> dict[str, object]:
-    """Time one method of ours inside the core."""
-    case = rb.Case(
+def single_ball(method: object) -> rb.Case:
+    """Return the case."""
+    return rb.Case(
         structure=rb.SDOF(mass=20.0, stiffness=8e4, damping=25.3),
         dampers=(
             rb.ImpactDamper(
@@ -51,6 +50,11 @@ def ours(name: str, method: object, repeat: int) -> dict[str, object]:
         method=method,
         output=rb.Output(times=[1.0]),
     )
+
+
+def ours(name: str, method: object, repeat: int) -> dict[str, object]:
+    """Time one method of ours inside the core."""
+    case = single_ball(method)
     packed = pack(case)
     seconds = min(core().simulate([packed], 1)[0]["seconds"] for _ in range(repeat))
     run = rb.simulate(case)
@@ -58,18 +62,39 @@ def ours(name: str, method: object, repeat: int) -> dict[str, object]:
     return {"name": name, "seconds": seconds, "impacts": len(run.arrays.impacts), "dt30": dt, "dz1": dz}
 
 
-def peer(folder: Path, name: str, arguments: list[str]) -> dict[str, object] | None:
-    """Run one SciPy setting of the peers' script; None where it cannot run."""
-    with tempfile.TemporaryDirectory() as scratch:
-        out = Path(scratch) / "out.json"
-        command = [sys.executable, str(folder / "w1_scipy.py"), *arguments, "5", "centre", "const", str(out)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=500, check=False)
-        if done.returncode != 0:
-            return None
-        line, data = json.loads(done.stdout), json.loads(out.read_text(encoding="utf-8"))
-    z = next((s[1] for s in data["samples"] if abs(s[0] - 1) < 1e-9), None)
-    dt, dz = errors(np.array([i["t0"] for i in data["impacts"]]), z)
-    return {"name": name, "seconds": line["cpu_s"], "impacts": line["impacts"], "dt30": dt, "dz1": dz}
+def theirs(folder: Path) -> tuple[list[dict[str, object]], list[str]]:
+    """Measure what runs of the peers; return rows and, of the others, why they did not run."""
+    rows, missing = [], []
+    for name, found in peers.measure(folder):
+        if isinstance(found, str):
+            missing.append(f"{name}: {found}")
+            continue
+        dt, dz = errors(np.array(found["times"]), found["z_at_1"])
+        rows.append({"name": name, "seconds": found["cpu_s"], "impacts": found["impacts"], "dt30": dt, "dz1": dz})
+    log = rb.simulate(single_ball(rb.EventDriven())).arrays.impacts
+    name = "Octave ode45 at every step, extrapolated"
+    found = peers.single_steps(folder, float(log.duration.sum()), float(log.time[0]))
+    if isinstance(found, str):
+        missing.append(f"{name}: {found}")
+    else:
+        rows.append({"name": name, "seconds": found["cpu_s"], "impacts": "-", "dt30": np.nan, "dz1": np.nan})
+    return rows, missing
+
+
+def duration(seconds: float) -> str:
+    """Write a time with a unit that suits it."""
+    scale, unit = next(((s, u) for s, u in ((3600.0, "h"), (1.0, "s")) if seconds >= s), (1e-3, "ms"))
+    return f"{seconds / scale:.3g} {unit}"
+
+
+def times(ratio: float) -> str:
+    """Write a ratio with three digits and thousands apart."""
+    return f"{float(f'{ratio:.3g}'):,.0f}".replace(",", " ") if ratio >= 100 else f"{ratio:.3g}"
+
+
+def shown(error: float, unit: str) -> str:
+    """Write an error; a dash where there is none."""
+    return f"{error:.1e} {unit}" if np.isfinite(error) else "-"
 
 
 def main() -> None:
@@ -85,15 +110,8 @@ def main() -> None:
         ours("Rattlebox Newton (hard impacts)", rb.Newton(restitution=0.99117), options.repeat),
         ours("Rattlebox TwoStep rk4", rb.TwoStep(), 1),
     ]
-    if options.peers:
-        for name, arguments in {
-            "SciPy LSODA 1e-9": ["LSODA", "1e-9", "1e-12"],
-            "SciPy LSODA 1e-12": ["LSODA", "1e-12", "1e-15"],
-            "SciPy DOP853 1e-12": ["DOP853", "1e-12", "1e-15"],
-        }.items():
-            row = peer(options.peers, name, arguments)
-            if row is not None:
-                rows.append(row)
+    found, missing = theirs(options.peers) if options.peers else ([], [])
+    rows += found
     base = float(rows[0]["seconds"])  # type: ignore[arg-type]
     print(f"core {choice()[0]}; {time.perf_counter() - start:.0f} s of measurement\n")
     print("| program | time | ratio | impacts | error of first 30 impacts | error of z(1 s) |")
@@ -101,9 +119,11 @@ def main() -> None:
     for r in rows:
         seconds = float(r["seconds"])  # type: ignore[arg-type]
         print(
-            f"| {r['name']} | {1e3 * seconds:.3g} ms | {seconds / base:.3g} | {r['impacts']} "
-            f"| {r['dt30']:.1e} s | {r['dz1']:.1e} m |"
+            f"| {r['name']} | {duration(seconds)} | {times(seconds / base)} | {r['impacts']} "
+            f"| {shown(r['dt30'], 's')} | {shown(r['dz1'], 'm')} |"  # type: ignore[arg-type]
         )
+    for line in missing:
+        print(f"\nnot run: {line}")
 
 
 if __name__ == "__main__":
