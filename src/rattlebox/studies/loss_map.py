@@ -58,8 +58,8 @@ def loss_map(
     Returns
     -------
     xarray.Dataset
-        Over amplitude and frequency: loss_factor m''/|m'|, effective_mass m' [kg], damping_mass m'' [kg], reduced_loss
-        (loss a cycle over m V^2), loss_per_cycle [J], impacts_per_cycle, status; and particle_mass m [kg].
+        Over amplitude and frequency: loss_factor (m'' over the size of m'), effective_mass m' [kg], damping_mass m'' [kg],
+        reduced_loss (loss a cycle over m V^2), loss_per_cycle [J], impacts_per_cycle, status; and particle_mass m [kg].
 
     Raises
     ------
