@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from rattlebox.studies.lyapunov import lyapunov
     from rattlebox.studies.measures import MEASURES
     from rattlebox.studies.sensitivity import sensitivity
+    from rattlebox.studies.store import open_study
     from rattlebox.studies.sweep import sweep
 
 __version__ = "0.1.0"
@@ -67,6 +68,7 @@ _LATER = {
     "plot_sensitivity": "rattlebox.plots.sensitivity",
     "design": "rattlebox.studies.design",
     "loss_map": "rattlebox.studies.loss_map",
+    "open_study": "rattlebox.studies.store",
     "sensitivity": "rattlebox.studies.sensitivity",
     "lyapunov": "rattlebox.studies.lyapunov",
     "geomspace": "rattlebox.studies.designs",
@@ -119,6 +121,7 @@ __all__ = [
     "loss_map",
     "lyapunov",
     "materials",
+    "open_study",
     "plot_basins",
     "plot_bifurcation",
     "plot_design",

@@ -9,7 +9,8 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from rattlebox.paper.report import choose, cores, write_report
+from rattlebox.paper.report import choose, write_report
+from rattlebox.studies.runner import cores
 
 
 def make_report(out: Path, only: Sequence[str], workers: int | None) -> None:

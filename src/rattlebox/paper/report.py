@@ -15,6 +15,8 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rattlebox.studies.runner import cores
+
 from .figure import Reproduction
 from .page import GENERATOR, Column, Made, Table, render
 from .runs import noting, write_runs
@@ -229,11 +231,3 @@ def _described(path: Path, table: xr.Dataset) -> Table:
             for name in (*table.dims, *table.data_vars)
         ),
     )
-
-
-def cores() -> int:
-    """Count of processor cores that this process may use."""
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:  # not on every system
-        return os.cpu_count() or 1

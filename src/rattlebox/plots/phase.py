@@ -7,6 +7,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
+from ..analysis import phase_portrait
 from ..results import Run
 from .style import FAINT, INK, PaperFigure, Size, label, paper, pen, scaled
 
@@ -37,21 +38,12 @@ def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column
     ValueError
         When no ball or point has that name, or the size is unknown.
     """
-    arrays = run.arrays
-    names = (*arrays.balls, *arrays.points)
-    chosen = of if of is not None else next(iter(names), "")
-    if chosen not in names:
-        raise ValueError(f"there is no ball or point {chosen!r}; there are {', '.join(names) or 'none'}")
-    half = None
-    if chosen in arrays.balls:
-        k = arrays.balls.index(chosen)
-        half = float(arrays.clearance[arrays.ball_damper[k]]) / 2
-        x, v = arrays.relative_position[:, k] - arrays.ball_centre[k], arrays.relative_velocity[:, k]
+    arrays, portrait = run.arrays, phase_portrait(run, of)
+    x, v = portrait.position.values, portrait.velocity.values
+    half, texts = None, ("Displacement", "Velocity")
+    if portrait.of in arrays.balls:
+        half = float(arrays.clearance[arrays.ball_damper[arrays.balls.index(portrait.of)]]) / 2
         texts = "Place in cavity", "Relative velocity"
-    else:
-        k = arrays.points.index(chosen)
-        x, v = arrays.displacement[:, k], arrays.velocity[:, k]
-        texts = "Displacement", "Velocity"
     x_scale, x_unit = scaled(x if half is None else np.append(x, half), "m")
     v_scale, v_unit = scaled(v, "m/s")
     t_scale, t_unit = scaled(arrays.time, "s")

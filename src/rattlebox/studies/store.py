@@ -112,9 +112,9 @@ class Memory:
 
     def write(self, block: int, values: Mapping[str, NDArray[Any]]) -> None:
         """Keep the result of a block."""
+        region, sides = self.blocks.region(block), self.blocks.sides(block)
         for name, array in self._arrays.items():
-            region = array[self.blocks.region(block)]
-            region[...] = values[name].reshape(region.shape)
+            array[region] = values[name].reshape(*sides, *values[name].shape[1:])
         self.finished[block] = True
 
     @property
