@@ -54,9 +54,7 @@ def with_value(node: Any, place: Place, value: Any) -> Any:
         return type(node)(with_value(item, tuple(rest), value) if i == step else item for i, item in enumerate(node))
     if isinstance(node, dict):
         return {**node, step: with_value(node[step], tuple(rest), value)}
-    copy = node.model_copy(update={step: with_value(getattr(node, step), tuple(rest), value)})
-    copy.__dict__.pop("modes", None)  # those that were computed before
-    return copy
+    return node.model_copy(update={step: with_value(getattr(node, step), tuple(rest), value)})
 
 
 def contiguous(node: Any) -> Any:

@@ -17,7 +17,7 @@ from .elementwise import Vector, power, stacked
 from .errors import Hint, at
 from .materials import AnyMaterial, AnyWall
 from .signals import as_several
-from .units import SI, Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse
+from .units import SI, Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse, text
 
 
 class Sphere(Part):
@@ -97,7 +97,7 @@ def _one_place(value: Any) -> float | str:
     if isinstance(value, (int, float)):
         return parse(value, ("m",))[0]
     length, unit = parse(value, ("m",))
-    return length if unit is None else f"{length!r} m"
+    return length if unit is None else text(length, "m")
 
 
 def _speeds(value: Any) -> Any:

@@ -103,7 +103,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         except OverflowError:
             raise Hint("a finite number is needed") from None
     if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str):
-        value = f"{value[0]!r} {value[1]}"
+        value = f"{value[0]} {value[1]}"
     if isinstance(value, str):
         match = _NUMBER.match(value)
         if match is None:
@@ -188,7 +188,7 @@ def _find_what_is_no_number(value: Any) -> None:
 
 def text(value: float, unit: str) -> str:
     """Write a quantity so that it reads back to the same bits."""
-    return f"{value!r} {unit}"
+    return f"{float(value)!r} {unit}"
 
 
 @dataclass(frozen=True)

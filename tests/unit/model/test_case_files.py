@@ -92,6 +92,18 @@ def test_two_start_positions_may_be_lengths() -> None:
         np.testing.assert_allclose(damper.positions0, [-5e-4, 2e-4], rtol=1e-14)
 
 
+def test_numbers_of_numpy_are_written_as_numbers() -> None:
+    """NumPy's numbers read back equal, whether they were given at first or put into a copy."""
+    ball = rb.Sphere(radius=np.float64(5e-3), material="steel")
+    damper = rb.ImpactDamper(ball=ball, gap=np.float64(4e-4), start="0.1 mm", contact=rb.Tsuji(alpha=np.float64(0.1)))
+    case = rb.Case(structure=rb.Fixed(), damper=damper, duration=np.int64(2))
+    moved = damper.model_copy(update={"gap": np.float64(5e-4), "gravity": np.float32(0.1)})
+    for each in (case, case.model_copy(update={"dampers": (moved,), "duration": np.float64(3)})):
+        text = each.to_toml()
+        assert "np." not in text
+        assert rb.Case.from_toml(text) == each
+
+
 def test_materials_of_a_case_file() -> None:
     """A material of the file's own is used by name for balls and walls."""
     case = rb.Case.from_toml(

@@ -17,7 +17,18 @@ BALL = rb.Sphere(radius="5 mm", material="steel")
 
 
 @pytest.mark.parametrize(
-    "mass", [20.0, 20, "20 kg", "20000 g", " 2e1 kg ", (20, "kg"), np.float64(20), pint.UnitRegistry()("20 kg")]
+    "mass",
+    [
+        20.0,
+        20,
+        "20 kg",
+        "20000 g",
+        " 2e1 kg ",
+        (20, "kg"),
+        (np.float64(20), "kg"),
+        np.float64(20),
+        pint.UnitRegistry()("20 kg"),
+    ],
 )
 def test_ways_to_write_a_quantity(mass: object) -> None:
     """Numbers, texts, pairs and pint quantities of the same mass are the same mass."""
@@ -242,3 +253,10 @@ def test_parts_do_not_change() -> None:
     """A part of a case cannot be assigned to."""
     with pytest.raises(ValueError, match="frozen"):
         BALL.radius = 1.0  # type: ignore[misc]
+
+
+def test_a_changed_copy_forgets_what_was_computed() -> None:
+    """The modes of a copy with another structure are those of that structure; the original keeps its own."""
+    case = rb.Case(structure=rb.SDOF(mass=1.0, stiffness=4.0), duration=1.0)
+    copy = case.model_copy(update={"structure": rb.SDOF(mass=1.0, stiffness=9.0)})
+    assert (case.modes.stiffness, copy.modes.stiffness, case.model_copy().modes.stiffness) == (4.0, 9.0, 4.0)
