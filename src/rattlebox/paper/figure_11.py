@@ -70,13 +70,14 @@ def data() -> xr.Dataset:
         return [peak_reduction(without, values), *(rms_reduction(without[part], values[part]) for part in parts)]
 
     drawn = np.flatnonzero(time <= SHOWN)[::EVERY]
-    single, alone, spread, reductions, amplitudes = [], [], [], [], []
+    single, alone, spread, reductions, amplitudes, moves = [], [], [], [], [], []
     for model in _MODELS:
         run = simulate(_case(model))
         many = ensemble(lambda offset, model=model: _case(model, near(START[3], offset)), MEMBERS)  # type: ignore[misc]
         moved = [each.arrays.displacement[:, 0] for each in many]
         single.append(run)
         amplitudes.append(band([_amplitude(each)[drawn] for each in many]))
+        moves.append(band([values[drawn] for values in moved]))
         alone.append(settled(run.arrays.displacement[:, 0]))
         spread.append(band([settled(values) for values in moved]))
         reductions.append(band([reduced(values) for values in moved]))
@@ -95,6 +96,9 @@ def data() -> xr.Dataset:
             "without": described(("time",), without[drawn], "m", "displacement without damper"),
             "displacement": described(
                 ("model", "time"), np.array([run.arrays.displacement[drawn, 0] for run in single]), "m", "displacement"
+            ),
+            "displacement_spread": described(
+                ("model", "quantile", "time"), moves, "m", "displacement, ensemble of start positions"
             ),
             "amplitude": described(
                 ("model", "quantile", "time"),
@@ -153,6 +157,11 @@ def draw(data: xr.Dataset) -> Figure:
             one, axes = data.sel(model=model), grid[model]
             axes.plot(data.time, data.without / x.divisor, color=FAINT, linewidth=pen(1.0))
             axes.plot(data.time, one.displacement / x.divisor, color=colour, linewidth=pen(0.5))
+            least, middle, most = one.displacement_spread.values / x.divisor
+            axes.fill_between(data.time, least, most, color=colour, alpha=0.3, linewidth=0)
+            (moved,) = axes.plot(
+                data.time, middle, color=INK, linestyle=":", linewidth=pen(0.4), label="displacement, median and band"
+            )
             least, middle, most = one.amplitude.values / x.divisor
             axes.fill_between(data.time, least, most, color=colour, alpha=0.3, linewidth=0)
             (median,) = axes.plot(data.time, middle, color=INK, linewidth=pen(0.8), label="amplitude, median and band")
@@ -179,7 +188,7 @@ def draw(data: xr.Dataset) -> Figure:
         label(right, "x", "Time after which it stays below", "s")
         right.set_ylabel("Share of the peak without damper")
         handles = [line for line in right.get_legend_handles_labels()[0] if line.get_label() != "single run"]
-        figure.legend(handles=[*handles, thin, hit, median], loc="outside upper left", ncols=3)
+        figure.legend(handles=[*handles, thin, hit, moved, median], loc="outside upper left", ncols=3)
     return figure
 
 
@@ -211,8 +220,8 @@ def caption(data: xr.Dataset) -> str:
     flown, lost = 100 * data.ball_share, 100 * data.impact_share
     return (
         f"Response to a pulse of {AMPLITUDE:g} N, the ball of case 3 touching the leading wall (left: single runs, with the "
-        f"median and band of the amplitude of {MEMBERS} starts within 1 µm, and the bare structure in grey; right: time "
-        f"after which the response stays below a share of the bare structure's peak, "
+        f"medians and bands of displacement and amplitude of {MEMBERS} starts within 1 µm, and the bare structure in grey; "
+        f"right: time after which the response stays below a share of the bare structure's peak, "
         f"{1e6 * float(data.peak):.1f} µm). {_parted(data)}The first peak comes before "
         f"the first contact, {1e3 * float(data.contact.min()):.0f} ms after the pulse. Then the ball takes energy from "
         f"the structure, at times {float(flown.min()):.0f} to {float(flown.max()):.0f} % of all that is left, and the RMS "

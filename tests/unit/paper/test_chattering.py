@@ -5,6 +5,7 @@ import pytest
 
 from rattlebox.paper import chattering
 from rattlebox.paper.models import CONSTANT_E, RIGID
+from rattlebox.paper.seed import GAP
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +46,16 @@ def test_constant_restitution_does_not_come_to_rest(data):
     """With constant restitution no contact lasts, at either load, nor with the elasto-plastic model at the lower one."""
     assert not data.held.sel(model=CONSTANT_E).any()
     assert data.held.sel(model=RIGID).values.tolist() == [False, True]
+
+
+def test_ball_alone_is_irregular(data):
+    """The load decides where the structure is, to a thousandth; with constant restitution the ball may be anywhere."""
+    low, median, high = data.displacement_spread.transpose("quantile", ...)
+    size = float(abs(data.displacement).max())
+    assert float((high - low).max()) < 1e-3 * size
+    assert float(abs(median - data.displacement).max()) < 1e-3 * size
+    low, _, high = data.place_spread.sel(shown=CONSTANT_E).transpose("quantile", ...)
+    assert float((high - low).max()) > 0.5 * GAP
 
 
 def test_drawn_and_judged(data):

@@ -47,6 +47,15 @@ def test_ball_gives_back_what_it_takes(data: xr.Dataset) -> None:
     assert bool((data.settled_median.sel(level=0.05) > data.settled_without.sel(level=0.05)).all())
 
 
+def test_starts_move_alike_and_then_part(data: xr.Dataset) -> None:
+    """The displacement of starts within a micrometre is that of the single run for a second, and then anything."""
+    low, median, high = data.displacement_spread.transpose("quantile", "model", "time")
+    together, apart = data.time < 1.0, data.time > 2.0
+    assert float(abs(median - data.displacement).where(together).max()) < 0.02 * float(data.peak)
+    assert float((high - low).where(together).max()) < 0.04 * float(data.peak)
+    assert float((high - low).where(apart).max("time").min()) > 0.1 * float(data.peak)
+
+
 def test_verdict_follows_the_data(data: xr.Dataset) -> None:
     """Earlier attenuation holds in kind, fully when all settle sooner, and not at all without a reduced RMS."""
     assert [claim.verdict for claim in figure_11.claims(data)] == ["reproduced in kind"]
