@@ -135,9 +135,13 @@ def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xa
     """Say which attractor each start has, and what each attractor is."""
     over = maps.status.dims
     strobes = ("displacement", "velocity", "ball_place", "ball_speed")
-    found = maps.drop_vars([*strobes, "impacts"]).assign(
-        attractor=(over, label, {"units": "1", "long_name": "attractor", "flag_values": [-1, 0]}),
-        period=(over, period, {"units": "1", "long_name": "cycles after which the motion repeats"}),
+    found = (
+        maps.drop_dims("strobe")
+        .drop_vars("impacts")
+        .assign(
+            attractor=(over, label, {"units": "1", "long_name": "attractor", "flag_values": [-1, 0]}),
+            period=(over, period, {"units": "1", "long_name": "cycles after which the motion repeats"}),
+        )
     )
     found.attractor.attrs["flag_meanings"] = "not_finished no_period"
     lasts = period.ravel()[best]
@@ -156,4 +160,7 @@ def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xa
         kept = np.where(within.reshape(*within.shape, *(1,) * (values.ndim - 2)), values, np.nan)
         dims = ("orbit", "strobe", "ball")[: values.ndim]
         found[f"orbit_{name}"] = dims, kept, maps[name].attrs
-    return found.assign_coords(orbit=("orbit", np.arange(1, len(best) + 1), {"units": "1", "long_name": "attractor"}))
+    numbers = {"orbit": (len(best), "attractor"), "strobe": (longest, "strobe of the period")}
+    return found.assign_coords(
+        {name: (name, np.arange(1, n + 1), {"units": "1", "long_name": text}) for name, (n, text) in numbers.items()}
+    )

@@ -9,12 +9,13 @@ import platform
 import threading
 import time
 import warnings
+from collections import deque
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
 from importlib import import_module
-from itertools import zip_longest
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,28 @@ class Task(Protocol):
 
     def run(self, start: int, stop: int, *, threads: int, cancelled: Callable[[], bool] | None) -> Values | None:
         """Return each output of variants start to stop, variants first; anything soon after `cancelled`."""
+
+
+@runtime_checkable
+class Chained(Task, Protocol):
+    """Work of which each variant goes on from another one, along the last dimension."""
+
+    def chains(self, blocks: Blocks) -> list[list[int]]:
+        """Return the numbers of blocks that need each other, in order; chains need nothing of each other."""
+
+    def order(self, start: int, stop: int) -> range:
+        """Return variants of a block in the order in which they follow each other."""
+
+    def run(
+        self,
+        start: int,
+        stop: int,
+        *,
+        threads: int,
+        cancelled: Callable[[], bool] | None,
+        before: Values | None = None,
+    ) -> Values | None:
+        """Return each output of variants start to stop; `before` holds those of the one from which they go on."""
 
 
 class Grid(Protocol):
@@ -141,7 +164,8 @@ def run_task(
     )
 
     def cut() -> Blocks:
-        return Blocks.of(plan.shape, block or _block_size(task, plan, on, threads))
+        size = block or _block_size(task, plan, on, 1 if isinstance(task, Chained) else threads)
+        return Blocks.of(plan.shape, min(size, plan.shape[-1]) if isinstance(task, Chained) else size)
 
     opened: list[Memory | Store] = []
     try:
@@ -152,8 +176,7 @@ def run_task(
             tell = stack.enter_context(telling(progress, task.size))
             keeper = stack.enter_context(ThreadPoolExecutor(1))  # ends what it has begun when Ctrl-C comes
             tell(kept.done)
-            numbers = np.flatnonzero(~kept.finished).tolist()
-            todo: list[Block] = [(number, *kept.blocks.range(number)) for number in numbers]
+            todo = _chains(task, kept, plan.dims)
             results = _on_cluster(on, task, todo, threads) if on else _here(task, todo, threads)
             stack.callback(results.close)
             for (number, _, _), values in results:
@@ -192,6 +215,45 @@ def _how_to_go_on(done: int, total: int, store: str | os.PathLike[str] | None) -
     return f"stopped; {done:,} of {total:,} variants are in {os.fspath(store)}, and the same command goes on from there"
 
 
+# ---- what is to be done
+
+
+class _Chain(NamedTuple):
+    """Blocks that are run one after the other, and what the first of them goes on from."""
+
+    blocks: list[Block]
+    before: Values | None = None
+
+
+def _chains(task: Task, kept: Memory | Store, dims: Sequence[str]) -> list[_Chain]:
+    blocks = kept.blocks
+    if not isinstance(task, Chained):
+        return [_Chain([(number, *blocks.range(number)) for number in np.flatnonzero(~kept.finished).tolist()])]
+    found = []
+    for numbers in task.chains(blocks):
+        done = int(np.argmin([*kept.finished[numbers], False]))
+        before = None
+        if done:
+            last = np.unravel_index(task.order(*blocks.range(numbers[done - 1]))[-1], blocks.shape)
+            there = kept.result().isel(dict(zip(dims, map(int, last), strict=True)))
+            before = {str(name): values.values[None] for name, values in there.data_vars.items()}
+        found.append(_Chain([(number, *blocks.range(number)) for number in numbers[done:]], before))
+    return found
+
+
+def _end(task: Task, block: Block, values: Values) -> Values | None:
+    """What the next block of a chain goes on from."""
+    if not isinstance(task, Chained):
+        return None
+    _, start, stop = block
+    last = task.order(start, stop)[-1] - start
+    return {name: array[last : last + 1] for name, array in values.items()}
+
+
+def _from(task: Task, before: Values | None) -> Callable[..., Values | None]:
+    return partial(task.run, before=before) if isinstance(task, Chained) else task.run
+
+
 # ---- how large a block is
 
 
@@ -211,9 +273,9 @@ def _block_size(task: Task, plan: Plan, on: Any, threads: int) -> int:
 
 def _seconds_each(task: Task, cancelled: Callable[[], bool]) -> float:
     """Time a few variants from all over the study on one thread, more of them until it takes long enough to tell."""
-    count = 1
+    count, chained = 1, isinstance(task, Chained)
     while True:
-        starts = np.unique(np.linspace(0, task.size - count, 4).astype(int))
+        starts = np.unique(np.linspace(0, 0 if chained else task.size - count, 4).astype(int))
         begin = time.perf_counter()
         for start in starts.tolist():
             task.run(start, start + count, threads=1, cancelled=_after(begin + 1, cancelled))
@@ -231,10 +293,10 @@ def _after(end: float, cancelled: Callable[[], bool]) -> Callable[[], bool]:
 
 
 @contextmanager
-def _aside() -> Iterator[tuple[ThreadPoolExecutor, threading.Event]]:
-    """A thread beside the one that hears Ctrl-C; what runs there is told to stop on leaving, however that happens."""
+def _aside(count: int = 1) -> Iterator[tuple[ThreadPoolExecutor, threading.Event]]:
+    """Threads beside the one that hears Ctrl-C; what runs there is told to stop on leaving, however that happens."""
     stop = threading.Event()
-    with ThreadPoolExecutor(1) as pool:
+    with ThreadPoolExecutor(count) as pool:
         try:
             yield pool, stop
         finally:
@@ -249,19 +311,29 @@ def _heard(future: Future[Any]) -> Any:
     return future.result()
 
 
-def _here(task: Task, todo: Sequence[Block], threads: int) -> Generator[tuple[Block, Values]]:
-    """Run block after block, the next one while a result is being kept."""
-    with _aside() as (pool, stop):
+def _here(task: Task, chains: Sequence[_Chain], threads: int) -> Generator[tuple[Block, Values]]:
+    """Run chains beside each other, block after block, the next one while a result is being kept."""
+    waiting = [(deque(chain.blocks), chain.before) for chain in chains if chain.blocks]
+    beside = max(1, min(threads, len(waiting)))
+    running: dict[Future[Values | None], deque[Block]] = {}
+    with _aside(beside) as (pool, stop):
 
-        def submit(block: Block) -> Future[Values | None]:
-            return pool.submit(task.run, *block[1:], threads=threads, cancelled=stop.is_set)
+        def submit(blocks: deque[Block], before: Values | None) -> None:
+            work = partial(_from(task, before), threads=threads // beside, cancelled=stop.is_set)
+            running[pool.submit(work, *blocks[0][1:])] = blocks
 
-        ahead = submit(todo[0]) if todo else None
-        for block, following in zip_longest(todo, todo[1:]):
-            assert ahead
-            values = _heard(ahead)
-            ahead = submit(following) if following else None
-            yield block, _whole(values)
+        for _ in range(beside):
+            if waiting:
+                submit(*waiting.pop(0))
+        while running:
+            for future in wait(running, timeout=0.05, return_when=FIRST_COMPLETED).done:  # with an ear for Ctrl-C
+                blocks, values = running.pop(future), _whole(future.result())
+                block = blocks.popleft()
+                if blocks:
+                    submit(blocks, _end(task, block, values))
+                elif waiting:
+                    submit(*waiting.pop(0))
+                yield block, values
 
 
 def _whole(values: Values | None) -> Values:
@@ -273,17 +345,20 @@ def _whole(values: Values | None) -> Values:
 # ---- on a cluster
 
 
-def _on_cluster(client: Any, task: Task, todo: Sequence[Block], threads: int) -> Generator[tuple[Block, Values]]:
+def _on_cluster(client: Any, task: Task, chains: Sequence[_Chain], threads: int) -> Generator[tuple[Block, Values]]:
     """Run blocks wherever there is a worker; those of workers that die are run again by others."""
     cloudpickle, dask = import_module("cloudpickle"), import_module("distributed")
     broken = import_module("distributed.comm").CommClosedError
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Sending large graph")  # not scattered: what is lost there is gone for good
         shared = client.submit(pickle.loads, cloudpickle.dumps(task), pure=False)
-    blocks = {
-        client.submit(_block, shared, *block[1:], threads, _bits(), pure=False, priority=-block[0]): block
-        for block in todo
-    }
+    blocks: dict[Any, Block] = {}
+    for chain in chains:
+        earlier: tuple[Any, Block | None] = chain.before, None
+        for block in chain.blocks:
+            future = client.submit(_block, shared, block, threads, _bits(), *earlier, pure=False, priority=-len(blocks))
+            blocks[future] = block
+            earlier = (future, block) if isinstance(task, Chained) else (None, None)
     try:
         for future in dask.as_completed(list(blocks)):
             values = future.result()
@@ -300,8 +375,10 @@ def _on_cluster(client: Any, task: Task, todo: Sequence[Block], threads: int) ->
             client.cancel([shared, *blocks], force=True)
 
 
-def _block(task: Task, start: int, stop: int, threads: int, bits: str) -> Values | None:
-    """Run a block on a worker."""
+def _block(
+    task: Task, block: Block, threads: int, bits: str, before: Values | None, earlier: Block | None
+) -> Values | None:
+    """Run a block on a worker, from what was found of an earlier block or before all of them."""
     worker: Any = import_module("distributed").get_worker()
     if _bits() != bits:
         raise CaseError(
@@ -309,4 +386,8 @@ def _block(task: Task, start: int, stop: int, threads: int, bits: str) -> Values
             "  try: the same version, and the same RATTLEBOX_SIMD in the environment of all"
         )
     tasks, key = worker.state.tasks, worker.get_current_task()
-    return task.run(start, stop, threads=threads, cancelled=lambda: key not in tasks or tasks[key].state == "cancelled")
+    if before is not None and earlier is not None:
+        before = _end(task, earlier, before)
+    return _from(task, before)(
+        *block[1:], threads=threads, cancelled=lambda: key not in tasks or tasks[key].state == "cancelled"
+    )

@@ -117,6 +117,30 @@ class SweepTask:
             found["state"] = (states, "float64", {"units": "", "long_name": "modes, ball positions, ball velocities"})
         return found
 
+    def coords(self) -> dict[str, Any]:
+        """Return the coordinates of the further dimensions."""
+        found: dict[str, tuple[NDArray[Any], str, str]] = {}
+        duration = np.asarray(self.packed["settings"]["duration"])
+        lengths = {name: length for extra, _, _ in self.outputs.values() for name, length in extra}
+        if self.motion:
+            found["ball"] = np.arange(1, lengths["ball"] + 1), "1", "number of the ball"
+            if self.cycles is not None:
+                found["instant"] = self._window(0.0, self.cycles[1]), "1", "cycles looked at"
+            elif duration.size == 1:
+                found["instant"] = self._window(self.skip, duration.item()), "s", "time"
+            else:
+                found["instant"] = self._window(0.0, 1.0), "1", "part of the time looked at"
+        if self.last:
+            found["last"] = np.arange(-self.last, 0), "1", "number of the impact, from the end"
+        if self.state:
+            found["component"] = np.arange(1, lengths["component"] + 1), "1", "number of the component"
+        return {
+            name: (name, values, {"units": unit, "long_name": text}) for name, (values, unit, text) in found.items()
+        }
+
+    def _window(self, start: float, stop: float) -> NDArray[np.float64]:
+        return np.linspace(start, stop, self.look.samples)
+
     def describe(self) -> dict[str, Any]:
         """What is computed besides the design, in JSON's types."""
         kept = {name: getattr(self, name) for name in ("skip", "samples", "point", "motion", "last", "state")}

@@ -1,0 +1,124 @@
+"""Sweeps that follow a motion: killed, stopped, and spread over workers."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+from distributed import Client
+
+import rattlebox as rb
+from rattlebox.studies.runner import Stopped
+from rattlebox.studies.store import progress_of
+
+from .test_cluster import running_scheduler, worker
+
+AMPLITUDE = "structure.motion.amplitude"
+STUDY = """\
+import rattlebox as rb
+from rattlebox.studies import runner
+
+case = rb.Case(
+    structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz")),
+    damper=rb.ImpactDamper(
+        ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", velocity="0.1 m/s", contact=rb.Tsuji(restitution=0.6)
+    ),
+    duration="1 s",
+    method=rb.Newton(),
+)
+values = rb.linspace("0.5 mm", "2.5 mm", 60)
+"""
+KILLED = (
+    STUDY
+    + """
+runner._block_size = lambda *_: 4
+rb.bifurcation(case, "structure.motion.amplitude", values, cycles=(400, 16), store="study.zarr")
+"""
+)
+
+
+def diagram(**options: Any) -> xr.Dataset:
+    """The same diagram, here."""
+    names: dict[str, Any] = {}
+    exec(STUDY, names)
+    return rb.bifurcation(
+        names["case"], AMPLITUDE, names["values"], cycles=(400, 16), **({"progress": False} | options)
+    )
+
+
+def bits(data: xr.Dataset) -> dict[str, bytes]:
+    """Every variable to the last bit."""
+    return {str(name): values.values.tobytes() for name, values in data.data_vars.items()}
+
+
+@pytest.mark.parametrize("after", [10, 70])  # on the way up, and down again
+def test_killed_on_the_way(after: int, tmp_path: Path) -> None:
+    """A diagram that is killed on its way up or down goes on from there, with the bits of one that ran through."""
+    store = tmp_path / "study.zarr"
+    process = subprocess.Popen([sys.executable, "-c", KILLED], cwd=tmp_path)
+    until = time.monotonic() + 60
+    while not (store / "progress/finished/c/0").exists() or progress_of(store).done < after:
+        assert time.monotonic() < until and process.poll() is None
+        time.sleep(0.002)
+    process.kill()
+    process.wait()
+    assert after <= progress_of(store).done < 120
+    assert bits(diagram(store=store)) == bits(diagram())
+
+
+def test_going_on_computes_nothing_twice(tmp_path: Path) -> None:
+    """A diagram that was stopped begins with what is there; when it is finished, nothing is left to do."""
+    store = tmp_path / "study.zarr"
+
+    def press(done: int, total: int) -> None:
+        if done > 0:
+            raise KeyboardInterrupt
+
+    def again() -> list[int]:
+        told: list[int] = []
+        diagram(store=store, progress=lambda n, _: told.append(n))
+        return told
+
+    with pytest.raises(Stopped, match=r"of 120 variants are in .* and the same command goes on"):
+        diagram(store=store, progress=press)
+    first = progress_of(store).done
+    told = again()
+    assert 0 < told[0] == first and told[-1] == 120
+    assert again() == [120]
+
+
+def test_a_worker_is_killed_on_the_way(tmp_path: Path) -> None:
+    """Sweeps up and down at two levels share two workers; one is killed, and the bits are those of this process."""
+    case = rb.Case(
+        structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+        ),
+        load=rb.Harmonic(amplitude="5 N", frequency="30 Hz"),
+        duration="1 s",
+        method=rb.Newton(),
+    )
+    options: dict[str, Any] = {"levels": ["5 N", "20 N"], "cycles": (1000, 8), "samples": 8}
+    frequencies = rb.linspace("28 Hz", "36 Hz", 40)
+
+    def kill(done: int, total: int) -> None:
+        if done > 0 and first.poll() is None:
+            first.kill()
+
+    with (
+        running_scheduler(tmp_path) as (file, _),
+        worker(file) as first,
+        worker(file),
+        Client(scheduler_file=str(file)) as client,
+    ):
+        client.wait_for_workers(2, timeout=30)
+        found = rb.frequency_response(
+            case, frequencies, on=client, store=tmp_path / "study.zarr", progress=kill, **options
+        )
+        assert first.poll() is not None
+    assert bits(found) == bits(rb.frequency_response(case, frequencies, progress=False, **options))
