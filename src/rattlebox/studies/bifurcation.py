@@ -16,6 +16,8 @@ from .sweep import sweep
 from .task import SweepTask
 
 if TYPE_CHECKING:
+    import os
+
     import xarray
 
     from rattlebox.model.case import Case
@@ -24,7 +26,6 @@ Show = Literal["strobe", "impacts"]
 Direction = Literal["up", "down", "both", "fresh"]
 
 _IMPACTS = 8  # kept, for each cycle looked at
-_STEP = {"up": 1, "down": -1}
 
 
 def bifurcation(
@@ -39,6 +40,8 @@ def bifurcation(
     tolerance: float = 1e-4,
     point: str | None = None,
     threads: int | None = None,
+    on: Any = None,
+    store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
     """Follow the motion under a harmonic load over a parameter, and look at it once a cycle or at each impact.
@@ -65,10 +68,9 @@ def bifurcation(
         angular frequency.
     point
         Of the structure, that is watched; default the first damper's.
-    threads
-        Threads of this process, which "fresh" makes use of.
-    progress
-        True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
+    threads, on, store, progress
+        Where it runs, what is kept and told, as of `rb.sweep`. Only "fresh" has work for several threads or workers; what
+        follows the motion goes on from the last value in the store.
 
     Returns
     -------
@@ -98,8 +100,6 @@ def bifurcation(
     >>> maps.ball_place.dims
     ('direction', 'structure.motion.amplitude', 'cycle', 'ball')
     """
-    import xarray
-
     for name, given, known in (("show", show, Show), ("direction", direction, Direction)):
         if given not in get_args(known):
             raise Hint(f"{name} = {given!r} is unknown", ", ".join(f'"{one}"' for one in get_args(known)))
@@ -119,24 +119,17 @@ def bifurcation(
         "last": _IMPACTS * look if show == "impacts" else 0,
         "point": point,
         "threads": threads,
+        "on": on,
+        "store": store,
         "progress": progress,
     }
     if direction == "fresh":
-        found = {"fresh": sweep(case, {path: values}, **options)}
+        maps = sweep(case, {path: values}, **options).expand_dims(direction=["fresh"])
     else:
-        size = np.arange(design.size)
-        turns = {"up": size, "down": size[::-1]} if direction == "both" else {direction: size[:: _STEP[direction]]}
-        order = np.concatenate(list(turns.values()))
-        columns = tuple(column[order] for column in design.columns.values())
-        walked = follow(case, tuple(design.columns), columns, **options)
-        found = {}
-        for number, (way, places) in enumerate(turns.items()):
-            part = walked.isel({design.dims[0]: slice(number * design.size, (number + 1) * design.size)})
-            found[way] = part.isel({design.dims[0]: places})  # rising again
-    parts = [_looked_at(part, task, tolerance) for part in found.values()]
-    ways = xarray.Variable("direction", list(found), {"long_name": "direction"})
+        both = direction == "both"
+        maps = follow(case, path, values, ways=("up", "down") if both else (direction,), turning=both, **options)
     about = {"title": "Bifurcation diagram", "case": case.to_toml(), "cycles": list(cycles), "tolerance": tolerance}
-    return xarray.concat(parts, dim=ways).assign_attrs(about)
+    return _looked_at(maps.load(), task, tolerance).assign_attrs(about)
 
 
 def _check_order(design: Design, direction: str) -> None:

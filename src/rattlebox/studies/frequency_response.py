@@ -18,6 +18,8 @@ from .sweep import sweep
 from .task import SweepTask
 
 if TYPE_CHECKING:
+    import os
+
     import xarray
 
     from rattlebox.model.case import Case
@@ -38,6 +40,8 @@ def frequency_response(
     samples: int = 64,
     tolerance: float = 1e-3,
     threads: int | None = None,
+    on: Any = None,
+    store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
     """Measure the steady motion under a harmonic load at each frequency, at one or several levels of the load.
@@ -67,10 +71,9 @@ def frequency_response(
     tolerance
         A motion is held to repeat when positions of structure and balls a number of cycles apart differ by less than
         this part of their range.
-    threads
-        Threads that share the levels. Results do not depend on it, to the last bit.
-    progress
-        True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
+    threads, on, store, progress
+        Where it runs, what is kept and told, as of `rb.sweep`. Each sweep upwards or downwards at one level is work for one
+        thread or worker.
 
     Returns
     -------
@@ -101,8 +104,6 @@ def frequency_response(
     >>> response.amplitude.dims
     ('direction', 'level', 'frequency')
     """
-    import xarray
-
     if direction not in (*get_args(Direction), "both"):
         raise CaseError(f'direction = {direction!r} is unknown\n  try: "up", "down", "both" or "fresh"')
     if not (isinstance(samples, int) and samples >= 8):
@@ -123,18 +124,17 @@ def frequency_response(
         "point": point,
         "motion": True,
         "threads": threads,
+        "on": on,
+        "store": store,
         "progress": progress,
     }
-    ways = ("up", "down") if direction == "both" else (direction,)
-    found = []
-    for way in ways:
-        if way == "fresh":
-            maps = sweep(case, [level, {at: hertz}], **options)
-        else:
-            maps = follow(case, at, hertz[:: 1 if way == "up" else -1], beside=level, **options)
-        maps = maps.rename({at: "frequency", strength: "level"}).sortby("frequency")
-        found.append(_steady(maps.transpose("level", "frequency", ...), driver.phase, samples, tolerance))
-    whole = xarray.concat(found, dim=xarray.Variable("direction", list(ways), {"long_name": "direction"}))
+    if direction == "fresh":
+        maps = sweep(case, [level, {at: hertz}], **options).expand_dims(direction=["fresh"])
+    else:
+        ways = ("up", "down") if direction == "both" else (direction,)
+        maps = follow(case, at, hertz, beside=level, ways=ways, **options)
+    maps = maps.rename({at: "frequency", strength: "level"}).load()
+    whole = _steady(maps, driver.phase, samples, tolerance)
     whole["bare_amplitude"] = ("level", "frequency"), bare, {"units": "m", "long_name": "amplitude without dampers"}
     whole.frequency.attrs["long_name"] = "frequency"
     whole.level.attrs["long_name"] = "amplitude of the load" if place.startswith("load") else "amplitude of the base"
@@ -177,8 +177,8 @@ def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float) 
         strobes = parts[..., ::samples, :] / np.ptp(parts, axis=-2).max(axis=-1)[..., None, None]
         period, _ = period_of(strobes, tolerance)
         spread = np.abs(np.diff(strobes, axis=-2)).max(axis=(-2, -1))
-    over = "level", "frequency"
-    return maps.drop_vars(["displacement", "velocity", "ball_place", "ball_speed"]).assign(
+    over = maps.status.dims
+    return maps.drop_dims(["instant", "ball"]).assign(
         amplitude=(over, np.abs(harmonic), {"units": "m", "long_name": "amplitude of the first harmonic"}),
         phase=(over, np.angle(harmonic), {"units": "rad", "long_name": "phase to the load"}),
         spread=(over, spread, {"units": "1", "long_name": "spread of strobes over the range of motion"}),

@@ -111,7 +111,7 @@ def lyapunov(
     """
     task = LyapunovTask(
         case,
-        Design(("case",), (1,), {}, {}) if axes is None else Design.of(case, axes),
+        Design((), (), {}, {}) if axes is None else Design.of(case, axes),
         cycles=cycles,
         skip=parse(skip, ("s",))[0],
         steps=steps,
@@ -122,7 +122,7 @@ def lyapunov(
     )
     task.check()
     block = 1 if task.size == 1 else None
-    found = run_task(
+    return run_task(
         task,
         design=task.design,
         coords=task.coords(),
@@ -132,7 +132,6 @@ def lyapunov(
         progress=progress,
         block=block,
     )
-    return found.isel(case=0) if axes is None else found
 
 
 @dataclass

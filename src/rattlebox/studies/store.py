@@ -114,7 +114,7 @@ class Memory:
         """Keep the result of a block."""
         region, sides = self.blocks.region(block), self.blocks.sides(block)
         for name, array in self._arrays.items():
-            array[region] = values[name].reshape(*sides, *values[name].shape[1:])
+            array[region] = values[name].reshape((*sides, *values[name].shape[1:]))
         self.finished[block] = True
 
     @property
@@ -185,7 +185,7 @@ class Store:
         region, sides = self.blocks.region(block), self.blocks.sides(block)
         with self._telling():
             for name in self._plan.outputs:
-                self._group[name][region] = values[name].reshape(*sides, *values[name].shape[1:])
+                self._group[name][region] = values[name].reshape((*sides, *values[name].shape[1:]))
             self.finished[block] = True
             self._mask[...] = self.finished
 

@@ -105,7 +105,7 @@ def sweep(
         last=last,
     )
     assert task.look  # what does not fit is told before anything runs
-    return run_task(task, design=design, store=store, on=on, threads=threads, progress=progress)
+    return run_task(task, design=design, coords=task.coords(), store=store, on=on, threads=threads, progress=progress)
 
 
 def known(measure: Any) -> list[Any]:

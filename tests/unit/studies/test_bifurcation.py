@@ -44,7 +44,7 @@ def test_both_goes_up_and_then_back_down():
         np.testing.assert_array_equal(up[name][0], both[name][0])
     there_and_back = np.concatenate([values, values[::-1]])
     walked = follow(shaken(), AMPLITUDE, there_and_back, cycles=(20, 8), samples=9, motion=True, **QUIET)
-    np.testing.assert_array_equal(both.ball_place[1], walked.ball_place.values[:4:-1, 1:])
+    np.testing.assert_array_equal(both.ball_place[1], walked.ball_place.values[0, :4:-1, 1:])
 
 
 def test_directions_differ_where_motions_coexist():
