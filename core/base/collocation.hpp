@@ -1,6 +1,7 @@
 // Spectral integration and interpolation on Gauss-Legendre nodes of [0, 1], from values of f at the nodes.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "base/lanes.hpp"
@@ -72,24 +73,29 @@ template <int n> struct Collocation {
             }
             whole[r] = 0.5 * dot<half>(weight, sum[r]);
         }
-        using Register = Pack<register_width>; // one for each running sum: they all stay in registers
-        constexpr int width = register_width;
-        for (int i0 = 0; i0 < half; i0 += width) {
-            Register a[count] = {}, b[count] = {};
-            for (int j = 0; j < half; ++j) {
-                const Register odd_j = pack<width>(&odd[j][i0]), even_j = pack<width>(&even[j][i0]);
-                for (int r = 0; r < count; ++r) {
-                    a[r] = a[r] + Register::all(difference[r][j]) * odd_j;
-                    b[r] = b[r] + Register::all(sum[r][j]) * even_j;
+        // A register for each running sum, so many at a time that they overlap and all stay in registers.
+        using Register = Pack<register_width>;
+        constexpr int width = register_width, together = std::min(half / width, std::max(1, 4 / count));
+        for (int i0 = 0; i0 < half; i0 += together * width) {
+            Register a[count][together] = {}, b[count][together] = {};
+            for (int j = 0; j < half; ++j)
+                for (int k = 0; k < together; ++k) {
+                    const Register odd_j = pack<width>(&odd[j][i0 + k * width]),
+                                   even_j = pack<width>(&even[j][i0 + k * width]);
+                    for (int r = 0; r < count; ++r) {
+                        a[r][k] = a[r][k] + Register::all(difference[r][j]) * odd_j;
+                        b[r][k] = b[r][k] + Register::all(sum[r][j]) * even_j;
+                    }
                 }
-            }
-            for (int r = 0; r < count; ++r) {
-                const Register middle = Register::all(whole[r]) + a[r];
-                alignas(64) real mirrored[width];
-                pack<width>(out[r].at + i0) = middle - b[r];
-                pack<width>(mirrored) = middle + b[r];
-                for (int i = 0; i < width; ++i) out[r][n - 1 - i0 - i] = mirrored[i];
-            }
+            for (int r = 0; r < count; ++r)
+                for (int k = 0; k < together; ++k) {
+                    const Register middle = Register::all(whole[r]) + a[r][k];
+                    alignas(64) real mirrored[width];
+                    const int at = i0 + k * width;
+                    pack<width>(out[r].at + at) = middle - b[r][k];
+                    pack<width>(mirrored) = middle + b[r][k];
+                    for (int i = 0; i < width; ++i) out[r][n - 1 - at - i] = mirrored[i];
+                }
         }
     }
 

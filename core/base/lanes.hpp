@@ -37,7 +37,9 @@ template <> struct __attribute__((may_alias)) Pack<register_width> {
     typedef real Register __attribute__((vector_size(register_width * sizeof(real)), may_alias));
     Register v;
 
-    static Pack all(real v) { return {Register{} + v}; }
+    static Pack all(real v) {
+        return {v - Register{}};
+    } // not +, which loses the sign of -0 and so cannot be left out
     friend Pack operator+(const Pack& a, const Pack& b) { return {a.v + b.v}; }
     friend Pack operator-(const Pack& a, const Pack& b) { return {a.v - b.v}; }
     friend Pack operator*(const Pack& a, const Pack& b) { return {a.v * b.v}; }

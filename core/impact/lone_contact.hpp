@@ -9,8 +9,11 @@
 //
 // psi runs from 0 to pi whatever happens, so there is no event to look for: zero overlap is psi = pi, the
 // deepest overlap is tan(psi) = s/zeta, zero force psi = 2 acos(zeta). psi = pi I(x) with I the regularised
-// incomplete beta function of (5, 5) makes d^(1/4) analytic at both ends. Fixed-point sweeps over all nodes
-// gain a factor a t_c / V each.
+// incomplete beta function of (5, 5) makes d^(1/4) analytic at both ends.
+//
+// Without a, r = r1(psi) and x = d^(1/4) = x0(psi). With gain = (r/r1)^(6/5), x r = x0 r1 gain, and the
+// equation of gain is free of gain itself but for the term a sin(psi): fixed-point sweeps over all nodes,
+// each with its own clock and modes before its gain, gain a factor (a t_c / V)^2 each.
 //
 // The energy balance, which the sweeps do not use, decides whether the result is taken; if not, or if the
 // contact is slow, strongly damped or has neighbours, impact/closed.hpp integrates it step by step.
@@ -79,11 +82,8 @@ class LoneContact {
     static constexpr int n = PhaseGrid::n;
     static constexpr int most_sweeps = 24;
     using Row = PhaseGrid::Rule::Row;
-    enum : std::size_t {
-        logarithm,
-        clock,
-        first_mode
-    }; // rows that are integrated; then each q, then the base
+    // Rows that are integrated: the momentum of each mode from first_mode on, of the base, each mode's path.
+    enum : std::size_t { clock, gain, first_mode };
 
     const Problem& problem_;
     const std::size_t modes_;
@@ -97,14 +97,16 @@ class LoneContact {
     bool base_moves_ = false;
     PhaseGrid grid_;
     Row x0_, r1_, turn_; // without closing acceleration: x and r; w = r turn in any case
+    Row swing_;          // and s^2 W r
+    Row grow_, rate_;    // gain^(1/6); dpsi/dt / (s r) is 1 / rate, but for the grid's slope
     Row a_, base_, x_, w_;
     std::vector<Row> slope_, integral_;
     std::vector<Row> q_, p_, u_, force_, signal_; // by mode or load
     std::vector<Series> pull_;                    // each load about the start, good to this degree
     int degree_ = 0;
 
-    std::size_t q_row() const { return first_mode + modes_; }
-    std::size_t base_row() const { return q_row() + modes_; }
+    std::size_t base_row() const { return first_mode + modes_; }
+    std::size_t path_row() const { return base_row() + 1; }
     real weight(std::size_t k) const {
         return -side_ * damper_->shape[k];
     } // of a mode in what closes the gap
@@ -167,43 +169,67 @@ class LoneContact {
         return sum;
     }
 
-    // x, w and the slopes of the logarithm and the clock for the present guess.
+    // (1 + z)^(1/6) for small z; what it leaves the next sweep finds.
+    static Lanes sixth_root(const Lanes& z) {
+        const Lanes one = Lanes::all(1);
+        return one + 1.0 / 6 * z * (one - 5.0 / 12 * z * (one - 11.0 / 18 * z * (one - 17.0 / 24 * z)));
+    }
+
+    // x, w and the clock's slope for the present gain.
     void rates() {
         const PhaseGrid& g = grid_;
-        const real per_s = 1 / s_, turning = s_ * s_ * wave_;
+        const Lanes one = Lanes::all(1);
         for (int i = 0; i < n; i += lane_count) {
-            const Lanes grow = short_exp<9>(0.2 * integral_[logarithm].eight(i));
-            const Lanes r = r1_.eight(i) * fifth_power(grow);
-            const Lanes x = x0_.eight(i) * grow, a = a_.eight(i), turn = turn_.eight(i);
-            const Lanes rate = g.slope.eight(i) / (turning * x * r - a * g.sine.eight(i));
-            x_.eight(i) = x;
-            w_.eight(i) = r * turn;
+            const Lanes grow = grow_.eight(i), r = r1_.eight(i) * fifth_power(grow);
+            const Lanes rate = g.slope.eight(i) / (swing_.eight(i) * (one + integral_[gain].eight(i)) -
+                                                   a_.eight(i) * g.sine.eight(i));
+            x_.eight(i) = x0_.eight(i) * grow;
+            w_.eight(i) = r * turn_.eight(i);
+            rate_.eight(i) = rate;
             slope_[clock].eight(i) = s_ * r * rate;
-            slope_[logarithm].eight(i) = per_s * a * turn * rate;
         }
     }
 
-    // A first guess of the modes: forces as at the start, the contact as if on its own.
-    void foresee() {
-        rates();
-        grid_.rule().integrate(&slope_[clock], &integral_[clock], 1);
-        const Row& time = integral_[clock];
+    // u = p + kick w, which the contact force leaves alone, and its path: at first with the forces as at the
+    // start, then with those of the sweep before.
+    void move_modes(bool first) {
+        const Row &time = integral_[clock], &slope = slope_[clock];
+        if (first) {
+            for (std::size_t k = 0; k < modes_; ++k) {
+                const real u0 = start_->y[2 * k + 1] + kick(k) * speed_, f = force_[k][0] + kick(k) * a_[0];
+                for (int i = 0; i < n; ++i) {
+                    u_[k][i] = u0 + f * time[i];
+                    integral_[path_row() + k][i] = time[i] * (u0 + 0.5 * f * time[i]);
+                }
+            }
+            return;
+        }
+        for (std::size_t k = 0; k < modes_; ++k)
+            for (int i = 0; i < n; ++i) slope_[first_mode + k][i] = force_[k][i] * slope[i];
+        if (base_moves_)
+            for (int i = 0; i < n; ++i) slope_[base_row()][i] = base_[i] * slope[i];
+        grid_.rule().integrate(&slope_[first_mode], &integral_[first_mode], modes_ + base_moves_);
+        Row drift; // what the closing acceleration has made of the speed
+        for (int i = 0; i < n; ++i) drift[i] = speed_ + constant_ * time[i];
+        if (base_moves_)
+            for (int i = 0; i < n; ++i) drift[i] += integral_[base_row()][i];
+        for (std::size_t k = 0; k < modes_; ++k)
+            for (int i = 0; i < n; ++i) drift[i] += weight(k) * integral_[first_mode + k][i];
         for (std::size_t k = 0; k < modes_; ++k) {
-            const real f = force_[k][0], u = start_->y[2 * k + 1] + kick(k) * speed_;
+            const real share = kick(k), p0 = start_->y[2 * k + 1];
             for (int i = 0; i < n; ++i) {
-                u_[k][i] = u + f * time[i];
-                integral_[q_row() + k][i] = time[i] * (u + 0.5 * f * time[i]);
+                u_[k][i] = p0 + integral_[first_mode + k][i] + share * drift[i];
+                slope_[path_row() + k][i] = u_[k][i] * slope[i];
             }
         }
-        place_modes();
-        external();
+        grid_.rule().integrate(&slope_[path_row()], &integral_[path_row()], modes_);
     }
 
-    // p and q at the nodes, from u = p + kick w, which the contact force leaves alone.
+    // p and q at the nodes.
     void place_modes() {
         for (std::size_t k = 0; k < modes_; ++k) {
             const real q0 = start_->y[2 * k], share = kick(k);
-            const Row& path = integral_[q_row() + k];
+            const Row& path = integral_[path_row() + k];
             for (int i = 0; i < n; ++i) {
                 p_[k][i] = u_[k][i] - share * w_[i];
                 q_[k][i] = q0 + path[i] - share * square(square(x_[i]));
@@ -211,36 +237,27 @@ class LoneContact {
         }
     }
 
-    // One sweep; returns the largest relative change.
-    real sweep() {
+    // One sweep; returns the largest relative change of the gain.
+    real sweep(bool first) {
         rates();
-        const Row& slope = slope_[clock];
-        for (std::size_t k = 0; k < modes_; ++k)
-            for (int i = 0; i < n; ++i) {
-                slope_[first_mode + k][i] = force_[k][i] * slope[i];
-                slope_[q_row() + k][i] = u_[k][i] * slope[i];
-            }
-        if (base_moves_)
-            for (int i = 0; i < n; ++i) slope_[base_row()][i] = base_[i] * slope[i];
-        const Row before = integral_[logarithm];
-        grid_.rule().integrate(slope_.data(), integral_.data(), base_row() + base_moves_);
-        Lanes change = {};
-        for (int i = 0; i < n; i += lane_count)
-            change = larger(change, absolute(integral_[logarithm].eight(i) - before.eight(i)));
-        Row drift; // what the closing acceleration has added to the speed
-        for (int i = 0; i < n; ++i) drift[i] = constant_ * integral_[clock][i];
-        if (base_moves_)
-            for (int i = 0; i < n; ++i) drift[i] += integral_[base_row()][i];
-        for (std::size_t k = 0; k < modes_; ++k)
-            for (int i = 0; i < n; ++i) drift[i] += weight(k) * integral_[first_mode + k][i];
-        for (std::size_t k = 0; k < modes_; ++k) {
-            const real share = kick(k), p0 = start_->y[2 * k + 1];
-            for (int i = 0; i < n; ++i)
-                u_[k][i] = p0 + integral_[first_mode + k][i] + share * (speed_ + drift[i]);
-        }
+        grid_.rule().integrate<1>(&slope_[clock], &integral_[clock]);
+        move_modes(first);
         place_modes();
         external();
-        return largest(change);
+        const Lanes one = Lanes::all(1);
+        const real factor = 1.2 / s_;
+        for (int i = 0; i < n; i += lane_count)
+            slope_[gain].eight(i) =
+                factor * (one + integral_[gain].eight(i)) * a_.eight(i) * turn_.eight(i) * rate_.eight(i);
+        grid_.rule().integrate<1>(&slope_[gain], &integral_[gain]);
+        Lanes most = {};
+        for (int i = 0; i < n; i += lane_count) {
+            const Lanes grow = grow_.eight(i);
+            const Lanes change = (one + integral_[gain].eight(i)) / (grow * fifth_power(grow)) - one;
+            grow_.eight(i) = grow * sixth_root(change);
+            most = larger(most, absolute(change));
+        }
+        return largest(most);
     }
 
 public:
@@ -297,7 +314,7 @@ public:
     // A bound on the duration: 5/2.94 of the undamped contact.
     real longest_time() const { return 5 * square(square(depth0_)) / speed_; }
 
-    // Sweeps to convergence, from the contact in which the external forces keep their first values.
+    // Sweeps to convergence, from the contact on its own.
     bool solve() {
         const PhaseGrid& g = grid_;
         for (int i = 0; i < n; i += lane_count) {
@@ -305,15 +322,19 @@ public:
             x0_.eight(i) = depth0_ * g.root.eight(i) * shrink;
             r1_.eight(i) = r0_ * fifth_power(shrink);
             turn_.eight(i) = s_ * g.cosine.eight(i) - zeta_ * g.sine.eight(i);
-            integral_[logarithm].eight(i) = Lanes{};
+            swing_.eight(i) = s_ * s_ * wave_ * x0_.eight(i) * r1_.eight(i);
+            // r^2 is V^2 + 2 a d for constant a and no damping.
+            const Lanes x = x0_.eight(i), z = 2 * a_[0] / square(speed_) * x * x * (x * x);
+            const Lanes grow = Lanes::all(1) + 0.1 * z * (Lanes::all(1) - 0.45 * z);
+            integral_[gain].eight(i) = grow * fifth_power(grow) - Lanes::all(1);
+            grow_.eight(i) = grow;
         }
-        foresee();
         real before = 1;
         for (int pass = 0; pass < most_sweeps; ++pass) {
-            const real change = sweep();
+            const real change = sweep(pass == 0);
             if (!(change < 1)) return false;
-            // The next change would be near rounding, or it no longer falls because it is rounding.
-            if (change * change < 0.01 * problem_.settings.tolerance * before ||
+            // The next change would be rounding, or it no longer falls because it is rounding.
+            if (change * change < 1e-3 * problem_.settings.tolerance * before ||
                 (change < 64 * epsilon && change > 0.1 * before)) {
                 rates();
                 return true;
@@ -329,12 +350,12 @@ public:
     Instant look(real position) const {
         real psi, sine, cosine;
         grid_.phase(position, psi, sine, cosine);
-        const real correction = grid_.rule().interpolate(integral_[logarithm], position);
-        return look(sine, cosine, correction - zeta_ / s_ * psi);
+        return look(psi, sine, cosine, grid_.rule().interpolate(integral_[gain], position));
     }
 
-    Instant look(real sine, real cosine, real log_r) const {
+    Instant look(real psi, real sine, real cosine, real gained) const {
         Instant now;
+        const real log_r = std::log1p(gained) / 1.2 - zeta_ / s_ * psi;
         const real grow = std::exp(0.2 * log_r), r = r0_ * fifth_power(grow);
         now.x = depth0_ * std::pow(std::fmax(sine, 0.0), 0.2) * grow;
         now.rate = r * (s_ * cosine - zeta_ * sine);
@@ -347,7 +368,7 @@ public:
         const auto& rule = grid_.rule();
         real psi, sine, cosine;
         grid_.phase(1, psi, sine, cosine);
-        Instant now = look(sine, cosine, rule.whole(slope_[logarithm]) - zeta_ / s_ * psi);
+        Instant now = look(psi, sine, cosine, rule.whole(slope_[gain]));
         now.time = rule.whole(slope_[clock]);
         Row loss;
         for (int i = 0; i < n; ++i) loss[i] = x_[i] * square(w_[i]) * slope_[clock][i];
