@@ -2,19 +2,22 @@
 
 Many variants of a case are packed at once: arrays that broadcast against each other stand in place of numbers in a copy of
 the case, which the same formulas pack. What is no number, and what is inside a table, cannot be an array: there each value
-is a case of its own, and the results are put together.
+is a case of its own, and the results are put together, or stay apart where they differ in more than numbers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rattlebox.engines.variants import (
     Columns,
+    Index,
     Joint,
+    Unlike,
     alike,
     column,
     compare,
@@ -57,10 +60,46 @@ def pack(case: Case) -> Packed:
     return {**_numbers(case), "sample_times": _array(case.sample_times())}
 
 
+@dataclass(frozen=True)
+class Batch:
+    """Variants of a grid that differ in numbers only, packed.
+
+    Attributes
+    ----------
+    packed
+        As `pack_batch` returns it, over the grid of these.
+    places
+        Which numbers along each dimension of the whole grid it has, rising.
+    unlike
+        Why it is not all of the grid, if it is not.
+    """
+
+    packed: Packed
+    places: tuple[NDArray[np.intp], ...]
+    unlike: Unlike | None = None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of its grid."""
+        return tuple(len(place) for place in self.places)
+
+    def index(self, inside: Index) -> Index:
+        """Return where a variant of the batch is in the whole grid."""
+        return tuple(int(place[i]) for place, i in zip(self.places, inside, strict=True))
+
+    def inside(self, index: Index) -> Index | None:
+        """Return where a variant of the whole grid is in the batch, if it is there."""
+        found = tuple(int(np.searchsorted(place, i)) for place, i in zip(self.places, index, strict=True))
+        there = all(k < len(place) and place[k] == i for place, i, k in zip(self.places, index, found, strict=True))
+        return found if there else None
+
+    def numbers(self, shape: Sequence[int]) -> NDArray[np.intp]:
+        """Return the numbers of its variants in a whole grid of some shape, rising."""
+        return np.ravel_multi_index(np.ix_(*self.places), tuple(shape)).ravel()
+
+
 def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> Packed:
     """Pack many variants of a case for the core.
-
-    Some of them, the extreme ones among them, are packed one by one as well and compared.
 
     Parameters
     ----------
@@ -83,31 +122,70 @@ def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
     CaseError
         When a variant does not fit, or variants differ in more than numbers: in kinds of laws, in how many balls there are.
     """
+    first, *others = pack_parts(case, columns, shape)
+    if others and first.unlike:
+        raise first.unlike
+    return first.packed
+
+
+def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> list[Batch]:
+    """Pack many variants of a case for the core, in parts that differ in numbers only.
+
+    Some of them, the extreme ones among them, are packed one by one as well and compared.
+
+    Parameters
+    ----------
+    case, columns, shape
+        As of `pack_batch`.
+
+    Raises
+    ------
+    CaseError
+        When a variant does not fit.
+    """
     given = {path: column(path, values, shape) for path, values in columns.items()}
-    packed: Packed = contiguous(_variants(case, given, tuple(shape), {}))
-    for index in (*misplaced(packed, shape), *examples(given, shape)):
-        compare(_with_points(variant(case, given, index)), packed, index)
-    return packed
+    parts = [
+        Batch(contiguous(part.packed), part.places, part.unlike) for part in _variants(case, given, tuple(shape), {})
+    ]
+    tried = examples(given, shape)
+    for part in parts:
+        wrong = [part.index(inside) for inside in misplaced(part.packed, part.shape)]
+        for index in (*wrong, *tried):
+            if (inside := part.inside(index)) is not None:
+                compare(_with_points(variant(case, given, index)), part.packed, inside)
+    return parts
 
 
-def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mapping[str, Any]) -> Packed:
+def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mapping[str, Any]) -> list[Batch]:
     """The variants over columns, with fixed values besides."""
+    whole = tuple(np.arange(n) for n in shape)
     path = next((path for path, values in columns.items() if not is_number(case, path, values)), None)
     if path is None:
-        return _broadcast(case, columns, len(shape), fixed)
+        return [Batch(_broadcast(case, columns, len(shape), fixed), whole)]
     values = columns[path]
     rest = {other: column for other, column in columns.items() if other != path}
     axis = next((k for k, n in enumerate(values.shape) if n > 1), None)
     if axis is None:
         return _variants(case, rest, shape, {**fixed, path: values.item()})
     groups = alike(values, axis)
-    parts = []
+    found = []
     for group in groups:
         inside = {other: np.take(c, group, axis) if c.shape[axis] > 1 else c for other, c in rest.items()}
         inside[path] = np.take(values, group[:1], axis)
-        parts.append(_variants(case, inside, (*shape[:axis], len(group), *shape[axis + 1 :]), fixed))
-    joined: Packed = Joint(path, groups, axis, shape).of(parts) if len(groups) > 1 else parts[0]
-    return joined
+        found.append(_variants(case, inside, (*shape[:axis], len(group), *shape[axis + 1 :]), fixed))
+    if len(groups) == 1:
+        return found[0]
+    unlike = next((part.unlike for parts in found for part in parts if part.unlike), None)
+    if all(len(parts) == 1 for parts in found):
+        try:
+            return [Batch(Joint(path, groups, axis, shape).of([part.packed for (part,) in found]), whole)]
+        except Unlike as told:
+            unlike = told
+    return [
+        Batch(part.packed, (*part.places[:axis], group[part.places[axis]], *part.places[axis + 1 :]), unlike)
+        for group, parts in zip(groups, found, strict=True)
+        for part in parts
+    ]
 
 
 def _broadcast(case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]) -> Packed:

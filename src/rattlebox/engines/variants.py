@@ -83,6 +83,10 @@ def alike(values: NDArray[Any], axis: int) -> list[NDArray[np.intp]]:
     return np.split(np.argsort(which.ravel(), kind="stable"), np.cumsum(counts)[:-1])
 
 
+class Unlike(Hint):
+    """Says of variants that they differ in more than numbers."""
+
+
 class Joint:
     """Puts packed variants together that differ in what stands at a path.
 
@@ -104,7 +108,7 @@ class Joint:
 
         Raises
         ------
-        Hint
+        Unlike
             When the parts differ in more than numbers.
         """
         first = parts[0]
@@ -139,8 +143,8 @@ class Joint:
             whole[(slice(None),) * axis + (group,)] = array
         return whole
 
-    def _unlike(self, where: Sequence[str]) -> Hint:
-        return Hint(
+    def _unlike(self, where: Sequence[str]) -> Unlike:
+        return Unlike(
             f"{self._path}: its values make cases that differ in more than numbers ({' of '.join(reversed(where))})",
             "one sweep for each",
         )

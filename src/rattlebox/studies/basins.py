@@ -100,6 +100,8 @@ def basins(
     check_part("apart", apart)
     _, look = whole_cycles(cycles)
     design = Design.of(case, starts, source="basins")
+    task = SweepTask(case, design, cycles=cycles, point=point)
+    assert task.packed  # what differs in more than numbers is told before anything runs
     basic = ("impacts", "impacts_per_cycle")
     maps = sweep(
         case,
@@ -115,7 +117,6 @@ def basins(
         progress=progress,
     ).load()
     maps = maps.isel(instant=slice(1, None)).rename(instant="strobe")
-    task = SweepTask(case, design, cycles=cycles, point=point)
     reduced = reduced_strobes(maps, task.packed, task.look.period)
     period, residual = period_of(reduced, tolerance)
     flat = reduced.reshape(design.size, look, -1)

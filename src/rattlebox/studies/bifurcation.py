@@ -109,6 +109,7 @@ def bifurcation(
     _, look = whole_cycles(cycles)
     design = Design.of(case, {path: values}, source="bifurcation")
     task = SweepTask(case, design, cycles=cycles, point=point)
+    assert task.packed  # what differs in more than numbers is told before anything runs
     _check_order(design, direction)
     basic = ("impacts", "impacts_per_cycle")
     options: dict[str, Any] = {

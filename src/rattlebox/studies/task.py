@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
 from inspect import getsource
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.engines.batch import Look, run_block
-from rattlebox.engines.pack import Packed, pack_batch
+from rattlebox.engines.pack import Batch, Packed, pack_parts
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .axes import Design
 
 Extra = tuple[tuple[str, int], ...]
+Values = Mapping[str, NDArray[Any]]
 UserMeasure = Callable[["Run"], float]
 _RUNS_AT_ONCE = 64
 
@@ -98,7 +99,7 @@ class SweepTask:
             found[name] = ((), "float64", {"units": measure.units, "long_name": measure.long_name})
         for name in self.own:
             found[name] = ((), "float64", {"units": "", "long_name": name.replace("_", " ")})
-        balls = sum(len(damper.balls) for damper in self.case.dampers)
+        balls = self._balls
         time: Extra = (("instant", self.look.samples),)
         if self.motion:
             found["displacement"] = (time, "float64", {"units": "m", "long_name": "displacement"})
@@ -120,14 +121,14 @@ class SweepTask:
     def coords(self) -> dict[str, Any]:
         """Return the coordinates of the further dimensions."""
         found: dict[str, tuple[NDArray[Any], str, str]] = {}
-        duration = np.asarray(self.packed["settings"]["duration"])
+        durations = np.unique(np.concatenate([np.ravel(p.packed["settings"]["duration"]) for p, *_ in self._prepared]))
         lengths = {name: length for extra, _, _ in self.outputs.values() for name, length in extra}
         if self.motion:
             found["ball"] = np.arange(1, lengths["ball"] + 1), "1", "number of the ball"
             if self.cycles is not None:
                 found["instant"] = self._window(0.0, self.cycles[1]), "1", "cycles looked at"
-            elif duration.size == 1:
-                found["instant"] = self._window(self.skip, duration.item()), "s", "time"
+            elif len(durations) == 1:
+                found["instant"] = self._window(self.skip, durations.item()), "s", "time"
             else:
                 found["instant"] = self._window(0.0, 1.0), "1", "part of the time looked at"
         if self.last:
@@ -158,7 +159,7 @@ class SweepTask:
         *,
         threads: int = 1,
         cancelled: Callable[[], bool] | None = None,
-    ) -> Mapping[str, NDArray[Any]] | None:
+    ) -> Values | None:
         """Run variants start to stop.
 
         Parameters
@@ -179,7 +180,7 @@ class SweepTask:
         def go_on(done: int) -> bool:
             return not (cancelled and cancelled())
 
-        result = run_block(self.packed, self.design.shape, start, stop, self.look, threads=threads, progress=go_on)
+        result = self._measured(start, stop, threads, go_on)
         if result is None or not self.own:
             return result
         columns = {name: np.full(stop - start, np.nan) for name in self.own}
@@ -194,22 +195,63 @@ class SweepTask:
                         columns[name][index - start] = measure(run)
         return {**result, **columns}
 
+    def _measured(self, start: int, stop: int, threads: int, go_on: Callable[[int], bool]) -> Values | None:
+        """What the core finds of variants start to stop."""
+        found: dict[str, NDArray[Any]] = {}
+        for part, look, numbers in self._prepared:
+            first, last = (start, stop) if numbers is None else np.searchsorted(numbers, (start, stop)).tolist()
+            if first == last:
+                continue
+            values = run_block(part.packed, part.shape, first, last, look, threads=threads, progress=go_on)
+            if values is None or numbers is None:
+                return values
+            for name, array in values.items():
+                whole = found.setdefault(name, np.empty((stop - start, *array.shape[1:]), array.dtype))
+                whole[numbers[first:last] - start] = array
+        return found
+
     # ---- what the core needs
 
     @property
     def packed(self) -> Packed:
-        """All variants, packed."""
-        return self._prepared[0]
+        """All variants, packed.
+
+        Raises
+        ------
+        CaseError
+            When they differ in more than numbers.
+        """
+        part = self._prepared[0][0]
+        if part.unlike:
+            raise part.unlike
+        return part.packed
 
     @property
     def look(self) -> Look:
-        """What is kept of each, for the core."""
-        return self._prepared[1]
+        """What is kept of each, for the core; of the first ones, where variants differ in more than numbers."""
+        return self._prepared[0][1]
 
     @cached_property
-    def _prepared(self) -> tuple[Packed, Look]:
-        packed = pack_batch(self.case, self.design.columns, self.design.shape)
-        packed.pop("sample_times", None)
+    def _prepared(self) -> list[tuple[Batch, Look, NDArray[np.intp] | None]]:
+        """Parts that differ in numbers only, with the numbers of their variants."""
+        parts = pack_parts(self.case, self.design.columns, self.design.shape)
+        found = []
+        for part in parts:
+            balls = sum(len(damper["mass"]) for damper in part.packed["dampers"])
+            modes = len(part.packed["mode_decay"])
+            if (
+                part.unlike
+                and (self.motion or self.state)
+                and (balls, modes) != (self._balls, len(self.case.modes.decay))
+            ):
+                raise part.unlike
+            numbers = part.numbers(self.design.shape) if len(parts) > 1 else None
+            found.append((*self._seen(part), numbers))
+        return found
+
+    def _seen(self, part: Batch) -> tuple[Batch, Look]:
+        """A part as it is run, and what is kept of it."""
+        packed = part.packed
         settings = packed["settings"]
         period = _period(packed)
         if self.cycles is not None:
@@ -234,7 +276,11 @@ class SweepTask:
             last=self.last,
             state=self.state,
         )
-        return {**packed, "settings": settings}, look
+        return replace(part, packed={**packed, "settings": settings}), look
+
+    @property
+    def _balls(self) -> int:
+        return sum(len(damper.balls) for damper in self.case.dampers)
 
     @property
     def _point(self) -> str:

@@ -1,5 +1,6 @@
 """Sweeps: measures of many variants equal those of single runs, to the last bit where they are the same numbers."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,10 @@ from rattlebox import analysis
 from rattlebox.engines.core import core
 from rattlebox.model.paths import replaced
 from rattlebox.paper.seed import PLASTIC_RIGID, seed_case
+from rattlebox.studies.axes import Design
 from rattlebox.studies.measures import MEASURES
+from rattlebox.studies.runner import run_task
+from rattlebox.studies.task import SweepTask
 
 AXES = {"damper.gap": ["0.3 mm", "0.8 mm"], "load.amplitude": ["1 kN", "5 kN", "8 kN"]}
 
@@ -161,3 +165,63 @@ def test_what_does_not_fit_is_told_before_anything_runs(options: dict[str, Any],
     """Unknown measures, windows outside the run and cycles without a load are refused with a hint."""
     with pytest.raises(rb.CaseError, match=told):
         rb.sweep(seed_case(duration=1.0), {"damper.gap": ["1 mm"]}, **options)
+
+
+def test_what_is_no_number_to_the_core_varies_too(tmp_path: Path) -> None:
+    """Scales of records, values in tables, numbers of events and kinds of laws vary on any axes, in any blocks."""
+    time = np.linspace(0, 0.5, 101)
+    table = rb.Tabulated(speeds=[0.01, 0.1, 1.0], values=[0.9, 0.8, 0.5])
+    ball = rb.Sphere(radius="10 mm", material="steel")
+    case = rb.Case(
+        structure=rb.SDOF(mass="2 kg", stiffness="8 kN/m", damping_ratio=0.01),
+        damper=rb.ImpactDamper(ball=ball, gap="1 mm", contact=rb.Tsuji(restitution=table)),
+        load=rb.Record(times=time, values=50 * np.sin(60 * time)),
+        duration="0.5 s",
+        method=rb.Newton(),
+    )
+    axes = {
+        "damper.gap": ["0.5 mm", "1 mm"],
+        "load.scale": [0.5, 2.0],
+        "damper.contact.restitution.values[1]": [0.8, 0.6],
+        "method.max_events": [60, 100_000],
+        "damper.ball.material": ["steel", "brass"],
+    }
+    maps = rb.sweep(case, axes, ["impacts"], motion=True, samples=3)
+    design = Design.of(case, axes)
+    for number in range(design.size):
+        run = rb.simulate(design.case_at(case, number).model_copy(update={"output": rb.Output(times=[0, 0.25, 0.5])}))
+        index = np.unravel_index(number, design.shape)
+        assert (maps.status.values[index] == 0) == run.ok
+        if run.ok:
+            assert maps.impacts.values[index] == len(run.arrays.impacts)
+            np.testing.assert_allclose(maps.displacement.values[index], run.arrays.displacement[:, 0], rtol=1e-9)
+    assert 0 < np.mean(maps.status == 0) < 1
+    assert np.unique(maps.impacts.values[np.isfinite(maps.impacts.values)]).size > 6
+    blocks = run_task(
+        SweepTask(case, design, ["impacts"], samples=3, motion=True), design=design, store=tmp_path / "s.zarr", block=3
+    )
+    for name in maps.data_vars:
+        np.testing.assert_array_equal(maps[name], blocks[name])
+    laws = rb.sweep(case, {"damper.contact": [rb.Tsuji(restitution=0.5), rb.Linear(stiffness=1e6, restitution=0.5)]})
+    assert not laws.status.any()
+
+
+def test_dimensions_have_coordinates() -> None:
+    """Samples, balls and last impacts have coordinates with units: times, cycles, numbers."""
+    case = seed_case(PLASTIC_RIGID, duration=2.0)
+    maps = rb.sweep(case, {"damper.gap": [1e-3]}, [], skip="1 s", samples=5, motion=True, last=3)
+    assert maps.instant.values.tolist() == [1.0, 1.25, 1.5, 1.75, 2.0] and maps.instant.units == "s"
+    assert maps.ball.values.tolist() == [1]
+    assert maps["last"].values.tolist() == [-3, -2, -1]
+    assert all({"units", "long_name"} <= set(maps[dim].attrs) for dim in maps.dims)
+    both = rb.sweep(case, {"duration": [1.0, 2.0]}, [], samples=3, motion=True)
+    assert both.instant.values.tolist() == [0.0, 0.5, 1.0] and both.instant.units == "1"
+
+
+def test_balls_that_do_not_line_up_are_refused() -> None:
+    """Motions of different numbers of balls have no common shape; their measures have."""
+    case = seed_case(PLASTIC_RIGID, duration=1.0)
+    axes = {"dampers": [list(case.dampers), []]}
+    assert rb.sweep(case, axes, ["impacts"]).impacts.values.tolist()[1] == 0
+    with pytest.raises(rb.CaseError, match="differ in more than numbers"):
+        rb.sweep(case, axes, ["impacts"], motion=True)
