@@ -5,20 +5,24 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError
+from pydantic import ValidationError
 
 from rattlebox.model.case import Case
 from rattlebox.model.errors import CaseError, Hint, nearest, translate
 from rattlebox.model.files import existing, read_toml
 from rattlebox.model.materials import Material
-from rattlebox.model.units import NotNegativeTime
 
 from .axes import Design
-from .designs import Method, geomspace, linspace, random_design, replicas
-from .measures import MEASURES
+from .designs import geomspace, linspace, random_design, replicas
+from .studytables import INSIDE, KINDS, Range, Spaced, shape_of
+from .studytables import Study as Content
+
+if TYPE_CHECKING:
+    import xarray
 
 _EXAMPLE = '[axes]\n       "damper.gap" = { from = "0.1 mm", to = "2 mm", count = 20 }'
 _ROOTS = {*Case.model_fields, *Case.spellings}
@@ -34,12 +38,37 @@ class Study(NamedTuple):
     axes
         Axes as `rb.sweep` takes them.
     options
-        Other arguments of `rb.sweep`, those that the file gives.
+        Other arguments of the function, those that the file gives.
+    kind
+        Name of the function: "sweep", "bifurcation", "frequency_response", "basins", "lyapunov", "loss_map", "design" or
+        "sensitivity".
     """
 
     case: Case
     axes: list[Any]
     options: dict[str, Any]
+    kind: str = "sweep"
+
+    def run(self, **where: Any) -> xarray.Dataset:
+        """Run the study.
+
+        Parameters
+        ----------
+        **where
+            Arguments of the function that the file does not give: store, threads, on, progress.
+
+        Raises
+        ------
+        CaseError
+            When something does not fit the case.
+        """
+        given: tuple[Any, ...] = (self.axes,) if self.axes else ()
+        if self.kind == "bifurcation":
+            ((name, values),) = self.axes[0].items()
+            given = (tuple(values), tuple(values.values())) if isinstance(values, Mapping) else (name, values)
+        study = getattr(import_module(f"rattlebox.studies.{self.kind}"), self.kind)
+        found: xarray.Dataset = study(self.case, *given, **{**self.options, **where})
+        return found
 
 
 def read_study(path: str | os.PathLike[str]) -> Study:
@@ -63,6 +92,12 @@ def read_study(path: str | os.PathLike[str]) -> Study:
             `count` replicas of each variant, moved by at most what the table `reach` says by path; `seed`.
 
         Above them the other arguments of `rb.sweep`: measure, skip, cycles, samples, point, motion, last, threads.
+
+        With `kind = "bifurcation"` or the name of another ready map, the file holds the arguments of that function instead:
+        `axes` is the one parameter of a bifurcation, the starts of basins, the axes of lyapunov; `frequencies`, `levels` and
+        `amplitudes` are values; `parameters` of a design and `bounds` of a sensitivity are tables of
+        `"damper.gap" = { from = "0.1 mm", to = "2 mm" }`, with `spacing = "log"` for a search in the logarithm, or of lists
+        to choose from; their `levels` is a table like `axes`.
 
     Raises
     ------
@@ -91,20 +126,28 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
         When something in it does not fit.
     """
     try:
-        given = {name: _NESTED.get(name, _as_it_is)(value) for name, value in _read(content, source).items()}
-        study = _Study.model_validate(given)
+        given = _read(content, source)
+        kind = given.get("kind", "sweep")
+        if kind not in KINDS:
+            raise Hint(f"kind = {kind!r}: there is no such kind of study", nearest(str(kind), KINDS))
+        given = {name: _NESTED.get(name, _as_it_is)(value) for name, value in given.items()}
+        study = KINDS[kind].model_validate(given)
         case, own = _case(study.case, source, folder or Path())
         axes = _axes(study, own)
+        options = _options(study, own)
     except ValidationError as error:
-        raise translate(error, source, _VOCABULARY, given) from None
+        raise translate(error, source, {"": {"": {*KINDS[kind].model_fields}}, **INSIDE}, given) from None
     except Hint as hint:
         raise CaseError(f"{source}: {hint}") from None
-    if not axes:
+    if study.axes_needed and not axes:
         raise CaseError(f"{source}: nothing varies\n  try: {_EXAMPLE}")
-    Design.of(case, axes, source=source)
-    return Study(
-        case, axes, {name: getattr(study, name) for name in sorted(study.model_fields_set - {*_NESTED, "case"})}
-    )
+    if kind == "bifurcation" and len(axes[0]) > 1:
+        raise CaseError(
+            f"{source}: axes\n  a bifurcation diagram has one\n  try: a table [axes.together] that links them"
+        )
+    if axes:
+        Design.of(case, axes, source=source)
+    return Study(case, axes, options, kind)
 
 
 def _read(content: str, source: str) -> dict[str, Any]:
@@ -116,85 +159,12 @@ def _read(content: str, source: str) -> dict[str, Any]:
         raise CaseError(f"{error}{hint}") from None
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
-
-
-class _Spaced(_Table):
-    start: Any = Field(alias="from")
-    to: Any
-    count: Annotated[int, Field(ge=1)]
-    spacing: Literal["linear", "log"] = "linear"
-
-
-def _kind(value: Any) -> str:
-    if not isinstance(value, dict):
-        return "values"
-    return "linked" if value and not value.keys() & {"from", "to", "count", "spacing"} else "spaced"
-
-
-_Values = Annotated[
-    Annotated[list[Any], Tag("values")] | Annotated[_Spaced, Tag("spaced")],
-    Discriminator(lambda value: "spaced" if _kind(value) == "spaced" else "values"),
-]
-_Axis = Annotated[
-    Annotated[list[Any], Tag("values")]
-    | Annotated[_Spaced, Tag("spaced")]
-    | Annotated[dict[str, _Values], Tag("linked")],
-    Discriminator(_kind),
-]
-
-
-class _Random(_Table):
-    ranges: dict[str, list[Any]]
-    count: Annotated[int, Field(ge=1)]
-    method: Method = "sobol"
-    seed: Annotated[int, Field(ge=0)] = 0
-    log: list[str] = []
-
-
-class _Replicas(_Table):
-    reach: dict[str, Any]
-    count: Annotated[int, Field(ge=1)]
-    seed: Annotated[int, Field(ge=0)] = 0
-
-
-def _known(measures: list[str]) -> list[str]:
-    for index, name in enumerate(measures):
-        if name not in MEASURES:
-            raise Hint("there is no such measure", nearest(name, MEASURES), [index])
-    return measures
-
-
-class _Study(_Table):
-    case: Any
-    axes: dict[str, _Axis] = {}
-    design: _Random | None = None
-    replicas: _Replicas | None = None
-    measure: Annotated[list[str], AfterValidator(_known)] = []
-    skip: NotNegativeTime = 0.0
-    cycles: tuple[float, float] | None = None
-    samples: Annotated[int, Field(ge=2)] | None = None
-    point: str | None = None
-    motion: bool = False
-    last: Annotated[int, Field(ge=0)] = 0
-    threads: Annotated[int, Field(ge=1)] | None = None
-
-
-_VOCABULARY = {
-    "": {"": {*_Study.model_fields}},
-    "spaced": {"": {"from", "to", "count", "spacing"}},
-    "design": {"": {*_Random.model_fields}},
-    "replicas": {"": {*_Replicas.model_fields}},
-}
-
-
 # ---- paths without quotes, which TOML reads as tables in tables
 
 
 def _walk(table: dict[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
     for name, value in table.items():
-        if _kind(value) == "linked":
+        if shape_of(value) == "linked":
             yield from _walk(value, f"{above}{name}.")
         else:
             yield above + name, value
@@ -212,12 +182,16 @@ def _flat(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
 def _flat_axes(table: Any) -> Any:
     def lines() -> Iterator[tuple[str, Any]]:
         for name, value in table.items():
-            if name not in _ROOTS and _kind(value) == "linked":
+            if name not in _ROOTS and shape_of(value) == "linked":
                 yield name, _flat(_walk(value))
             else:
                 yield from _walk({name: value})
 
-    return _flat(lines()) if isinstance(table, dict) else table
+    return _flat(lines()) if shape_of(table) == "linked" else table
+
+
+def _flat_table(table: Any) -> Any:
+    return _flat(_walk(table)) if isinstance(table, dict) else table
 
 
 def _flat_inside(field: str) -> Any:
@@ -232,7 +206,14 @@ def _as_it_is(value: Any) -> Any:
     return value
 
 
-_NESTED = {"axes": _flat_axes, "design": _flat_inside("ranges"), "replicas": _flat_inside("reach")}
+_NESTED = {
+    "axes": _flat_axes,
+    "levels": _flat_axes,
+    "parameters": _flat_table,
+    "bounds": _flat_table,
+    "design": _flat_inside("ranges"),
+    "replicas": _flat_inside("reach"),
+}
 
 
 # ---- what is in it
@@ -271,28 +252,45 @@ def _text(file: Path) -> str:
         raise CaseError(f"{file}: not text in UTF-8\n  try: a TOML file, saved as UTF-8") from None
 
 
-def _axes(study: _Study, own: Mapping[str, Material]) -> list[Any]:
-    def named(path: str, values: Any) -> Any:
-        if isinstance(values, _Spaced):
-            return (geomspace if values.spacing == "log" else linspace)(values.start, values.to, values.count)
-        if path.rpartition(".")[2] in ("material", "wall"):
-            return [own.get(value, value) if isinstance(value, str) else value for value in values]
-        return values
+def _read_values(path: str, values: Any, own: Mapping[str, Material]) -> Any:
+    """Values of a parameter as the functions take them."""
+    if isinstance(values, Spaced):
+        return (geomspace if values.spacing == "log" else linspace)(values.start, values.to, values.count)
+    if isinstance(values, Range):
+        return values.start, values.to
+    if isinstance(values, list) and path.rpartition(".")[2] in ("material", "wall"):
+        return [own.get(value, value) if isinstance(value, str) else value for value in values]
+    return values
 
-    axes: list[Any] = []
-    if study.axes:
-        axes.append(
-            {
-                name: {path: named(path, inner) for path, inner in values.items()}
-                if isinstance(values, dict)
-                else named(name, values)
-                for name, values in study.axes.items()
-            }
-        )
-    if study.design is not None:
-        ranges = {path: named(path, values) for path, values in study.design.ranges.items()}
-        random = study.design
+
+def _read_axes(axes: Mapping[str, Any], own: Mapping[str, Material]) -> dict[str, Any]:
+    return {
+        name: {path: _read_values(path, inner, own) for path, inner in values.items()}
+        if isinstance(values, dict)
+        else _read_values(name, values, own)
+        for name, values in axes.items()
+    }
+
+
+def _axes(study: Content, own: Mapping[str, Material]) -> list[Any]:
+    given = {name: getattr(study, name, None) for name in ("axes", "design", "replicas")}
+    axes: list[Any] = [_read_axes(given["axes"], own)] if given["axes"] else []
+    if random := given["design"]:
+        ranges = {path: _read_values(path, values, own) for path, values in random.ranges.items()}
         axes.append(random_design(ranges, random.count, method=random.method, seed=random.seed, log=random.log))
-    if study.replicas is not None:
-        axes.append(replicas(study.replicas.reach, study.replicas.count, seed=study.replicas.seed))
+    if copies := given["replicas"]:
+        axes.append(replicas(copies.reach, copies.count, seed=copies.seed))
     return axes
+
+
+def _options(study: Content, own: Mapping[str, Material]) -> dict[str, Any]:
+    """What else the file gives."""
+    options = {}
+    for name in sorted(study.model_fields_set - {"axes", "design", "replicas", "case", "kind"}):
+        value = getattr(study, name)
+        several = isinstance(value, dict) and name in _NESTED
+        options[name] = _read_axes(value, own) if several else _read_values(name, value, own)
+        log = [path for path, one in value.items() if getattr(one, "spacing", "") == "log"] if several else []
+        if log and name != "levels":
+            options["log"] = log
+    return options
