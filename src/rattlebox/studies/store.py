@@ -11,7 +11,7 @@ import socket
 import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
@@ -35,7 +35,7 @@ FORMAT = 1
 Output = tuple[tuple[tuple[str, int], ...], Any, Mapping[str, Any]]
 """Further dimensions with their lengths, number type, attributes."""
 
-_PROGRESS = "progress"
+_PROGRESS, _MAP = "progress", "map"
 _TOLD = 8  # differences on one screen
 _NOTHING = object()
 
@@ -74,9 +74,9 @@ class Plan:
 
         texts = {name: about if isinstance(about, str) else json.dumps(about) for name, about in self.about.items()}
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        frame = xr.Dataset(coords=dict(self.coords), attrs={"title": "Rattlebox study", "created": now, **texts})
-        names = {name: values.astype(object) for name, values in frame.coords.items() if values.dtype.kind == "U"}
-        return frame.assign_coords(names)  # Zarr has texts of any length only
+        return _with_texts(
+            xr.Dataset(coords=dict(self.coords), attrs={"title": "Rattlebox study", "created": now, **texts})
+        )
 
     @property
     def manifest(self) -> dict[str, Any]:
@@ -157,22 +157,17 @@ class Store:
     def __init__(self, path: str | os.PathLike[str], plan: Plan, cut: Callable[[], Blocks]) -> None:
         self.path = Path(path)
         self._plan = plan
-        self._refuse_strangers()
-        with self._telling():
-            (self.path / _PROGRESS).mkdir(parents=True, exist_ok=True)
-        self._take()
-        try:
-            with self._telling():
+        with ExitStack() as stack:
+            stack.enter_context(taken(self.path))
+            with _telling(self.path):
                 self._open(cut)
-        except BaseException:
-            self._lock.release()
-            raise
+            self._held = stack.pop_all()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._lock.release()
+        self._held.close()
 
     def write(self, block: int, values: Mapping[str, NDArray[Any]]) -> None:
         """Put the result of a block on disk, then mark it finished.
@@ -183,7 +178,7 @@ class Store:
             When the disk is full or the folder cannot be written any more.
         """
         region, sides = self.blocks.region(block), self.blocks.sides(block)
-        with self._telling():
+        with _telling(self.path):
             for name in self._plan.outputs:
                 self._group[name][region] = values[name].reshape((*sides, *values[name].shape[1:]))
             self.finished[block] = True
@@ -196,32 +191,7 @@ class Store:
 
     def result(self) -> xr.Dataset:
         """Return all of it, read from disk when it is used."""
-        return open_study(self.path)
-
-    def _refuse_strangers(self) -> None:
-        if not self.path.exists() or (self.path / _PROGRESS).is_dir():
-            return
-        if not self.path.is_dir():
-            raise CaseError(f"{self.path} is a file; a study needs a folder\n  try: another name, as study.zarr")
-        if any(self.path.iterdir()):
-            raise CaseError(f"{self.path} holds other files\n  try: a folder that does not exist yet, as study.zarr")
-
-    def _take(self) -> None:
-        """Become the only writer; the lock ends with the process, however that ends."""
-        from filelock import FileLock, Timeout
-
-        self._lock = FileLock(self.path / _PROGRESS / "lock")
-        name = self.path / _PROGRESS / "writer"
-        with self._telling():
-            try:
-                self._lock.acquire(blocking=False)
-            except Timeout:
-                writer = name.read_text() if name.exists() else "another process"
-                raise CaseError(
-                    f"{self.path} is being written by {writer}\n"
-                    "  try: another folder, or wait; 'rattlebox show' tells how far it is"
-                ) from None
-            name.write_text(f"process {os.getpid()} on {socket.gethostname()}")
+        return _open(self.path, list(self._plan.outputs))
 
     def _open(self, cut: Callable[[], Blocks]) -> None:
         if (self.path / _PROGRESS / "finished" / "zarr.json").exists():
@@ -275,17 +245,99 @@ class Store:
             hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another folder"
         raise CaseError("\n".join([f"{self.path} holds another study", *lines, f"  try: {hint}"]))
 
-    @contextmanager
-    def _telling(self) -> Iterator[None]:
-        """Say of a disk that takes no more what that means for the study."""
+
+@contextmanager
+def taken(path: Path) -> Iterator[Path]:
+    """Be the only writer of a study; give the folder for what tells how far it is.
+
+    Parameters
+    ----------
+    path
+        Folder of the study, which need not exist.
+
+    Raises
+    ------
+    CaseError
+        When there is something else, or another process writes to it. The lock ends with its process, however that ends.
+    OSError
+        When the folder cannot be written.
+    """
+    from filelock import FileLock, Timeout
+
+    progress = path / _PROGRESS
+    if path.exists() and not progress.is_dir():
+        if not path.is_dir():
+            raise CaseError(f"{path} is a file; a study needs a folder\n  try: another name, as study.zarr")
+        if any(path.iterdir()):
+            raise CaseError(f"{path} holds other files\n  try: a folder that does not exist yet, as study.zarr")
+    lock, name = FileLock(progress / "lock"), progress / "writer"
+    with _telling(path):
+        progress.mkdir(parents=True, exist_ok=True)
         try:
-            yield
-        except OSError as error:
-            if error.errno in (errno.ENOSPC, errno.EDQUOT):
-                said = "no space is left on the disk\n  try: make room and give the same command again, which goes on"
-            else:
-                said = f"the study cannot be written: {error.strerror or error}\n  try: another folder"
-            raise OSError(error.errno, said, str(self.path)) from error
+            lock.acquire(blocking=False)
+        except Timeout:
+            writer = name.read_text() if name.exists() else "another process"
+            raise CaseError(
+                f"{path} is being written by {writer}\n"
+                "  try: another folder, or wait; 'rattlebox show' tells how far it is"
+            ) from None
+    try:
+        with _telling(path):
+            name.write_text(f"process {os.getpid()} on {socket.gethostname()}")
+        yield progress
+    finally:
+        lock.release()
+
+
+@contextmanager
+def _telling(path: Path) -> Iterator[None]:
+    """Say of a disk that takes no more what that means for the study."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            said = "no space is left on the disk\n  try: make room and give the same command again, which goes on"
+        else:
+            said = f"the study cannot be written: {error.strerror or error}\n  try: another folder"
+        raise OSError(error.errno, said, str(path)) from error
+
+
+def _with_texts(data: xr.Dataset) -> xr.Dataset:
+    """The same with texts as Zarr has them, of any length."""
+    return data.assign({name: data[name].astype(object) for name in data.variables if data[name].dtype.kind == "U"})
+
+
+def keep_map(found: xr.Dataset, kind: str, path: str | os.PathLike[str] | None) -> xr.Dataset:
+    """Say of a map which study it is, and put it beside the runs that it was made of.
+
+    Parameters
+    ----------
+    found
+        What was made of the runs of a study.
+    kind
+        Name of the study.
+    path
+        Folder of the study, if it has one. `open_study` then returns the map.
+
+    Returns
+    -------
+    xarray.Dataset
+        The map.
+
+    Raises
+    ------
+    OSError
+        When the folder cannot be written.
+    """
+    found = found.assign_attrs(study=kind)
+    if path is not None:
+        new, old = Path(path) / _PROGRESS / _MAP, Path(path) / _MAP
+        with _telling(Path(path)):
+            shutil.rmtree(new, ignore_errors=True)
+            _with_texts(found).drop_encoding().to_zarr(new, zarr_format=3, consolidated=False)
+            shutil.rmtree(old, ignore_errors=True)
+            new.rename(old)
+    return found
 
 
 @dataclass(frozen=True)
@@ -328,7 +380,8 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Read from disk when it is used. What is not finished is not-a-number, or the smallest number of an
+        Read from disk when it is used. Of a ready map, such as a bifurcation diagram, what the function returned; until that
+        is finished, and of a sweep, the runs: what is not there is not-a-number, or the smallest number of an
         integer variable.
 
     Raises
@@ -336,11 +389,18 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
     CaseError
         When there is no study.
     """
+    if (Path(path) / _MAP).is_dir():
+        return _open(Path(path) / _MAP)
+    _check_format(path)
+    return _open(path, list(_attributes(path)["manifest"]["outputs"]))
+
+
+def _open(path: str | os.PathLike[str], names: list[str] | None = None) -> xr.Dataset:
+    """Variables in their order."""
     import xarray as xr
 
-    _check_format(path)
-    study: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
-    return study[list(_attributes(path)["manifest"]["outputs"])]  # in order
+    data: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
+    return data if names is None else data[names]
 
 
 def progress_of(path: str | os.PathLike[str]) -> Progress:
