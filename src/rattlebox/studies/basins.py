@@ -13,6 +13,7 @@ from rattlebox.model.errors import CaseError
 from .axes import Axes, Design
 from .follow import whole_cycles
 from .orbits import attractors, check_part, period_of, reduced_strobes
+from .store import keep_map
 from .sweep import sweep
 from .task import SweepTask
 
@@ -123,7 +124,8 @@ def basins(
     label, best = attractors(flat, period.ravel(), residual.ravel(), apart)
     label[maps.status.values.ravel() != 0] = NOT_FINISHED
     about = {"title": "Basins of attraction", "case": case.to_toml(), "cycles": list(cycles), "tolerance": tolerance}
-    return _with_orbits(maps, label.reshape(design.shape), period, best).assign_attrs(about, **_plane(case))
+    found = _with_orbits(maps, label.reshape(design.shape), period, best).assign_attrs(about, **_plane(case))
+    return keep_map(found, "basins", store)
 
 
 def _plane(case: Case) -> dict[str, float]:

@@ -12,6 +12,7 @@ from rattlebox.model.errors import CaseError, Hint
 from .axes import Design
 from .follow import follow, whole_cycles
 from .orbits import check_part, period_of, reduced_strobes
+from .store import keep_map
 from .sweep import sweep
 from .task import SweepTask
 
@@ -130,7 +131,7 @@ def bifurcation(
         both = direction == "both"
         maps = follow(case, path, values, ways=("up", "down") if both else (direction,), turning=both, **options)
     about = {"title": "Bifurcation diagram", "case": case.to_toml(), "cycles": list(cycles), "tolerance": tolerance}
-    return _looked_at(maps.load(), task, tolerance).assign_attrs(about)
+    return keep_map(_looked_at(maps.load(), task, tolerance).assign_attrs(about), "bifurcation", store)
 
 
 def _check_order(design: Design, direction: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -25,6 +26,7 @@ from .extras import extra
 from .members import members
 from .parameters import Parameter
 from .runner import Stopped
+from .store import JOURNAL, keep_map, taken
 from .sweep import known, sweep
 from .task import SweepTask
 
@@ -57,6 +59,7 @@ def design(
     samples: int | None = None,
     point: str | None = None,
     threads: int | None = None,
+    on: Any = None,
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xr.Dataset:
@@ -89,10 +92,10 @@ def design(
         How many.
     seed
         The same seed gives the same trials.
-    skip, cycles, samples, point, threads
-        As in `rb.sweep`.
+    skip, cycles, samples, point, threads, on
+        As in `rb.sweep`. Trials follow each other; what a cluster shares are the levels and starts of each.
     store
-        File that keeps all trials: the same call goes on after a stop, and one with more trials goes further.
+        Folder that keeps all trials: the same call goes on after a stop, and one with more trials goes further.
     progress
         True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
 
@@ -127,7 +130,7 @@ def design(
         robust=robust,
         limit=None if max_added_mass is None else parse(max_added_mass, ("kg",))[0],
         options={"skip": skip, "cycles": cycles, "samples": samples, "point": point},
-        threads=threads,
+        where={"threads": threads, "on": on},
     )
     search.check(log)
     count = whole(trials, "trials", 1)
@@ -140,7 +143,8 @@ def design(
                 study.sampler = optuna.samplers.TPESampler(seed=_seed(seed, done))
                 search.run_trial(optuna, study)
             tell(count)
-            return search.result(_told(optuna, study)[:count])
+            found = search.result(_told(optuna, study)[:count])
+        return keep_map(found, "design", store)
     except KeyboardInterrupt:
         kept = "which are lost; with a store, they would be kept"
         if store is not None:
@@ -241,7 +245,7 @@ class _Search:
     robust: Robust
     limit: float | None
     options: dict[str, Any]
-    threads: int | None
+    where: dict[str, Any]
 
     def check(self, log: Sequence[str]) -> None:
         """Refuse what no trial could use."""
@@ -308,7 +312,7 @@ class _Search:
             self.axes,
             [goal.measure for goal in self.measured],
             progress=False,
-            threads=self.threads,
+            **self.where,
             **self.options,
         )
         values = np.array([runs[goal.name].values.ravel() for goal in self.measured])
@@ -404,29 +408,29 @@ def _storage(optuna: Any, store: str | os.PathLike[str] | None) -> Iterator[Any]
     if store is None:
         yield None
         return
-    from filelock import FileLock, Timeout
-
-    path = Path(store)
-    if path.is_dir():
-        raise CaseError(f"store = {path}: this is a folder; the trials need a file\n  try: {path / 'design.journal'}")
-    try:
-        with FileLock(f"{path}.lock", timeout=0):
-            _mend(path)
-            journal = optuna.storages.journal
-            yield optuna.storages.JournalStorage(journal.JournalFileBackend(str(path), lock_obj=_NoLock()))
-    except Timeout:
-        raise CaseError(f"{path} is being written by another process\n  try: another file, or wait") from None
+    with taken(Path(store)) as progress:
+        if (progress / "finished").exists():
+            raise CaseError(f"{store} holds another study\n  try: another folder, or remove this one")
+        path = progress / JOURNAL
+        if path.exists():
+            with path.open("r+b") as file:  # cut off a line that was not written to its end
+                file.truncate(file.read().rfind(b"\n") + 1)
+        journal = optuna.storages.journal
+        yield optuna.storages.JournalStorage(journal.JournalFileBackend(str(path), lock_obj=_NoLock()))
 
 
-def _mend(path: Path) -> None:
-    """Cut off a line that was not written to its end, of a journal of ours."""
-    if not path.exists():
-        return
-    with path.open("r+b") as file:
-        content = file.read()
-        if not b'{"op_code":'.startswith(content[:11]):
-            raise CaseError(f"store = {path}: this holds something else\n  try: a file that does not exist yet")
-        file.truncate(content.rfind(b"\n") + 1)
+def trials_in(path: str | os.PathLike[str]) -> int | None:
+    """Return how many trials of a design are done in a store; None when it holds no design.
+
+    Parameters
+    ----------
+    path
+        Folder of the design.
+    """
+    journal = Path(path) / "progress" / JOURNAL
+    if not journal.exists():
+        return None
+    return len(re.findall(r'^{"op_code":6,.*"state":[12],', journal.read_text(), re.MULTILINE))  # complete or set aside
 
 
 def _study(optuna: Any, storage: Any, search: _Search, seed: int, store: Any) -> Any:
@@ -445,9 +449,7 @@ def _study(optuna: Any, storage: Any, search: _Search, seed: int, store: Any) ->
         study.set_user_attr("about", about)
     elif there != about:
         names = ", ".join(name for name in about if there.get(name) != about[name])
-        raise CaseError(
-            f"store = {store}: the trials there are of another study; different: {names}\n  try: another file"
-        )
+        raise CaseError(f"{store} holds the trials of another study; different: {names}\n  try: another folder")
     for trial in study.get_trials(
         deepcopy=False, states=(optuna.trial.TrialState.RUNNING,)
     ):  # of a process that was stopped

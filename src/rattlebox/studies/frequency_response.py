@@ -14,6 +14,7 @@ from rattlebox.model.signals import Harmonic
 from .axes import Design
 from .follow import follow, whole_cycles
 from .orbits import period_of
+from .store import keep_map
 from .sweep import sweep
 from .task import SweepTask
 
@@ -139,7 +140,7 @@ def frequency_response(
     whole.frequency.attrs["long_name"] = "frequency"
     whole.level.attrs["long_name"] = "amplitude of the load" if place.startswith("load") else "amplitude of the base"
     whole.attrs = {"title": "Frequency response", "case": case.to_toml(), "cycles": list(cycles)}
-    return whole
+    return keep_map(whole, "frequency_response", store)
 
 
 def _driver(case: Case) -> tuple[str, Harmonic]:

@@ -9,6 +9,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.signals import Harmonic
 from rattlebox.model.structures import Shaker
 
+from .store import keep_map
 from .sweep import sweep
 
 if TYPE_CHECKING:
@@ -101,4 +102,5 @@ def loss_map(
         progress=progress,
     )
     mass = sum(ball.weight for damper in case.dampers for ball in damper.balls)
-    return found.assign(particle_mass=((), mass, {"units": "kg", "long_name": "mass of the particles"}))
+    found = found.assign(particle_mass=((), mass, {"units": "kg", "long_name": "mass of the particles"}))
+    return keep_map(found, "loss_map", store)

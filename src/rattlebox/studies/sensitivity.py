@@ -14,6 +14,7 @@ from rattlebox.model.errors import CaseError, Hint
 from .designs import RandomDesign, random_design, whole
 from .extras import extra
 from .members import members
+from .store import keep_map
 from .sweep import sweep
 
 if TYPE_CHECKING:
@@ -130,7 +131,7 @@ def sensitivity(
         store=store,
         progress=progress,
     )
-    return _indices(runs, list(bounds), n, confidence, seed)
+    return keep_map(_indices(runs, list(bounds), n, confidence, seed), "sensitivity", store)
 
 
 def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed: int) -> xr.Dataset:

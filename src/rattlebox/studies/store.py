@@ -35,6 +35,9 @@ FORMAT = 1
 Output = tuple[tuple[tuple[str, int], ...], Any, Mapping[str, Any]]
 """Further dimensions with their lengths, number type, attributes."""
 
+JOURNAL = "trials.journal"
+"""In which a design, which has no runs of its own, keeps its trials."""
+
 _PROGRESS, _MAP = "progress", "map"
 _TOLD = 8  # differences on one screen
 _NOTHING = object()
@@ -194,6 +197,8 @@ class Store:
         return _open(self.path, list(self._plan.outputs))
 
     def _open(self, cut: Callable[[], Blocks]) -> None:
+        if (self.path / _PROGRESS / JOURNAL).exists():
+            raise CaseError(f"{self.path} holds a design\n  try: another folder, or remove this one")
         if (self.path / _PROGRESS / "finished" / "zarr.json").exists():
             _check_format(self.path)
             self._compare()
@@ -334,7 +339,8 @@ def keep_map(found: xr.Dataset, kind: str, path: str | os.PathLike[str] | None) 
         new, old = Path(path) / _PROGRESS / _MAP, Path(path) / _MAP
         with _telling(Path(path)):
             shutil.rmtree(new, ignore_errors=True)
-            _with_texts(found).drop_encoding().to_zarr(new, zarr_format=3, consolidated=False)
+            kept = _with_texts(found).drop_encoding().assign_attrs(variables=list(found.data_vars))
+            kept.to_zarr(new, zarr_format=3, consolidated=False)
             shutil.rmtree(old, ignore_errors=True)
             new.rename(old)
     return found
@@ -400,7 +406,7 @@ def _open(path: str | os.PathLike[str], names: list[str] | None = None) -> xr.Da
     import xarray as xr
 
     data: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
-    return data if names is None else data[names]
+    return data[names or data.attrs.pop("variables")]
 
 
 def progress_of(path: str | os.PathLike[str]) -> Progress:

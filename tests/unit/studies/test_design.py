@@ -16,6 +16,7 @@ import pytest
 import xarray as xr
 
 import rattlebox as rb
+from rattlebox.studies.design import trials_in
 from rattlebox.studies.runner import Stopped
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "design.py"
@@ -155,16 +156,18 @@ def test_same_seed_same_trials() -> None:
 
 def test_a_stop_changes_nothing(tmp_path: Path) -> None:
     """After Ctrl-C, a line cut off and a call with fewer trials, the same call ends as one that never stopped."""
-    store = tmp_path / "design.journal"
+    store = tmp_path / "design"
+    journal = store / "progress" / "trials.journal"
 
     def interrupt(done: int, total: int) -> None:
         if done == 11:
             raise KeyboardInterrupt
 
     searched(trials=5, store=store)
-    with pytest.raises(Stopped, match=r"11 of 24 trials, .*design.journal.* goes on"):
+    with pytest.raises(Stopped, match=r"11 of 24 trials, .*design.* goes on"):
         searched(store=store, progress=interrupt)
-    with store.open("ab") as file:
+    assert trials_in(store) == 11
+    with journal.open("ab") as file:
         file.write(b'{"op_code":4,"wor')
     told: list[int] = []
     assert searched(store=store, progress=lambda done, total: told.append(done)).identical(searched())
@@ -179,11 +182,12 @@ def _search_into(store: str) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 def test_kill_loses_nothing(tmp_path: Path) -> None:
     """After kill -9 in the middle, the trials are those of an undisturbed search."""
-    store = tmp_path / "design.journal"
+    store = tmp_path / "design"
+    journal = store / "progress" / "trials.journal"
     process = multiprocessing.get_context("spawn").Process(target=_search_into, args=(str(store),))
     process.start()
     deadline = time.monotonic() + 60
-    while not store.exists() or store.stat().st_size < 20_000:
+    while not journal.exists() or journal.stat().st_size < 20_000:
         assert time.monotonic() < deadline and process.is_alive()
         time.sleep(0.01)
     assert process.pid is not None
@@ -194,7 +198,7 @@ def test_kill_loses_nothing(tmp_path: Path) -> None:
 
 def test_another_study_is_refused(tmp_path: Path) -> None:
     """A store of another case, seed or parameters is refused with what differs; so is one of something else."""
-    store = tmp_path / "design.journal"
+    store = tmp_path / "design"
     searched(trials=2, store=store)
     with pytest.raises(rb.CaseError, match="different: seed"):
         searched(trials=2, store=store, seed=1)
@@ -202,11 +206,26 @@ def test_another_study_is_refused(tmp_path: Path) -> None:
         searched(trials=2, store=store, log=[])
     other = tmp_path / "notes.txt"
     other.write_text("buy milk\n")
-    with pytest.raises(rb.CaseError, match="holds something else"):
+    with pytest.raises(rb.CaseError, match="a study needs a folder"):
         searched(trials=2, store=other)
     assert other.read_text() == "buy milk\n"
-    with pytest.raises(rb.CaseError, match="this is a folder"):
+    with pytest.raises(rb.CaseError, match="holds other files"):
         searched(trials=2, store=tmp_path)
+    with pytest.raises(rb.CaseError, match="holds a design"):
+        rb.sweep(struck(), {GAP: [1e-3]}, store=store)
+    rb.sweep(struck(), {GAP: [1e-3]}, store=tmp_path / "sweep", progress=False)
+    with pytest.raises(rb.CaseError, match="holds another study"):
+        searched(trials=2, store=tmp_path / "sweep")
+    assert trials_in(store) == 2 and trials_in(tmp_path / "sweep") is None
+
+
+def test_a_store_opens_as_what_was_found(tmp_path: Path) -> None:
+    """What is on disk is what the search returned, the case files of the best trials too."""
+    found = searched(trials=6, store=tmp_path / "design")
+    there = rb.open_study(tmp_path / "design").load()
+    xr.testing.assert_equal(there, found)
+    assert there.attrs == found.attrs
+    assert list(there) == list(found)
 
 
 @pytest.mark.parametrize(
