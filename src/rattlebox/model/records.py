@@ -108,29 +108,59 @@ def _numbers(file: Path, columns: Sequence[Column] | None, names: list[str]) -> 
     return places
 
 
+def read_table(file: Path) -> dict[str, Array]:
+    """Read all columns of a text file with numbers.
+
+    Parameters
+    ----------
+    file
+        Path of an existing file: CSV and the like, as for `read_columns`.
+
+    Returns
+    -------
+    dict of str to (n,) float
+        By the names above the columns, or their numbers counted from 1.
+
+    Raises
+    ------
+    Hint
+        When the file cannot be read, naming the line that is wrong.
+    """
+    lines, names = _data(file)
+    return dict(zip(names, _rows(file, lines, list(range(len(names)))).T, strict=True))
+
+
 def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[Array, Array]:
+    lines, names = _data(file)
+    table = _rows(file, lines, _numbers(file, columns, names))
+    return table[:, 0], table[:, 1]
+
+
+def _data(file: Path) -> tuple[list[tuple[int, list[str]]], list[str]]:
+    """Number and cells of the lines with data, and the names of the columns."""
     lines = _lines(file)
     start = next((k for k, (_, cells, marked) in enumerate(lines) if not marked and any(map(_is_number, cells))), None)
     if start is None:
         raise Hint(f"{file} holds no numbers")
     width = len(lines[start][1])
     heads = [cells for _, cells, _ in lines[:start] if len(cells) == width]
-    names = heads[0] if heads else [str(k + 1) for k in range(width)]
-    places = _numbers(file, columns, names)
+    data = [(number, cells) for number, cells, marked in lines[start:] if not marked]
+    return data, heads[0] if heads else [str(k + 1) for k in range(width)]
+
+
+def _rows(file: Path, lines: list[tuple[int, list[str]]], places: list[int]) -> Array:
+    width = len(lines[0][1])
     rows: list[list[float]] = []
-    for number, cells, marked in lines[start:]:
-        if marked:
-            continue
+    for number, cells in lines:
         if len(cells) != width:
-            raise Hint(f"{file}, line {number}: {len(cells)} columns, but {width} in line {lines[start][0]}")
+            raise Hint(f"{file}, line {number}: {len(cells)} columns, but {width} in line {lines[0][0]}")
         try:
             rows.append([float(cells[k]) for k in places])
         except ValueError:
             _complain(file, number, [cells[k] for k in places])
         if not np.isfinite(rows[-1]).all():
             raise Hint(f"{file}, line {number}: {', '.join(cells[k] for k in places)} is not finite")
-    table = np.array(rows)
-    return table[:, 0], table[:, 1]
+    return np.array(rows)
 
 
 def _lines(file: Path) -> list[tuple[int, list[str], bool]]:

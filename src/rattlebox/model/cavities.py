@@ -1,0 +1,222 @@
+"""Cavities in space: box, cylinder, sphere, as exact walls."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from .base import Part
+from .elementwise import Vector
+from .errors import Hint, at
+from .space import Direction, Lengths, unit_vector
+from .units import PositiveLength, parse
+
+PLANE, CYLINDER, SPHERE = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class Walls:
+    """Walls around the centre of a cavity.
+
+    Attributes
+    ----------
+    names : tuple of str
+        One for each wall.
+    axis : (w, 3) float
+        Outward normal of a plane, axis of a cylinder's side; zeros for a sphere.
+    offset : (w,) float
+        Distance of a plane from the centre, radius of what is curved [m].
+    curved : (w,) int
+        0 plane, 1 side of a cylinder, 2 sphere.
+    """
+
+    names: tuple[str, ...]
+    axis: Vector
+    offset: Vector
+    curved: Any
+
+    def distances(self, positions: Vector) -> Vector:
+        """Return the distances of points from the walls, (n, w) [m], positive inside."""
+        result = np.empty((len(positions), self.offset.size))
+        for k, (axis, offset, curved) in enumerate(zip(self.axis, self.offset, self.curved, strict=True)):
+            along = positions @ axis
+            if curved != PLANE:
+                square = np.einsum("ij,ij->i", positions, positions)
+                along = np.sqrt(np.maximum(square - along**2, 0.0))
+            result[:, k] = offset - along
+        return result
+
+
+class Cavity(Part):
+    """What all cavities share; positions count from the centre."""
+
+    held_as: ClassVar[tuple[str, ...]] = ("cavity",)
+    kind: str
+
+    def walls(self) -> Walls:
+        """Return the walls."""
+        raise NotImplementedError
+
+    @property
+    def volume(self) -> float:
+        """Volume inside [m^3]."""
+        raise NotImplementedError
+
+    @property
+    def lengths(self) -> Vector:
+        """Edges of the box around it along its own axes, (3,) [m]."""
+        raise NotImplementedError
+
+    @property
+    def frame(self) -> Vector:
+        """Its own axes, (3, 3), one a row."""
+        return np.eye(3)
+
+    def depth(self, positions: Vector) -> Vector:
+        """Return the distances of points from the nearest wall, (n,) [m], positive inside."""
+        return np.asarray(self.walls().distances(positions).min(axis=1))
+
+    def room(self, positions: Vector, radii: Vector) -> Vector:
+        """Return the distances of spheres' surfaces from the nearest wall, (n,) [m], positive when wholly inside."""
+        return np.asarray(self.depth(positions) - radii)
+
+    def extent(self, direction: Vector) -> float:
+        """Return the length of the box around it along a unit vector [m]."""
+        return float(np.abs(self.frame @ direction) @ self.lengths)
+
+
+class Box(Cavity):
+    """A box with edges along x, y and z.
+
+    Parameters
+    ----------
+    size
+        Inner lengths [m].
+    """
+
+    kind: Literal["box"] = "box"
+    size: Lengths
+
+    @model_validator(mode="after")
+    def _has_size(self) -> Box:
+        for index, length in enumerate(self.size):
+            if not length > 0:
+                raise Hint("must be greater than zero", place=["size", index])
+        return self
+
+    def walls(self) -> Walls:
+        """Return six planes."""
+        axis = np.concatenate([-np.eye(3), np.eye(3)])
+        names = tuple(sign + axis for sign in "-+" for axis in "xyz")
+        return Walls(names, axis, np.tile(self.lengths / 2, 2), np.full(6, PLANE))
+
+    @property
+    def volume(self) -> float:
+        """Volume inside [m^3]."""
+        return math.prod(self.size)
+
+    @property
+    def lengths(self) -> Vector:
+        """Its edges, (3,) [m]."""
+        return np.array(self.size)
+
+
+class _Round(Cavity):
+    """A cavity with a radius."""
+
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("radius", "diameter"),)
+    kind: str
+    radius: PositiveLength
+    diameter: PositiveLength | None = Field(default=None, exclude=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _radius_of_diameter(cls, values: Any) -> Any:
+        if isinstance(values, dict):
+            if (values.get("radius") is None) == (values.get("diameter") is None):
+                raise Hint("either radius or diameter is needed, not both", 'diameter = "40 mm"')
+            if values.get("radius") is None:
+                with at("diameter"):
+                    diameter = parse(values["diameter"], ("m",))[0]
+                return {**{k: v for k, v in values.items() if k != "diameter"}, "radius": diameter / 2}
+        return values
+
+
+class Cylinder(_Round):
+    """A round can with flat ends.
+
+    Parameters
+    ----------
+    radius, diameter
+        One of them [m].
+    length
+        Inner length along the axis [m].
+    axis
+        "z" for an upright can, "x" or "y" for a lying one, or any direction.
+    """
+
+    kind: Literal["cylinder"] = "cylinder"
+    length: PositiveLength
+    axis: Direction = "z"
+
+    def walls(self) -> Walls:
+        """Return the side and two planes."""
+        along = unit_vector(self.axis)
+        offset = np.array([self.radius, self.length / 2, self.length / 2])
+        return Walls(
+            ("side", "first end", "last end"),
+            np.array([along, -along, along]),
+            offset,
+            np.array([CYLINDER, PLANE, PLANE]),
+        )
+
+    @property
+    def volume(self) -> float:
+        """Volume inside [m^3]."""
+        return math.pi * self.radius**2 * self.length
+
+    @property
+    def lengths(self) -> Vector:
+        """Diameter twice, and length, (3,) [m]."""
+        return np.array([2 * self.radius, 2 * self.radius, self.length])
+
+    @property
+    def frame(self) -> Vector:
+        """Two directions across, and the axis, (3, 3)."""
+        along = unit_vector(self.axis)
+        first = np.cross(np.eye(3)[np.abs(along).argmin()], along)
+        first /= np.linalg.norm(first)
+        return np.array([first, np.cross(along, first), along])
+
+
+class SphericalCavity(_Round):
+    """A hollow sphere.
+
+    Parameters
+    ----------
+    radius, diameter
+        One of them [m].
+    """
+
+    kind: Literal["sphere"] = "sphere"
+
+    def walls(self) -> Walls:
+        """Return one wall."""
+        return Walls(("sphere",), np.zeros((1, 3)), np.array([self.radius]), np.array([SPHERE]))
+
+    @property
+    def volume(self) -> float:
+        """Volume inside [m^3]."""
+        return 4 / 3 * math.pi * self.radius**3
+
+    @property
+    def lengths(self) -> Vector:
+        """The diameter three times, (3,) [m]."""
+        return np.full(3, 2 * self.radius)
+
+
+AnyCavity = Annotated[Box | Cylinder | SphericalCavity, Field(discriminator="kind")]

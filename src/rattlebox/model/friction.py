@@ -1,0 +1,141 @@
+"""Friction and rolling resistance; the formulas themselves are in core/contact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field
+
+from .base import AlsoTakes, Part
+from .materials import Material
+from .pairs import Pair
+from .units import LARGEST, PositiveStiffness
+
+NotNegative = Annotated[float, Field(ge=0, le=LARGEST)]
+
+
+def _shear_compliance(material: Material | None) -> float:
+    """(2 - nu) / G [1/Pa], 0 for a rigid body."""
+    if material is None:
+        return 0.0
+    return (2 - material.poisson) * 2 * (1 + material.poisson) / material.young
+
+
+class Friction(Part):
+    """What all friction laws share."""
+
+    held_as: ClassVar[tuple[str, ...]] = ("friction", "wall_friction")
+    kind: str
+    coefficient: NotNegative
+    damping: NotNegative = 1.0
+
+    def coefficients(self, pair: Pair) -> dict[str, float]:
+        """Return what the core reads, for a pair of bodies."""
+        raise NotImplementedError
+
+
+class Mindlin(Friction):
+    """Coulomb friction with Mindlin's stiffness, 8 G* sqrt(R* overlap), and the history of the contact.
+
+    Parameters
+    ----------
+    coefficient
+        Of friction.
+    damping
+        Damping ratio of the tangential dashpot over that of the normal one.
+    """
+
+    unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
+    kind: Literal["mindlin"] = "mindlin"
+
+    if TYPE_CHECKING:  # the first field may be given without its name
+
+        def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
+
+    def coefficients(self, pair: Pair) -> dict[str, float]:
+        """Return 8 G* [Pa] besides coefficient and damping."""
+        modulus = 1 / (_shear_compliance(pair.below.material) + _shear_compliance(pair.above.material))
+        return {
+            "friction": self.coefficient,
+            "shear": 8 * modulus,
+            "tangential_stiffness": 0.0,
+            "tangential_damping": self.damping,
+        }
+
+
+class LinearSpring(Friction):
+    """Coulomb friction with a linear tangential spring.
+
+    Parameters
+    ----------
+    coefficient
+        Of friction.
+    stiffness
+        Of the tangential spring [N/m].
+    damping
+        Damping ratio of the tangential dashpot over that of the normal one.
+    """
+
+    unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
+    kind: Literal["spring"] = "spring"
+    stiffness: PositiveStiffness
+
+    if TYPE_CHECKING:
+
+        def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
+
+    def coefficients(self, pair: Pair) -> dict[str, float]:
+        """Return the stiffness besides coefficient and damping."""
+        return {
+            "friction": self.coefficient,
+            "shear": 0.0,
+            "tangential_stiffness": self.stiffness,
+            "tangential_damping": self.damping,
+        }
+
+
+class Rolling(Part):
+    """Rolling resistance: an elastic, perfectly plastic spring with a dashpot.
+
+    Parameters
+    ----------
+    coefficient
+        Limit of the moment over normal force times R*.
+    stiffness
+        Of the spring, as a multiple of the tangential stiffness times R*^2.
+    damping
+        Damping ratio of the dashpot.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("rolling",)
+    unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
+    coefficient: NotNegative
+    stiffness: Annotated[float, Field(gt=0, le=LARGEST)] = 1.0
+    damping: NotNegative = 0.0
+
+    if TYPE_CHECKING:
+
+        def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
+
+    def coefficients(self) -> dict[str, float]:
+        """Return what the core reads."""
+        return {"rolling": self.coefficient, "rolling_stiffness": self.stiffness, "rolling_damping": self.damping}
+
+
+def _mindlin(value: Any) -> Any:
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return {"kind": "mindlin", "coefficient": value}
+    return value
+
+
+def _rolling(value: Any) -> Any:
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return {"coefficient": value}
+    return value
+
+
+_number = AlsoTakes({"type": "number", "minimum": 0})
+AnyFriction = Annotated[
+    Annotated[Mindlin | LinearSpring, Field(discriminator="kind")], BeforeValidator(_mindlin), _number
+]
+AnyRolling = Annotated[Rolling, BeforeValidator(_rolling), _number]

@@ -1,0 +1,339 @@
+"""Where particles start: on a lattice with noise, settled under gravity, or at given positions."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, model_validator
+
+from .base import Part
+from .cavities import AnyCavity, Box
+from .elementwise import Vector
+from .errors import Hint, at
+from .files import BINARY, absolute, check_finite, existing, read_arrays
+from .records import read_table
+from .units import SI, numbers
+
+TOUCHING = 1e-9  # overlap, in parts of a radius, that rounding may make
+
+
+class Packing(Part):
+    """What all packings share."""
+
+    held_as: ClassVar[tuple[str, ...]] = ("packing",)
+    kind: str
+
+
+class Lattice(Packing):
+    """Particles spread over the whole cavity on a lattice, each with some noise in its own cell.
+
+    Parameters
+    ----------
+    noise
+        How far a particle may be off its place: 0 for none, 1 for as far as no other can be touched.
+    seed
+        Of the noise, and of which particle is where.
+    """
+
+    kind: Literal["lattice"] = "lattice"
+    noise: Annotated[float, Field(ge=0, le=1)] = 0.5
+    seed: Annotated[int, Field(ge=0)] = 0
+
+    def place(self, cavity: AnyCavity, radii: Vector) -> Vector:
+        """Return positions for spheres, (n, 3) [m].
+
+        Parameters
+        ----------
+        cavity
+            Where.
+        radii
+            Of the spheres, (n,) [m].
+
+        Raises
+        ------
+        Hint
+            When there are more than such a lattice holds.
+        """
+        generator = np.random.default_rng(self.seed)
+        sites, cell = _sites(cavity, radii.size, float(radii.max()))
+        chosen = generator.permutation(len(sites))[: radii.size]
+        direction = generator.standard_normal((radii.size, 3))
+        direction /= np.linalg.norm(direction, axis=1)[:, None]
+        reach = self.noise * (cell / 2 - radii) * generator.random(radii.size) ** (1 / 3)
+        return np.asarray(sites[chosen] + reach[:, None] * direction)
+
+
+class Settled(Packing):
+    """Particles inserted at random, then settled under gravity until they rest.
+
+    The fall is computed beforehand with soft, sticky contacts and the friction of the damper; what overlaps they leave
+    are pushed apart.
+
+    Parameters
+    ----------
+    seed
+        Of the insertion.
+    at_rest
+        The bed rests when its kinetic energy is below this part of what a fall by the mean radius gives.
+    """
+
+    kind: Literal["settled"] = "settled"
+    seed: Annotated[int, Field(ge=0)] = 0
+    at_rest: Annotated[float, Field(gt=0, le=0.1)] = 1e-4
+
+
+def _table(columns: int, unit: str, what: str) -> Any:
+    def read(value: Any) -> Any:
+        if value is None:
+            return None
+        array = np.atleast_2d(numbers(value)) if columns > 1 else numbers(value)
+        if array.ndim != (2 if columns > 1 else 1) or (columns > 1 and array.shape[1] != columns):
+            raise Hint(f"rows of {columns} numbers are needed" if columns > 1 else "a list of numbers is needed")
+        return tuple(map(tuple, array.tolist())) if columns > 1 else tuple(array.tolist())
+
+    return SI(unit), BeforeValidator(read), WithJsonSchema({"type": "array", "description": f"{what}, in {unit}"})
+
+
+Row = tuple[float, float, float]
+
+
+class Positions(Packing):
+    """Particles at given positions, species after species, counted from the centre of the cavity.
+
+    Parameters
+    ----------
+    positions
+        Centres, (n, 3) [m].
+    radii
+        Of each particle [m], where the species do not tell them.
+    velocities, spins
+        At the start, (n, 3) [m/s] and [rad/s]; default 0.
+    file
+        Instead of all: a CSV, NPY, NPZ or MAT file with columns x, y, z and, if it likes, radius, vx, vy, vz, wx, wy, wz, by
+        name or, without names, in this order.
+    """
+
+    in_file: ClassVar[tuple[str, ...]] = ("positions", "radii", "velocities", "spins")
+    kind: Literal["positions"] = "positions"
+    positions: Annotated[tuple[Row, ...], *_table(3, "m", "centres")]
+    radii: Annotated[tuple[float, ...] | None, *_table(1, "m", "radii")] = None
+    velocities: Annotated[tuple[Row, ...] | None, *_table(3, "m/s", "velocities")] = None
+    spins: Annotated[tuple[Row, ...] | None, *_table(3, "rad/s", "spins")] = None
+    file: str | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_file(cls, values: Any) -> Any:
+        if not isinstance(values, dict) or values.get("file") is None:
+            return values
+        twice = sorted(set(cls.in_file) & set(values))
+        if twice:
+            raise Hint(f"give {twice[0]} or a file, not both")
+        with at("file"):
+            path = absolute(values["file"])
+            return {**values, **_read_positions(path), "file": path}
+
+    @model_validator(mode="after")
+    def _as_many(self) -> Positions:
+        if not self.positions:
+            raise Hint("there is nothing in it", "one row x, y, z for each particle", [self.where])
+        for name in ("radii", "velocities", "spins"):
+            rows = getattr(self, name)
+            if rows is not None and len(rows) != len(self.positions):
+                raise Hint(f"{len(rows)} {name}, but {len(self.positions)} positions", "as many of both", [name])
+        if self.radii is not None and not min(self.radii) > 0:
+            raise Hint("radii must be greater than zero", place=["file" if self.file else "radii"])
+        return self
+
+    @property
+    def where(self) -> str:
+        """The field that gives the numbers, for messages."""
+        return "file" if self.file else "positions"
+
+    @model_serializer(mode="wrap")
+    def _file_stands_for_numbers(self, handler: Any) -> Any:
+        data = handler(self)
+        if self.file is not None:
+            for name in self.in_file:
+                data.pop(name, None)
+        return data
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str]) -> Positions:
+        """Read positions from a CSV, NPY, NPZ or MAT file.
+
+        Parameters
+        ----------
+        path
+            The file.
+
+        Raises
+        ------
+        CaseError
+            When the file cannot be read, naming the line that is wrong or the columns that there are.
+        """
+        return cls.model_validate({"file": os.fspath(path)})
+
+
+AnyPacking = Annotated[Lattice | Settled | Positions, Field(discriminator="kind")]
+
+_COLUMNS = ("x", "y", "z", "radius", "vx", "vy", "vz", "wx", "wy", "wz")
+
+
+def _read_positions(path: str) -> dict[str, Any]:
+    """Fields of Positions in a file."""
+    file = existing(path)
+    columns = _from_arrays(file, read_arrays(file)) if file.suffix in BINARY else read_table(file)
+    if not set("xyz") <= set(columns):
+        if not all(name.isdecimal() for name in columns) or len(columns) not in (3, 4, 7, 10):
+            there = ", ".join(columns) or "nothing"
+            raise Hint(f"{file} has columns {there}; x, y and z are needed", "a first line x,y,z,radius")
+        columns = dict(zip(_COLUMNS, columns.values(), strict=False))
+    unknown = sorted(set(columns) - set(_COLUMNS))
+    if unknown:
+        raise Hint(f"{file} has a column {unknown[0]!r}", f"columns of {', '.join(_COLUMNS)}")
+    values: dict[str, Any] = {"positions": np.column_stack([columns[name] for name in "xyz"])}
+    if "radius" in columns:
+        values["radii"] = columns["radius"]
+    for field, letter in (("velocities", "v"), ("spins", "w")):
+        parts = [columns.get(letter + axis) for axis in "xyz"]
+        if any(part is not None for part in parts):
+            values[field] = np.column_stack([np.zeros_like(columns["x"]) if p is None else p for p in parts])
+    return values
+
+
+def _from_arrays(file: Path, arrays: dict[str, Vector]) -> dict[str, Vector]:
+    if len(arrays) == 1:
+        ((_, table),) = arrays.items()
+        if table.ndim == 2:
+            check_finite(table, str(file))
+            return {str(k + 1): table[:, k] for k in range(table.shape[1])}
+    for name, array in arrays.items():
+        check_finite(array, f"{file}: {name}")
+    return {name: array.ravel() for name, array in arrays.items()}
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """A lattice of sites at least one cell apart: cubic, or face-centred."""
+
+    centred: bool
+
+    def __call__(self, cavity: AnyCavity, cell: float) -> Vector:
+        """Sites around which a sphere as large as the cell lies wholly inside, (n, 3) [m]."""
+        step = cell / np.sqrt(2) if self.centred else cell
+        axes = []
+        for length in cavity.lengths:
+            count = int(np.floor((length - cell) / step * (1 + 1e-12) + 1e-9)) + 1
+            half = (length - cell) / 2 if count > 1 else 0.0
+            axes.append(np.linspace(-half, half, count))
+        index = np.indices([axis.size for axis in axes]).reshape(3, -1)
+        if self.centred:
+            index = index[:, index.sum(axis=0) % 2 == 0]
+        local = np.column_stack([axis[i] for axis, i in zip(axes, index, strict=True)])
+        sites = local @ cavity.frame
+        return sites if isinstance(cavity, Box) else sites[cavity.depth(sites) >= cell / 2 * (1 - 1e-12)]
+
+
+def _candidates(cavity: AnyCavity, count: int, least: float) -> Iterator[tuple[float, Vector]]:
+    """The coarsest lattices of both kinds that have enough sites."""
+    widest = float(cavity.lengths.min()) * (1 + 1e-12)
+    for grid in (_Grid(False), _Grid(True)):
+        low, high = least, min(widest, 2 * max((cavity.volume / count) ** (1 / 3), least))
+        sites = grid(cavity, low)
+        if len(sites) < count:
+            continue
+        best = low, sites
+        while high - low > 1e-3 * low and not (count > 1000 and len(best[1]) < 1.01 * count):
+            middle = (low * high) ** 0.5
+            sites = grid(cavity, middle)
+            if len(sites) < count:
+                high = middle
+            else:
+                low = middle
+                best = low, sites
+        yield best
+
+
+def _sites(cavity: AnyCavity, count: int, radius: float) -> tuple[Vector, float]:
+    """Places for spheres up to a radius, at least `count`, and the size of the cell that each has for itself."""
+    widest = float(cavity.lengths.min())
+    if 2 * radius > widest:
+        raise Hint(
+            f"a particle of {2e3 * radius:.4g} mm is larger than the cavity, which is {1e3 * widest:.4g} mm wide",
+            "smaller particles, or a larger cavity",
+        )
+    found = list(_candidates(cavity, count, 2 * radius))
+    if not found:
+        most = max(len(_Grid(centred)(cavity, 2 * radius)) for centred in (False, True))
+        raise Hint(
+            f"{count} particles do not fit: a lattice of spheres of {2e3 * radius:.4g} mm holds {most} in this cavity",
+            f"{most} particles or fewer, smaller ones, or a larger cavity",
+        )
+    cell, sites = max(found, key=lambda pair: pair[0])
+    return sites, cell
+
+
+def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
+    """Refuse spheres that overlap or are not wholly inside.
+
+    Parameters
+    ----------
+    cavity
+        Around them.
+    positions
+        Centres, (n, 3) [m].
+    radii
+        Radii, (n,) [m].
+
+    Raises
+    ------
+    Hint
+        Naming the particles (counted from 0, as in results) and by how much.
+    """
+    room = cavity.room(positions, radii)
+    worst = int(room.argmin())
+    if room[worst] < -TOUCHING * radii[worst]:
+        place = ", ".join(f"{1e3 * x:.4g}" for x in positions[worst])
+        raise Hint(
+            f"particle {worst} at ({place}) mm sticks out of the cavity by {-1e3 * room[worst]:.4g} mm",
+            "positions counted from the centre of the cavity",
+        )
+    first, second, apart = overlapping(positions, radii)
+    if apart.size:
+        k = int(apart.argmin())
+        if apart[k] < -TOUCHING * min(radii[first[k]], radii[second[k]]):
+            raise Hint(f"particles {first[k]} and {second[k]} overlap by {-1e3 * apart[k]:.4g} mm")
+
+
+def overlapping(positions: Vector, radii: Vector) -> tuple[Any, Any, Vector]:
+    """Return the pairs of spheres that overlap: first, second (p,) int, and their distances (p,) [m], below zero.
+
+    Parameters
+    ----------
+    positions
+        Centres, (n, 3) [m].
+    radii
+        Radii, (n,) [m].
+    """
+    from scipy.spatial import cKDTree
+
+    octave = np.log2(radii / radii.min()).astype(int)  # so that small ones need not look as far as large ones
+    classes = [np.flatnonzero(octave == k) for k in np.unique(octave)]
+    trees = [cKDTree(positions[members]) for members in classes]
+    found = []
+    for k, (members, tree) in enumerate(zip(classes, trees, strict=True)):
+        for others, other in zip(classes[k:], trees[k:], strict=True):
+            reach = float(radii[members].max() + radii[others].max())
+            near = tree.sparse_distance_matrix(other, reach, output_type="ndarray")
+            i, j = members[near["i"]], others[near["j"]]
+            apart = near["v"] - radii[i] - radii[j]
+            kept = (apart < 0) & ((i < j) if other is tree else True)
+            found.append((i[kept], j[kept], apart[kept]))
+    first, second, apart = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return first, second, apart

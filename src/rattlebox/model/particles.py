@@ -1,0 +1,269 @@
+"""What is filled into a cavity: material, size or distribution of sizes, and how much of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+from .base import Part
+from .elementwise import Vector
+from .errors import Hint, at
+from .materials import AnyMaterial
+from .units import SI, PositiveLength, PositiveMass, parse
+
+_MANY = 4096  # sizes from which the mean volume is taken
+
+
+class Distribution(Part):
+    """What all distributions of diameters share."""
+
+    held_as: ClassVar[tuple[str, ...]] = ("distribution",)
+    kind: str
+
+    def diameters(self, share: Vector) -> Vector:
+        """Return the diameters [m] below which these shares of the number of particles are, (n,)."""
+        raise NotImplementedError
+
+
+class _Bounded(Distribution):
+    """A distribution between two sizes."""
+
+    kind: str
+    smallest: PositiveLength
+    largest: PositiveLength
+
+    @model_validator(mode="after")
+    def _in_order(self) -> _Bounded:
+        if self.smallest >= self.largest:
+            raise Hint(f"must be larger than the smallest, {1e3 * self.smallest:.4g} mm", place=["largest"])
+        return self
+
+    def _between(self, share: Vector, low: float, high: float) -> Vector:
+        """Quantiles of the standard normal distribution, cut off at two of them."""
+        from scipy.special import ndtr, ndtri
+
+        first, last = ndtr(low), ndtr(high)
+        if not last - first > 1e-12:
+            raise Hint("there is next to nothing of the distribution between smallest and largest", "a wider range")
+        return np.clip(ndtri(first + share * (last - first)), low, high)
+
+
+class Normal(_Bounded):
+    """Diameters normally distributed by number, cut off on both sides.
+
+    Parameters
+    ----------
+    mean, deviation
+        Mean and standard deviation of the diameter before it is cut off [m].
+    smallest, largest
+        Diameters between which all particles lie [m].
+    """
+
+    kind: Literal["normal"] = "normal"
+    mean: PositiveLength
+    deviation: PositiveLength
+
+    def diameters(self, share: Vector) -> Vector:
+        """Return quantiles of the diameter [m], (n,)."""
+        low, high = ((size - self.mean) / self.deviation for size in (self.smallest, self.largest))
+        return self.mean + self.deviation * self._between(share, low, high)
+
+
+class LogNormal(_Bounded):
+    """Diameters whose logarithms are normally distributed by number, cut off on both sides.
+
+    Parameters
+    ----------
+    median
+        Median of the diameter before it is cut off [m].
+    spread
+        Geometric standard deviation, above 1: two thirds lie between median / spread and median x spread.
+    smallest, largest
+        Diameters between which all particles lie [m].
+    """
+
+    kind: Literal["log_normal"] = "log_normal"
+    median: PositiveLength
+    spread: Annotated[float, Field(le=100)]
+
+    @model_validator(mode="after")
+    def _spreads(self) -> LogNormal:
+        if not self.spread > 1:
+            raise Hint("the geometric standard deviation is above 1", "1.2", ["spread"])
+        return self
+
+    def diameters(self, share: Vector) -> Vector:
+        """Return quantiles of the diameter [m], (n,)."""
+        width = math.log(self.spread)
+        low, high = (math.log(size / self.median) / width for size in (self.smallest, self.largest))
+        return self.median * np.exp(width * self._between(share, low, high))
+
+
+def _lengths(value: Any) -> Any:
+    sizes = []
+    for index, item in enumerate(value if isinstance(value, (list, tuple, np.ndarray)) else [value]):
+        with at(index):
+            sizes.append(parse(item, ("m",))[0])
+    return tuple(sizes)
+
+
+class Sieve(Distribution):
+    """Diameters by a sieve table, in which mass is spread evenly over the sizes between two sieves.
+
+    Parameters
+    ----------
+    sizes
+        Mesh sizes, increasing [m].
+    passing
+        Share of the mass that passes each of them, from 0 at the finest to 1 at the coarsest.
+    """
+
+    kind: Literal["sieve"] = "sieve"
+    sizes: Annotated[tuple[float, ...], SI("m"), BeforeValidator(_lengths)]
+    passing: tuple[float, ...]
+
+    @model_validator(mode="after")
+    def _sound(self) -> Sieve:
+        if len(self.sizes) != len(self.passing) or len(self.sizes) < 2:
+            raise Hint(f"{len(self.sizes)} sizes, but {len(self.passing)} shares", "as many of both, at least two")
+        if self.sizes[0] <= 0 or np.any(np.diff(self.sizes) <= 0):
+            raise Hint("sizes must be above zero and increase", place=["sizes"])
+        if self.passing[0] != 0 or self.passing[-1] != 1 or np.any(np.diff(self.passing) < 0):
+            raise Hint("shares rise from 0 at the finest sieve to 1 at the coarsest", "[0, 0.3, 1]", ["passing"])
+        return self
+
+    def diameters(self, share: Vector) -> Vector:
+        """Return quantiles of the diameter [m], (n,)."""
+        edges = np.array(self.sizes)
+        squares = edges**-2
+        # mass evenly over the diameter: number goes with d^-3
+        number = np.diff(self.passing) / np.diff(edges) * -np.diff(squares)
+        below = np.concatenate([[0.0], np.cumsum(number)]) / number.sum()
+        return np.asarray(np.interp(share, below, squares) ** -0.5)
+
+
+AnyDistribution = Annotated[Normal | LogNormal | Sieve, Field(discriminator="kind")]
+
+
+class Particles(Part):
+    """Spheres of one material.
+
+    Parameters
+    ----------
+    material
+        Name in the library, or a Material.
+    radius, diameter, distribution
+        One of them: one size for all [m], or a distribution of diameters.
+    count, mass, fill_ratio
+        One of them: how many, their mass in all [kg], or their volume over that of the cavity. Mass and fill ratio are met
+        as closely as a whole number of particles can.
+    name
+        By which a table of pairs speaks of them; default the material's name.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("particles",)
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("radius", "diameter"),
+        ("radius", "distribution"),
+        ("diameter", "distribution"),
+        ("count", "mass"),
+        ("count", "fill_ratio"),
+        ("mass", "fill_ratio"),
+    )
+    name: str = ""
+    material: AnyMaterial
+    radius: PositiveLength | None = None
+    diameter: PositiveLength | None = Field(default=None, exclude=True)
+    distribution: AnyDistribution | None = None
+    count: Annotated[int, Field(ge=0, le=100_000_000)] | None = None
+    mass: PositiveMass | None = None
+    fill_ratio: float | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _radius_of_diameter(cls, values: Any) -> Any:
+        if isinstance(values, dict) and values.get("diameter") is not None and values.get("radius") is None:
+            with at("diameter"):
+                diameter = parse(values["diameter"], ("m",))[0]
+            if not diameter > 0:
+                raise Hint("must be greater than zero", place=["diameter"])
+            return {**{k: v for k, v in values.items() if k != "diameter"}, "radius": diameter / 2}
+        return values
+
+    @model_validator(mode="after")
+    def _sound(self) -> Particles:
+        if self.diameter is not None or (self.radius is not None and self.distribution is not None):
+            raise Hint("one size is needed: radius, diameter or distribution", 'radius = "2 mm"')
+        amounts = [name for name in ("count", "mass", "fill_ratio") if getattr(self, name) is not None]
+        if len(amounts) > 1:
+            raise Hint(f"{amounts[0]} and {amounts[1]} say the same thing twice", "give one of them")
+        if self.count == 0:
+            raise Hint("there is nothing in it", "at least one particle", ["count"])
+        if self.fill_ratio is not None and not 0 < self.fill_ratio < 1:
+            raise Hint(
+                "a fill ratio lies between 0 and 1: loose beds reach about 0.58, packed ones 0.64",
+                "0.4",
+                ["fill_ratio"],
+            )
+        if self.distribution is not None:
+            with at("distribution"):
+                self.diameters(1)
+        return self
+
+    @property
+    def label(self) -> str:
+        """Name of the species."""
+        return self.name or self.material.name
+
+    @property
+    def has_size(self) -> bool:
+        """Whether a size is given; else positions must tell the radii."""
+        return self.radius is not None or self.distribution is not None
+
+    @property
+    def has_amount(self) -> bool:
+        """Whether it is given how much there is; else positions tell it."""
+        return self.count is not None or self.mass is not None or self.fill_ratio is not None
+
+    def diameters(self, count: int) -> Vector:
+        """Return the diameters of so many particles, (n,) [m], rising: the middles of n equal shares of the distribution."""
+        if self.distribution is None:
+            assert self.radius is not None
+            return np.full(count, 2 * self.radius)
+        return self.distribution.diameters((np.arange(count) + 0.5) / count)
+
+    def number(self, volume: float) -> int:
+        """Return how many particles there are in a cavity of a volume [m^3].
+
+        Raises
+        ------
+        Hint
+            When mass or fill ratio amount to less than one.
+        """
+        if self.count is not None:
+            return self.count
+        each = float(np.mean(math.pi / 6 * self.diameters(_MANY if self.distribution else 1) ** 3))
+        filled = self.mass / self.material.density if self.mass is not None else (self.fill_ratio or 0.0) * volume
+        count = round(filled / each)
+        if count < 1:
+            raise Hint(
+                f"this is less than one particle, of {1e3 * each * self.material.density:.4g} g",
+                "more of them, or smaller ones",
+                ["mass" if self.mass is not None else "fill_ratio"],
+            )
+        return count
+
+    def masses(self, radii: Vector) -> Vector:
+        """Return the masses of spheres, (n,) [kg]."""
+        return np.asarray(4 / 3 * math.pi * radii**3 * self.material.density)
+
+
+def as_species(value: Any) -> Any:
+    """Let one stand for a list of one."""
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return tuple(value)
+    return (value,)

@@ -1,0 +1,77 @@
+"""Vectors and directions in space, axes x, y, z."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BeforeValidator, WithJsonSchema
+
+from .elementwise import Vector
+from .errors import Hint, at
+from .units import SI, numbers, parse
+
+AXES = ("x", "y", "z")
+Triple = tuple[float, float, float]
+
+
+def _three(value: Any, what: str, example: str) -> list[Any]:
+    if not isinstance(value, (list, tuple, np.ndarray)) or len(value) != 3:
+        raise Hint(f"three {what} are needed: along x, y and z", example)
+    return list(value)
+
+
+def triple(unit: str, what: str, example: str) -> Any:
+    """Return the annotations of a field that holds three quantities in this SI unit."""
+
+    def read(value: Any) -> Triple:
+        read = []
+        for index, item in enumerate(_three(value, what, example)):
+            with at(index):
+                read.append(parse(item, (unit,))[0])
+        return read[0], read[1], read[2]
+
+    item = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+    schema = {"type": "array", "items": item, "minItems": 3, "maxItems": 3, "description": f"{what}, in {unit}"}
+    return SI(unit), BeforeValidator(read), WithJsonSchema(schema)
+
+
+def _direction(value: Any) -> Any:
+    if isinstance(value, str):
+        if value.removeprefix("-") not in AXES:
+            raise Hint("a direction is x, y, z, one of them with a minus, or three numbers", '"z"')
+        return value
+    vector = numbers(_three(value, "numbers", "[0, 0, 1]"))
+    if not np.linalg.norm(vector) > 0:
+        raise Hint("a direction needs some length", "[0, 0, 1]")
+    return tuple(vector.tolist())
+
+
+Direction = Annotated[
+    str | Triple,
+    BeforeValidator(_direction),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"enum": [sign + axis for sign in ("", "-") for axis in AXES]},
+                {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+            ],
+            "description": "x, y, z, one of them with a minus, or three numbers of any length",
+        }
+    ),
+]
+
+
+def unit_vector(direction: str | Triple) -> Vector:
+    """Return a direction as a vector of length one, (3,)."""
+    if isinstance(direction, str):
+        vector = np.zeros(3)
+        vector[AXES.index(direction[-1])] = -1.0 if direction[0] == "-" else 1.0
+        return vector
+    given = np.array(direction)
+    return np.asarray(given / np.linalg.norm(given))
+
+
+Accelerations = Annotated[Triple, *triple("m/s^2", "accelerations", "[0, 0, -9.81]")]
+Velocities = Annotated[Triple, *triple("m/s", "velocities", "[0.1, 0, 0]")]
+Lengths = Annotated[Triple, *triple("m", "lengths", '["40 mm", "40 mm", "60 mm"]')]
