@@ -314,6 +314,8 @@ def test_numbers_beyond_all_use() -> None:
         (lambda: rb.random_record([(1.0, 2.0), (300.0, 1.0)], 1.0, 10.0), "rate = 3000"),
         (lambda: rb.random_record([(0.1, 1.0), (0.2, 1.0)], 1.0, 10.0), "a longer record"),
         (lambda: rb.random_record([(1.0, 2.0), (3.0, -1.0)], 1.0, 10.0), "positive .* pairs"),
+        (lambda: rb.simulate("case.toml"), "a Case is needed, not 'case.toml'\n  try: rb.Case.from_file"),
+        (lambda: rb.simulate_many(rb.Case(structure=rb.Fixed(), duration=1.0)), "a list of cases is needed"),
     ],
 )
 def test_mistakes_in_python(make: Callable[[], object], said: str) -> None:

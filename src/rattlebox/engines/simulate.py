@@ -12,14 +12,14 @@ import numpy as np
 from rattlebox.engines.core import core
 from rattlebox.engines.pack import pack
 from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
+from rattlebox.model.case import Case
+from rattlebox.model.errors import Hint
 from rattlebox.results.arrays import ImpactArrays, RunArrays
 from rattlebox.results.provenance import Provenance
 from rattlebox.results.run import Run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from rattlebox.model.case import Case
 
 
 _MOST_EVENTS = 200_000
@@ -56,7 +56,17 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
     -------
     list of Run
         In the order of the cases. Ctrl-C ends the runs in progress with the status "interrupted".
+
+    Raises
+    ------
+    CaseError
+        When something else than cases is given.
     """
+    if isinstance(cases, Case):
+        raise Hint("a list of cases is needed, not one case", "simulate(case)")
+    for case in cases:
+        if not isinstance(case, Case):
+            raise Hint(f"a Case is needed, not {case!r:.60}", 'rb.Case.from_file("case.toml")')
     packed = [pack(case) for case in cases]
     results = _simulated(packed, threads)
     free = [k for k, case in enumerate(cases) if not case.output.is_chosen and _is_short(results[k])]
@@ -116,8 +126,9 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
     gravity = np.array([damper.gravity for damper in dampers])
     pull = np.zeros((time.size, d))
     np.add.at(pull.T, of, -(mass * gravity[of])[:, None] * position.T)
-    points = list(modes.shapes)
-    at_points = np.array([modes.shapes[name] for name in points]).reshape(len(points), m)
+    lines = modes.lines()
+    points = list(lines)
+    at_points = np.array(list(lines.values())).reshape(len(points), m)
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     base = _base_motion(case, time)
     stopped = raw["stopped_contact"]

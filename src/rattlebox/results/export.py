@@ -136,6 +136,8 @@ def to_csv(run: Run, folder: Path) -> tuple[Path, ...]:
     """
     import csv
 
+    if folder.is_file():
+        raise FileExistsError(f"{folder} is a file; CSV files need a folder")
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for group in GROUPS:

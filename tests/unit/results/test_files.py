@@ -208,3 +208,11 @@ def test_csv_of_names_with_commas(run: Run, tmp_path: Path) -> None:
     named = Run(replace(run.arrays, points=('tip, "left"',)))
     header, _ = _read(named.to_csv(tmp_path)[0])
     assert 'displacement tip, "left" [m]' in header
+
+
+def test_csv_needs_a_folder(run: Run, tmp_path: Path) -> None:
+    """A file in the place of the folder is named, and kept."""
+    (tmp_path / "notes").write_text("mine")
+    with pytest.raises(FileExistsError, match="notes is a file; CSV files need a folder"):
+        run.to_csv(tmp_path / "notes")
+    assert (tmp_path / "notes").read_text() == "mine"
