@@ -59,7 +59,7 @@ def sweep(
         str | None, typer.Option(help="Address or file of a Dask scheduler, to run on its workers.")
     ] = None,
 ) -> None:
-    """Run a study file: variants of a case over axes. The same command goes on after a stop."""
+    """Run a study file: variants of a case over axes, or a ready map. The same command goes on after a stop."""
     from rattlebox.cli.sweep import run_sweep
 
     run_sweep(study, out, workers, dask)
@@ -77,14 +77,16 @@ def show(study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")]
 def plot(
     study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")],
     out: Annotated[Path, typer.Option("--out", "-o", help="File to write: PNG, SVG or PDF.")] = Path("study.png"),
-    kind: Annotated[str | None, typer.Option(help="map or lines; default a map of two long axes.")] = None,
+    kind: Annotated[
+        str | None, typer.Option(help="map or lines of a measure, or the kind that the study file names; default that.")
+    ] = None,
     of: Annotated[str | None, typer.Option(help="Measure; default the first.")] = None,
     at: Annotated[
         list[str] | None, typer.Option(help='Value of a further axis, "load.amplitude=5 kN"; repeat for more.')
     ] = None,
-    size: Annotated[str, typer.Option(help="column, page or slide.")] = "column",
+    size: Annotated[str | None, typer.Option(help="column, page or slide.")] = None,
 ) -> None:
-    """Draw a measure of a study over one or two of its axes."""
+    """Draw a study: its own figure, or a measure over one or two of its axes."""
     from rattlebox.cli.plot import plot_study
 
     plot_study(study, out, kind=kind, of=of, at=at or (), size=size)

@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
-from rattlebox.model.errors import CaseError
-from rattlebox.plots.maps import plot_map
+import rattlebox
+from rattlebox.model.errors import CaseError, nearest
+from rattlebox.plots.maps import plot_map, select
 from rattlebox.plots.style import WIDTHS
 from rattlebox.studies.store import open_study
+from rattlebox.studies.studytables import KINDS
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
 
 FORMATS = (".png", ".svg", ".pdf")
+MAPS = tuple(kind for kind in KINDS if kind != "sweep")
 
 
-def plot_study(study: Path, out: Path, *, kind: str | None, of: str | None, at: Sequence[str], size: str) -> None:
+def plot_study(
+    study: Path, out: Path, *, kind: str | None, of: str | None, at: Sequence[str], size: str | None
+) -> None:
     """Draw a study and write the figure.
 
     Parameters
@@ -25,8 +35,12 @@ def plot_study(study: Path, out: Path, *, kind: str | None, of: str | None, at: 
         Folder of the study.
     out
         File to write, as PNG, SVG or PDF.
-    kind, of, size
-        As for `rattlebox.plot_map`.
+    kind
+        "map" or "lines" of one measure, or the name of a ready map; default that of the study.
+    of
+        What to draw, where there is a choice.
+    size
+        Width; default that of the figure.
     at
         Texts "axis=value".
 
@@ -39,13 +53,35 @@ def plot_study(study: Path, out: Path, *, kind: str | None, of: str | None, at: 
         raise CaseError(
             f"-o {out}: the ending must be one of {', '.join(FORMATS)}\n  try: -o {out.stem or 'study'}.png"
         )
-    if size not in WIDTHS:
+    if size is not None and size not in WIDTHS:
         raise CaseError(f"--size {size}: there is no such size\n  try: {', '.join(WIDTHS)}")
     if not out.parent.is_dir():
         raise CaseError(f"-o {out}: there is no folder {out.parent}")
-    options: dict[str, Any] = {"kind": kind, "size": size}
-    plot_map(open_study(study), of, at=_values(at), **options).savefig(out)
+    data, options = open_study(study), {"of": of, "size": size}
+    own = str(data.attrs.get("study", "sweep"))
+    options = {name: value for name, value in options.items() if value is not None}
+    if (kind or own) in MAPS:
+        figure = _map(data, kind or own, own, options, _values(at))
+    elif kind in (None, "map", "lines"):
+        figure = plot_map(data, kind=kind, at=_values(at), **options)  # type: ignore[arg-type]
+    else:
+        raise CaseError(f"--kind {kind}: there is no such kind\n  {nearest(kind, ('map', 'lines', *MAPS))}")
+    figure.savefig(out)
     Console(highlight=False).print(f"written: {out}", soft_wrap=True)
+
+
+def _map(data: xr.Dataset, kind: str, own: str, options: dict[str, Any], at: dict[str, str]) -> Figure:
+    """The figure of a ready map."""
+    if kind != own:
+        raise CaseError(
+            f"--kind {kind}: there is none in this study, which holds a {own.replace('_', ' ')}, or is not finished\n"
+            f"  try: {f'--kind {own}' if own in MAPS else '--kind lines'}, or 'rattlebox show' to see how far it is"
+        )
+    draw = getattr(rattlebox, f"plot_{kind}")
+    if "of" in options and "of" not in signature(draw).parameters:
+        raise CaseError(f"--of {options['of']}: a figure of {kind} shows all that there is\n  try: --kind lines")
+    figure: Figure = draw(select(data, at)[0], **options)
+    return figure
 
 
 def _values(at: Sequence[str]) -> dict[str, str]:

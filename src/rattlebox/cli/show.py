@@ -13,7 +13,8 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from rattlebox.results.quantities import quantity
-from rattlebox.studies.store import Progress, open_study, progress_of
+from rattlebox.studies.design import trials_in
+from rattlebox.studies.store import Progress, has_map, open_study, progress_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,14 +32,24 @@ def show_study(path: Path) -> None:
         Folder of the study.
     """
     console = Console(highlight=False)
-    study, progress = open_study(path), progress_of(path)
-    console.print(f"[bold]{path}[/bold]: {_how_far(progress)}", soft_wrap=True)
-    console.print(_axes(study))
-    if progress.done:
+    trials = trials_in(path)
+    if trials is None:
+        progress = progress_of(path)
+        far, some, whole = _how_far(progress), progress.done > 0, progress.done == progress.total
+    else:
+        far, some, whole = f"{trials:,} trials", has_map(path), has_map(path)
+    study = open_study(path) if some or trials is None else None
+    kind = "design" if study is None else str(study.attrs.get("study", "sweep"))
+    said = "" if kind == "sweep" else f"{kind.replace('_', ' ')}, "
+    console.print(f"[bold]{path}[/bold]: {said}{far}", soft_wrap=True)
+    if study is not None:
+        console.print(_axes(study))
+    if study is not None and some:
         console.print(_results(study))
-        counts = statuses(study)
-        console.print("  ended: " + ", ".join(f"{count:,} {name}" for name, count in counts.items()), soft_wrap=True)
-    if progress.done < progress.total:
+        if counts := statuses(study):
+            told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
+            console.print(f"  ended: {told}", soft_wrap=True)
+    if not whole:
         console.print("  The command that began it goes on.")
 
 
@@ -88,7 +99,7 @@ def _results(study: xr.Dataset) -> Table:
     right: Any = {"justify": "right"}
     table = Table("result", "meaning", Column("smallest", **right), Column("largest", **right), box=SIMPLE_HEAD)
     for name, values in study.data_vars.items():
-        if name != "status":
+        if name != "status" and values.dtype.kind in "fiub":
             ends = [end for part in map(_there, _parts(values)) if part.size for end in (part.min(), part.max())]
             shown = [_number(end, values) for end in (min(ends), max(ends))] if ends else []
             table.add_row(str(name), values.attrs.get("long_name", ""), *shown)

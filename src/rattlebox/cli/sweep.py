@@ -15,7 +15,6 @@ from rattlebox.cli.show import statuses
 from rattlebox.model.errors import CaseError
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.studyfile import read_study
-from rattlebox.studies.sweep import sweep
 
 
 def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None) -> None:
@@ -36,21 +35,18 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
         raise typer.BadParameter("counts threads of this machine; with --dask, the cluster's workers run the study")
     study = read_study(path)
     out = out or path.with_suffix(".zarr")
-    options = study.options
     try:
         with _cluster(dask) as client:
-            if client:
-                options.pop("threads", None)
-            elif workers:
-                options["threads"] = workers
-            result = sweep(study.case, study.axes, store=out, on=client, **options)
+            where = {"threads": None if client else workers} if client or workers else {}
+            result = study.run(store=out, on=client, **where)
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)
         sys.exit(130)
     console = Console()
     counts = statuses(result)
     told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
-    console.print(f"{sum(counts.values()):,} variants: {told}\nwritten to {out}", soft_wrap=True, highlight=False)
+    told = f"{sum(counts.values()):,} variants: {told}\n" if counts else ""
+    console.print(f"{told}written to {out}", soft_wrap=True, highlight=False)
 
 
 @contextmanager

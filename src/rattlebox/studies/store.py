@@ -375,6 +375,11 @@ class Progress:
         return math.prod(self.blocks.shape)
 
 
+def has_map(path: str | os.PathLike[str]) -> bool:
+    """Tell whether a study is a ready map that is finished."""
+    return (Path(path) / _MAP).is_dir()
+
+
 def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
     """Open a study, finished or not.
 
@@ -395,7 +400,7 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
     CaseError
         When there is no study.
     """
-    if (Path(path) / _MAP).is_dir():
+    if has_map(path):
         return _open(Path(path) / _MAP)
     _check_format(path)
     return _open(path, list(_attributes(path)["manifest"]["outputs"]))
