@@ -37,9 +37,8 @@ template <> struct __attribute__((may_alias)) Pack<register_width> {
     typedef real Register __attribute__((vector_size(register_width * sizeof(real)), may_alias));
     Register v;
 
-    static Pack all(real v) {
-        return {v - Register{}};
-    } // not +, which loses the sign of -0 and so cannot be left out
+    // A difference from zero can be left out, a sum cannot: -0 + 0 is 0.
+    static Pack all(real v) { return {v - Register{}}; }
     friend Pack operator+(const Pack& a, const Pack& b) { return {a.v + b.v}; }
     friend Pack operator-(const Pack& a, const Pack& b) { return {a.v - b.v}; }
     friend Pack operator*(const Pack& a, const Pack& b) { return {a.v * b.v}; }
@@ -55,7 +54,7 @@ template <> struct __attribute__((may_alias)) Pack<register_width> {
     }
     friend real largest(const Pack& a) {
         real most = a.v[0];
-        for (int i = 1; i < register_width; ++i) most = std::fmax(most, a.v[i]);
+        for (int i = 1; i < register_width; ++i) most = a.v[i] > most ? a.v[i] : most;
         return most;
     }
 };

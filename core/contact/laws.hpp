@@ -31,7 +31,7 @@ inline Rebound rebound(const RestitutionLaw& law, real speed) {
         const bool above = speed > l.limit();
         r.outside = above && !l.beyond();
         r.extrapolated = above && l.beyond();
-        r.e = std::fmin(std::fmax(l.value(speed), 0.0), l.maximum);
+        r.e = std::min(std::max(l.value(speed), 0.0), l.maximum);
         return r;
     });
 }

@@ -3,7 +3,8 @@
 // Without load each mode is in closed form and each ball a parabola, to any horizon. Under a load the flight
 // is a cell of bounded length with Taylor series (structure/cell.hpp). Either way every gap has a lower bound
 // L on g'', so that no touch can come before the first root of g + g' s + L s^2 / 2: stepping from one such
-// root to the next closes in on the first touch quadratically and cannot jump over one.
+// root to the next closes in on the first touch and cannot jump over one. A bound on g''' makes L as good as
+// g'' itself near the touch.
 #pragma once
 
 #include <vector>
@@ -33,8 +34,8 @@ class Flight {
     real horizon_ = 0;
     std::vector<FreeMode> free_;
     std::vector<Series> mode_series_, ball_series_, load_series_;
-    std::vector<real> curvature_; // lower bound on each gap's second derivative
-    mutable State scratch_;
+    std::vector<real> curvature_, jerk_; // bounds on each gap's second derivative from below, on its third
+    mutable std::vector<real> safe_;     // no touch before
 
     Series gap_series(const Contact& contact) const {
         Series g;
@@ -50,6 +51,31 @@ class Flight {
         return g;
     }
 
+    // g'' now, of a gap with the wall in free flight.
+    real acceleration(const Contact& contact, const real* y) const {
+        const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
+        real wall_acceleration = 0;
+        for (std::size_t k = 0; k < damper.shape.size(); ++k) {
+            const Mode& mode = problem_.modes[k];
+            wall_acceleration -=
+                damper.shape[k] * (2 * mode.decay * y[2 * k + 1] + mode.stiffness * y[2 * k]);
+        }
+        const real apart = damper.gravity - wall_acceleration;
+        return contact.below == wall ? apart : -apart;
+    }
+
+    // A time within which contact c, open now, stays open.
+    real safe_time(std::size_t c, const Gap& g, const real* y) const {
+        const Contact& contact = problem_.contacts[c];
+        const real value = std::max(g.value, 0.0);
+        real bound = curvature_[c];
+        if (!series_ && (contact.below == wall || contact.above == wall)) {
+            const real now = acceleration(contact, y);
+            bound = std::max(bound, now - jerk_[c] * safe_step(value, g.rate, now));
+        }
+        return safe_step(value, g.rate, bound);
+    }
+
     void bound_curvatures() {
         for (std::size_t c = 0; c < problem_.contacts.size(); ++c) {
             const Contact& contact = problem_.contacts[c];
@@ -60,8 +86,13 @@ class Flight {
             } else {
                 const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
                 real bound = 0;
-                for (std::size_t k = 0; k < free_.size(); ++k)
-                    bound += std::fabs(damper.shape[k]) * free_[k].acceleration_bound();
+                jerk_[c] = 0;
+                for (std::size_t k = 0; k < free_.size(); ++k) {
+                    real acceleration, jerk;
+                    free_[k].bounds(acceleration, jerk);
+                    bound += std::fabs(damper.shape[k]) * acceleration;
+                    jerk_[c] += std::fabs(damper.shape[k]) * jerk;
+                }
                 curvature_[c] = (contact.below == wall ? damper.gravity : -damper.gravity) - bound;
             }
         }
@@ -70,8 +101,8 @@ class Flight {
 public:
     explicit Flight(const Problem& problem)
         : problem_(problem), load_series_(problem.loads.size()), curvature_(problem.contacts.size()),
-          scratch_(problem) {
-        free_.reserve(problem.modes.size());
+          jerk_(problem.contacts.size()), safe_(problem.contacts.size()) {
+        for (const Mode& mode : problem.modes) free_.emplace_back(mode);
         mode_series_.reserve(problem.modes.size());
         ball_series_.reserve(problem.ball_mass.size());
     }
@@ -108,9 +139,8 @@ public:
                                                    velocities(problem_, start.y.data())[i], pull));
             }
         } else {
-            free_.clear();
             for (std::size_t k = 0; k < problem_.modes.size(); ++k)
-                free_.emplace_back(problem_.modes[k], ModeState{start.y[2 * k], start.y[2 * k + 1]});
+                free_[k].begin({start.y[2 * k], start.y[2 * k + 1]});
         }
         bound_curvatures();
     }
@@ -193,41 +223,47 @@ public:
         return 0;
     }
 
-    // The first touch of the watched contacts within the horizon.
-    Touch first_touch(const std::vector<char>& watched) const {
-        real s = 0;
-        const State* now = start_;
+    // The first touch of the watched contacts within the horizon, and the state there.
+    Touch first_touch(const std::vector<char>& watched, State& out) const {
+        const auto end = [&](Touch touch) {
+            at(touch.after, out);
+            return touch;
+        };
         constexpr int patience =
             1000; // a flight that has not found its end by then starts afresh from where it is
+        for (std::size_t c = 0; c < safe_.size(); ++c) safe_[c] = watched[c] ? 0 : infinity;
+        real s = 0;
+        out = *start_;
         for (int iteration = 0; iteration < patience; ++iteration) {
-            real step = infinity;
+            real next = infinity;
             int nearest = -1;
-            for (std::size_t c = 0; c < problem_.contacts.size(); ++c) {
-                if (!watched[c]) continue;
-                const Contact& contact = problem_.contacts[c];
-                const Gap g = gap(problem_, contact, now->y.data());
-                const real half = 0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
-                const int ball = contact.below == wall ? contact.above : contact.below;
-                const real blur = 4 * epsilon * (half + std::fabs(positions(problem_, now->y.data())[ball]));
-                real safe;
-                if (g.value < -blur &&
-                    g.rate > 0) { // released, still recovering: when it is open at the latest
-                    const real room = g.rate * g.rate + 2 * curvature_[c] * -g.value;
-                    safe = -2 * g.value / (g.rate + std::sqrt(std::fmax(room, 0.0)));
-                } else {
-                    if (g.value <= blur && g.rate < 0) return {s, static_cast<int>(c)};
-                    safe = safe_step(std::fmax(g.value, 0.0), g.rate, curvature_[c]);
+            for (std::size_t c = 0; c < safe_.size(); ++c) {
+                if (safe_[c] <= s) {
+                    const Contact& contact = problem_.contacts[c];
+                    const Gap g = gap(problem_, contact, out.y.data());
+                    const real half =
+                        0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
+                    const int ball = contact.below == wall ? contact.above : contact.below;
+                    const real blur =
+                        4 * epsilon * (half + std::fabs(positions(problem_, out.y.data())[ball]));
+                    if (g.value < -blur &&
+                        g.rate > 0) { // released, still recovering: when it is open at the latest
+                        const real room = g.rate * g.rate + 2 * curvature_[c] * -g.value;
+                        safe_[c] = s - 2 * g.value / (g.rate + std::sqrt(std::max(room, 0.0)));
+                    } else {
+                        if (g.value <= blur && g.rate < 0) return {s, static_cast<int>(c)};
+                        safe_[c] = s + safe_time(c, g, out.y.data());
+                    }
                 }
-                if (safe < step) {
-                    step = safe;
+                if (safe_[c] < next) {
+                    next = safe_[c];
                     nearest = static_cast<int>(c);
                 }
             }
-            if (!(s + step < horizon_)) return {horizon_, -1};
-            if (step <= epsilon * s) return {s, nearest}; // closer than the clock can tell
-            s += step;
-            at(s, scratch_);
-            now = &scratch_;
+            if (!(next < horizon_)) return end({horizon_, -1});
+            if (next - s <= epsilon * s) return {s, nearest}; // closer than the clock can tell
+            s = next;
+            at(s, out);
         }
         return {s, -1};
     }

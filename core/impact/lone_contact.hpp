@@ -82,7 +82,7 @@ class LoneContact {
     static constexpr int n = PhaseGrid::n;
     static constexpr int most_sweeps = 24;
     using Row = PhaseGrid::Rule::Row;
-    // Rows that are integrated: the momentum of each mode from first_mode on, of the base, each mode's path.
+    // Rows that are integrated: forces on the modes from first_mode on, the same times the time, the base.
     enum : std::size_t { clock, gain, first_mode };
 
     const Problem& problem_;
@@ -101,12 +101,12 @@ class LoneContact {
     Row grow_, rate_;    // gain^(1/6); dpsi/dt / (s r) is 1 / rate, but for the grid's slope
     Row a_, base_, x_, w_;
     std::vector<Row> slope_, integral_;
-    std::vector<Row> q_, p_, u_, force_, signal_; // by mode or load
-    std::vector<Series> pull_;                    // each load about the start, good to this degree
+    std::vector<Row> q_, p_, u_, path_, force_, signal_; // by mode or load
+    std::vector<Series> pull_;                           // each load about the start, good to this degree
     int degree_ = 0;
 
-    std::size_t base_row() const { return first_mode + modes_; }
-    std::size_t path_row() const { return base_row() + 1; }
+    std::size_t late_row() const { return first_mode + modes_; }
+    std::size_t base_row() const { return late_row() + modes_; }
     real weight(std::size_t k) const {
         return -side_ * damper_->shape[k];
     } // of a mode in what closes the gap
@@ -190,8 +190,8 @@ class LoneContact {
         }
     }
 
-    // u = p + kick w, which the contact force leaves alone, and its path: at first with the forces as at the
-    // start, then with those of the sweep before.
+    // u = p + kick w, which the contact force leaves alone, and its path (by parts, so that both follow from
+    // the same forces): at first with the forces as at the start, then with those of the sweep before.
     void move_modes(bool first) {
         const Row &time = integral_[clock], &slope = slope_[clock];
         if (first) {
@@ -199,16 +199,19 @@ class LoneContact {
                 const real u0 = start_->y[2 * k + 1] + kick(k) * speed_, f = force_[k][0] + kick(k) * a_[0];
                 for (int i = 0; i < n; ++i) {
                     u_[k][i] = u0 + f * time[i];
-                    integral_[path_row() + k][i] = time[i] * (u0 + 0.5 * f * time[i]);
+                    path_[k][i] = time[i] * (u0 + 0.5 * f * time[i]);
                 }
             }
             return;
         }
         for (std::size_t k = 0; k < modes_; ++k)
-            for (int i = 0; i < n; ++i) slope_[first_mode + k][i] = force_[k][i] * slope[i];
+            for (int i = 0; i < n; ++i) {
+                slope_[first_mode + k][i] = force_[k][i] * slope[i];
+                slope_[late_row() + k][i] = (force_[k][i] + kick(k) * a_[i]) * time[i] * slope[i];
+            }
         if (base_moves_)
             for (int i = 0; i < n; ++i) slope_[base_row()][i] = base_[i] * slope[i];
-        grid_.rule().integrate(&slope_[first_mode], &integral_[first_mode], modes_ + base_moves_);
+        grid_.rule().integrate(&slope_[first_mode], &integral_[first_mode], 2 * modes_ + base_moves_);
         Row drift; // what the closing acceleration has made of the speed
         for (int i = 0; i < n; ++i) drift[i] = speed_ + constant_ * time[i];
         if (base_moves_)
@@ -219,20 +222,18 @@ class LoneContact {
             const real share = kick(k), p0 = start_->y[2 * k + 1];
             for (int i = 0; i < n; ++i) {
                 u_[k][i] = p0 + integral_[first_mode + k][i] + share * drift[i];
-                slope_[path_row() + k][i] = u_[k][i] * slope[i];
+                path_[k][i] = time[i] * u_[k][i] - integral_[late_row() + k][i];
             }
         }
-        grid_.rule().integrate(&slope_[path_row()], &integral_[path_row()], modes_);
     }
 
     // p and q at the nodes.
     void place_modes() {
         for (std::size_t k = 0; k < modes_; ++k) {
             const real q0 = start_->y[2 * k], share = kick(k);
-            const Row& path = integral_[path_row() + k];
             for (int i = 0; i < n; ++i) {
                 p_[k][i] = u_[k][i] - share * w_[i];
-                q_[k][i] = q0 + path[i] - share * square(square(x_[i]));
+                q_[k][i] = q0 + path_[k][i] - share * square(square(x_[i]));
             }
         }
     }
@@ -268,7 +269,7 @@ public:
 
     explicit LoneContact(const Problem& problem)
         : problem_(problem), modes_(problem.modes.size()), slope_(first_mode + 2 * modes_ + 1),
-          integral_(slope_.size()), q_(modes_), p_(modes_), u_(modes_), force_(modes_),
+          integral_(slope_.size()), q_(modes_), p_(modes_), u_(modes_), path_(modes_), force_(modes_),
           signal_(problem.loads.size()), pull_(problem.loads.size()) {}
 
     // Prepares the contact c that touches in `start` at this speed; false where collocation is not the right
@@ -334,7 +335,7 @@ public:
             const real change = sweep(pass == 0);
             if (!(change < 1)) return false;
             // The next change would be rounding, or it no longer falls because it is rounding.
-            if (change * change < 1e-3 * problem_.settings.tolerance * before ||
+            if (change * change < 1e-5 * problem_.settings.tolerance * before ||
                 (change < 64 * epsilon && change > 0.1 * before)) {
                 rates();
                 return true;

@@ -18,7 +18,7 @@ protected:
     // ---- first touch
 
     void meet(int c) {
-        const real speed = std::fmax(system_.approach(state_.y.data(), c), 0.0);
+        const real speed = std::max(system_.approach(state_.y.data(), c), 0.0);
         const Rebound r = rebound(contact(c).restitution, speed);
         if (r.outside) return fail(Status::law_domain, c, speed);
         result_.counts.extrapolated += r.extrapolated;

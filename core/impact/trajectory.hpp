@@ -11,6 +11,7 @@ namespace rattlebox {
 
 class Trajectory : ClosedContacts {
     std::vector<char> watched_;
+    State ahead_; // at the end of a flight
 
     void sample_flight(real until) {
         while (sample_due(until)) {
@@ -41,15 +42,17 @@ class Trajectory : ClosedContacts {
             if (tendency < 0 && hard()) stick(static_cast<int>(c));
         }
         if (pressing && hard()) return;
-        const Touch touch = flight_.first_touch(watched_);
+        const Touch touch = flight_.first_touch(watched_, ahead_);
         real length = touch.after;
-        if (pressing) length = rest_start_length(length);
+        if (pressing) {
+            length = rest_start_length(length);
+            flight_.at(length, ahead_);
+        }
         const bool to_stop = touch.contact < 0 && length == stop - state_.t;
         const real end = to_stop ? stop : state_.t + length;
         sample_flight(end);
         flight_.account(length, ledger_);
-        flight_.at(length, scratch_);
-        std::swap(scratch_.y, state_.y);
+        std::swap(ahead_.y, state_.y);
         state_.t = end;
         settle_released(touch.contact);
         if (pressing)
@@ -72,7 +75,7 @@ class Trajectory : ClosedContacts {
 
 public:
     Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
-        : ClosedContacts(problem, stop), watched_(problem.contacts.size()) {}
+        : ClosedContacts(problem, stop), watched_(problem.contacts.size()), ahead_(problem) {}
 
     Result run() {
         for (int c = 0; c < problem_.contact_count(); ++c) {

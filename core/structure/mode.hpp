@@ -32,14 +32,24 @@ struct ModeState {
 class FreeMode {
     Mode mode_;
     ModeState start_;
-    real root_ = 0;          // |w|
-    real q_slope_, p_slope_; // what S multiplies in q and in p
+    real root_ = 0;                  // |w|
+    real q_slope_ = 0, p_slope_ = 0; // what S multiplies in q and in p
     enum class Regime { oscillating, confluent, decaying } regime_;
 
+    // exp(-a s) = 1 - lost, cos(w s) and sin(w s) where an oscillation was last looked at.
+    struct Turn {
+        real s = 0, lost = 0, cosine = 1, sine = 0;
+    };
+    mutable Turn turn_;
+
+    const Turn& turn(real s) const {
+        if (s != turn_.s)
+            turn_ = {s, -std::expm1(-mode_.decay * s), std::cos(root_ * s), std::sin(root_ * s)};
+        return turn_;
+    }
+
 public:
-    FreeMode(const Mode& mode, const ModeState& start)
-        : mode_(mode), start_(start), q_slope_(start.p + mode.decay * start.q),
-          p_slope_(-(mode.stiffness * start.q + mode.decay * start.p)) {
+    explicit FreeMode(const Mode& mode) : mode_(mode) {
         const real square_of_root = mode.stiffness - mode.decay * mode.decay;
         regime_ = square_of_root > 0   ? Regime::oscillating
                   : square_of_root < 0 ? Regime::decaying
@@ -47,13 +57,19 @@ public:
         root_ = std::sqrt(std::fabs(square_of_root));
     }
 
+    void begin(const ModeState& start) {
+        start_ = start;
+        q_slope_ = start.p + mode_.decay * start.q;
+        p_slope_ = -(mode_.stiffness * start.q + mode_.decay * start.p);
+    }
+
     ModeState at(real s) const {
         const real a = mode_.decay;
         real c, sine;
         if (regime_ == Regime::oscillating) {
-            const real shrink = a == 0 ? 1.0 : std::exp(-a * s);
-            c = shrink * std::cos(root_ * s);
-            sine = shrink * std::sin(root_ * s) / root_;
+            const Turn& now = turn(s);
+            c = (1 - now.lost) * now.cosine;
+            sine = (1 - now.lost) * now.sine / root_;
         } else if (regime_ == Regime::confluent) {
             c = std::exp(-a * s);
             sine = c * s;
@@ -73,13 +89,14 @@ public:
         if (regime_ == Regime::oscillating && root_ > 0.05 * a) {
             // p = exp(-a s) (B cos + D sin): the mean part and the part at twice the frequency.
             const real b = start_.p, d = p_slope_ / root_;
-            const real shrink = std::exp(-2 * a * s);
-            const real mean = -std::expm1(-2 * a * s) / (2 * a);
-            const real cosine = shrink * std::cos(2 * root_ * s), sine = shrink * std::sin(2 * root_ * s);
-            const real norm = 0.5 / (a * a + root_ * root_);
-            const real even = norm * (a * (1 - cosine) + root_ * sine);
-            const real odd = norm * (root_ * (1 - cosine) - a * sine);
-            return a * ((b * b + d * d) * mean + (b * b - d * d) * even + 2 * b * d * odd);
+            const Turn& now = turn(s);
+            const real shrink = 1 - now.lost, faded = now.lost * (1 + shrink); // 1 - exp(-2 a s)
+            const real turned = faded + 2 * square(shrink * now.sine);         // 1 - exp(-2 a s) cos(2 w s)
+            const real sine = 2 * square(shrink) * now.sine * now.cosine;
+            const real norm = 0.5 / mode_.stiffness; // = a^2 + w^2
+            const real even = norm * (a * turned + root_ * sine);
+            const real odd = norm * (root_ * turned - a * sine);
+            return 0.5 * (b * b + d * d) * faded + a * ((b * b - d * d) * even + 2 * b * d * odd);
         }
         // Sums of decaying exponentials: intervals that double in length follow them.
         real total = 0, from = 0, length = 1 / mode_.rate();
@@ -91,9 +108,11 @@ public:
         return 2 * a * total;
     }
 
-    // |q''| stays below this: the energy of a free mode never rises.
-    real acceleration_bound() const {
-        return std::sqrt(2 * start_.energy(mode_)) * (std::sqrt(mode_.stiffness) + 2 * mode_.decay);
+    // Bounds on |q''| and |q'''|: the energy of a free mode never rises.
+    void bounds(real& acceleration, real& jerk) const {
+        const real speed = std::sqrt(2 * start_.energy(mode_));
+        acceleration = speed * (std::sqrt(mode_.stiffness) + 2 * mode_.decay);
+        jerk = 2 * mode_.decay * acceleration + mode_.stiffness * speed;
     }
 };
 
