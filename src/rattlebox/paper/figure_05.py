@@ -149,8 +149,8 @@ def caption(data: xr.Dataset) -> str:
         f"{limit['steel']:.4f} m/s on a steel wall and {limit['rigid']:.4f} m/s on a rigid one, "
         f"{limit['steel'] / limit['rigid']:.0f} times less: the paper does not say which it takes. Johnson's law holds for "
         "fully plastic impacts only and is capped at 1 here. Below, the share of "
-        f"impacts that are faster than V in 10 s after the 5 kN pulse, over {_MEMBERS} starts within a micrometre: in "
-        f"case 1 {beyond['steel']:.1f} % of them are beyond the limit on the steel wall, {beyond['rigid']:.0f} % on the "
+        f"impacts that are faster than V in 10 s after the 5 kN pulse, over {_MEMBERS} starts within a micrometre: "
+        f"{beyond['steel']:.1f} % of those in case 1 are beyond the limit on the steel wall, {beyond['rigid']:.0f} % on the "
         f"rigid one. No impact is faster than {max(largest.values()):.3f} m/s, so the restitution never falls below "
         f"{lowest['steel']:.4f} on the steel wall and {lowest['rigid']:.3f} on the rigid one."
     )

@@ -176,7 +176,7 @@ def caption(data: xr.Dataset) -> str:
     apart = float(np.abs(data.above - data.predicted_above).max())
     last, spread = int(data.hit[-1]), float(data.spread.max())
     return (
-        "A ball in a cavity of length 2 that does not move, in units of d0 and of the elastic limit V_c; grey is where "
+        "A ball in a cavity of length 2 that does not move, in units of d_0 and of the elastic limit V_c; grey is where "
         "the ball presses into a wall. In the plastic zone every hit takes speed away: from "
         f"V* = {float(data.speed[0, 0]):g} to {reduced[1]:.3f} after 1 hit, {reduced[10]:.3f} after 10 and "
         f"{reduced[100]:.4f} after 100. In the elastic zone the ball keeps its speed (change over "

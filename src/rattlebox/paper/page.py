@@ -138,6 +138,7 @@ _TYPESET: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"\b(\w)_(\w+)\b", r"\1<sub>\2</sub>"),
     (r"\^(-?[\d.]*\d)", r"<sup>\1</sup>"),
     (r"\bsqrt\b", "√"),
+    (r"\blog10\b", "log<sub>10</sub>"),
     (r"(?<![\w)])-(?=[\dα-ω])", "−"),
 )
 

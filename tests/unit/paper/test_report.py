@@ -258,6 +258,7 @@ def test_page_escapes_and_counts():
         ("4.5e+02 to 2e+12", "450 to 2 × 10<sup>12</sup>"),
         ("V_c < E_k/2", "V<sub>c</sub> &lt; E<sub>k</sub>/2"),
         ("N/m^1.5, s^-1, sqrt(K/M)", "N/m<sup>1.5</sup>, s<sup>−1</sup>, √(K/M)"),
+        ("degree 9 in log10 e", "degree 9 in log<sub>10</sub> e"),
         ("-3 to 5, (-ζω), x-1, figure_02, e = 0.99", "−3 to 5, (−ζω), x-1, figure_02, e = 0.99"),
     ],
 )
