@@ -12,7 +12,7 @@ case = rb.Case(
         contact=rb.Tsuji(restitution=0.6),
     ),
     duration="1 s",
-    method=rb.Newton(max_events=100_000),
+    method=rb.Newton(),
 )
 found = rb.loss_map(
     case,

@@ -21,7 +21,7 @@ def state(orbit: shaken.TableOrbit, since: float) -> tuple[float, float]:
 
 
 def test_bouncing_balls_coexist() -> None:
-    """Orbits that bounce every cycle and every second one exist side by side, and both are found to 1e-8."""
+    """Orbits that bounce every cycle and every second one exist beside rest on the table, and all are found to 1e-8."""
     case = cases.table(shaken.table_orbit(RESTITUTION, GAMMA, 1), 1)
     begin = case.structure.motion[0].phase
     gap = cases.TABLE_GAP
@@ -39,3 +39,8 @@ def test_bouncing_balls_coexist() -> None:
         rates = found.orbit_ball_speed.values[:cycles, 0]
         ours = sorted(zip(heights.tolist(), rates.tolist(), strict=True))
         assert ours == [pytest.approx(exact, abs=1e-8) for exact in sorted(strobes)]
+    rest = maps.isel(orbit=np.flatnonzero(maps.orbit_impacts_per_cycle == 0)).squeeze("orbit")
+    assert rest.orbit_period == 1
+    assert rest.orbit_ball_place.values[0, 0] + gap == pytest.approx(0, abs=1e-12)
+    assert rest.orbit_ball_speed.values[0, 0] == pytest.approx(0, abs=1e-12)
+    assert maps.attractor.sel({"damper.velocity": 0}).values[0] == rest.orbit  # the table alone never throws it

@@ -15,17 +15,25 @@ from rattlebox.studies.studyfile import study_from_toml
 ROOT = Path(__file__).parents[3]
 
 
-def block(language: str) -> str:
+def block(language: str, number: int = 0) -> str:
     """Return what the page shows in a language."""
     found = re.findall(rf"```{language}\n(.*?)```", (ROOT / "docs" / "cluster.md").read_text(), re.DOTALL)
-    assert len(found) == 1
-    return str(found[0])
+    assert len(found) == {"toml": 2}.get(language, 1)
+    return str(found[number])
 
 
 def test_the_study_file() -> None:
     """The study file is read, with the axes in the order of its lines."""
     study = study_from_toml(block("toml"), folder=ROOT / "examples")
     assert [list(axes) for axes in study.axes] == [["damper.gap", "load.amplitude"]]
+
+
+def test_the_map(tmp_path: Path) -> None:
+    """The file of a ready map is run, with fewer values."""
+    study = study_from_toml(block("toml", 1).replace("count = 41", "count = 5"), folder=ROOT / "examples")
+    found = study.run(store=tmp_path / "study.zarr", progress=False)
+    assert found.sizes["structure.motion.amplitude"] == 5
+    assert not found.status.any()
 
 
 def test_the_python_script(tmp_path: Path) -> None:
