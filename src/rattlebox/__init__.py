@@ -10,12 +10,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from rattlebox.model.case import Case
+from rattlebox.model.cavities import Box, Cylinder, SphericalCavity
 from rattlebox.model.contacts import Linear, Thornton, Tsuji, alpha_of_restitution, restitution_of_alpha
 from rattlebox.model.dampers import ImpactDamper, Sphere
 from rattlebox.model.errors import CaseError
+from rattlebox.model.friction import LinearSpring, Mindlin, Rolling
+from rattlebox.model.granular import PairLaws, ParticleDamper
 from rattlebox.model.materials import Material, materials
-from rattlebox.model.methods import EventDriven, Newton, Output, TwoStep
+from rattlebox.model.methods import Dem, EventDriven, Newton, Output, TwoStep
+from rattlebox.model.packing import Lattice, Positions, Settled
 from rattlebox.model.pairs import Body, Pair, contact_pairs
+from rattlebox.model.particles import LogNormal, Normal, Particles, Sieve
 from rattlebox.model.restitutions import Constant, JacksonGreen, Johnson, Tabulated, ThorntonRestitution
 from rattlebox.model.signals import HalfSine, Harmonic, Record, chirp, random_record
 from rattlebox.model.structures import SDOF, Fixed, Matrices, Modal, Shaker
@@ -81,9 +86,12 @@ __all__ = [
     "MEASURES",
     "SDOF",
     "Body",
+    "Box",
     "Case",
     "CaseError",
     "Constant",
+    "Cylinder",
+    "Dem",
     "EventDriven",
     "Fixed",
     "HalfSine",
@@ -91,17 +99,30 @@ __all__ = [
     "ImpactDamper",
     "JacksonGreen",
     "Johnson",
+    "Lattice",
     "Linear",
+    "LinearSpring",
+    "LogNormal",
     "Material",
     "Matrices",
+    "Mindlin",
     "Modal",
     "Newton",
+    "Normal",
     "Output",
     "Pair",
+    "PairLaws",
+    "ParticleDamper",
+    "Particles",
+    "Positions",
     "Record",
+    "Rolling",
     "Run",
+    "Settled",
     "Shaker",
+    "Sieve",
     "Sphere",
+    "SphericalCavity",
     "Tabulated",
     "Thornton",
     "ThorntonRestitution",

@@ -29,8 +29,8 @@ from rattlebox.engines.variants import (
     with_value,
 )
 from rattlebox.model.base import Part
-from rattlebox.model.errors import CaseError
-from rattlebox.model.methods import Newton, TwoStep
+from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.methods import EventDriven, Newton, TwoStep
 from rattlebox.model.pairs import Pair, contact_pairs
 from rattlebox.model.paths import Place, part_at, place_of, replaced
 
@@ -215,12 +215,14 @@ def _broadcast(case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]
 
 
 def _with_points(case: Case, axes: int = 0) -> Packed:
-    points = {name: _vector(shape, axes) for name, shape in case.modes.shapes.items()}
+    points = {name: _vector(shape, axes) for name, shape in case.modes.lines().items()}
     return {**_numbers(case, axes), "points": points}
 
 
 def _numbers(case: Case, axes: int = 0) -> Packed:
     """All but the sample times; of a batch over some axes, which vectors have after their own."""
+    if case.particle_dampers:
+        raise Hint("studies compute impact dampers", "a loop over rattlebox.simulate for particle dampers")
     modes = case.modes
     return {
         "settings": {"duration": case.duration, **_method(case)},
@@ -238,7 +240,7 @@ def _numbers(case: Case, axes: int = 0) -> Packed:
                 "position": _vector(damper.positions0, axes),
                 "velocity": _vector(damper.velocities0, axes),
             }
-            for damper in case.dampers
+            for damper in case.impact_dampers
         ],
         "contacts": [
             _contact(case, index, pair, place)
@@ -259,7 +261,7 @@ def _vector(values: Any, axes: int) -> NDArray[np.float64]:
 
 def _loads(case: Case, modes: ModalModel, axes: int) -> list[Packed]:
     loads = [
-        {**signal.coefficients(), "shape": _vector(modes.shape(signal.point), axes), "base": False}
+        {**signal.coefficients(), "shape": _vector(modes.shape(signal.point, signal.direction), axes), "base": False}
         for signal in case.loads
     ]
     base = [
@@ -274,7 +276,7 @@ def _participation(modes: ModalModel) -> NDArray[np.float64]:
 
 
 def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> Packed:
-    damper = case.dampers[damper_index]
+    damper = case.impact_dampers[damper_index]
     between_balls = 0 < place < len(damper.balls)
     law = damper.ball_contact if between_balls and damper.ball_contact is not None else damper.contact
     if isinstance(case.method, Newton):
@@ -307,6 +309,7 @@ def _method(case: Case) -> Packed:
         }
     if isinstance(method, Newton):
         return {"method": "newton", "stick": method.stick, "max_events": method.max_events}
+    assert isinstance(method, EventDriven)
     return {
         "method": "event_driven",
         "tolerance": method.tolerance,

@@ -112,7 +112,7 @@ def _run(case: Case, raw: dict[str, Any]) -> Run:
 
 def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
     modes = case.modes
-    m, dampers = len(modes.decay), case.dampers
+    m, dampers = len(modes.decay), case.impact_dampers
     counts = [len(damper.balls) for damper in dampers]
     b, d = sum(counts), len(dampers)
     time = raw["time"]
@@ -126,8 +126,9 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
     gravity = np.array([damper.gravity for damper in dampers])
     pull = np.zeros((time.size, d))
     np.add.at(pull.T, of, -(mass * gravity[of])[:, None] * position.T)
-    points = list(modes.shapes)
-    at_points = np.array([modes.shapes[name] for name in points]).reshape(len(points), m)
+    lines = modes.lines()
+    points = list(lines)
+    at_points = np.array(list(lines.values())).reshape(len(points), m)
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     base = _base_motion(case, time)
     stopped = raw["stopped_contact"]

@@ -10,15 +10,17 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationError, field_validator, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, field_validator, model_validator
 
 from .base import AlsoTakes, Part, vocabulary
 from .dampers import ImpactDamper
 from .elementwise import Vector
 from .errors import CaseError, Hint, at, translate
 from .files import existing, read_toml
+from .granular import ParticleDamper
+from .in_space import check_in_space
 from .materials import Material, materials
-from .methods import AnyMethod, EventDriven, Newton, Output
+from .methods import AnyMethod, Dem, EventDriven, Newton, Output
 from .modes import ModalModel
 from .pairs import contact_pairs
 from .signals import AnySignal, HalfSine, Harmonic, Record, Signal, Unit, as_several, signals_in
@@ -30,6 +32,18 @@ _NOT_COMPUTABLE = "cannot be computed for bodies of these sizes, masses and modu
 _USUAL = "numbers of usual sizes"
 
 
+def _kind_of_damper(value: Any) -> str:
+    """A damper with particles needs no kind in a file."""
+    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
+    return str(kind or ("granular" if isinstance(value, dict) and "particles" in value else "impact"))
+
+
+AnyDamper = Annotated[
+    Annotated[ImpactDamper, Tag("impact")] | Annotated[ParticleDamper, Tag("granular")],
+    Discriminator(_kind_of_damper),
+]
+
+
 class Case(Part):
     """A structure, its loads, its dampers, and how long to look.
 
@@ -38,7 +52,7 @@ class Case(Part):
     structure
         SDOF, Modal, Matrices, Fixed or Shaker.
     damper, dampers
-        One ImpactDamper, several, or none.
+        One ImpactDamper or ParticleDamper, several of one kind, or none.
     load, loads
         Forces on the structure: one signal, several (they add), or none.
     base
@@ -46,7 +60,7 @@ class Case(Part):
     duration
         Length of the run [s].
     method, output
-        How it is computed, and at which times it is recorded.
+        How it is computed, EventDriven or, with particle dampers, Dem if left out; and at which times it is recorded.
     name, seed
         For the record; nothing in one run is random.
 
@@ -60,7 +74,7 @@ class Case(Part):
     spellings: ClassVar[dict[str, str]] = {"damper": "dampers", "load": "loads"}
     name: str = ""
     structure: AnyStructure
-    dampers: Annotated[tuple[ImpactDamper, ...], BeforeValidator(as_several), AlsoTakes()] = ()
+    dampers: Annotated[tuple[AnyDamper, ...], BeforeValidator(as_several), AlsoTakes()] = ()
     loads: Annotated[tuple[AnySignal, ...], signals_in("N"), AlsoTakes()] = ()
     base: Annotated[tuple[AnySignal, ...], signals_in("m/s^2"), AlsoTakes()] = ()
     duration: PositiveTime
@@ -78,7 +92,10 @@ class Case(Part):
         put = object.__setattr__
         put(self, "loads", self._placed("loads", "N", "a load"))
         put(self, "base", self._placed("base", "m/s^2", "the base"))
+        if self.particle_dampers and "method" not in self.model_fields_set:
+            put(self, "method", Dem())
         self._check_signals()
+        self._check_directions()
         self._check_size()
         names: set[str] = set()
         for index, damper in enumerate(self.dampers):
@@ -86,9 +103,12 @@ class Case(Part):
                 if damper.label(index) in names:
                     raise Hint(f"two dampers are called {damper.label(index)!r}", "different names")
                 names.add(damper.label(index))
-                self._check_play(damper)
-                self._check_places(damper)
-                self._check_laws(damper, index)
+                if isinstance(damper, ImpactDamper):
+                    self._check_play(damper)
+                    self._check_places(damper)
+                    self._check_laws(damper, index)
+                else:
+                    self._check_entries(damper)
         return self
 
     def _placed(self, field: str, unit: Unit, place: str) -> tuple[Signal, ...]:
@@ -104,8 +124,7 @@ class Case(Part):
         for numbers in (modes.decay, modes.stiffness, modes.q0, modes.p0, *modes.shapes.values()):
             if not np.isfinite(numbers).all():
                 raise Hint("its modes are no finite numbers", "masses and stiffnesses of usual sizes", ["structure"])
-        motion = self.structure.motion if isinstance(self.structure, Shaker) else ()
-        for field, signals in (("loads", self.loads), ("base", self.base), ("motion", motion)):
+        for field, signals in (("loads", self.loads), ("base", self.base), ("motion", self.shaker_motion)):
             for index, signal in enumerate(signals):
                 with at(*(("structure",) if field == "motion" else ()), field, index):
                     if isinstance(signal, Record):
@@ -119,6 +138,8 @@ class Case(Part):
         for index, signal in enumerate(self.loads):
             with at("loads", index, "point"):
                 modes.point(signal.point)
+            with at("loads", index):
+                modes.shape(signal.point, signal.direction)
         if self.base and modes.participation is None:
             raise Hint(
                 "base motion needs the participation of each mode", "one number each", ["structure", "participation"]
@@ -126,10 +147,30 @@ class Case(Part):
         if self.base and isinstance(self.structure, Shaker):
             raise Hint("a shaker is its own base", "add the signal to its motion", ["base"])
 
+    def _check_directions(self) -> None:
+        """Look at the kinds of dampers and at what moves where."""
+        if self.particle_dampers:
+            check_in_space(self)
+            return
+        if isinstance(self.method, Dem):
+            raise Hint(
+                "dem computes particles in space, and there is no damper with particles"
+                if not self.dampers
+                else "dem computes particles in space, not impact dampers",
+                'kind = "event_driven", or a ParticleDamper',
+                ["method"],
+            )
+        for field, signals in (("base", self.base), ("motion", self.shaker_motion)):
+            for index, signal in enumerate(signals):
+                if signal.direction is not None:
+                    place = (*(("structure",) if field == "motion" else ()), field, index, "direction")
+                    raise Hint("without particle dampers all motion is along one line", "leave direction out", place)
+
     def _check_size(self) -> None:
         """Refuse an output that no memory holds."""
         samples = self.duration * (self.output.rate or 0.0)
-        columns = 20 + 6 * self.modes.decay.size + 10 * sum(len(damper.balls) for damper in self.dampers)
+        columns = 20 + 6 * self.modes.decay.size + 10 * sum(len(damper.balls) for damper in self.impact_dampers)
+        columns += 50 * len(self.particle_dampers)
         if 8 * samples * columns > _MEMORY:
             raise Hint(
                 f"{samples:.3g} samples would take {8e-9 * samples * columns:.0f} GB",
@@ -186,6 +227,31 @@ class Case(Part):
                         _, values = law.restitution.coefficients(pair)
                         _check_finite(values)
 
+    def _check_entries(self, damper: ParticleDamper) -> None:
+        """Let every law look at the pairs of bodies that it is used for."""
+        for entry in damper.contact_table(self.modes.space_shape(damper.point, damper.direction)).entries:
+            with at(*entry.place), _computable():
+                _check_finite(damper.softened(entry)[1])
+                _check_finite(damper.softened_friction(entry))
+                if entry.contact.restitution is not None:
+                    with at("restitution"):
+                        _check_finite(entry.contact.restitution.coefficients(entry.pair)[1])
+
+    @property
+    def impact_dampers(self) -> tuple[ImpactDamper, ...]:
+        """The dampers that are impact dampers."""
+        return tuple(damper for damper in self.dampers if isinstance(damper, ImpactDamper))
+
+    @property
+    def particle_dampers(self) -> tuple[ParticleDamper, ...]:
+        """The dampers that hold particles in space."""
+        return tuple(damper for damper in self.dampers if isinstance(damper, ParticleDamper))
+
+    @property
+    def shaker_motion(self) -> tuple[Signal, ...]:
+        """The signals that a shaker moves by."""
+        return self.structure.motion if isinstance(self.structure, Shaker) else ()
+
     @cached_property
     def modes(self) -> ModalModel:
         """The structure in modal form."""
@@ -195,8 +261,7 @@ class Case(Part):
     def base_acceleration(self) -> tuple[Signal, ...]:
         """Return the signals that accelerate the base [m/s^2]."""
         signals = []
-        motion = self.structure.motion if isinstance(self.structure, Shaker) else ()
-        for signal in (*self.base, *motion):
+        for signal in (*self.base, *self.shaker_motion):
             signals.append(signal.acceleration() if isinstance(signal, Harmonic) and signal.unit == "m" else signal)
         return tuple(signals)
 

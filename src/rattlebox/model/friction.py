@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from .base import AlsoTakes, Part
+from .errors import Hint
 from .materials import Material
 from .pairs import Pair
 from .units import LARGEST, PositiveStiffness
@@ -29,8 +30,8 @@ class Friction(Part):
     coefficient: NotNegative
     damping: NotNegative = 1.0
 
-    def coefficients(self, pair: Pair) -> dict[str, float]:
-        """Return what the core reads, for a pair of bodies."""
+    def coefficients(self, pair: Pair, normal_stiffness: float) -> dict[str, float]:
+        """Return what the core reads, for a pair of bodies whose contact law has this stiffness."""
         raise NotImplementedError
 
 
@@ -52,7 +53,7 @@ class Mindlin(Friction):
 
         def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
 
-    def coefficients(self, pair: Pair) -> dict[str, float]:
+    def coefficients(self, pair: Pair, normal_stiffness: float) -> dict[str, float]:
         """Return 8 G* [Pa] besides coefficient and damping."""
         modulus = 1 / (_shear_compliance(pair.below.material) + _shear_compliance(pair.above.material))
         return {
@@ -70,26 +71,34 @@ class LinearSpring(Friction):
     ----------
     coefficient
         Of friction.
-    stiffness
-        Of the tangential spring [N/m].
+    stiffness, ratio
+        Of the tangential spring [N/m]; or its ratio to the stiffness of a linear contact.
     damping
         Damping ratio of the tangential dashpot over that of the normal one.
     """
 
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("stiffness", "ratio"),)
     unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
     kind: Literal["spring"] = "spring"
-    stiffness: PositiveStiffness
+    stiffness: PositiveStiffness | None = None
+    ratio: Annotated[float, Field(gt=0, le=10)] | None = None
 
     if TYPE_CHECKING:
 
         def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
 
-    def coefficients(self, pair: Pair) -> dict[str, float]:
+    @model_validator(mode="after")
+    def _one_stiffness(self) -> LinearSpring:
+        if (self.stiffness is None) == (self.ratio is None):
+            raise Hint("either stiffness or ratio is needed, not both", "ratio = 0.286")
+        return self
+
+    def coefficients(self, pair: Pair, normal_stiffness: float) -> dict[str, float]:
         """Return the stiffness besides coefficient and damping."""
         return {
             "friction": self.coefficient,
             "shear": 0.0,
-            "tangential_stiffness": self.stiffness,
+            "tangential_stiffness": self.stiffness or (self.ratio or 0.0) * normal_stiffness,
             "tangential_damping": self.damping,
         }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
 from .base import Part
 from .elementwise import Vector
@@ -73,7 +73,46 @@ class Newton(Part):
     max_events: Annotated[int, Field(ge=1)] = 10_000_000
 
 
-AnyMethod = Annotated[EventDriven | TwoStep | Newton, Field(discriminator="kind")]
+def _step(value: Any) -> Any:
+    return value if value == "auto" else parse(value, ("s",))[0]
+
+
+class Dem(Part):
+    """Fixed steps of all particles in space. The method of particle dampers.
+
+    Parameters
+    ----------
+    dt
+        Step [s], or "auto". Either is shortened a little so that samples fall on steps. A step too long for any contact that
+        is to be expected is refused.
+    fraction
+        With "auto": of the shortest contact and of the period of the fastest mode.
+    threads
+        How many at once; default as many as there are cores. The results do not depend on it, to the last bit.
+    checkpoint
+        How often the state is written to a file from which the run can go on [s of computing]; default never.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("method",)
+    kind: Literal["dem"] = "dem"
+    dt: Annotated[
+        Literal["auto"] | float,
+        BeforeValidator(_step),
+        WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}], "description": "step in s, or auto"}),
+    ] = "auto"
+    fraction: Annotated[float, Field(gt=0, le=0.2)] = 0.025
+    threads: Annotated[int, Field(ge=1)] | None = None
+    checkpoint: PositiveTime | None = None
+
+    @field_validator("dt")
+    @classmethod
+    def _forward(cls, dt: float | str) -> float | str:
+        if isinstance(dt, float) and not dt > 0:
+            raise Hint("must be greater than zero")
+        return dt
+
+
+AnyMethod = Annotated[EventDriven | TwoStep | Newton | Dem, Field(discriminator="kind")]
 
 
 def _times(value: Any) -> Any:

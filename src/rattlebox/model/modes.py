@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from .elementwise import Vector, inverse, total
 from .errors import Hint, nearest
+from .space import AXES, Triple, unit_vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,10 +19,10 @@ class ModalModel:
     ----------
     decay, stiffness : (m,) float
         Decay rate a [1/s] and squared natural frequency k [1/s^2].
-    shapes : dict of str to (m,) float
-        Mass-normalised mode shapes at the named points [kg^-1/2].
-    participation : (m,) float or None
-        Inertia of each mode per unit of base acceleration [kg^1/2].
+    shapes : dict of str to (m,) or (m, 3) float
+        Mass-normalised mode shapes at the named points [kg^-1/2]; with three components where the point moves in space.
+    participation : (m,) or (m, 3) float or None
+        Inertia of each mode per unit of base acceleration [kg^1/2], for each direction where points move in space.
     q0, p0 : (m,) float
         Modal displacement and velocity at the start [kg^1/2 m], [kg^1/2 m/s].
     """
@@ -30,6 +33,8 @@ class ModalModel:
     participation: Vector | None
     q0: Vector
     p0: Vector
+    spatial: frozenset[str] = frozenset()
+    """Points that move in space."""
 
     def point(self, name: str | None) -> str:
         """Return the name of a point; None stands for the only one.
@@ -47,9 +52,39 @@ class ModalModel:
             raise Hint(f"the structure has no point {name!r}", nearest(name, self.shapes))
         return name
 
-    def shape(self, name: str | None) -> Vector:
-        """Return the mode shapes at a point, (m,)."""
-        return self.shapes[self.point(name)]
+    def shape(self, name: str | None, direction: str | Triple | None = None) -> Vector:
+        """Return the mode shapes at a point, (m,), along a direction where the point moves in space.
+
+        Raises
+        ------
+        CaseError
+            When there is no such point, or it moves in space and there is no direction, or the other way round.
+        """
+        point = self.point(name)
+        if point not in self.spatial:
+            if direction is not None:
+                raise Hint(f"the point {point!r} moves along one line only", "leave direction out", ["direction"])
+            return self.shapes[point]
+        if direction is None:
+            raise Hint(f"the point {point!r} moves in space", 'direction = "z"', ["direction"])
+        return np.asarray(self.shapes[point] @ unit_vector(direction))
+
+    def space_shape(self, name: str | None, direction: str | Triple) -> Vector:
+        """Return the mode shapes at a point in space, (m, 3); a point on a line moves along the direction."""
+        point = self.point(name)
+        if point in self.spatial:
+            return self.shapes[point]
+        return np.multiply.outer(self.shapes[point], unit_vector(direction))
+
+    def lines(self) -> dict[str, Vector]:
+        """Return the mode shapes of all points on lines, (m,) each: "tip x", "tip y" and "tip z" of one in space."""
+        found: dict[str, Vector] = {}
+        for name, shape in self.shapes.items():
+            if name in self.spatial:
+                found |= {f"{name} {axis}": shape[:, k] for k, axis in enumerate(AXES)}
+            else:
+                found[name] = shape
+        return found
 
     def effective_mass(self, name: str | None) -> float:
         """Return the mass that an impact at a point feels, 1 / sum(shape^2) [kg]; infinite where nothing moves."""

@@ -262,12 +262,6 @@ def _candidates(cavity: AnyCavity, count: int, least: float) -> Iterator[tuple[f
 
 def _sites(cavity: AnyCavity, count: int, radius: float) -> tuple[Vector, float]:
     """Places for spheres up to a radius, at least `count`, and the size of the cell that each has for itself."""
-    widest = float(cavity.lengths.min())
-    if 2 * radius > widest:
-        raise Hint(
-            f"a particle of {2e3 * radius:.4g} mm is larger than the cavity, which is {1e3 * widest:.4g} mm wide",
-            "smaller particles, or a larger cavity",
-        )
     found = list(_candidates(cavity, count, 2 * radius))
     if not found:
         most = max(len(_Grid(centred)(cavity, 2 * radius)) for centred in (False, True))
@@ -277,6 +271,16 @@ def _sites(cavity: AnyCavity, count: int, radius: float) -> tuple[Vector, float]
         )
     cell, sites = max(found, key=lambda pair: pair[0])
     return sites, cell
+
+
+def check_size(cavity: AnyCavity, radius: float) -> None:
+    """Refuse a sphere that is larger than the cavity."""
+    widest = float(cavity.lengths.min())
+    if 2 * radius > widest:
+        raise Hint(
+            f"a particle of {2e3 * radius:.4g} mm is larger than the cavity, which is {1e3 * widest:.4g} mm wide",
+            "smaller particles, or a larger cavity",
+        )
 
 
 def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
@@ -308,7 +312,8 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
     if apart.size:
         k = int(apart.argmin())
         if apart[k] < -TOUCHING * min(radii[first[k]], radii[second[k]]):
-            raise Hint(f"particles {first[k]} and {second[k]} overlap by {-1e3 * apart[k]:.4g} mm")
+            one, other = sorted((int(first[k]), int(second[k])))
+            raise Hint(f"particles {one} and {other} overlap by {-1e3 * apart[k]:.4g} mm")
 
 
 def overlapping(positions: Vector, radii: Vector) -> tuple[Any, Any, Vector]:

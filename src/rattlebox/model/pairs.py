@@ -142,7 +142,7 @@ def contact_pairs(case: Case, index: int) -> list[Pair]:
     index
         Number of the damper, from 0. Walls count with the structure's effective mass at its point.
     """
-    damper = case.dampers[index]
+    damper = case.impact_dampers[index]
     wall_mass = case.modes.effective_mass(damper.point)
     balls = [Body(ball.material, ball.half, ball.weight) for ball in damper.balls]
 

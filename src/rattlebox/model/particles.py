@@ -257,10 +257,6 @@ class Particles(Part):
             )
         return count
 
-    def masses(self, radii: Vector) -> Vector:
-        """Return the masses of spheres, (n,) [kg]."""
-        return np.asarray(4 / 3 * math.pi * radii**3 * self.material.density)
-
 
 def as_species(value: Any) -> Any:
     """Let one stand for a list of one."""

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from .base import Part, vocabulary
 from .case import Case
-from .dampers import ImpactDamper, Sphere
+from .dampers import ImpactDamper
 from .errors import Hint, nearest, translate
 from .materials import Material
 from .signals import Signal
@@ -120,8 +120,9 @@ def part_at(case: Case, place: Sequence[str | int]) -> Any:
 
 def get_field(part: Part, name: str) -> Any:
     """Return a field of a part, also one that was turned into its alternative."""
-    if isinstance(part, Sphere) and name == "diameter":
-        return 2 * part.half
+    if name == "diameter":
+        radius = getattr(part, "radius", None)
+        return None if radius is None else 2 * radius
     if isinstance(part, ImpactDamper) and name == "cavity_length":
         return part.clearance + part.row
     return getattr(part, name)

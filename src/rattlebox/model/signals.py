@@ -16,6 +16,7 @@ from .elementwise import power
 from .errors import Hint, at
 from .files import absolute
 from .records import Column, as_columns, read_columns
+from .space import Direction
 from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime, numbers, parse
 
 Unit = Literal["N", "m/s^2", "m"]
@@ -58,12 +59,16 @@ class Signal(Part):
         SI unit of the values, "N", "m/s^2" or "m"; taken from the amplitude, or from the place of use.
     point
         Point of the structure that a load acts at; not needed where there is one only.
+    direction
+        Of a load at a point that moves in space, or of a motion of the base with particle dampers: "x", "y", "z" or three
+        numbers. Left out, the base moves along the direction of the dampers.
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("load", "loads", "base", "motion")
     kind: str
     unit: Unit | None = None
     point: str | None = None
+    direction: Direction | None = None
 
     @model_validator(mode="before")
     @classmethod

@@ -36,6 +36,13 @@ def _of_shape(array: Vector, dimensions: int, wanted: str) -> Any:
     return array.tolist()
 
 
+def _shape(value: Any) -> Any:
+    array = numbers(value)
+    if array.ndim == 2 and array.shape[1] == 3:
+        return array.tolist()
+    return _of_shape(array, 1, "a list of numbers, one for each mode, or of three for each mode,")
+
+
 def _point(value: Any) -> Any:
     if isinstance(value, (list, tuple, np.ndarray)):
         return _numbers(value)
@@ -47,6 +54,7 @@ def _point(value: Any) -> Any:
 
 Numbers = Annotated[list[float], BeforeValidator(_numbers)]
 Matrix = Annotated[list[list[float]], BeforeValidator(_matrix)]
+Shape = Annotated[list[float] | list[list[float]], BeforeValidator(_shape)]
 Point = Annotated[int | list[float], BeforeValidator(_point)]
 _ratio_schema = WithJsonSchema({"type": "number", "minimum": 0, "description": "damping ratio"})
 Ratio = Annotated[float, Field(ge=0, le=LARGEST), _ratio_schema]
@@ -111,9 +119,11 @@ class Modal(Part):
     damping_ratios
         One for each mode.
     shapes
-        Mass-normalised mode shapes at named points, one number for each mode [kg^-1/2].
+        Mass-normalised mode shapes at named points, one number for each mode [kg^-1/2]; or three, along x, y and z, for a
+        point that moves in space.
     participation
-        Inertia of each mode per unit of base acceleration [kg^1/2]; needed only with base motion.
+        Inertia of each mode per unit of base acceleration [kg^1/2]; needed only with base motion. Three for each mode where
+        points move in space.
     displacement, velocity
         Modal amplitudes at the start [kg^1/2 m], [kg^1/2 m/s]; default 0.
     """
@@ -122,8 +132,8 @@ class Modal(Part):
     kind: Literal["modal"] = "modal"
     frequencies: list[Frequency]
     damping_ratios: list[Ratio]
-    shapes: Annotated[dict[str, Numbers], SI("kg^-0.5")]
-    participation: Annotated[Numbers | None, SI("kg^0.5")] = None
+    shapes: Annotated[dict[str, Shape], SI("kg^-0.5")]
+    participation: Annotated[Shape | None, SI("kg^0.5")] = None
     displacement: Annotated[Numbers | None, SI("kg^0.5 m")] = None
     velocity: Annotated[Numbers | None, SI("kg^0.5 m/s")] = None
 
@@ -144,7 +154,16 @@ class Modal(Part):
                 )
         if not self.shapes:
             raise Hint("at least one named point is needed", "shapes = { tip = [...] }", ["shapes"])
+        if self.participation is not None and isinstance(self.participation[0], list) != bool(self._spatial()):
+            raise Hint(
+                "participation has three numbers for each mode if points move in space, else one",
+                place=["participation"],
+            )
         return self
+
+    def _spatial(self) -> frozenset[str]:
+        """Points that move in space."""
+        return frozenset(name for name, row in self.shapes.items() if isinstance(row[0], list))
 
     def modes(self) -> ModalModel:
         """Return the modes."""
@@ -157,6 +176,7 @@ class Modal(Part):
             participation=None if self.participation is None else stacked(self.participation),
             q0=stacked(zero if self.displacement is None else self.displacement),
             p0=stacked(zero if self.velocity is None else self.velocity),
+            spatial=self._spatial(),
         )
 
 

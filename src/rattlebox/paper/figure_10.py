@@ -101,7 +101,7 @@ def data() -> xr.Dataset:
         )
         for key in texts
     }
-    ball_mass = _case(CONSTANT_E).dampers[0].masses[0]
+    ball_mass = _case(CONSTANT_E).impact_dampers[0].masses[0]
     return xr.Dataset(
         {
             **spectra,

@@ -363,7 +363,7 @@ class _Grid:
     def gap(self, start: Parameter) -> Column:
         """Gap of the damper of a start position."""
         number = int(start.place[1])
-        damper = self.case.dampers[number]
+        damper = self.case.impact_dampers[number]
         own = {place[2:]: column for place, column in self.found.items() if place[:2] == ("dampers", number)}
         length, gap = own.get(("cavity_length",)), own.get(("gap",), np.array(damper.clearance / 2))
         wholes: set[Place] = {("balls",), *(("balls", ball) for ball in range(len(damper.balls)))}

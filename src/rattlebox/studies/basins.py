@@ -130,8 +130,8 @@ def basins(
 
 def _plane(case: Case) -> dict[str, float]:
     """The gap [m] of a lone ball in a cavity whose motion is given: place and velocity are all its state."""
-    alone = not case.modes.decay.size and len(case.dampers) == 1 and len(case.dampers[0].balls) == 1
-    return {"gap": 0.5 * case.dampers[0].clearance} if alone else {}
+    alone = not case.modes.decay.size and len(case.impact_dampers) == 1 and len(case.impact_dampers[0].balls) == 1
+    return {"gap": 0.5 * case.impact_dampers[0].clearance} if alone else {}
 
 
 def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xarray.Dataset:

@@ -292,7 +292,7 @@ class _Search:
         missing = 1.0
         with suppress(CaseError):  # the parameters do not fit together
             case = replaced(self.case, values)
-            mass = sum(ball.weight for damper in case.dampers for ball in damper.balls)
+            mass = sum(ball.weight for damper in case.impact_dampers for ball in damper.balls)
             if self.limit is None or mass <= self.limit:
                 found, missing = self.judge(case)
         excess = 0.0 if self.limit is None or not mass > self.limit else mass / self.limit - 1

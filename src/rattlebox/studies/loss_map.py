@@ -101,6 +101,6 @@ def loss_map(
         store=store,
         progress=progress,
     )
-    mass = sum(ball.weight for damper in case.dampers for ball in damper.balls)
+    mass = sum(ball.weight for damper in case.impact_dampers for ball in damper.balls)
     found = found.assign(particle_mass=((), mass, {"units": "kg", "long_name": "mass of the particles"}))
     return keep_map(found, "loss_map", store)

@@ -34,7 +34,7 @@ def members(case: Case, levels: Any = None, starts: int | Sequence[Any] | None =
     """
     axes = list(levels) if isinstance(levels, (list, tuple)) else [] if levels is None else [levels]
     if starts is not None:
-        if [len(damper.balls) for damper in case.dampers] != [1]:
+        if [len(damper.balls) for damper in case.impact_dampers] != [1]:
             raise Hint("starts are of one ball, and the case has not exactly one", 'levels={"dampers[0].start": [...]}')
         one_by_one = hasattr(starts, "__len__")
         axes.append({"damper.start": starts if one_by_one else np.linspace(-1, 1, whole(starts, "starts", 2))})

@@ -280,7 +280,7 @@ class SweepTask:
 
     @property
     def _balls(self) -> int:
-        return sum(len(damper.balls) for damper in self.case.dampers)
+        return sum(len(damper.balls) for damper in self.case.impact_dampers)
 
     @property
     def _point(self) -> str:

@@ -1,0 +1,418 @@
+"""Particle dampers: many spheres in a cavity in space."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+from .base import AlsoTakes, Part
+from .cavities import PLANE, SPHERE, AnyCavity
+from .contacts import AnyContact, Linear
+from .elementwise import Vector
+from .errors import Hint, at
+from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
+from .materials import AnyWall, Material
+from .packing import AnyPacking, Lattice, Positions, Settled, check_packing, check_size
+from .pairs import Body, Pair
+from .particles import Particles, as_species
+from .space import Accelerations, Direction, Velocities
+
+WALL = "wall"
+
+
+class PairLaws(Part):
+    """Laws of two species, or of a species and the wall, instead of those of all.
+
+    Parameters
+    ----------
+    between
+        Names of two species, or of one and "wall".
+    contact, friction, rolling
+        What is left out stays as it is for all; friction = 0 is none.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("pairs",)
+    between: tuple[str, str]
+    contact: AnyContact | None = None
+    friction: AnyFriction | None = None
+    rolling: AnyRolling | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Contents:
+    """The particles in a cavity, species after species.
+
+    Attributes
+    ----------
+    radius, mass, inertia : (n,) float
+        [m], [kg], [kg m^2].
+    species : (n,) int
+        Number of the species.
+    """
+
+    radius: Vector
+    mass: Vector
+    inertia: Vector
+    species: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """State of the particles at the start.
+
+    Attributes
+    ----------
+    position, velocity, spin : (n, 3) float
+        From the centre of the cavity [m], relative to the base [m/s], [rad/s].
+    """
+
+    position: Vector
+    velocity: Vector
+    spin: Vector
+
+
+@dataclass(frozen=True)
+class Entry:
+    """How one kind of pair touches.
+
+    Attributes
+    ----------
+    pair
+        The bodies; of a species that has several sizes, particles of its mean radius.
+    contact, friction, rolling
+        The laws.
+    names
+        Of the two sides.
+    place
+        Where the contact law is given, for messages.
+    """
+
+    pair: Pair
+    contact: AnyContact
+    friction: Friction | None
+    rolling: Rolling | None
+    names: tuple[str, str]
+    place: tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class ContactTable:
+    """Entries of all kinds of pairs in a damper.
+
+    Attributes
+    ----------
+    entries
+        The entries.
+    particle_entry : (k, k) int
+        Entry of two species.
+    wall_entry : (k, w) int
+        Entry of a species and a kind of wall: walls differ by the mass that a push on them feels.
+    wall_kind : (walls,) int
+        Kind of each wall.
+    """
+
+    entries: tuple[Entry, ...]
+    particle_entry: Any
+    wall_entry: Any
+    wall_kind: Any
+
+
+class ParticleDamper(Part):
+    """Spheres in a cavity that moves with a point of the structure.
+
+    Parameters
+    ----------
+    particles
+        One kind of Particles, or several.
+    cavity
+        Box, Cylinder or SphericalCavity.
+    wall
+        Material of the walls, "rigid", or None: that of the first particles.
+    contact, wall_contact
+        Law among particles, and at walls if it is another one.
+    friction, wall_friction
+        A law or a coefficient; none if left out. At walls the same unless given.
+    rolling
+        Resistance to rolling, or its coefficient; none if left out.
+    pairs
+        Exceptions for pairs of species, or of a species and the wall.
+    gravity
+        [m/s^2], along x, y and z.
+    point
+        Of the structure; not needed where there is one only.
+    direction
+        Along which a point moves whose mode shapes have one component, and the base.
+    packing
+        Lattice, Settled or Positions.
+    velocity
+        Of all particles at the start [m/s], relative to the base; Positions may give them one by one.
+    softening
+        Moduli are divided by this factor in contacts (not in laws of restitution), which allows longer steps. Contacts last
+        longer and overlap more; the run tells how much.
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")
+    kind: Literal["granular"] = "granular"
+    name: str = ""
+    particles: Annotated[tuple[Particles, ...], BeforeValidator(as_species), AlsoTakes()]
+    cavity: AnyCavity
+    wall: AnyWall | None = None
+    contact: AnyContact
+    wall_contact: AnyContact | None = None
+    friction: AnyFriction | None = None
+    wall_friction: AnyFriction | None = None
+    rolling: AnyRolling | None = None
+    pairs: tuple[PairLaws, ...] = ()
+    gravity: Accelerations = (0.0, 0.0, -9.81)
+    point: str | None = None
+    direction: Direction = "x"
+    packing: AnyPacking = Field(default_factory=Lattice)
+    velocity: Velocities = (0.0, 0.0, 0.0)
+    softening: Annotated[float, Field(ge=1, le=1e6)] = 1.0
+
+    @model_validator(mode="after")
+    def _fits(self) -> ParticleDamper:
+        self._check_amounts()
+        self._check_pairs()
+        self._check_filling()
+        return self
+
+    def _check_amounts(self) -> None:
+        if not self.particles:
+            raise Hint("an empty damper damps nothing", "particles = { material = ..., radius = ..., count = ... }")
+        labels = [species.label for species in self.particles]
+        for index, species in enumerate(self.particles):
+            place: list[str | int] = ["particles", index] if len(labels) > 1 else ["particles"]
+            if labels.index(species.label) != index or species.label == WALL:
+                raise Hint(f"the name {species.label!r} is taken", "a name of its own", [*place, "name"])
+            given = isinstance(self.packing, Positions)
+            if not species.has_amount and (not given or len(labels) > 1):
+                raise Hint("count, mass or fill_ratio is needed", "count = 200", place)
+            radii = isinstance(self.packing, Positions) and self.packing.radii is not None
+            if species.has_size == radii:
+                raise Hint(
+                    "the size is told twice, here and by the packing's radii"
+                    if radii
+                    else "radius, diameter or distribution is needed",
+                    "" if radii else 'radius = "2 mm"',
+                    place,
+                )
+
+    def _check_pairs(self) -> None:
+        known = [*(species.label for species in self.particles), WALL]
+        seen: set[frozenset[str]] = set()
+        for index, pair in enumerate(self.pairs):
+            with at("pairs", index):
+                for number, name in enumerate(pair.between):
+                    if name not in known:
+                        raise Hint(f"there are no particles {name!r} here", " or ".join(known), ["between", number])
+                both = frozenset(pair.between)
+                if both in seen or both == {WALL}:
+                    raise Hint("each pair of species, or of one and the wall, is told once", place=["between"])
+                seen.add(both)
+        for walls in (False, True):
+            entries = [entry for entry in self._laws() if (WALL in entry.names) == walls]
+            for entry in entries:
+                if entry.contact.kind != entries[0].contact.kind:
+                    raise Hint(
+                        f"{entry.contact.kind} beside {entries[0].contact.kind}: one kind of law is needed among particles, "
+                        "and one at walls",
+                        place=entry.place,
+                    )
+                self._check_friction(entry)
+
+    def _check_friction(self, entry: Entry) -> None:
+        between = " and ".join(entry.names)
+        if (
+            entry.rolling is not None
+            and entry.rolling.coefficient
+            and not (entry.friction and entry.friction.coefficient)
+        ):
+            raise Hint(
+                f"rolling resistance needs friction, and there is none between {between}",
+                "friction = 0.3, or no rolling",
+                ["rolling"],
+            )
+        if isinstance(entry.friction, Mindlin) and entry.friction.coefficient and isinstance(entry.contact, Linear):
+            raise Hint(
+                f"Mindlin's stiffness belongs to Hertz contacts, but that of {between} is linear",
+                f'friction = {{ kind = "spring", coefficient = {entry.friction.coefficient:g}, ratio = 0.286 }}',
+                ["friction"],
+            )
+        if isinstance(entry.friction, LinearSpring) and entry.friction.ratio and not isinstance(entry.contact, Linear):
+            raise Hint(
+                f"a ratio of stiffnesses belongs to linear contacts, but that of {between} is not",
+                "friction = 0.3, for Mindlin's stiffness, or stiffness",
+                ["friction"],
+            )
+
+    def _check_filling(self) -> None:
+        with at("particles"):
+            contents = self.contents
+        with at("particles"):
+            check_size(self.cavity, float(contents.radius.max()))
+        filled = float(contents.radius @ contents.radius**2) * 4 / 3 * math.pi / self.cavity.volume
+        if filled >= 1:
+            raise Hint(
+                f"{contents.radius.size} particles do not fit: their volume is {filled:.3g} times that of the cavity",
+                f"{math.floor(0.58 * contents.radius.size / filled)} of them, or a larger cavity",
+                ["particles"],
+            )
+        if isinstance(self.packing, Settled):
+            if not any(self.gravity):
+                raise Hint("nothing settles without gravity", 'packing = { kind = "lattice" }', ["packing"])
+            if filled > 0.64:
+                raise Hint(
+                    f"{contents.radius.size} particles fill {100 * filled:.3g} % of the cavity; "
+                    "inserted at random they fill 60 % or a little more",
+                    'packing = { kind = "lattice" }, or fewer of them',
+                    ["particles"],
+                )
+        else:
+            _ = self.start
+
+    def label(self, index: int) -> str:
+        """Return the damper's name, or one made from its number in the case."""
+        return self.name or ("damper" if index == 0 else f"damper{index + 1}")
+
+    @cached_property
+    def contents(self) -> Contents:
+        """The particles, species after species."""
+        numbers = [self._number(index) for index in range(len(self.particles))]
+        species = np.repeat(np.arange(len(numbers)), numbers)
+        given = self.packing.radii if isinstance(self.packing, Positions) else None
+        if given is not None:
+            radius = np.array(given)
+        else:
+            sizes = [each.diameters(n) / 2 for each, n in zip(self.particles, numbers, strict=True)]
+            radius = np.concatenate(sizes)
+        if isinstance(self.packing, Positions) and radius.size != len(self.packing.positions):
+            raise Hint(f"{radius.size} particles, but {len(self.packing.positions)} positions", "as many of both")
+        density = np.array([each.material.density for each in self.particles])
+        mass = 4 / 3 * math.pi * radius**3 * density[species]
+        return Contents(radius, mass, 0.4 * mass * radius**2, species)
+
+    def _number(self, index: int) -> int:
+        species = self.particles[index]
+        if not species.has_amount:
+            assert isinstance(self.packing, Positions)
+            return len(self.packing.positions)
+        with at(*([index] if len(self.particles) > 1 else [])):
+            return species.number(self.cavity.volume)
+
+    @cached_property
+    def start(self) -> Start:
+        """Where particles are at the start, and how they move; positions of settled ones are for the engine to find.
+
+        Raises
+        ------
+        Hint
+            When particles overlap, stick out, or do not fit.
+        """
+        packing, radius = self.packing, self.contents.radius
+        velocity: Vector = np.tile(self.velocity, (radius.size, 1))
+        spin: Vector = np.zeros_like(velocity)
+        if isinstance(packing, Positions):
+            positions = np.array(packing.positions)
+            with at("packing", packing.where):
+                check_packing(self.cavity, positions, radius)
+            velocity += 0.0 if packing.velocities is None else np.array(packing.velocities)
+            spin += 0.0 if packing.spins is None else np.array(packing.spins)
+        elif isinstance(packing, Lattice):
+            with at("particles"):
+                positions = packing.place(self.cavity, radius)
+        else:
+            positions = np.full_like(velocity, np.nan)
+        return Start(positions, velocity, spin)
+
+    # ---- contacts
+
+    def _law(self, field: str, first: str, second: str) -> tuple[Any, tuple[str | int, ...]]:
+        """The law that a pair has, and where it is given."""
+        for index, pair in enumerate(self.pairs):
+            law = getattr(pair, field)
+            if law is not None and frozenset(pair.between) == frozenset((first, second)):
+                return law, ("pairs", index, field)
+        wall = getattr(self, f"wall_{field}", None) if second == WALL else None
+        return (wall, (f"wall_{field}",)) if wall is not None else (getattr(self, field), (field,))
+
+    def _laws(self, mobility: Vector | None = None) -> Iterator[Entry]:
+        """Entries of all pairs of species, then of each species with walls of the given mobilities [1/kg]."""
+        names = [species.label for species in self.particles]
+        bodies = [self._body(index) for index in range(len(names))]
+        wall = self.particles[0].material if self.wall is None else self.wall
+        material = wall if isinstance(wall, Material) else None
+        sides = [Body(material, mass=1 / m if m else math.inf) for m in ([0.0] if mobility is None else mobility)]
+        for i, first in enumerate(bodies):
+            for j in range(i, len(bodies)):
+                yield self._entry(names[i], names[j], Pair(first, bodies[j]))
+        for name, body in zip(names, bodies, strict=True):
+            for side in sides:
+                yield self._entry(name, WALL, Pair(body, side))
+
+    def _entry(self, first: str, second: str, pair: Pair) -> Entry:
+        contact, place = self._law("contact", first, second)
+        friction, _ = self._law("friction", first, second)
+        rolling, _ = self._law("rolling", first, second)
+        return Entry(pair, contact, friction, rolling, (first, second), place)
+
+    def _body(self, index: int) -> Body:
+        contents, material = self.contents, self.particles[index].material
+        radius = float(contents.radius[contents.species == index].mean())
+        return Body(material, radius, 4 / 3 * math.pi * radius**3 * material.density)
+
+    def contact_table(self, shape: Vector) -> ContactTable:
+        """Return the entries of all pairs.
+
+        Parameters
+        ----------
+        shape
+            Mode shapes of the cavity, (m, 3) [kg^-1/2].
+        """
+        walls = self.cavity.walls()
+        push = shape.T @ shape  # what a unit push does in each direction
+        mobility = np.array([_mobility(push, *wall) for wall in zip(walls.axis, walls.curved, strict=True)])
+        scale = float(mobility.max()) or 1.0
+        distinct, kind = np.unique((mobility / scale).round(12), return_inverse=True)
+        entries = tuple(self._laws(scale * distinct))
+        k = len(self.particles)
+        particle = np.zeros((k, k), np.int64)
+        particle[np.triu_indices(k)] = np.arange(k * (k + 1) // 2)
+        particle = np.maximum(particle, particle.T)
+        wall_entry = k * (k + 1) // 2 + np.arange(k * distinct.size).reshape(k, -1)
+        return ContactTable(entries, particle, wall_entry, kind)
+
+    def softened(self, entry: Entry) -> tuple[str, dict[str, Any]]:
+        """Return the core's name of a contact law and its coefficients, with moduli divided by the softening.
+
+        Restitution stays: dashpots and limiting pressures are lowered as far as that needs.
+        """
+        name, values = entry.contact.coefficients(entry.pair)
+        scale = {"stiffness": 1.0, "modulus": 1.0, "damping": 0.5, "yield_pressure": 0.8}
+        return name, {key: value / self.softening ** scale.get(key, 0.0) for key, value in values.items()}
+
+    def softened_friction(self, entry: Entry) -> dict[str, float]:
+        """Return the core's coefficients of friction and rolling resistance, with moduli divided by the softening."""
+        _, normal = self.softened(entry)
+        values = dict.fromkeys(("friction", "shear", "tangential_stiffness"), 0.0) | {"tangential_damping": 1.0}
+        if entry.friction is not None:
+            values |= entry.friction.coefficients(entry.pair, normal["stiffness"])
+            values |= {name: values[name] / self.softening for name in ("shear", "tangential_stiffness")}
+            if isinstance(entry.friction, LinearSpring) and entry.friction.ratio is not None:  # of what is soft already
+                values["tangential_stiffness"] *= self.softening
+        rolling = Rolling(coefficient=0.0) if entry.rolling is None else entry.rolling
+        return values | rolling.coefficients()
+
+
+def _mobility(push: Vector, axis: Vector, curved: int) -> float:
+    """Acceleration of a wall per unit of force on it [1/kg]; for what is curved, the mean over its directions."""
+    along = float(axis @ push @ axis)
+    if curved == PLANE:
+        return along
+    return float(np.trace(push)) / 3 if curved == SPHERE else float(np.trace(push) - along) / 2

@@ -1,0 +1,95 @@
+"""A case with particle dampers: in which directions its parts move, and whether they fit together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .elementwise import Vector
+from .errors import Hint, at
+from .methods import Dem
+from .space import unit_vector
+
+if TYPE_CHECKING:
+    from .case import Case
+    from .signals import Signal
+
+
+def direction_of_base(case: Case, signal: Signal) -> Vector:
+    """Return the direction in which a signal moves the base, (3,): its own, or that of all dampers.
+
+    Parameters
+    ----------
+    case
+        The case.
+    signal
+        One of its base or of its shaker's motion.
+
+    Raises
+    ------
+    Hint
+        When there is no one direction.
+    """
+    if signal.direction is not None:
+        return unit_vector(signal.direction)
+    directions = {damper.direction for damper in case.particle_dampers}
+    if len(directions) > 1:
+        raise Hint("dampers move in several directions; which is that of the base?", 'direction = "x"', ["direction"])
+    return unit_vector(directions.pop())
+
+
+def inertia_along(case: Case, direction: Vector) -> Vector:
+    """Return the inertia of each mode per unit of base acceleration along a direction, (m,) [kg^1/2]."""
+    modes = case.modes
+    if modes.participation is None:
+        return np.zeros(modes.decay.size)
+    if modes.spatial:
+        return np.asarray(modes.participation @ direction)
+    own = unit_vector(case.particle_dampers[0].direction)
+    return np.asarray(modes.participation * (own @ direction))
+
+
+def check_in_space(case: Case) -> None:
+    """Refuse what does not fit together in a case with particle dampers.
+
+    Parameters
+    ----------
+    case
+        The case.
+
+    Raises
+    ------
+    Hint
+        Saying what and where.
+    """
+    first = case.particle_dampers[0]
+    if len(case.particle_dampers) < len(case.dampers):
+        raise Hint(
+            "impact dampers and particle dampers cannot be in one case",
+            "a ParticleDamper with one particle in place of each impact damper",
+            ["dampers"],
+        )
+    if not isinstance(case.method, Dem):
+        raise Hint(f"{case.method.kind} computes impact dampers, not particles in space", 'kind = "dem"', ["method"])
+    times = case.output.times
+    if times is not None and not np.allclose(
+        np.diff(case.sample_times()), times[-1] / max(len(times) - 1, 1), rtol=1e-6
+    ):
+        raise Hint("particles move in equal steps: output times must be evenly spaced", "a rate", ["output", "times"])
+    for index, damper in enumerate(case.particle_dampers):
+        with at("dampers", index):
+            if damper.gravity != first.gravity:
+                raise Hint(f"gravity is {first.gravity} in another damper of this case", "the same", ["gravity"])
+            with at("point"):
+                case.modes.space_shape(damper.point, damper.direction)
+    if case.base and not case.modes.spatial and len({damper.direction for damper in case.particle_dampers}) > 1:
+        raise Hint(
+            "a structure whose points move along lines has one direction, but its dampers have several",
+            "mode shapes of three components, or the same direction",
+            ["dampers"],
+        )
+    for field, signals in (("base", case.base), ("motion", case.shaker_motion)):
+        for index, signal in enumerate(signals):
+            with at(*(("structure",) if field == "motion" else ()), field, index):
+                direction_of_base(case, signal)

@@ -1,0 +1,323 @@
+"""Particle dampers: what is described is what is filled in; what does not fit is refused with a reason."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.model.packing import check_packing
+
+STEEL = rb.materials()["steel"]
+CAVITIES = {
+    "box": rb.Box(size=("40 mm", "30 mm", "60 mm")),
+    "upright can": rb.Cylinder(diameter="40 mm", length="50 mm"),
+    "lying can": rb.Cylinder(radius="20 mm", length="50 mm", axis="x"),
+    "can askew": rb.Cylinder(radius="20 mm", length="50 mm", axis=(1, 2, -1)),
+    "sphere": rb.SphericalCavity(radius="25 mm"),
+}
+SIZES = {
+    "normal": rb.Normal(mean="4 mm", deviation="0.5 mm", smallest="3 mm", largest="5 mm"),
+    "log-normal": rb.LogNormal(median="4 mm", spread=1.2, smallest="3 mm", largest="6 mm"),
+    "sieve": rb.Sieve(sizes=["2 mm", "3 mm", "5 mm"], passing=[0, 0.3, 1]),
+}
+
+
+def balls(count: int = 100, **options: Any) -> rb.Particles:
+    """Return steel balls of 4 mm."""
+    return rb.Particles(**{"material": "steel", "diameter": "4 mm", "count": count, **options})
+
+
+def damper(**options: Any) -> rb.ParticleDamper:
+    """Return a damper of a hundred steel balls in a cube."""
+    usual = {
+        "particles": balls(),
+        "cavity": rb.Box(size=("40 mm",) * 3),
+        "contact": rb.Tsuji(restitution=0.9),
+        "friction": 0.3,
+    }
+    return rb.ParticleDamper(**{**usual, **options})
+
+
+def case(*dampers: rb.ParticleDamper, **options: Any) -> rb.Case:
+    """Return a case with one degree of freedom."""
+    usual: dict[str, Any] = {"structure": rb.SDOF(mass=20, stiffness=8e4), "duration": 1.0}
+    return rb.Case(**{**usual, "dampers": dampers or (damper(),), **options})
+
+
+@pytest.mark.parametrize("name", CAVITIES)
+@pytest.mark.parametrize("count", [1, 7, 300])
+def test_lattices_with_noise_fit(name: str, count: int) -> None:
+    """Particles on a lattice with all the noise that is allowed are inside and do not overlap, whatever the cavity."""
+    radii = np.linspace(1e-3, 2e-3, count)
+    positions = rb.Lattice(noise=1.0, seed=3).place(CAVITIES[name], radii)
+    check_packing(CAVITIES[name], positions, radii)
+    assert np.array_equal(positions, rb.Lattice(noise=1.0, seed=3).place(CAVITIES[name], radii))
+    assert not np.array_equal(positions, rb.Lattice(noise=1.0, seed=4).place(CAVITIES[name], radii))
+
+
+@pytest.mark.parametrize("name", CAVITIES)
+def test_lattices_use_the_whole_cavity(name: str) -> None:
+    """Many particles are spread evenly, at least to within half a cell of the walls: so says their mean square distance."""
+    cavity = CAVITIES[name]
+    positions = rb.Lattice().place(cavity, np.full(4000, 2e-4))
+    anywhere = np.random.default_rng(0).uniform(-0.04, 0.04, (400_000, 3))
+    depth = cavity.depth(anywhere)
+    assert cavity.volume == pytest.approx(0.08**3 * np.mean(depth > 0), rel=0.02)
+    reached = anywhere[depth > 0.5 * (cavity.volume / 4000) ** (1 / 3)]
+    assert 0.97 * np.mean(reached**2) < np.mean(positions**2) < 1.03 * np.mean(anywhere[depth > 0] ** 2)
+
+
+def test_a_lattice_reaches_close_packing() -> None:
+    """Where a cubic lattice is full, a face-centred one takes over: 60 % of a large box is no problem."""
+    radii = np.full(round(0.6 / (4 / 3 * math.pi * 0.02**3)), 0.02)
+    cavity = rb.Box(size=(1, 1, 1))
+    check_packing(cavity, rb.Lattice().place(cavity, radii), radii)
+
+
+def test_overlaps_are_found_among_unlike_sizes() -> None:
+    """Overlaps between large and small, small and small particles are found, at the least distance."""
+    cavity, generator = rb.Box(size=(1, 1, 1)), np.random.default_rng(1)
+    for first, second in [(0.1, 0.001), (0.001, 0.001), (0.1, 0.1)]:
+        radii = np.array([first, second, 0.002])
+        direction = generator.standard_normal(3)
+        direction /= np.linalg.norm(direction)
+        for apart, good in [(1 + 1e-6, True), (1 - 1e-6, False)]:
+            positions = np.array([np.zeros(3), (first + second) * apart * direction, np.full(3, 0.4)])
+            if good:
+                check_packing(cavity, positions, radii)
+            else:
+                with pytest.raises(rb.CaseError, match="particles 0 and 1 overlap"):
+                    check_packing(cavity, positions, radii)
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_the_mass_that_is_asked_for_is_filled_in(name: str) -> None:
+    """A mass is met to within one particle, with sizes between the limits."""
+    filled = damper(particles=rb.Particles(material="steel", distribution=SIZES[name], mass="60 g")).contents
+    assert filled.mass.sum() == pytest.approx(0.06, abs=filled.mass.max())
+    assert filled.mass == pytest.approx(4 / 3 * math.pi * filled.radius**3 * STEEL.density)
+    assert filled.inertia == pytest.approx(0.4 * filled.mass * filled.radius**2)
+    assert 1e-3 <= filled.radius.min() < filled.radius.max() <= 3e-3
+
+
+def test_sieve_shares_are_shares_of_mass() -> None:
+    """Of a sieve table, the share of the mass below each mesh is what passes."""
+    diameters = SIZES["sieve"].diameters((np.arange(100_000) + 0.5) / 100_000)
+    assert np.sum(diameters[diameters < 3e-3] ** 3) / np.sum(diameters**3) == pytest.approx(0.3, abs=1e-3)
+
+
+def test_normal_sizes_have_their_mean_and_deviation() -> None:
+    """A normal distribution that is hardly cut off has its mean and deviation, a log-normal one its median and spread."""
+    share = (np.arange(100_000) + 0.5) / 100_000
+    normal = rb.Normal(mean=1e-2, deviation=1e-3, smallest=1e-3, largest=2e-2).diameters(share)
+    assert (normal.mean(), normal.std()) == (pytest.approx(1e-2), pytest.approx(1e-3, rel=1e-3))
+    wide = np.log(rb.LogNormal(median=1e-2, spread=1.3, smallest=1e-4, largest=1.0).diameters(share))
+    assert (np.exp(np.median(wide)), np.exp(wide.std())) == (pytest.approx(1e-2), pytest.approx(1.3, rel=1e-3))
+
+
+def test_fill_ratio_is_of_the_cavity() -> None:
+    """A fill ratio is the volume of the particles over that of the cavity."""
+    contents = damper(particles=balls(count=None, fill_ratio=0.2)).contents
+    assert np.sum(4 / 3 * math.pi * contents.radius**3) / 0.04**3 == pytest.approx(0.2, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", CAVITIES)
+def test_walls_are_the_cavity(name: str) -> None:
+    """Along any line from the centre the depth falls, never faster than the line is long; normals have length one."""
+    cavity = CAVITIES[name]
+    directions = np.random.default_rng(2).standard_normal((50, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    inside = np.linspace(0, 0.04, 4001)[:, None, None] * directions
+    depth = cavity.depth(inside.reshape(-1, 3)).reshape(4001, 50)
+    assert np.all(np.diff(depth, axis=0) <= 1e-12)
+    assert np.all(np.abs(np.diff(depth, axis=0)) <= 1e-5 * (1 + 1e-9))
+    normals = cavity.walls().axis[cavity.walls().curved == 0]
+    assert np.linalg.norm(normals, axis=1) == pytest.approx(np.ones(len(normals)))
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        damper(),
+        damper(packing=rb.Settled(seed=5), softening=10, rolling=0.01, wall="rigid", wall_friction=0.1, name="can"),
+        damper(
+            particles=[balls(10), rb.Particles(name="fine", material="steel", distribution=SIZES["sieve"], mass="3 g")],
+            pairs=[rb.PairLaws(between=("fine", "wall"), friction=rb.LinearSpring(0.5, stiffness=1e5))],
+            cavity=CAVITIES["can askew"],
+            gravity=(0, "-1 g_0", 0),
+            direction=(1, 0, 1),
+            velocity=("1 mm/s", 0, 0),
+        ),
+        damper(
+            particles=rb.Particles(material="glass"),
+            packing=rb.Positions(positions=[[0, 0, 0], [0, 0, 0.01]], radii=[1e-3, 2e-3], spins=np.ones((2, 3))),
+            contact=rb.Linear(contact_time="0.1 ms", restitution=0.8),
+            friction=rb.LinearSpring(0.2, ratio=0.3),
+            cavity=rb.SphericalCavity(diameter="40 mm"),
+        ),
+    ],
+)
+def test_a_written_damper_reads_back_equal(made: rb.ParticleDamper, tmp_path: Path) -> None:
+    """A case with particles equals itself after a trip through a file, and its method is dem without being told."""
+    one = case(made)
+    one.to_file(tmp_path / "case.toml")
+    back = rb.Case.from_file(tmp_path / "case.toml")
+    assert back == one
+    assert back.method == rb.Dem()
+    assert np.array_equal(back.particle_dampers[0].contents.radius, made.contents.radius)
+
+
+@pytest.mark.parametrize("head", ["x,y,z,radius,vz\n", ""])
+def test_positions_from_a_file(head: str, tmp_path: Path) -> None:
+    """Columns are found by name, or by their order; a case names the file instead of its numbers."""
+    file = tmp_path / "bed.csv"
+    extra = "" if head else ",0,0"
+    file.write_text(head + f"0,0,0,0.001{extra},2\n0.01,0,0,0.002{extra},3\n", encoding="utf-8")
+    made = damper(particles=rb.Particles(material="steel"), packing=rb.Positions.from_file(file))
+    assert made.contents.radius == pytest.approx([1e-3, 2e-3])
+    assert made.start.position == pytest.approx(np.array([[0, 0, 0], [0.01, 0, 0]]))
+    assert made.start.velocity == pytest.approx(np.array([[0, 0, 2.0], [0, 0, 3.0]]))
+    assert 'file = "' in case(made).to_toml()
+    assert "positions = " not in case(made).to_toml()
+    np.save(tmp_path / "bed.npy", np.array([[0, 0, 0, 1e-3], [0.01, 0, 0, 2e-3]]))
+    again = rb.Positions.from_file(tmp_path / "bed.npy")
+    assert again.radii == made.packing.radii
+
+
+def test_walls_feel_the_mass_behind_them() -> None:
+    """A wall across the structure's motion has its effective mass, one along it none to give: it is immovable."""
+    table = case().particle_dampers[0].contact_table(np.array([[0.5, 0, 0]]))
+    masses = [table.entries[table.wall_entry[0, kind]].pair.above.mass for kind in table.wall_kind]
+    assert masses == pytest.approx([4, math.inf, math.inf, 4, math.inf, math.inf])
+
+
+def test_softening_keeps_restitution() -> None:
+    """Softer moduli lower stiffness, but dashpots and limiting pressure such that yield speed and damping ratio stay."""
+    for contact in (rb.Thornton(), rb.Linear(stiffness="1 MN/m", damping="3 N s/m")):
+        values = []
+        for factor in (1, 100):
+            made = damper(contact=contact, softening=factor, friction=0)
+            entry = made.contact_table(np.zeros((0, 3))).entries[0]
+            name, coefficients = made.softened(entry)
+            values.append(coefficients)
+        assert values[1]["stiffness"] == pytest.approx(values[0]["stiffness"] / 100)
+        if name == "thornton":
+            speed = [v["yield_pressure"] ** 2.5 / v["modulus"] ** 2 for v in values]
+            assert speed[1] == pytest.approx(speed[0])
+        else:
+            ratio = [v["damping"] / math.sqrt(v["stiffness"] * v["mass"]) for v in values]
+            assert ratio[1] == pytest.approx(ratio[0])
+
+
+def test_mindlin_stiffness_of_equal_spheres() -> None:
+    """8 G* of two bodies of one material is 4 G / (2 - nu)."""
+    entry = damper().contact_table(np.zeros((0, 3))).entries[0]
+    shear = STEEL.young / (2 * (1 + STEEL.poisson))
+    assert damper().softened_friction(entry)["shear"] == pytest.approx(4 * shear / (2 - STEEL.poisson))
+
+
+def test_pair_table_goes_before_the_laws_of_all() -> None:
+    """A pair has the laws that the table gives it; what the table leaves out, and all other pairs, have the common ones."""
+    made = damper(
+        particles=[balls(10), rb.Particles(material="glass", diameter="3 mm", count=5)],
+        pairs=[
+            rb.PairLaws(between=("glass", "steel"), friction=0.7),
+            rb.PairLaws(between=("wall", "glass"), contact=rb.Tsuji(restitution=0.5)),
+        ],
+        wall_friction=0.1,
+    )
+    table = made.contact_table(np.zeros((1, 3)))
+    found = {e.names: (e.friction.coefficient, e.contact.restitution.e) for e in table.entries if e.friction}
+    assert found == {
+        ("steel", "steel"): (0.3, 0.9),
+        ("steel", "glass"): (0.7, 0.9),
+        ("glass", "glass"): (0.3, 0.9),
+        ("steel", "wall"): (0.1, 0.9),
+        ("glass", "wall"): (0.1, 0.5),
+    }
+    assert table.particle_entry.tolist() == [[0, 1], [1, 2]]
+    assert table.wall_entry.tolist() == [[3], [4]]
+
+
+AT = rb.Positions(positions=[[0, 0, 0], [0, 0, 0.003]])
+REFUSED = {
+    "an empty damper": lambda: damper(particles=[]),
+    "there is nothing in it": lambda: balls(count=0),
+    "their volume is 1.05 times that of the cavity": lambda: damper(particles=balls(2000)),
+    "a lattice of spheres of 4 mm holds 1099": lambda: damper(particles=balls(1100)),
+    "a particle of 44 mm is larger than the cavity": lambda: damper(particles=balls(1, diameter="44 mm")),
+    "inserted at random they fill 60 %": lambda: damper(
+        particles=balls(count=None, fill_ratio=0.7), packing=rb.Settled()
+    ),
+    "particles 0 and 1 overlap by 1 mm": lambda: damper(particles=balls(2), packing=AT),
+    "particle 1 at .* mm sticks out of the cavity by 1 mm": lambda: damper(
+        particles=balls(2), packing=rb.Positions(positions=[[0, 0, 0], [0, 0.019, 0]])
+    ),
+    "3 particles, but 2 positions": lambda: damper(particles=balls(3), packing=AT),
+    "rolling resistance needs friction": lambda: damper(friction=0, rolling=0.1),
+    "Mindlin's stiffness belongs to Hertz contacts": lambda: damper(contact=rb.Linear(stiffness=1e6, restitution=0.9)),
+    "one kind of law is needed": lambda: damper(
+        particles=[balls(), rb.Particles(material="glass", radius="1 mm", count=1)],
+        pairs=[rb.PairLaws(between=("glass", "wall"), contact=rb.Thornton(yield_pressure="1 GPa"))],
+    ),
+    "nothing settles without gravity": lambda: damper(packing=rb.Settled(), gravity=(0, 0, 0)),
+    "there are no particles 'wood' here": lambda: damper(pairs=[rb.PairLaws(between=("wood", "wall"))]),
+    "this is less than one particle": lambda: damper(particles=balls(count=None, mass="1 mg")),
+    "count, mass or fill_ratio is needed": lambda: damper(particles=balls(count=None)),
+    "radius, diameter or distribution is needed": lambda: damper(particles=balls(diameter=None)),
+    "cannot be in one case": lambda: case(
+        damper(), rb.ImpactDamper(ball=rb.Sphere(radius=0.01, material="steel"), gap=1e-3, contact=rb.Thornton())
+    ),
+    "event_driven computes impact dampers": lambda: case(method=rb.EventDriven()),
+    "dem computes particles in space, and there is no": lambda: rb.Case(
+        structure=rb.Fixed(), duration=1, method=rb.Dem()
+    ),
+    "in another damper of this case": lambda: case(damper(), damper(name="b", gravity=(0, 0, 0))),
+    "output times must be evenly spaced": lambda: case(output=rb.Output(times=[0.1, 0.15, 0.3])),
+    "dampers move in several directions": lambda: case(
+        damper(),
+        damper(name="b", direction="y"),
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=10)),
+    ),
+    "the point 'tip' moves in space": lambda: case(
+        structure=rb.Modal(frequencies=[10], damping_ratios=[0], shapes={"tip": [[0, 0, 1]]}),
+        load=rb.HalfSine(amplitude="1 N", duration="1 ms"),
+    ),
+    "moves along one line only": lambda: case(load=rb.HalfSine(amplitude="1 N", duration="1 ms", direction="y")),
+    "must be greater than zero": lambda: rb.Dem(dt=0.0),
+}
+
+
+@pytest.mark.parametrize("complaint", REFUSED)
+def test_what_does_not_fit_is_refused(complaint: str) -> None:
+    """Bad input is refused with its reason."""
+    with pytest.raises(rb.CaseError, match=complaint):
+        REFUSED[complaint]()
+
+
+def test_a_file_needs_no_kind_of_damper() -> None:
+    """A damper with particles is a particle damper, and complaints name the field and what is near it."""
+    with pytest.raises(rb.CaseError) as caught:
+        rb.Case.from_toml(
+            'duration = 1\nstructure = { kind = "fixed" }\n[damper]\ngrvity = [0, 0, 0]\n'
+            'particles = { material = "steal", diameter = "4 mm", count = 10 }\n'
+            'cavity = { kind = "boks", size = [1, 1, 1] }\ncontact = { kind = "tsuji", restitution = 0.9 }\n'
+        )
+    for said in (
+        "damper.particles.material = 'steal'",
+        "did you mean 'steel'",
+        "damper.cavity.kind = 'boks'",
+        "'gravity'",
+    ):
+        assert said in str(caught.value)
+
+
+def test_studies_say_that_they_are_for_impact_dampers() -> None:
+    """A sweep over a case with particles is refused before anything runs."""
+    with pytest.raises(rb.CaseError, match="a loop over"):
+        rb.sweep(case(), {"duration": [0.1, 0.2]}, measure=["impact_share"])
