@@ -4,6 +4,7 @@ from .basins import plot_basins
 from .bifurcation import plot_bifurcation
 from .compare import plot_comparison
 from .energy import plot_energy
+from .granular import plot_granular_motion
 from .impacts import plot_impacts
 from .lyapunov import plot_lyapunov
 from .motion import plot_motion
@@ -18,6 +19,7 @@ __all__ = [
     "plot_comparison",
     "plot_energy",
     "plot_frequency_response",
+    "plot_granular_motion",
     "plot_impacts",
     "plot_lyapunov",
     "plot_motion",

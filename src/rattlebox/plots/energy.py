@@ -25,7 +25,10 @@ LOG_DECADES = 6.0
 _LEDGER_LABELS = {
     "viscous": "structure damping",
     "impact": "impacts",
+    "normal": "normal damping",
     "plastic": "plastic flow",
+    "sliding": "sliding",
+    "rolling": "rolling",
     "motion": "left in motion",
 }
 
@@ -93,7 +96,7 @@ def draw_energies(run: Run, axes: Axes, time: Scale, *, log: bool = False) -> No
     parts = {name: energy for name, energy in parts.items() if np.any(energy != 0.0)}
     highest = max((float(np.nanmax(energy)) for energy in parts.values()), default=0.0)
     scale, unit = scaled(highest, "J")
-    names = {"particles": "balls", "contact": "contacts"}
+    names = {"particles": "balls" if "impact" in ledger.channels else "particles", "contact": "contacts"}
     for name, energy in parts.items():
         axes.plot(
             run.arrays.time / time.divisor,
@@ -123,13 +126,7 @@ def draw_ledger(run: Run, axes: Axes, time: Scale, energy: Scale) -> None:
         Scales of the axes.
     """
     ledger = run.ledger
-    parts = {
-        "viscous": run.arrays.viscous_loss,
-        "impact": ledger.impact_loss,
-        "plastic": ledger.plastic_loss,
-        "motion": ledger.motion,
-    }
-    parts = {name: part for name, part in parts.items() if name == "motion" or np.any(part != 0.0)}
+    parts = {name: part for name, part in ledger.channels.items() if name == "motion" or np.any(part != 0.0)}
     t = run.arrays.time / time.divisor
     axes.stackplot(
         t,

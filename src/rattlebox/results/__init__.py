@@ -1,6 +1,7 @@
 """What comes back: runs, impacts, the energy ledger, and their files."""
 
 from .arrays import ImpactArrays, RunArrays
+from .granular import GranularArrays, GranularLedger, GranularRun
 from .ledger import Ledger
 from .netcdf import load
 from .provenance import Provenance
@@ -9,6 +10,9 @@ from .summary import Comparison, Summary, compare
 
 __all__ = [
     "Comparison",
+    "GranularArrays",
+    "GranularLedger",
+    "GranularRun",
     "ImpactArrays",
     "Ledger",
     "Provenance",

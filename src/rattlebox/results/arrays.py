@@ -7,15 +7,15 @@ numbered along the positive direction, and so are its contacts: 0 is the trailin
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .schema import IMPACT_VARIABLES, RUN_VARIABLES, Kind, Variable
+from .schema import CHANNELS, IMPACT, IMPACT_VARIABLES, RUN_VARIABLES, Form, Kind, Variable
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -45,6 +45,39 @@ def _checked(variable: Variable, value: Any, sizes: Mapping[str, int]) -> NDArra
         raise ValueError(f"{variable.name} has shape {array.shape}, but ({names}) is {shape}")
     array.flags.writeable = False
     return array
+
+
+def checked_arrays(holder: Any, variables: Sequence[Variable], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
+    """Read-only arrays of the variables' types and shapes, by name; zeros where one was left out."""
+    return {v.name: _checked(v, getattr(holder, v.name), sizes) for v in variables}
+
+
+def checked_time(times: Any) -> FloatArray:
+    """Output times as a read-only array; they must increase."""
+    time = np.ascontiguousarray(times, np.float64).view()
+    if time.ndim != 1 or time.size == 0:
+        raise ValueError(f"time has shape {time.shape}, but (T,) with at least one time is needed")
+    if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0):
+        raise ValueError("output times must be finite and strictly increasing")
+    time.flags.writeable = False
+    return time
+
+
+def checked_labels(name: str, given: Any) -> tuple[str, ...]:
+    """Labels as texts; they must differ."""
+    labels = tuple(str(label) for label in given)
+    if len(set(labels)) != len(labels) or "" in labels or any("\0" in label for label in labels):
+        raise ValueError(f"{name} {labels} must be different and not empty")
+    return labels
+
+
+def checked_counts(given: Mapping[str, int]) -> Mapping[str, int]:
+    """Counts by identifiers, read-only."""
+    counts = {str(name): int(number) for name, number in given.items()}
+    for name in counts:
+        if not name.isidentifier():
+            raise ValueError(f"count {name!r} is not an identifier")
+    return MappingProxyType(counts)
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -190,6 +223,9 @@ class RunArrays(_Comparable):
         When an array holds the wrong kind of numbers.
     """
 
+    form: ClassVar[Form] = IMPACT
+    channels: ClassVar[tuple[str, ...]] = CHANNELS
+
     time: FloatArray
     points: tuple[str, ...] = ()
     balls: tuple[str, ...] = ()
@@ -227,35 +263,22 @@ class RunArrays(_Comparable):
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        time = np.ascontiguousarray(self.time, np.float64).view()
-        if time.ndim != 1 or time.size == 0:
-            raise ValueError(f"time has shape {time.shape}, but (T,) with at least one time is needed")
-        if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0):
-            raise ValueError("output times must be finite and strictly increasing")
-        time.flags.writeable = False
-        put(self, "time", time)
+        put(self, "time", checked_time(self.time))
         for name in ("points", "balls", "dampers", "loads"):
-            labels = tuple(str(label) for label in getattr(self, name))
-            if len(set(labels)) != len(labels) or "" in labels or any("\0" in label for label in labels):
-                raise ValueError(f"{name} {labels} must be different and not empty")
-            put(self, name, labels)
+            put(self, name, checked_labels(name, getattr(self, name)))
         modes = np.size(self.mode_frequency)
         sizes = {
-            "time": time.size,
+            "time": self.time.size,
             "point": len(self.points),
             "ball": len(self.balls),
             "damper": len(self.dampers),
             "source": len(self.loads),
             "mode": modes,
         }
-        for variable in RUN_VARIABLES:
-            put(self, variable.name, _checked(variable, getattr(self, variable.name), sizes))
+        for name, array in checked_arrays(self, RUN_VARIABLES, sizes).items():
+            put(self, name, array)
         self._check_references(sizes["damper"])
-        counts = {str(name): int(number) for name, number in self.counts.items()}
-        for name in counts:
-            if not name.isidentifier():
-                raise ValueError(f"count {name!r} is not an identifier")
-        put(self, "counts", MappingProxyType(counts))
+        put(self, "counts", checked_counts(self.counts))
         put(self, "wall_time", float(self.wall_time))
 
     def _check_references(self, dampers: int) -> None:
@@ -271,6 +294,11 @@ class RunArrays(_Comparable):
         contact = self.impacts.contact
         if np.any(contact < 0) or np.any(contact > last):
             raise ValueError("a contact of the impacts lies outside its row")
+
+    @property
+    def modes(self) -> IntArray:
+        """Numbers of the modes, from 1."""
+        return np.arange(1, self.mode_frequency.size + 1)
 
     def contact_names(self, damper: int) -> tuple[str, ...]:
         """Names of the contacts of a damper, in the order of the impact log's `contact`.

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .arrays import RunArrays
-from .ledger import Ledger
-from .schema import CHANNELS, COORDINATES, GROUP_TITLES, Group, variables
-
 if TYPE_CHECKING:
     import xarray
 
+    from .arrays import RunArrays
+    from .ledger import Ledger
     from .provenance import Provenance
 
 
-def columns(arrays: RunArrays, ledger: Ledger, group: Group) -> dict[str, Any]:
+def columns(arrays: RunArrays, ledger: Ledger, group: str) -> dict[str, Any]:
     """Values of all variables of a dataset, stored and derived, by name.
 
     Parameters
@@ -30,18 +27,10 @@ def columns(arrays: RunArrays, ledger: Ledger, group: Group) -> dict[str, Any]:
     group
         Dataset.
     """
-    if group == "impacts":
-        return {v.name: getattr(arrays.impacts, v.name) for v in variables(group)}
-    derived: dict[str, Callable[[], Any]] = {
-        "structure": lambda: ledger.structure,
-        "particles": lambda: ledger.particles,
-        "total": lambda: ledger.total,
-        "work": lambda: ledger.work,
-        "losses": lambda: ledger.losses,
-        "residual": lambda: ledger.residual,
-        "share": lambda: np.array(list(ledger.shares.values())),
+    stored = arrays.impacts if group == "impacts" else arrays
+    return {
+        v.name: getattr(ledger if v in arrays.form.derived else stored, v.name) for v in arrays.form.variables(group)
     }
-    return {v.name: derived[v.name]() if v.name in derived else getattr(arrays, v.name) for v in variables(group)}
 
 
 def labels(arrays: RunArrays) -> dict[str, Any]:
@@ -52,18 +41,10 @@ def labels(arrays: RunArrays) -> dict[str, Any]:
     arrays
         Arrays of the run.
     """
-    return {
-        "time": arrays.time,
-        "point": arrays.points,
-        "ball": arrays.balls,
-        "damper": arrays.dampers,
-        "source": arrays.loads,
-        "mode": np.arange(1, arrays.mode_frequency.size + 1),
-        "channel": CHANNELS,
-    }
+    return {dim: getattr(arrays, attribute) for dim, attribute in arrays.form.labels.items()}
 
 
-def dataset(arrays: RunArrays, ledger: Ledger, group: Group, provenance: Provenance, case: str) -> xarray.Dataset:
+def dataset(arrays: RunArrays, ledger: Ledger, group: str, provenance: Provenance, case: str) -> xarray.Dataset:
     """Labelled dataset of one group; every variable has `units` and `long_name`.
 
     Parameters
@@ -81,22 +62,23 @@ def dataset(arrays: RunArrays, ledger: Ledger, group: Group, provenance: Provena
     """
     import xarray
 
+    form = arrays.form
     data: dict[str, Any] = {}
     coords: dict[str, Any] = {}
     values = columns(arrays, ledger, group)
     names = labels(arrays)
-    for v in variables(group):
+    for v in form.variables(group):
         attrs = {"units": v.units, "long_name": v.long_name}
         target = coords if v.name in ("time", "mode_frequency", "ball_damper") else data
         target[v.name] = (v.dims, values[v.name], attrs)
         for dim in v.dims:
-            if dim == "impact" or dim in coords:
+            if dim not in names or dim in coords:
                 continue
-            units, long_name = COORDINATES[dim]
+            units, long_name = form.coordinates[dim]
             described = {"long_name": long_name} | ({"units": units} if units else {})
             label = names[dim]
             # An empty tuple would become an array of floats.
             label = np.array(label, dtype=str) if isinstance(label, tuple) else label
             coords[dim] = (dim, label, described)
-    attrs = {"title": GROUP_TITLES[group], "status": arrays.status, "message": arrays.message}
+    attrs = {"title": form.titles[group], "status": arrays.status, "message": arrays.message}
     return xarray.Dataset(data, coords, attrs | asdict(provenance) | {"case": case})

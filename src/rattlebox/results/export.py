@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .datasets import columns, labels
-from .schema import COORDINATES, GROUPS, Group, variables
 
 if TYPE_CHECKING:
     from .run import Run
@@ -58,17 +58,17 @@ def to_mat(run: Run, path: Path) -> Path:
     names = labels(arrays)
     content: dict[str, Any] = {}
     units: dict[str, dict[str, str]] = {}
-    for group in GROUPS:
+    for group in arrays.form.titles:
         values = columns(arrays, run.ledger, group)
         struct: dict[str, Any] = {}
         unit: dict[str, str] = {}
-        for v in variables(group):
+        for v in arrays.form.variables(group):
             for dim in v.dims:
-                if dim == "impact" or dim in struct:
+                if dim not in names or dim in struct:
                     continue
                 label = names[dim]
                 struct[dim] = _cells(label) if isinstance(label, tuple) else _column(label)
-                unit[dim] = COORDINATES[dim][0]
+                unit[dim] = arrays.form.coordinates[dim][0]
             struct[v.name] = _column(values[v.name])
             unit[v.name] = v.units
         content[group] = struct
@@ -96,19 +96,19 @@ def _header(name: str, label: str, units: str) -> str:
     return full if units == "1" else f"{full} [{units}]"
 
 
-def _columns(run: Run, group: Group) -> Iterator[tuple[str, Any]]:
+def _columns(run: Run, group: str) -> Iterator[tuple[str, Any]]:
     """Header and values of every column of a CSV file: the index, then what runs along it."""
     names = labels(run.arrays)
     values = columns(run.arrays, run.ledger, group)
-    index = "impact" if group == "impacts" else "time"
+    index = {"impacts": "impact", "particles": "particle"}.get(group, "time")
     if index == "time":
         yield _header("time", "", "s"), run.arrays.time
-    for v in variables(group):
-        if v.dims == (index,):
-            yield _header(v.name, "", v.units), values[v.name]
-        elif v.dims[0] == index:
-            for k, label in enumerate(names[v.dims[1]]):
-                yield _header(v.name, str(label), v.units), values[v.name][:, k]
+    for v in run.arrays.form.variables(group):
+        if v.dims[0] != index:
+            continue
+        for place in product(*(range(len(names[dim])) for dim in v.dims[1:])):
+            told = " ".join(str(names[dim][k]) for dim, k in zip(v.dims[1:], place, strict=True))
+            yield _header(v.name, told, v.units), values[v.name][:, *place]
 
 
 def to_csv(run: Run, folder: Path) -> tuple[Path, ...]:
@@ -140,7 +140,7 @@ def to_csv(run: Run, folder: Path) -> tuple[Path, ...]:
         raise FileExistsError(f"{folder} is a file; CSV files need a folder")
     folder.mkdir(parents=True, exist_ok=True)
     written = []
-    for group in GROUPS:
+    for group in run.arrays.form.titles:
         path = folder / f"{group}.csv"
         header, data = zip(*_columns(run, group), strict=True)
         # tolist() gives Python numbers, whose repr is the shortest text that reads back equal.

@@ -67,9 +67,15 @@ class Ledger:
         return np.asarray(self.arrays.plastic_loss.sum(axis=1))
 
     @cached_property
+    def channels(self) -> dict[str, FloatArray]:
+        """Where the energy supplied is: what was lost since the start, by channel, and what is left in the motion."""
+        parts = (self.arrays.viscous_loss, self.impact_loss, self.plastic_loss, self.motion)
+        return dict(zip(CHANNELS, parts, strict=True))
+
+    @cached_property
     def losses(self) -> FloatArray:
         """All energy lost since the start."""
-        return self.arrays.viscous_loss + self.impact_loss + self.plastic_loss
+        return np.asarray(sum(part for channel, part in self.channels.items() if channel != "motion"))
 
     @cached_property
     def supplied(self) -> FloatArray:
@@ -112,13 +118,17 @@ class Ledger:
 
     @cached_property
     def shares(self) -> dict[str, float]:
-        """Shares of the energy supplied by the end: viscous, impact, plastic, and left in the motion.
+        """Shares of the energy supplied by the end, by channel.
 
         They add up to one, to the ledger's closure. NaN when nothing was supplied.
         """
-        parts = (self.arrays.viscous_loss[-1], self.impact_loss[-1], self.plastic_loss[-1], self.motion[-1])
         supplied = float(self.supplied[-1])
         return {
-            channel: float(part) / supplied if supplied > 0.0 else float("nan")
-            for channel, part in zip(CHANNELS, parts, strict=True)
+            channel: float(part[-1]) / supplied if supplied > 0.0 else float("nan")
+            for channel, part in self.channels.items()
         }
+
+    @property
+    def share(self) -> FloatArray:
+        """The same as an array, (channels,)."""
+        return np.array(list(self.shares.values()))

@@ -18,8 +18,9 @@ import numpy as np
 
 from .arrays import ImpactArrays, RunArrays
 from .datasets import columns, labels
+from .granular import GranularArrays, GranularRun
 from .provenance import Provenance
-from .schema import COORDINATES, GROUP_TITLES, GROUPS, IMPACT_VARIABLES, RUN_VARIABLES, Kind, variables
+from .schema import GRANULAR, IMPACT, IMPACT_VARIABLES, Form, Kind
 
 if TYPE_CHECKING:
     from .run import Run
@@ -28,7 +29,7 @@ FORMAT = 1
 """Number of the layout; files with a higher one are refused."""
 
 _STORED: dict[Kind, str] = {"float": "f8", "int": "i4", "bool": "i1"}
-_LABELS = {"point": "points", "ball": "balls", "damper": "dampers", "source": "loads"}
+_LABELS = ("point", "ball", "damper", "source", "species")
 _COMPRESSION: dict[str, Any] = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
 
 
@@ -62,8 +63,7 @@ def _write_text(group: Any, name: str, text: str, long_name: str) -> None:
     _describe(variable, long_name=long_name, _Encoding="utf-8")
 
 
-def _write_coordinate(group: Any, dim: str, values: Any) -> None:
-    units, long_name = COORDINATES[dim]
+def _write_coordinate(group: Any, dim: str, values: Any, units: str, long_name: str) -> None:
     group.dimensions[dim] = len(values)
     if isinstance(values, tuple):
         characters = _characters(values)
@@ -94,19 +94,27 @@ def _write(run: Run, path: Path) -> None:
             counts = file.create_group("counts")
             for name, number in arrays.counts.items():
                 counts.create_variable(name, (), "i8", data=np.int64(number))
-        for title in GROUPS:
+        if isinstance(run, GranularRun):
+            file.attrs["rattlebox_kind"] = _attribute(arrays.form.name)
+            _write_text(file, "notes", "\n".join(run.arrays.notes), "what limits the step, and warnings")
+            figures = file.create_group("figures")
+            for name, value in run.arrays.figures.items():
+                figures.create_variable(name, (), "f8", data=np.float64(value))
+        for title in arrays.form.titles:
             group = file.create_group(title)
-            _describe(group, title=GROUP_TITLES[title])
+            _describe(group, title=arrays.form.titles[title])
             values = columns(arrays, run.ledger, title)
-            for v in variables(title):
-                if any(dim != "impact" and len(names[dim]) == 0 for dim in v.dims):
+            for v in arrays.form.variables(title):
+                if any(dim in names and len(names[dim]) == 0 for dim in v.dims):
                     continue
                 for dim in v.dims:
-                    if dim == "impact" and dim not in group.dimensions:
+                    if dim in group.dimensions:
+                        continue
+                    if dim == "impact":
                         group.dimensions[dim] = None
                         group.resize_dimension(dim, len(arrays.impacts))
-                    elif dim not in group.dimensions:
-                        _write_coordinate(group, dim, names[dim])
+                    else:
+                        _write_coordinate(group, dim, names[dim], *arrays.form.coordinates[dim])
                 data = values[v.name]
                 large = _COMPRESSION if data.size > 64 else {}
                 chunks = {"chunks": (max(data.size, 1),)} if v.dims == ("impact",) else {}
@@ -199,6 +207,8 @@ def load(path: str | os.PathLike[str]) -> Run:
             raise ValueError(f"{path} was written by a later Rattlebox ({version}); update to read it")
         texts: dict[str, Any] = {f.name: _text_attribute(file.attrs[f.name]) for f in fields(Provenance)}
         provenance = Provenance(**texts | {"seed": int(file.attrs["seed"])})
+        if _text_attribute(file.attrs.get("rattlebox_kind", b" ")) == GRANULAR.name:
+            return GranularRun(_read_granular(file), _read_text(file, "case"), provenance)
         return Run(_read(file), _read_text(file, "case"), provenance)
 
 
@@ -206,26 +216,39 @@ def _read_text(file: Any, name: str) -> str:
     return file.variables[name][...].tobytes().decode() if name in file.variables else ""
 
 
-def _read(file: Any) -> RunArrays:
+def _read_variables(file: Any, form: Form) -> dict[str, Any]:
+    """Stored variables but the impacts', names of what they are of, and what is told of the run as a whole."""
     found: dict[str, Any] = {}
-    for v in RUN_VARIABLES:
+    for v in form.stored:
         group = file.groups[v.group]
+        if v in IMPACT_VARIABLES:
+            continue
         if v.name in group.variables:
             found[v.name] = group.variables[v.name][...]
         for dim in v.dims:
             if dim in _LABELS and dim in group.variables:
-                found[_LABELS[dim]] = _texts(group.variables[dim][...])
+                found[form.labels[dim]] = _texts(group.variables[dim][...])
+    counts = file.groups["counts"].variables if "counts" in file.groups else {}
+    return found | {
+        "time": file.groups["motion"].variables["time"][...],
+        "status": _text_attribute(file.attrs["status"]),
+        "message": _read_text(file, "message"),
+        "counts": {name: int(variable[...]) for name, variable in counts.items()},
+        "wall_time": float(file.attrs["wall_time"]),
+    }
+
+
+def _read_granular(file: Any) -> GranularArrays:
+    return GranularArrays(
+        **_read_variables(file, GRANULAR),
+        figures={name: float(variable[...]) for name, variable in file.groups["figures"].variables.items()},
+        notes=tuple(_read_text(file, "notes").splitlines()),
+    )
+
+
+def _read(file: Any) -> RunArrays:
     log = file.groups["impacts"].variables
     impacts = ImpactArrays(
         **{v.name: log[v.name][...].astype(bool) if v.kind == "bool" else log[v.name][...] for v in IMPACT_VARIABLES}
     )
-    counts = file.groups["counts"].variables if "counts" in file.groups else {}
-    return RunArrays(
-        time=file.groups["motion"].variables["time"][...],
-        impacts=impacts,
-        status=_text_attribute(file.attrs["status"]),
-        message=_read_text(file, "message"),
-        counts={name: int(variable[...]) for name, variable in counts.items()},
-        wall_time=float(file.attrs["wall_time"]),
-        **found,
-    )
+    return RunArrays(**_read_variables(file, IMPACT), impacts=impacts)

@@ -5,14 +5,14 @@ The arrays are checked against this table, and the datasets and all files are wr
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-Group = Literal["motion", "energy", "impacts"]
 Kind = Literal["float", "int", "bool"]
 
-GROUPS: tuple[Group, ...] = ("motion", "energy", "impacts")
-GROUP_TITLES: dict[Group, str] = {
+GROUPS: tuple[str, ...] = ("motion", "energy", "impacts")
+GROUP_TITLES: dict[str, str] = {
     "motion": "Motion of the structure and the balls in the frame of the base",
     "energy": "Energy ledger in the frame of the base",
     "impacts": "Impact log, one entry for each closed contact",
@@ -40,7 +40,7 @@ class Variable:
     """
 
     name: str
-    group: Group
+    group: str
     dims: tuple[str, ...]
     units: str
     long_name: str
@@ -119,12 +119,141 @@ COORDINATES: dict[str, tuple[str, str]] = {
 """Unit and meaning of each coordinate; names have no unit."""
 
 
-def variables(group: Group) -> tuple[Variable, ...]:
-    """Stored and derived variables of a dataset, in the order of files.
+@dataclass(frozen=True)
+class Form:
+    """What a kind of run holds.
 
-    Parameters
+    Attributes
     ----------
-    group
-        "motion", "energy" or "impacts".
+    name
+        Kind of run.
+    titles
+        Title of each group, in the order of files.
+    stored, derived
+        Variables that the arrays hold, and those that follow from them.
+    coordinates
+        Unit and meaning of each coordinate.
+    labels
+        Name of the attribute of the arrays that holds the labels of each dimension.
     """
-    return tuple(v for v in RUN_VARIABLES + DERIVED_VARIABLES + IMPACT_VARIABLES if v.group == group)
+
+    name: str
+    titles: Mapping[str, str]
+    stored: tuple[Variable, ...]
+    derived: tuple[Variable, ...]
+    coordinates: Mapping[str, tuple[str, str]]
+    labels: Mapping[str, str]
+
+    def variables(self, group: str) -> tuple[Variable, ...]:
+        """Stored and derived variables of a dataset, in the order of files."""
+        return tuple(v for v in self.stored + self.derived if v.group == group)
+
+
+IMPACT = Form(
+    name="impact",
+    titles=GROUP_TITLES,
+    stored=RUN_VARIABLES + IMPACT_VARIABLES,
+    derived=DERIVED_VARIABLES,
+    coordinates=COORDINATES,
+    labels={
+        "time": "time",
+        "point": "points",
+        "ball": "balls",
+        "damper": "dampers",
+        "source": "loads",
+        "mode": "modes",
+        "channel": "channels",
+    },
+)
+"""Runs of impact dampers, and of structures without dampers."""
+
+_SPACE = ("time", "axis")
+_CAVITY = ("time", "damper", "axis")
+_PARTNER = ("time", "damper", "partner")
+_EACH = ("particle",)
+_EACH_SPACE = ("particle", "axis")
+
+GRANULAR_CHANNELS: tuple[str, ...] = ("viscous", "normal", "plastic", "sliding", "rolling", "motion")
+"""Where the supplied energy can be found at the end of a run with particles; the shares add up to one."""
+
+PARTNERS: tuple[str, ...] = ("particle", "wall")
+"""What a particle may touch."""
+
+GRANULAR = Form(
+    name="granular",
+    titles={
+        "motion": "Motion of the structure, the cavities and the particles as a whole, in the frame of the base",
+        "energy": "Energy ledger in the frame of the base",
+        "particles": "Particles at the end of the run, in their moving cavities",
+    },
+    stored=(
+        Variable("displacement", "motion", _POINT, "m", "displacement of the structure"),
+        Variable("velocity", "motion", _POINT, "m/s", "velocity of the structure"),
+        Variable("cavity_displacement", "motion", _CAVITY, "m", "displacement of the cavity"),
+        Variable("cavity_velocity", "motion", _CAVITY, "m/s", "velocity of the cavity"),
+        Variable("cavity_force", "motion", _CAVITY, "N", "force of the particles on the cavity"),
+        Variable("cavity_moment", "motion", _CAVITY, "N m", "moment of the particles about the cavity's centre"),
+        Variable("centre_of_mass", "motion", _CAVITY, "m", "centre of mass of the particles in the cavity"),
+        Variable("momentum", "motion", _CAVITY, "kg m/s", "momentum of the particles"),
+        Variable("contacts", "motion", _PARTNER, "1", "contacts", "int"),
+        Variable("base_displacement", "motion", _SPACE, "m", "displacement of the base"),
+        Variable("base_velocity", "motion", _SPACE, "m/s", "velocity of the base"),
+        Variable("base_acceleration", "motion", _SPACE, "m/s^2", "acceleration of the base"),
+        Variable("load", "motion", ("time", "source"), "N", "load on the structure"),
+        Variable("particle_mass", "motion", ("damper",), "kg", "mass of all particles"),
+        Variable("mode_frequency", "energy", ("mode",), "Hz", "natural frequency of the mode"),
+        Variable("mode_energy", "energy", ("time", "mode"), "J", "energy of the mode"),
+        Variable("kinetic_energy", "energy", _DAMPER, "J", "kinetic energy of the particles' translation"),
+        Variable("rotation_energy", "energy", _DAMPER, "J", "kinetic energy of the particles' spin"),
+        Variable("contact_energy", "energy", _DAMPER, "J", "elastic energy of the contacts"),
+        Variable("gravity_energy", "energy", _DAMPER, "J", "gravity potential of the particles"),
+        Variable("load_work", "energy", _TIME, "J", "work of the load"),
+        Variable("base_work", "energy", _TIME, "J", "work of the base motion"),
+        Variable("viscous_loss", "energy", _TIME, "J", "loss in the structure's damping"),
+        Variable("normal_loss", "energy", _PARTNER, "J", "loss in contacts by damping along the normal"),
+        Variable("plastic_loss", "energy", _PARTNER, "J", "loss in contacts by plastic flow"),
+        Variable("sliding_loss", "energy", _PARTNER, "J", "loss in contacts by friction and tangential damping"),
+        Variable("rolling_loss", "energy", _PARTNER, "J", "loss in contacts by rolling resistance"),
+        Variable("position", "particles", _EACH_SPACE, "m", "place in the cavity"),
+        Variable("particle_velocity", "particles", _EACH_SPACE, "m/s", "velocity relative to the base"),
+        Variable("spin", "particles", _EACH_SPACE, "rad/s", "spin"),
+        Variable("radius", "particles", _EACH, "m", "radius"),
+        Variable("mass", "particles", _EACH, "kg", "mass"),
+        Variable("particle_damper", "particles", _EACH, "1", "damper that holds the particle, from 0", "int"),
+        Variable("particle_species", "particles", _EACH, "1", "species of the particle, from 0", "int"),
+    ),
+    derived=(
+        Variable("coordination", "motion", _DAMPER, "1", "contacts of a particle in the mean"),
+        Variable("structure", "energy", _TIME, "J", "energy of the structure"),
+        Variable("particles", "energy", _TIME, "J", "kinetic energy of the particles"),
+        Variable("total", "energy", _TIME, "J", "total energy"),
+        Variable("work", "energy", _TIME, "J", "work of load and base motion"),
+        Variable("losses", "energy", _TIME, "J", "energy lost since the start"),
+        Variable("residual", "energy", _TIME, "J", "what the ledger misses"),
+        Variable("share", "energy", ("channel",), "1", "share of the supplied energy at the end"),
+        Variable("partner_share", "energy", ("partner",), "1", "share of the supplied energy lost with this partner"),
+    ),
+    coordinates={
+        "time": ("s", "time"),
+        "point": ("", "point of the structure"),
+        "damper": ("", "damper"),
+        "source": ("", "load"),
+        "mode": ("1", "number of the mode"),
+        "axis": ("", "axis"),
+        "partner": ("", "what the particles touch"),
+        "particle": ("1", "number of the particle, from 0"),
+        "channel": ("", "channel of the energy"),
+    },
+    labels={
+        "time": "time",
+        "point": "points",
+        "damper": "dampers",
+        "source": "loads",
+        "mode": "modes",
+        "axis": "axes",
+        "partner": "partners",
+        "particle": "numbers",
+        "channel": "channels",
+    },
+)
+"""Runs of particle dampers."""

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
+from .granular import GranularRun
 from .quantities import MISSING, quantity
-from .schema import CHANNELS
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -22,9 +22,14 @@ _MOST_POINTS = 4
 _CHANNEL_LABELS = {
     "viscous": "lost in the structure",
     "impact": "lost in impacts",
+    "normal": "lost in normal damping",
     "plastic": "lost in plastic flow",
+    "sliding": "lost in sliding",
+    "rolling": "lost in rolling",
     "motion": "left in the motion",
 }
+_RARE = ("plastic", "rolling")  # told only where there is any
+_PARTNER_LABELS = {"particle": "lost among particles", "wall": "lost at walls"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,25 +56,60 @@ class _Row:
 
 def _measure(run: Run) -> dict[str, Value]:
     """Numbers of the summary, in SI units, in the order of its lines."""
-    arrays, log = run.arrays, run.arrays.impacts
-    values: dict[str, Value] = {
-        "status": run.status,
-        "end_time": float(arrays.time[-1]),
-        "impacts": len(log),
-        "supplied_energy": float(run.ledger.supplied[-1]),
-    }
-    values |= {f"share_{channel}": run.ledger.shares[channel] for channel in CHANNELS}
+    arrays = run.arrays
+    values: dict[str, Value] = {"status": run.status, "end_time": float(arrays.time[-1])}
+    values |= _amounts(run)
+    values["supplied_energy"] = float(run.ledger.supplied[-1])
+    values |= {f"share_{channel}": run.ledger.shares[channel] for channel in arrays.channels}
+    if isinstance(run, GranularRun):
+        lost = zip(run.arrays.partners, run.ledger.partner_share, strict=True)
+        values |= {f"share_at_{partner}": float(share) for partner, share in lost}
     values["closure"] = run.closure
-    # Hard impacts have no force, and a contact cut off by the end may lack a number.
-    values["peak_contact_force"] = _largest(log.peak_force[np.isfinite(log.peak_force)])
-    values["largest_approach_speed"] = _largest(log.approach_speed[np.isfinite(log.approach_speed)])
+    values |= _extremes(run)
     if arrays.mode_frequency.size:
         for k, point in enumerate(arrays.points):
             x = arrays.displacement[:, k]
             values[f"peak_displacement[{point}]"] = _largest(np.abs(x))
             values[f"rms_displacement[{point}]"] = _rms(arrays.time, x)
     values["computing_time"] = arrays.wall_time
+    if isinstance(run, GranularRun):
+        moved = run.arrays.radius.size * run.arrays.counts.get("steps", 0)
+        values["particle_steps_per_second"] = moved / arrays.wall_time if arrays.wall_time else float("nan")
     return values
+
+
+def _amounts(run: Run) -> dict[str, Value]:
+    """How much there is of what a run is about."""
+    if not isinstance(run, GranularRun):
+        return {"impacts": len(run.arrays.impacts)}
+    arrays = run.arrays
+    return {
+        "particles": arrays.radius.size,
+        "particle_mass": float(arrays.particle_mass.sum()),
+        "first_touches": sum(arrays.counts.get(f"first_touches_{partner}", 0) for partner in arrays.partners),
+        "contacts": float(arrays.contacts.sum(axis=(1, 2)).mean()),
+        "step": arrays.figures.get("step", float("nan")),
+        "steps_per_contact": arrays.figures.get("steps_per_contact", float("nan")),
+    }
+
+
+def _extremes(run: Run) -> dict[str, Value]:
+    """The largest of what contacts saw."""
+    if isinstance(run, GranularRun):
+        names = ("largest_overlap", "largest_approach_speed")
+        return {name: run.arrays.figures.get(name, float("nan")) for name in names}
+    log = run.arrays.impacts
+    # Hard impacts have no force, and a contact cut off by the end may lack a number.
+    return {
+        "peak_contact_force": _largest(log.peak_force[np.isfinite(log.peak_force)]),
+        "largest_approach_speed": _largest(log.approach_speed[np.isfinite(log.approach_speed)]),
+    }
+
+
+def _notes(run: Run) -> tuple[str, ...]:
+    """What is said below the numbers."""
+    message = (run.message,) if run.message and not run.ok else ()
+    return message + (run.arrays.notes if isinstance(run, GranularRun) else ())
 
 
 def _largest(x: Any) -> float:
@@ -89,14 +129,22 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         _Row("status", "status", ""),
         _Row("end_time", "simulated time", "s"),
         _Row("impacts", "impacts", ""),
+        _Row("particles", "particles", ""),
+        _Row("particle_mass", "their mass", "kg"),
+        _Row("first_touches", "first touches", ""),
+        _Row("contacts", "contacts in the mean", "1"),
+        _Row("step", "time step", "s"),
+        _Row("steps_per_contact", "steps in the shortest contact", "1"),
         _Row("supplied_energy", "energy supplied", "J"),
     ]
-    for channel in CHANNELS:
+    for channel, told in _CHANNEL_LABELS.items():
         key = f"share_{channel}"
-        if channel != "plastic" or any(values[key] != 0.0 for values in all_values):
-            rows.append(_Row(key, _CHANNEL_LABELS[channel], "%"))
+        if channel not in _RARE or any(values.get(key, 0.0) != 0.0 for values in all_values):
+            rows.append(_Row(key, told, "%"))
+    rows += [_Row(f"share_at_{partner}", told, "%") for partner, told in _PARTNER_LABELS.items()]
     rows += [
         _Row("closure", "ledger closure", "order"),
+        _Row("largest_overlap", "largest overlap over radius", "%"),
         _Row("peak_contact_force", "peak contact force", "N"),
         _Row("largest_approach_speed", "largest approach speed", "m/s"),
     ]
@@ -107,7 +155,8 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         rows.append(_Row(f"peak_displacement[{point}]", f"peak displacement{where}", "m"))
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
     rows.append(_Row("computing_time", "computing time", "s"))
-    return rows
+    rows.append(_Row("particle_steps_per_second", "particle-steps a second", "1"))
+    return [row for row in rows if any(row.key in values for values in all_values)]
 
 
 class _Report:
@@ -189,11 +238,13 @@ class Summary(_Report):
         Numbers in SI units: `status`, `end_time`, `impacts`, `supplied_energy`, `share_viscous`,
         `share_impact`, `share_plastic`, `share_motion` (of the energy supplied, adding to one), `closure`,
         `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`,
-        `rms_displacement[point]`, `computing_time`.
+        `rms_displacement[point]`, `computing_time`. Of particles in space: `particles`, `particle_mass`,
+        `first_touches`, `contacts`, `step`, `steps_per_contact`, shares by channel and, as `share_at_particle` and
+        `share_at_wall`, by partner, `largest_overlap` (of the smaller radius), `particle_steps_per_second`.
     """
 
     def __init__(self, run: Run) -> None:
-        super().__init__("", ("",), (run.message,) if run.message and not run.ok else ())
+        super().__init__("", ("",), _notes(run))
         self.values = _measure(run)
 
     def _cells(self) -> list[tuple[str, ...]]:
@@ -224,7 +275,7 @@ class Comparison(_Report):
     def __init__(self, runs: Mapping[str, Run], title: str = "") -> None:
         if not runs:
             raise ValueError("there is no run to compare")
-        notes = tuple(f"{name}: {run.message}" for name, run in runs.items() if run.message and not run.ok)
+        notes = tuple(f"{name}: {note}" for name, run in runs.items() for note in _notes(run))
         super().__init__(title, tuple(runs), notes)
         self.values = {name: _measure(run) for name, run in runs.items()}
 

@@ -1,0 +1,110 @@
+"""Motion of a structure and of the particles in its cavities against time."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..results import GranularArrays, GranularRun
+from .style import (
+    FAINT,
+    SERIES_COLOURS,
+    SERIES_STYLES,
+    PaperFigure,
+    Scale,
+    Size,
+    label,
+    legend_above,
+    paper,
+    pen,
+    scaled,
+    shorten,
+    time_axis,
+)
+
+MOST_SERIES = len(SERIES_COLOURS)
+LETTERS_ASIDE = 14
+
+
+def plot_granular_motion(run: GranularRun, *, size: Size = "column") -> Figure:
+    """Draw the displacement of the structure, the centre of mass of the particles in each cavity, and their contacts.
+
+    Parameters
+    ----------
+    run
+        Run to draw.
+    size
+        Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    Figure
+        With one panel for the structure (unless it cannot move), one for each cavity, and one for contacts.
+
+    Raises
+    ------
+    ValueError
+        When the size is unknown.
+    """
+    arrays = run.arrays
+    moving = arrays.mode_frequency.size > 0
+    panels = int(moving) + len(arrays.dampers) + 1
+    with paper(size):
+        figure = PaperFigure(size, 0.14 + 0.36 * panels if size == "column" else 0.1 + 0.2 * panels)
+        axes = list(np.ravel(figure.subplots(panels, 1, sharex=True)))
+        time = scaled(arrays.time, "s")
+        left = iter(axes)
+        if moving:
+            _draw_structure(next(left), arrays, time)
+        for d, name in enumerate(arrays.dampers):
+            panel = next(left)
+            _draw_centre(panel, arrays, d, time)
+            if len(arrays.dampers) > 1:
+                aside = {"rotation": 270, "ha": "left", "va": "center", "transform": panel.transAxes}
+                panel.text(1.03, 0.5, shorten(name, LETTERS_ASIDE), **aside)
+        _draw_contacts(next(left), run, time)
+        time_axis(axes[-1], arrays.time, time)
+        figure.align_ylabels(axes)
+    return figure
+
+
+def _draw_structure(axes: Axes, arrays: GranularArrays, time: Scale) -> None:
+    x = arrays.displacement[:, :MOST_SERIES]
+    length = scaled(x, "m")
+    axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
+    for k in range(x.shape[1]):
+        name = arrays.points[k] if x.shape[1] > 1 else None
+        _line(axes, arrays, time, x[:, k] / length.divisor, k, name)
+    label(axes, "y", "Displacement", length.unit)
+    legend_above(axes)
+
+
+def _draw_centre(axes: Axes, arrays: GranularArrays, damper: int, time: Scale) -> None:
+    x = arrays.centre_of_mass[:, damper]
+    length = scaled(x, "m")
+    for k, name in enumerate(arrays.axes):
+        _line(axes, arrays, time, x[:, k] / length.divisor, k, f"along {name}")
+    label(axes, "y", "Centre of mass", length.unit)
+    legend_above(axes)
+
+
+def _draw_contacts(axes: Axes, run: GranularRun, time: Scale) -> None:
+    arrays = run.arrays
+    for k, name in enumerate(arrays.dampers[:MOST_SERIES]):
+        told = name if len(arrays.dampers) > 1 else None
+        _line(axes, arrays, time, run.ledger.coordination[:, k], k, told)
+    axes.set_ylim(bottom=0.0)
+    label(axes, "y", "Contacts of a particle", "")
+    legend_above(axes)
+
+
+def _line(axes: Axes, arrays: GranularArrays, time: Scale, values: object, k: int, name: str | None) -> None:
+    axes.plot(
+        arrays.time / time.divisor,
+        np.asarray(values),
+        color=SERIES_COLOURS[k],
+        linestyle=SERIES_STYLES[k],
+        linewidth=pen(),
+        label=name,
+    )
