@@ -238,9 +238,21 @@ protected:
                          [&](const real* y) { return boundary(y, j); });
             for (std::size_t r = 0; r < released_.size(); ++r) {
                 const Released& released = released_[r];
-                consider(Event::opened, static_cast<int>(r),
-                         -gap(problem_, contact(released.contact), y_.data()).value,
-                         [&](const real* y) { return -gap(problem_, contact(released.contact), y).value; });
+                const auto at = [&](const real* y) { return gap(problem_, contact(released.contact), y); };
+                const Gap before = at(y_.data()), after = at(trial_.data());
+                // It may open and close again within the step.
+                if (after.value < 0 && before.rate > 0 && after.rate < 0) {
+                    const real widest =
+                        locate(end, before.rate, after.rate, [&](const real* y) { return at(y).rate; });
+                    integrator_.step(system_, y_.data(), widest, partial_.data());
+                    if (at(partial_.data()).value >= 0) {
+                        std::swap(trial_, partial_);
+                        end = widest;
+                        event = Event::none;
+                    }
+                }
+                consider(Event::opened, static_cast<int>(r), -before.value,
+                         [&](const real* y) { return -at(y).value; });
                 // Only a force that grows: one that was just released may still push by rounding.
                 const real was = apart(y_.data(), released);
                 if (apart(trial_.data(), released) < was)
@@ -281,7 +293,9 @@ protected:
                         continue;
                     }
                     if (after.value >= -blur) continue;
-                    if (weak(c, trial_.data(), trial_[clock], contact_speed())) {
+                    // A dashpot acts at once: as soon as rounding can tell that it closes must do.
+                    if (after.value >= -4 * blur ||
+                        weak(c, trial_.data(), trial_[clock] - y_[clock], contact_speed())) {
                         phase(c) = Phase::touching;
                         event = Event::rest_touch;
                     } else {

@@ -210,7 +210,10 @@ public:
         power = horizon_;
         for (int n = 2; n <= Series::order; ++n) {
             power *= horizon_;
-            if (std::fabs(g.c[n]) * power <= 8192 * epsilon * scale) continue; // rounding of the forces
+            // Rounding of the forces, and of the clock that the loads follow.
+            const real turned = n < Series::order ? (n + 1) * g.c[n + 1] * epsilon * start_->t : 0;
+            if (std::fabs(g.c[n]) * power <= 8192 * epsilon * scale + 64 * std::fabs(turned) * power)
+                continue;
             if (g.c[n] < 0) return -1;
             for (;;) {
                 real rest = 0, later = 1;

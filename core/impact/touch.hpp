@@ -147,14 +147,17 @@ protected:
         result_.impacts.push_back(line);
     }
 
-    // Length of a flight after which the contacts that close from rest still exert a negligible force.
+    // Length of a flight in which the contacts that close from rest go on to close, with a negligible force.
     real rest_start_length(real length) {
         for (int halving = 0; halving < 400; ++halving, length *= 0.5) {
             flight_.at(length, scratch_);
             bool negligible = true;
-            for (std::size_t c = 0; c < phase_.size(); ++c)
-                if (phase_[c] == Phase::touching)
-                    negligible = negligible && weak(static_cast<int>(c), scratch_.y.data(), length, 0);
+            for (int c = 0; c < problem_.contact_count(); ++c) {
+                if (phase(c) != Phase::touching) continue;
+                const real back = gap(problem_, contact(c), scratch_.y.data()).rate * length;
+                negligible = negligible && back <= 8 * epsilon * problem_.dampers[damper_of(c)].clearance &&
+                             weak(c, scratch_.y.data(), length, 0);
+            }
             if (negligible) break;
         }
         return length;

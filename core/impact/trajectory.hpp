@@ -55,10 +55,8 @@ class Trajectory : ClosedContacts {
         std::swap(ahead_.y, state_.y);
         state_.t = end;
         settle_released(touch.contact);
-        if (pressing)
-            begin_at_rest();
-        else if (touch.contact >= 0)
-            meet(touch.contact);
+        if (pressing) begin_at_rest();
+        if (touch.contact >= 0 && length == touch.after) meet(touch.contact);
     }
 
     // Can every released contact only open? Its rate is too large for any acceleration of the flight to turn.

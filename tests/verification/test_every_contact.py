@@ -1,7 +1,7 @@
 """No contact is missed and none invented, first or later, alone or while others are closed: a fine grid against the log."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import fields, replace
 from typing import Any
 
@@ -15,6 +15,8 @@ from rattlebox.results.arrays import ImpactArrays
 Array = NDArray[np.float64]
 CLOSE = 1e-8
 """Passes nearer to touching than this part of the clearance are not told apart: so far the grid is exact."""
+HARD = [308, 327, 342, 518, 1027]
+"""Contacts that reopen within a step, or that close from rest while others are closed."""
 IN_CONTACT = 16
 """Parts of each contact; between contacts the grid has a step of 0.1 ms, some thousandth of a period."""
 
@@ -139,7 +141,7 @@ def complaints(a: Any, seen: Counter[str]) -> Iterator[str]:
             )
 
 
-def check(seeds: range) -> Counter[str]:
+def check(seeds: Iterable[int]) -> Counter[str]:
     """Check these cases, and return how much was looked at."""
     seen: Counter[str] = Counter()
     for seed in seeds:
@@ -150,17 +152,15 @@ def check(seeds: range) -> Counter[str]:
     return seen
 
 
-@pytest.mark.xfail(strict=True, reason="starts that touch can stall, and contacts that reopen in one step are one line")
 def test_every_contact_of_two_hundred_cases_is_logged() -> None:
     """Rows of balls in several cavities: what a fine grid shows of contacts and what the log says are the same."""
-    seen = check(range(200))
+    seen = check([*range(200), *HARD])
     assert seen["contacts"] > 10_000
     assert seen["while another is closed"] > 5_000
     assert seen["near misses"] > 1_000
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=False, reason="as above")
 @pytest.mark.parametrize("block", range(20))
 def test_every_contact_of_ten_thousand_cases_is_logged(block: int) -> None:
     """The same for ten thousand cases, in blocks."""

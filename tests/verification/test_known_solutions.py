@@ -75,6 +75,32 @@ def test_chatter_has_the_exact_times() -> None:
     assert log.approach_speed[:40] == pytest.approx(speed, rel=1e-9, abs=1e-11)
 
 
+@pytest.mark.parametrize("clock", [1e5, 1e7])
+def test_chatter_costs_the_same_late_in_a_long_run(clock: float) -> None:
+    """A ball that comes to rest in each cycle needs as few flights when the clock has few digits left as at first."""
+
+    def flights(start: float) -> int:
+        run = rb.simulate(
+            rb.Case(
+                structure=rb.Shaker(motion=rb.Harmonic(amplitude="1.0467 m", frequency="1 rad/s", start=start)),
+                damper=rb.ImpactDamper(
+                    ball=rb.Sphere(radius=0.01, material="steel", mass=1.0),
+                    gap=50.0,
+                    start=-1.0,
+                    gravity=-1.0,
+                    contact=rb.Tsuji(restitution=0.5),
+                ),
+                duration=start + 100 * np.pi,
+                method=rb.Newton(restitution=0.5, max_events=20_000),
+                output=rb.Output(times=[0.0]),
+            )
+        )
+        assert run.ok
+        return run.arrays.counts["flights"]
+
+    assert flights(clock) <= 1.1 * flights(0.0)
+
+
 def test_chatter_ends_at_rest() -> None:
     """After the time to rest the ball lies still on the floor, and the floor bears its weight."""
     case = cases.dropped(0.5, 0.8, 9.81, 4.0)
