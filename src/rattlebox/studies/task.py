@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
 from inspect import getsource
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 Extra = tuple[tuple[str, int], ...]
 Values = Mapping[str, NDArray[Any]]
 UserMeasure = Callable[["Run"], float]
-_RUNS_AT_ONCE = 64
+_UNHEARD = 0.05  # s, after which a stop is asked for between runs
 
 
 @dataclass
@@ -184,15 +185,19 @@ class SweepTask:
         if result is None or not self.own:
             return result
         columns = {name: np.full(stop - start, np.nan) for name in self.own}
-        for first in range(start, stop, _RUNS_AT_ONCE):
+        first, count = start, threads
+        while first < stop:
             if not go_on(first - start):
                 return None
-            members = range(first, min(first + _RUNS_AT_ONCE, stop))
+            began = perf_counter()
+            members = range(first, min(first + count, stop))
             runs = simulate_many([self.design.case_at(self.case, index) for index in members], threads=threads)
             for index, run in zip(members, runs, strict=True):
                 if run.status == "finished":
                     for name, measure in self.own.items():
                         columns[name][index - start] = measure(run)
+            first = members.stop
+            count = max(threads, int(len(members) * min(2.0, _UNHEARD / (perf_counter() - began))))
         return {**result, **columns}
 
     def _measured(self, start: int, stop: int, threads: int, go_on: Callable[[int], bool]) -> Values | None:
