@@ -1,0 +1,69 @@
+"""What somebody at a terminal sees of a study: a bar with rate and time left, and how to go on after Ctrl-C."""
+
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from rattlebox.studies.store import progress_of
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
+STUDY = f"""\
+measure = ["impacts"]
+[case]
+file = "{EXAMPLE}"
+[axes]
+"damper.start" = {{ from = -0.5, to = 0.5, count = 100000 }}
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="terminals are made otherwise")
+def test_bar_and_ctrl_c(tmp_path: Path) -> None:
+    """On a terminal a bar tells how far, how fast and how long; Ctrl-C ends with code 130 and what to do."""
+    (tmp_path / "study.toml").write_text(STUDY)
+    ours, theirs = pty.openpty()
+    shown = bytearray()
+
+    def read() -> None:
+        while True:
+            try:
+                shown.extend(os.read(ours, 4096))
+            except OSError:  # the other end is closed
+                return
+
+    process = subprocess.Popen(
+        [sys.executable, "-m", "rattlebox.cli", "sweep", "study.toml"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=theirs,
+        env=os.environ | {"TERM": "xterm", "COLUMNS": "120"},
+    )
+    os.close(theirs)
+    reader = threading.Thread(target=read)
+    reader.start()
+    until = time.monotonic() + 60
+    while not re.search(rb"\d/s", shown):
+        assert time.monotonic() < until and process.poll() is None, bytes(shown)
+        time.sleep(0.02)
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    out, _ = process.communicate(timeout=20)
+    reader.join(timeout=10)
+    os.close(ours)
+    text = re.sub(r"\x1b\[[\d;?]*[A-Za-z]", "", shown.decode())
+    assert process.returncode == 130
+    assert out == b""
+    assert re.search(r"[1-9][\d,]* of 100,000 variants .*\d% +[\d,]+/s +\d+:\d\d(:\d\d)? left", text.replace("%", " %"))
+    last = text.strip().splitlines()[-1]
+    done = re.fullmatch(
+        r"stopped; ([\d,]+) of 100,000 variants are in study.zarr, and the same command goes on from there", last
+    )
+    assert done, text
+    assert int(done[1].replace(",", "")) == progress_of(tmp_path / "study.zarr").done > 0
