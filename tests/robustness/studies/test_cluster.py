@@ -135,6 +135,31 @@ def test_a_measure_of_ones_own(local: Client) -> None:
     assert float(here.last_speed[1]) == last_speed(rb.simulate(case.model_copy(update={"dampers": (damper,)})))
 
 
+def test_ready_maps(local: Client) -> None:
+    """Maps that are made of independent runs, and trials of a design, have the bits of this process on a cluster."""
+    case = rb.Case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz")),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+        ),
+        duration="1 s",
+        method=rb.Newton(),
+    )
+    starts = {"damper.start": rb.linspace(-1, 1, 5)}
+    gaps = {"damper.gap": ("0.5 mm", "5 mm")}
+    maps: list[Callable[[Any], xr.Dataset]] = [
+        lambda on: rb.bifurcation(case, "damper.gap", [1e-3, 2e-3], cycles=(20, 8), direction="fresh", on=on),
+        lambda on: rb.basins(case, starts, cycles=(20, 8), on=on),
+        lambda on: rb.lyapunov(case, starts, cycles=(20, 8), pairs=2, on=on),
+        lambda on: rb.loss_map(case, ["1 mm", "2 mm"], [10.0], cycles=(10, 10), on=on),
+        lambda on: rb.sensitivity(case, gaps, "reduced_loss", 8, cycles=(10, 10), on=on),
+        lambda on: rb.design(case, gaps, {"reduced_loss": "max"}, starts=3, cycles=(10, 10), trials=3, on=on),
+    ]
+    for made in maps:
+        there, here = (made(on).drop_vars("case", errors="ignore") for on in (local, None))  # texts have no bits
+        assert bits(there) == bits(here)
+
+
 def test_ctrl_c_stops_the_workers_too(scheduler: Path, tmp_path: Path) -> None:
     """Ctrl-C in the middle of blocks of minutes ends the study at once, and the workers are free for the next one."""
     pressed: list[float] = []

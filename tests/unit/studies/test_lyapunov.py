@@ -79,6 +79,9 @@ def test_study_on_disk(tmp_path):
     for found in (kept, again):
         assert (found.exponent.values == here.exponent.values).all()
         assert (found.running_exponent.values == here.running_exponent.values).all()
+    alone = rb.lyapunov(case(), store=tmp_path / "alone.zarr", **QUICK).load()
+    assert alone.equals(rb.lyapunov(case(), **QUICK))
+    assert alone.exponent.dims == ()
     with pytest.raises(rb.CaseError, match="pairs"):
         rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **{**QUICK, "pairs": 4})
 
