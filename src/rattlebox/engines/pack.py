@@ -280,18 +280,21 @@ def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> Packed:
     between_balls = 0 < place < len(damper.balls)
     law = damper.ball_contact if between_balls and damper.ball_contact is not None else damper.contact
     if isinstance(case.method, Newton):
-        restitution: Restitution | None = case.method.restitution or law.equivalent_restitution(pair)
+        rebound: Restitution | None = case.method.restitution or law.equivalent_restitution(pair)
         normal: Packed = {"law": "linear", "stiffness": 1.0, "mass": pair.mass, "damping": 0.0}
     else:
-        restitution = law.restitution
+        rebound = law.restitution
         name, values = law.coefficients(pair)
         normal = {"law": name, **values}
-    if restitution is None:
-        rebound: Packed = {"law": "constant", "e": 1.0}
-    else:
-        name, values = restitution.coefficients(pair)
-        rebound = {"law": name, **{key: _value(value) for key, value in values.items()}}
-    return {"mass": pair.mass, "normal": normal, "restitution": rebound}
+    return {"mass": pair.mass, "normal": normal, "restitution": restitution(rebound, pair)}
+
+
+def restitution(law: Restitution | None, pair: Pair) -> Packed:
+    """Pack a restitution law for a pair of bodies; of a contact without one, a rebound without loss."""
+    if law is None:
+        return {"law": "constant", "e": 1.0}
+    name, values = law.coefficients(pair)
+    return {"law": name, **{key: _value(value) for key, value in values.items()}}
 
 
 def _value(value: Any) -> Any:

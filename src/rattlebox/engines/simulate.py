@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -25,20 +25,26 @@ if TYPE_CHECKING:
 _MOST_EVENTS = 200_000
 
 
-def simulate(case: Case) -> Run:
+def simulate(case: Case, *, progress: Callable[[int, int], object] | None = None) -> Run:
     """Run a case.
 
     Parameters
     ----------
     case
         What to run. The method is part of it.
+    progress
+        Of particles in space: called now and then with the number of steps done and of all.
 
     Returns
     -------
     Run
         Motion, energy ledger, impacts, and a status: a run that cannot be finished ends with a status and a message,
-        not with an exception, and keeps what it has.
+        not with an exception, and keeps what it has. Of particles in space a GranularRun.
     """
+    if case.particle_dampers:
+        from rattlebox.engines.dem import simulate_dem
+
+        return simulate_dem(case, progress=progress)
     return simulate_many([case])[0]
 
 
@@ -67,6 +73,8 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
     for case in cases:
         if not isinstance(case, Case):
             raise Hint(f"a Case is needed, not {case!r:.60}", 'rb.Case.from_file("case.toml")')
+    if any(case.particle_dampers for case in cases):
+        return _in_space(cases, threads)
     packed = [pack(case) for case in cases]
     results = _simulated(packed, threads)
     free = [k for k, case in enumerate(cases) if not case.output.is_chosen and _is_short(results[k])]
@@ -75,6 +83,14 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
         if result["status"] == results[k]["status"]:
             results[k] = {**result, "seconds": results[k]["seconds"] + result["seconds"]}
     return [_run(case, result) for case, result in zip(cases, results, strict=True)]
+
+
+def _in_space(cases: Sequence[Case], threads: int | None) -> list[Run]:
+    """Cases with particles one by one, each on several threads; those without as usual."""
+    from rattlebox.engines.dem import simulate_dem
+
+    plain = iter(simulate_many([case for case in cases if not case.particle_dampers], threads=threads))
+    return [simulate_dem(case, threads=threads) if case.particle_dampers else next(plain) for case in cases]
 
 
 def _simulated(packed: list[Any], threads: int | None) -> list[dict[str, Any]]:

@@ -16,6 +16,7 @@ STATUSES: tuple[tuple[str, str], ...] = (
         "ledger_open",
         "The run reached its end, but its energy ledger closes only to {value:.2g} of the energy put in: do not trust it.",
     ),
+    ("escaped", "{contact} left its cavity at {value:.6g} m/s, at t = {time:.9g} s."),
 )
 _NAMES = [name for name, _ in STATUSES]
 INTERRUPTED, NOT_FINITE, LEDGER_OPEN = map(_NAMES.index, ("interrupted", "not_finite", "ledger_open"))
@@ -33,11 +34,17 @@ _ADVICE: dict[str, dict[str, str]] = {
         "method, whose contacts take their time.",
     },
     "step_too_small": {"": "Loosen the tolerance. " + _SIZES},
-    "not_finite": {"": _SIZES, "two_step": "Shorten the time steps dt_flight and dt_contact."},
+    "not_finite": {
+        "": _SIZES,
+        "two_step": "Shorten the time steps dt_flight and dt_contact.",
+        "dem": "Shorten dt. " + _SIZES,
+    },
     "ledger_open": {
         "": "Compare with another method.",
         "event_driven": "Lower the tolerance, and compare with another method.",
+        "dem": "Shorten dt, or the fraction of the shortest contact that it is.",
     },
+    "escaped": {"": "Shorten dt, or soften the contacts less."},
 }
 """What to try, by status and kind of method; "" for every other method."""
 

@@ -270,12 +270,26 @@ class Case(Part):
         if self.output.is_chosen:
             return self.output.sample_times(self.duration)
         signals = (*self.loads, *self.base_acceleration())
-        frequencies = [signal.frequency for signal in signals if isinstance(signal, Harmonic)]
-        frequencies += list(np.sqrt(self.modes.stiffness) / (2 * np.pi))
-        even = self.output.sample_times(self.duration, max(frequencies, default=0.0))
+        even = self.output.sample_times(self.duration, self._fastest())
         pulses = [s.start + np.linspace(0, s.duration, 21) for s in signals if isinstance(s, HalfSine)]
         times = np.unique(np.concatenate([even, *pulses]))
         return times[times <= self.duration]
+
+    def even_samples(self) -> int:
+        """Return how many equal parts the samples divide the duration into, for a run in equal steps.
+
+        A rate that does not divide it is raised a little.
+        """
+        if self.output.rate is not None:
+            return max(1, int(np.ceil(self.duration * self.output.rate * (1 - 1e-12))))
+        return self.output.sample_times(self.duration, self._fastest()).size - 1
+
+    def _fastest(self) -> float:
+        """Highest frequency of modes and harmonics [Hz]."""
+        signals = (*self.loads, *self.base_acceleration())
+        frequencies = [signal.frequency for signal in signals if isinstance(signal, Harmonic)]
+        frequencies += list(np.sqrt(self.modes.stiffness) / (2 * np.pi))
+        return max(frequencies, default=0.0)
 
     # ---- files
 

@@ -84,5 +84,7 @@ def quantity(value: float, unit: str, significant: int = 4) -> str:
         return f"{digits(100.0 * value, significant)} %"
     if unit in ("", "1"):
         return digits(value, significant)
+    if unit == "kg" and abs(value) < 1.0:
+        value, unit = 1e3 * value, "g"
     scale, name = prefix(value)
     return f"{digits(value / scale, significant)} {name}{unit}"

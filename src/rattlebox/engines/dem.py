@@ -1,0 +1,309 @@
+"""Particle dampers: Case -> the plain numbers that the core reads -> core -> GranularRun."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.engines.base_motion import base_motion
+from rattlebox.engines.core import core
+from rattlebox.engines.dem_settle import settle
+from rattlebox.engines.dem_step import Step, choose_step, expected_speeds, outcome
+from rattlebox.engines.pack import pack, restitution
+from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
+from rattlebox.model.contacts import Linear
+from rattlebox.model.errors import at
+from rattlebox.model.in_space import direction_of_base, inertia_along
+from rattlebox.model.methods import Dem, EventDriven, Output
+from rattlebox.model.packing import Settled
+from rattlebox.results.granular import GranularArrays, GranularRun
+from rattlebox.results.provenance import Provenance
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rattlebox.model.case import Case
+    from rattlebox.model.granular import ContactTable, Entry, ParticleDamper
+
+    Array = NDArray[np.float64]
+
+Packed = dict[str, Any]
+Progress = Callable[[int, int], object]
+
+CLOSES = 0.01
+"""Of the energy put in: a ledger that misses more has a status."""
+
+
+def simulate_dem(case: Case, *, threads: int | None = None, progress: Progress | None = None) -> GranularRun:
+    """Run a case with particle dampers.
+
+    Parameters
+    ----------
+    case
+        What to run.
+    threads
+        How many at once; default those of the method, or as many as there are cores.
+    progress
+        Called now and then with the number of steps done and of all.
+
+    Returns
+    -------
+    GranularRun
+        Its status tells how it ended.
+
+    Raises
+    ------
+    CaseError
+        When the step that is given is too long, or particles do not settle.
+    """
+    began = time.perf_counter()
+    assert isinstance(case.method, Dem)
+    packed, step, tables = pack_dem(case)
+    dem = core().Dem(packed)
+    dem.threads = threads or case.method.threads or os.cpu_count() or 1
+    status = _follow(dem, step, progress)
+    raw = dem.records()
+    arrays = _arrays(case, packed, raw, dem, status, step, tables, time.perf_counter() - began)
+    run = GranularRun(arrays, case.to_toml, Provenance.now(method=case.method.kind, seed=case.seed))
+    if run.ok and not run.ledger.closes(CLOSES):
+        end = NOT_FINITE if np.isnan(run.closure) else LEDGER_OPEN
+        name, message = describe(end, case.duration, "", run.closure, case.method.kind)
+        run = GranularRun(replace(arrays, status=name, message=message), case.to_toml, run.provenance)
+    return run
+
+
+def _follow(dem: Any, step: Step, progress: Progress | None) -> int:
+    """Run to the end; Ctrl-C ends the run with a status."""
+    try:
+        dem.run(step.count, None if progress is None else lambda done: progress(done, step.count))
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return int(dem.status)
+
+
+# ---- packing
+
+
+def pack_dem(case: Case) -> tuple[Packed, Step, list[ContactTable]]:
+    """Pack a case with particle dampers for the core.
+
+    Parameters
+    ----------
+    case
+        What the user describes.
+
+    Returns
+    -------
+    dict
+        Modes, loads, cavities with their particles, and contacts, as core/python/dem.hpp reads them.
+    Step
+        The time step, and what limits it.
+    list of ContactTable
+        Pairs in each damper.
+
+    Raises
+    ------
+    CaseError
+        When the step that is given is too long, or particles do not settle.
+    """
+    modes = case.modes
+    shapes = [modes.space_shape(damper.point, damper.direction) for damper in case.particle_dampers]
+    tables = [damper.contact_table(shape) for damper, shape in zip(case.particle_dampers, shapes, strict=True)]
+    loads = _loads(case)
+    velocities = _without_particles(case, loads)
+    speeds = expected_speeds(case, [velocities @ shape for shape in shapes])
+    with at("method", "dt"):
+        step = choose_step(case, tables, speeds)
+    contacts: list[Packed] = []
+    cavities = []
+    for index, (damper, shape, table) in enumerate(zip(case.particle_dampers, shapes, tables, strict=True)):
+        with at("dampers", index):
+            cavities.append(_cavity(damper, shape, modes.q0 @ shape, table, len(contacts)))
+        contacts += [_contact(damper, entry) for entry in table.entries]
+    packed = {
+        "dt": step.dt,
+        "steps": step.count,
+        "every": step.every,
+        "gravity": np.array(case.particle_dampers[0].gravity),
+        "mode_decay": _array(modes.decay),
+        "mode_stiffness": _array(modes.stiffness),
+        "mode_displacement": _array(modes.q0),
+        "mode_velocity": _array(modes.p0),
+        "loads": loads,
+        "cavities": cavities,
+        "contacts": contacts,
+    }
+    return packed, step, tables
+
+
+def _array(values: Any) -> Array:
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _loads(case: Case) -> list[Packed]:
+    loads = [
+        {
+            **signal.coefficients(),
+            "shape": _array(case.modes.shape(signal.point, signal.direction)),
+            "base": False,
+            "direction": np.zeros(3),
+        }
+        for signal in case.loads
+    ]
+    for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
+        direction = direction_of_base(case, signal)
+        shape = _array(-inertia_along(case, direction))
+        loads.append({**acceleration.coefficients(), "shape": shape, "base": True, "direction": direction})
+    return loads
+
+
+def _without_particles(case: Case, loads: list[Packed]) -> Array:
+    """Modal velocities of the structure alone, (T, m)."""
+    if not case.modes.decay.size:
+        return np.zeros((0, 0))
+    alone = case.model_copy(
+        update={"dampers": (), "base": (), "loads": (), "method": EventDriven(), "output": Output()}
+    )
+    plain = [{key: value for key, value in load.items() if key != "direction"} for load in loads]
+    (raw,) = core().simulate([{**pack(alone), "loads": plain, "sample_times": _array(case.sample_times())}], 1)
+    return _array(raw["state"].reshape(raw["time"].size, -1)[:, 1::2])
+
+
+def _cavity(damper: ParticleDamper, shape: Array, displacement: Array, table: ContactTable, first: int) -> Packed:
+    """A cavity and what is in it; its entries begin at a number in the list of contacts."""
+    walls, contents, start = damper.cavity.walls(), damper.contents, damper.start
+    position = start.position
+    if isinstance(damper.packing, Settled):
+        with at("packing"):
+            position = settle(damper)
+    return {
+        "shape": _array(shape),
+        "wall_axis": _array(walls.axis),
+        "wall_offset": _array(walls.offset),
+        "wall_curved": np.ascontiguousarray(walls.curved, dtype=np.int64),
+        "wall_kind": np.ascontiguousarray(table.wall_kind, dtype=np.int64),
+        "position": _array(position + displacement),
+        "velocity": _array(start.velocity),
+        "spin": _array(start.spin),
+        "radius": _array(contents.radius),
+        "mass": _array(contents.mass),
+        "inertia": _array(contents.inertia),
+        "kind": np.ascontiguousarray(contents.species, dtype=np.int64),
+        "particle_entry": np.ascontiguousarray(table.particle_entry + first, dtype=np.int64),
+        "wall_entry": np.ascontiguousarray(table.wall_entry + first, dtype=np.int64),
+    }
+
+
+def _contact(damper: ParticleDamper, entry: Entry) -> Packed:
+    law, values = damper.softened(entry)
+    return {
+        "normal": {"law": law, **{key: float(value) for key, value in values.items()}},
+        "restitution": restitution(entry.contact.restitution, entry.pair),
+        "radius": float(entry.pair.radius),
+        "mass": float(entry.pair.mass),
+        "by_time": isinstance(entry.contact, Linear) and entry.contact.contact_time is not None,
+        **{key: float(value) for key, value in damper.softened_friction(entry).items()},
+    }
+
+
+# ---- results
+
+
+def _arrays(
+    case: Case,
+    packed: Packed,
+    raw: dict[str, Any],
+    dem: Any,
+    status: int,
+    step: Step,
+    tables: list[ContactTable],
+    seconds: float,
+) -> GranularArrays:
+    modes, dampers = case.modes, case.particle_dampers
+    times, q, p = raw["time"], raw["q"], raw["p"]
+    lines = modes.lines()
+    at_points = np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
+    shapes = [cavity["shape"] for cavity in packed["cavities"]]
+    displacement = np.stack([q @ shape for shape in shapes], axis=1)
+    base = np.zeros((3, times.size, 3))
+    for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
+        base += np.multiply.outer(base_motion(acceleration, times), direction_of_base(case, signal))
+    counters = dem.counters()
+    figures, notes = outcome(case, tables, step, counters["largest_overlap"], counters["largest_approach_speed"])
+    names = [damper.label(index) for index, damper in enumerate(dampers)]
+    name, message = _told(case, names, dem, status, step)
+    state = dem.state()
+    centres = [state["q"] @ shape for shape in shapes]
+    ends = state["cavities"]
+    contents = [damper.contents for damper in dampers]
+    touches = np.asarray(counters["first_touches"])
+    return GranularArrays(
+        time=times,
+        points=tuple(lines),
+        dampers=tuple(names),
+        loads=tuple(f"{signal.kind} {index + 1}" for index, signal in enumerate(case.loads)),
+        displacement=q @ at_points.T,
+        velocity=p @ at_points.T,
+        cavity_displacement=displacement,
+        cavity_velocity=np.stack([p @ shape for shape in shapes], axis=1),
+        cavity_force=raw["force"],
+        cavity_moment=raw["moment"],
+        centre_of_mass=raw["centre"] - displacement,
+        momentum=raw["momentum"],
+        contacts=raw["contacts"],
+        base_displacement=base[0],
+        base_velocity=base[1],
+        base_acceleration=base[2],
+        load=np.array([signal.evaluate(times) for signal in case.loads]).reshape(len(case.loads), times.size).T,
+        particle_mass=np.array([each.mass.sum() for each in contents]),
+        mode_frequency=np.sqrt(modes.stiffness) / (2 * np.pi),
+        mode_energy=0.5 * (p**2 + modes.stiffness * q**2),
+        kinetic_energy=raw["kinetic"],
+        rotation_energy=raw["rotation"],
+        contact_energy=raw["elastic"],
+        gravity_energy=raw["potential"],
+        load_work=raw["load_work"].sum(axis=1),
+        base_work=raw["base_work"].sum(axis=1),
+        viscous_loss=raw["viscous_loss"].sum(axis=1),
+        normal_loss=raw["normal_loss"],
+        plastic_loss=raw["plastic_loss"],
+        sliding_loss=raw["sliding_loss"],
+        rolling_loss=raw["rolling_loss"],
+        position=np.concatenate([end["position"] - c for end, c in zip(ends, centres, strict=True)]),
+        particle_velocity=np.concatenate([end["velocity"] for end in ends]),
+        spin=np.concatenate([end["spin"] for end in ends]),
+        radius=np.concatenate([each.radius for each in contents]),
+        mass=np.concatenate([each.mass for each in contents]),
+        particle_damper=np.repeat(np.arange(len(dampers)), [each.radius.size for each in contents]),
+        particle_species=np.concatenate([each.species for each in contents]),
+        status=name,
+        message=message,
+        counts={
+            "steps": counters["steps"],
+            "rebuilds": counters["rebuilds"],
+            "refreshes": counters["refreshes"],
+            "first_touches_particle": int(touches[:, 0].sum()),
+            "first_touches_wall": int(touches[:, 1].sum()),
+            "extrapolated": counters["extrapolated"],
+            "memory_bytes": counters["memory_bytes"],
+        },
+        figures=figures,
+        notes=tuple(notes),
+        wall_time=seconds,
+    )
+
+
+def _told(case: Case, names: list[str], dem: Any, status: int, step: Step) -> tuple[str, str]:
+    """Name of the status, and what happened."""
+    if status == 0:
+        return describe(0, case.duration, "", 0.0, case.method.kind)
+    stopped = dem.stopped
+    where = f"Particle {stopped['particle']} of {names[stopped['cavity']]!r}" if stopped else ""
+    time_, speed = (stopped["time"], stopped["speed"]) if stopped else (dem.state()["time"], 0.0)
+    name, message = describe(status, time_, where, speed, case.method.kind)
+    return name, f"{message} The step was {step.dt:.4g} s."

@@ -1,0 +1,385 @@
+"""The time step of a run with particles: what limits it, and what the run made of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.engines.base_motion import base_motion
+from rattlebox.model.contacts import Linear, Tsuji, alpha_of_restitution
+from rattlebox.model.errors import Hint
+from rattlebox.model.in_space import direction_of_base
+from rattlebox.model.methods import Dem
+from rattlebox.model.restitutions import Constant
+from rattlebox.model.signals import HalfSine, Harmonic
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+    from rattlebox.model.granular import ContactTable, Entry, ParticleDamper
+
+BOUND = 0.2
+"""Longest step over the shortest contact. A lone Hertz contact is followed stably up to half of it; a particle that many
+others hold swings up to twice as fast, and friction adds to it."""
+
+RAYLEIGH = 0.2
+"""Longest automatic step over the time that a Rayleigh wave takes along the smallest particle."""
+
+MOST_OVERLAP = 0.01
+"""Of the smaller radius: beyond it contacts of spheres are no longer small against them."""
+
+FEWEST_STEPS = 20.0
+"""In the shortest contact."""
+
+HERTZ_TIME = 2.9432752
+"""Duration of a Hertz contact over its largest overlap by the approach speed."""
+
+HERTZ_FREQUENCY = 1.5 * 1.25
+"""Square of the largest frequency of a Hertz contact times the square of overlap by speed."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Something that a step must resolve.
+
+    Attributes
+    ----------
+    duration
+        How long it lasts [s].
+    step
+        Longest automatic step [s].
+    bound
+        Longest step that is not refused [s]; infinite if any is allowed.
+    what
+        What it is, in words.
+    is_contact
+        Whether it is a contact.
+    """
+
+    duration: float
+    step: float
+    bound: float
+    what: str
+    is_contact: bool = False
+
+
+@dataclass(frozen=True)
+class Step:
+    """The step of a run.
+
+    Attributes
+    ----------
+    dt
+        [s].
+    every
+        Steps between samples.
+    count
+        Steps in all.
+    limit
+        What limits it most.
+    shortest
+        The shortest contact that is expected.
+    speeds
+        Largest approach speed that is expected in each damper [m/s].
+    """
+
+    dt: float
+    every: int
+    count: int
+    limit: Limit
+    shortest: Limit
+    speeds: tuple[float, ...]
+
+
+def contact_time(law: str, values: Mapping[str, Any], speed: float) -> float:
+    """Return how long a contact without dashpot lasts [s].
+
+    Parameters
+    ----------
+    law
+        The core's name of the law.
+    values
+        Its coefficients for the pair.
+    speed
+        Approach speed [m/s].
+
+    Notes
+    -----
+    Hertz: 2.943 (5 m*/(4 A))^(2/5) V^(-1/5). Linear: pi sqrt(m*/k). Contacts that yield: that of a Hertz contact with the
+    largest stiffness that is met, on loading up to the yield point or at the begin of unloading.
+    """
+    mass, stiffness = values["mass"], values["stiffness"]
+    if law == "linear":
+        return float(math.pi * math.sqrt(mass / stiffness))
+    if speed == 0:
+        return math.inf
+    if law == "hertz_tsuji":
+        return float(HERTZ_TIME * (1.25 * mass / stiffness) ** 0.4 * speed**-0.2)
+    radius, modulus, pressure = values["radius"], values["modulus"], values["yield_pressure"]
+    depth = radius * (math.pi * pressure / (2 * modulus)) ** 2
+    force = stiffness * depth**1.5
+    left = mass * speed**2 / 2 - 0.4 * force * depth
+    if left <= 0:
+        return float(HERTZ_TIME * (1.25 * mass / stiffness) ** 0.4 * speed**-0.2)
+    slope = math.pi * pressure * radius
+    largest = math.sqrt(force**2 + 2 * slope * left)  # energy beyond yield: (F^2 - F_y^2) / (2 slope)
+    wide = 4 * modulus / (3 * largest) * ((2 * largest + force) / (2 * math.pi * pressure)) ** 1.5
+    recovered = (3 * largest / (4 * modulus * math.sqrt(wide))) ** (2 / 3)
+    steepest = max(1.5 * largest / recovered, 1.5 * force / depth)
+    return float(HERTZ_TIME * math.sqrt(HERTZ_FREQUENCY * mass / steepest))
+
+
+def of_sizes(law: str, values: Mapping[str, Any], by_time: bool, radius: float, mass: float) -> dict[str, Any]:
+    """Return the coefficients of a law for a pair of other sizes, with this R* [m] and m* [kg].
+
+    Parameters
+    ----------
+    law, values
+        The law, and its coefficients for the pair of reference.
+    by_time
+        Whether a linear stiffness stands for a contact time.
+    radius, mass
+        Of the pair.
+    """
+    given = dict(values)
+    if law == "linear":
+        return {**given, "mass": mass, "stiffness": given["stiffness"] * (mass / given["mass"] if by_time else 1.0)}
+    if "radius" in given:
+        scale = math.sqrt(radius / given["radius"])
+        return {**given, "mass": mass, "radius": radius, "stiffness": given["stiffness"] * scale}
+    return {**given, "mass": mass}
+
+
+def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ...]:
+    """Return the largest approach speed to expect in each damper [m/s].
+
+    The sum of what a free particle and its cavity may differ by: the span of the cavity's velocity without particles, that
+    of the base's, the speed of a fall through the cavity, and twice the largest speed at the start.
+
+    Parameters
+    ----------
+    case
+        The case.
+    cavity_velocities
+        Velocity of each cavity without particles, (T, 3) [m/s].
+    """
+    times = case.sample_times()
+    base = np.zeros((times.size, 3))
+    for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
+        base += np.outer(base_motion(acceleration, times)[1], direction_of_base(case, signal))
+    speeds = []
+    for damper, velocity in zip(case.particle_dampers, cavity_velocities, strict=True):
+        gravity = np.array(damper.gravity)
+        size = float(np.linalg.norm(gravity))
+        fall = math.sqrt(2 * size * damper.cavity.extent(gravity / size)) if size else 0.0
+        start = 2 * float(np.linalg.norm(damper.start.velocity, axis=1).max())
+        speeds.append(_span(velocity) + _span(base) + fall + start)
+    return tuple(speeds)
+
+
+def _span(velocity: Any) -> float:
+    return float(np.linalg.norm(np.ptp(velocity, axis=0))) if len(velocity) else 0.0
+
+
+def contact_limits(damper: ParticleDamper, table: ContactTable, speed: float, fraction: float) -> Iterator[Limit]:
+    """Yield a limit for each kind of pair in a damper: its shortest contact at a speed.
+
+    Parameters
+    ----------
+    damper
+        The damper.
+    table
+        Its pairs.
+    speed
+        Approach speed [m/s].
+    fraction
+        Of a contact, for a step.
+    """
+    for entry in table.entries:
+        law, values = damper.softened(entry)
+        by_time = isinstance(entry.contact, Linear) and entry.contact.contact_time is not None
+        duration, sizes = math.inf, ""
+        for pair_radius, pair_mass, told in _sizes(damper, entry):
+            reference = {**values, "radius": entry.pair.radius} if law == "hertz_tsuji" else values
+            lasts = contact_time(law, of_sizes(law, reference, by_time, pair_radius, pair_mass), speed)
+            if lasts < duration:
+                duration, sizes = lasts, told
+        at = "" if law == "linear" else f" at {speed:.3g} m/s"
+        what = f"contact of {' and '.join(entry.names)} ({sizes}){at}, {_time(duration)}"
+        bound = BOUND * duration / max(1.0, 2 * _ratio(entry, values))
+        yield Limit(duration, fraction * duration, bound, what, is_contact=True)
+
+
+def _sizes(damper: ParticleDamper, entry: Entry) -> Iterator[tuple[float, float, str]]:
+    """R*, m* and a description of the smallest and largest pairs of an entry."""
+    labels = [species.label for species in damper.particles]
+    extremes = []
+    for name, body in zip(entry.names, (entry.pair.below, entry.pair.above), strict=True):
+        if name not in labels:
+            extremes.append([(math.inf, float(body.mass))])
+            continue
+        own = damper.contents.species == labels.index(name)
+        radii, masses = damper.contents.radius[own], damper.contents.mass[own]
+        extremes.append([(float(radii[k]), float(masses[k])) for k in {int(radii.argmin()), int(radii.argmax())}])
+    for radius, mass in extremes[0]:
+        for other_radius, other_mass in extremes[1]:
+            told = [f"{2e3 * r:.4g} mm" for r in (radius, other_radius) if math.isfinite(r)]
+            pair = 1 / (1 / radius + 1 / other_radius), 1 / (1 / mass + 1 / other_mass)
+            yield *pair, "diameter " + " and ".join(dict.fromkeys(told))
+
+
+def _ratio(entry: Entry, values: Mapping[str, Any]) -> float:
+    """Damping ratio of a contact where it is the same at every speed, else 0."""
+    contact = entry.contact
+    if "damping" in values:
+        return float(values["damping"] / (2 * math.sqrt(values["stiffness"] * values["mass"])))
+    if "alpha" in values:
+        return float(values["alpha"] / math.sqrt(5))
+    if isinstance(contact.restitution, Constant) and isinstance(contact, (Tsuji, Linear)):
+        return float(alpha_of_restitution(contact.restitution.e, contact.ending)) / math.sqrt(5)
+    return 0.0
+
+
+def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> list[Limit]:
+    """Return all that a step must resolve.
+
+    Parameters
+    ----------
+    case
+        The case.
+    tables
+        Pairs of each damper.
+    speeds
+        Largest approach speed to expect in each damper [m/s].
+    """
+    assert isinstance(case.method, Dem)
+    fraction = case.method.fraction
+    found: list[Limit] = []
+    for damper, table, speed in zip(case.particle_dampers, tables, speeds, strict=True):
+        found += contact_limits(damper, table, speed, fraction)
+        for index, species in enumerate(damper.particles):
+            if all(isinstance(entry.contact, Linear) for entry in table.entries if species.label in entry.names):
+                continue
+            radius = float(damper.contents.radius[damper.contents.species == index].min())
+            material = species.material
+            shear = material.young / (2 * (1 + material.poisson)) / damper.softening
+            wave = (0.1631 * material.poisson + 0.8766) * math.sqrt(shear / material.density)
+            time = math.pi * radius / wave
+            told = f"Rayleigh wave along {species.label} (diameter {2e3 * radius:.4g} mm), {_time(time)}"
+            found.append(Limit(time, RAYLEIGH * time, math.inf, told))
+    for k, stiffness in enumerate(case.modes.stiffness):
+        if stiffness > 0:
+            period = 2 * math.pi / math.sqrt(stiffness)
+            found.append(Limit(period, fraction * period, BOUND * period, f"period of mode {k + 1}, {_time(period)}"))
+    for signal in (*case.loads, *case.base_acceleration()):
+        if isinstance(signal, HalfSine):
+            found.append(
+                Limit(signal.duration, fraction * signal.duration, math.inf, f"pulse, {_time(signal.duration)}")
+            )
+        elif isinstance(signal, Harmonic):
+            period = 1 / signal.frequency
+            found.append(Limit(period, fraction * period, math.inf, f"period of a harmonic, {_time(period)}"))
+    return found
+
+
+def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> Step:
+    """Return the step: as given, or from what it must resolve; a little shorter so that samples fall on steps.
+
+    Parameters
+    ----------
+    case
+        The case.
+    tables
+        Pairs of each damper.
+    speeds
+        Largest approach speed to expect in each damper [m/s].
+
+    Raises
+    ------
+    Hint
+        When the step that is given is too long to be stable.
+    """
+    assert isinstance(case.method, Dem)
+    found = limits(case, tables, speeds)
+    tightest = min(found, key=lambda limit: limit.step)
+    samples = case.even_samples()
+    if case.method.dt == "auto":
+        longest = tightest.step
+    else:
+        longest = float(case.method.dt)
+        refusing = min(found, key=lambda limit: limit.bound)
+        if longest > refusing.bound:
+            raise Hint(
+                f"dt = {_time(longest)} is too long to be stable: the bound is {_time(refusing.bound)}, for the "
+                f"{refusing.what}",
+                'dt = "auto"',
+            )
+    interval = case.duration / samples
+    every = math.ceil(interval / longest * (1 - 1e-12))
+    shortest = min((limit for limit in found if limit.is_contact), key=lambda limit: limit.duration)
+    return Step(interval / every, every, every * samples, tightest, shortest, speeds)
+
+
+def outcome(
+    case: Case, tables: list[ContactTable], step: Step, overlap: float, speed: float
+) -> tuple[dict[str, float], list[str]]:
+    """Return figures and notes on a step, after the run.
+
+    Parameters
+    ----------
+    case, tables, step
+        As for `choose_step`, and what it returned.
+    overlap
+        Largest overlap over the smaller radius.
+    speed
+        Largest approach speed at a first touch [m/s].
+    """
+    shortest = min(
+        (
+            limit
+            for damper, table in zip(case.particle_dampers, tables, strict=True)
+            for limit in contact_limits(damper, table, speed, 1.0)
+        ),
+        key=lambda limit: limit.duration,
+    )
+    steps = shortest.duration / step.dt
+    figures = {
+        "step": step.dt,
+        "longest_automatic_step": step.limit.step,
+        "expected_approach_speed": max(step.speeds),
+        "largest_approach_speed": speed,
+        "steps_per_contact": steps,
+        "largest_overlap": overlap,
+    }
+    assert isinstance(case.method, Dem)
+    how = "limited by the" if case.method.dt == "auto" else "as given; an automatic one would be limited by the"
+    notes = [f"step {_time(step.dt)}, {how} {step.limit.what}"]
+    for damper in case.particle_dampers:
+        if damper.softening > 1:
+            power = 0.5 if isinstance(damper.contact, Linear) else 0.4
+            factor = damper.softening**power
+            notes.append(
+                f"moduli are divided by {damper.softening:g}: contacts last {factor:.3g} times as long, and overlap "
+                f"{factor:.3g} times as much"
+            )
+            break
+    if math.isfinite(steps) and steps < FEWEST_STEPS:
+        notes.append(
+            f"warning: only {steps:.3g} steps in the shortest contact, that of {shortest.what.removeprefix('contact of ')}; "
+            f"at least {FEWEST_STEPS:g} are good"
+        )
+    if overlap > MOST_OVERLAP:
+        notes.append(
+            f"warning: overlaps reach {100 * overlap:.3g} % of the radius, and should stay below {100 * MOST_OVERLAP:g} %: "
+            "less softening or a stiffer contact"
+        )
+    return figures, notes
+
+
+def _time(seconds: float) -> str:
+    from rattlebox.results.quantities import quantity
+
+    return quantity(seconds, "s", 3) if math.isfinite(seconds) else "for ever"
