@@ -8,6 +8,17 @@ from pathlib import Path
 import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
+PAGES = (
+    "analysis",
+    "basins",
+    "bifurcation",
+    "design",
+    "frequency_response",
+    "loss_map",
+    "lyapunov",
+    "sensitivity",
+    "sweep",
+)
 
 
 def examples(page):
@@ -16,7 +27,7 @@ def examples(page):
     return re.findall(pattern, page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 
-@pytest.mark.parametrize("name", ["analysis", "basins", "bifurcation", "frequency_response", "lyapunov", "sweep"])
+@pytest.mark.parametrize("name", PAGES)
 def test_examples_print_what_the_page_says(name, tmp_path, monkeypatch):
     """Run from top to bottom, every example prints the text that follows it."""
     monkeypatch.chdir(tmp_path)
