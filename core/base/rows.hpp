@@ -1,0 +1,143 @@
+// Rows of four numbers, as vectors in space with one number beside them, and eight rows turned into lanes.
+//
+// A particle's or a contact's data lie together, so that a contact fetches a few whole rows from memory and
+// not a dozen scattered numbers; turned into lanes, eight contacts are computed at once.
+#pragma once
+
+#include "base/lanes.hpp"
+
+namespace rattlebox {
+
+// Lanes live in registers only where functions of them are inlined, which compilers decide by size.
+#define RATTLEBOX_INLINE __attribute__((always_inline)) inline
+
+typedef real Row __attribute__((vector_size(4 * sizeof(real))));
+
+inline Row row(real x, real y, real z, real w = 0) { return Row{x, y, z, w}; }
+inline Row row(real all) { return Row{} + all; }
+inline real dot(Row a, Row b) {
+    const Row c = a * b;
+    return (c[0] + c[1]) + c[2];
+}
+inline Row cross(Row a, Row b) {
+    return Row{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0};
+}
+
+// ---- what the laws need beside arithmetic, for a number and for lanes alike
+
+inline real all(real, real v) { return v; }
+inline real root(real a) { return std::sqrt(a); }
+inline real larger(real a, real b) { return a > b ? a : b; }
+inline real smaller(real a, real b) { return a < b ? a : b; }
+inline real choose(real c, real a, real b) { return c > 0 ? a : b; } // a where c > 0
+
+template <int n> RATTLEBOX_INLINE Pack<n> all(const Pack<n>&, real v) { return Pack<n>::all(v); }
+
+template <int n> RATTLEBOX_INLINE Pack<n> root(const Pack<n>& a) {
+    if constexpr (n > register_width) {
+        return {root(a.low), root(a.high)};
+    } else {
+        Pack<n> r;
+        for (int i = 0; i < n; ++i) r.v[i] = std::sqrt(a.v[i]);
+        return r;
+    }
+}
+
+template <int n> RATTLEBOX_INLINE Pack<n> smaller(const Pack<n>& a, const Pack<n>& b) {
+    if constexpr (n > register_width)
+        return {smaller(a.low, b.low), smaller(a.high, b.high)};
+    else
+        return {a.v < b.v ? a.v : b.v};
+}
+
+template <int n> RATTLEBOX_INLINE Pack<n> choose(const Pack<n>& c, const Pack<n>& a, const Pack<n>& b) {
+    if constexpr (n > register_width)
+        return {choose(c.low, a.low, b.low), choose(c.high, a.high, b.high)};
+    else
+        return {c.v > 0 ? a.v : b.v};
+}
+
+inline Lanes operator-(const Lanes& a) { return Lanes::all(0) - a; }
+
+// ---- a vector in space of each lane
+
+template <class T> struct Vector {
+    T x, y, z;
+
+    RATTLEBOX_INLINE friend Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    RATTLEBOX_INLINE friend Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    RATTLEBOX_INLINE friend Vector operator*(const T& s, const Vector& a) { return {s * a.x, s * a.y, s * a.z}; }
+    RATTLEBOX_INLINE friend T dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+    RATTLEBOX_INLINE friend Vector cross(const Vector& a, const Vector& b) {
+        return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    }
+};
+
+template <int n> struct Columns {
+    Pack<n> x, y, z, w;
+    Vector<Pack<n>> vector() const { return {x, y, z}; }
+};
+
+// The rows that at(0), at(1), ... point to, as lanes.
+template <int n = lane_count, class At> RATTLEBOX_INLINE Columns<n> columns(At&& at) {
+    if constexpr (n > register_width) {
+        const auto low = columns<n / 2>(at);
+        const auto high = columns<n / 2>([&](int l) { return at(l + n / 2); });
+        return {{low.x, high.x}, {low.y, high.y}, {low.z, high.z}, {low.w, high.w}};
+#if defined(__AVX512F__)
+    } else if constexpr (n == 8) {
+        const auto two = [&](int l) {
+            return __builtin_shufflevector(*at(l), *at(l + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+        };
+        const auto a = two(0), b = two(1), c = two(2), d = two(3);
+        const auto xz = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+        const auto yw = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+        const auto zx = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+        const auto wy = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+        return {{__builtin_shufflevector(xz, zx, 0, 1, 8, 9, 4, 5, 12, 13)},
+                {__builtin_shufflevector(yw, wy, 0, 1, 8, 9, 4, 5, 12, 13)},
+                {__builtin_shufflevector(xz, zx, 2, 3, 10, 11, 6, 7, 14, 15)},
+                {__builtin_shufflevector(yw, wy, 2, 3, 10, 11, 6, 7, 14, 15)}};
+#endif
+    } else if constexpr (n == 4) {
+        const Row a = *at(0), b = *at(1), c = *at(2), d = *at(3);
+        const Row xz = __builtin_shufflevector(a, b, 0, 4, 2, 6), yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+        const Row zx = __builtin_shufflevector(c, d, 0, 4, 2, 6), wy = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+        return {{__builtin_shufflevector(xz, zx, 0, 1, 4, 5)},
+                {__builtin_shufflevector(yw, wy, 0, 1, 4, 5)},
+                {__builtin_shufflevector(xz, zx, 2, 3, 6, 7)},
+                {__builtin_shufflevector(yw, wy, 2, 3, 6, 7)}};
+    } else {
+        static_assert(n == 2);
+        const Row a = *at(0), b = *at(1);
+        const auto both = [&](int k) { return Pack<n>{typename Pack<n>::Register{a[k], b[k]}}; };
+        return {both(0), both(1), both(2), both(3)};
+    }
+}
+
+// The other way: lane l becomes the row that at(l) points to. Where lanes share a row, one of them stays.
+template <int n, class At> RATTLEBOX_INLINE void store(const Columns<n>& c, At&& at) {
+    if constexpr (n > register_width) {
+        store(Columns<n / 2>{c.x.low, c.y.low, c.z.low, c.w.low}, at);
+        store(Columns<n / 2>{c.x.high, c.y.high, c.z.high, c.w.high}, [&](int l) { return at(l + n / 2); });
+#if defined(__AVX512F__)
+    } else if constexpr (n == 8) {
+        const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 8, 9, 4, 5, 12, 13);
+        const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 8, 9, 4, 5, 12, 13);
+        const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 10, 11, 6, 7, 14, 15);
+        const auto wy = __builtin_shufflevector(c.y.v, c.w.v, 2, 3, 10, 11, 6, 7, 14, 15);
+        const auto put = [&](int l, auto both) {
+            *at(l) = __builtin_shufflevector(both, both, 0, 1, 2, 3);
+            *at(l + 4) = __builtin_shufflevector(both, both, 4, 5, 6, 7);
+        };
+        put(0, __builtin_shufflevector(xz, yw, 0, 8, 2, 10, 4, 12, 6, 14));
+        put(1, __builtin_shufflevector(xz, yw, 1, 9, 3, 11, 5, 13, 7, 15));
+        put(2, __builtin_shufflevector(zx, wy, 0, 8, 2, 10, 4, 12, 6, 14));
+        put(3, __builtin_shufflevector(zx, wy, 1, 9, 3, 11, 5, 13, 7, 15));
+#endif
+    } else {
+        for (int l = 0; l < n; ++l) *at(l) = Row{c.x.v[l], c.y.v[l], c.z.v[l], c.w.v[l]};
+    }
+}
+
+} // namespace rattlebox

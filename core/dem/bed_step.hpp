@@ -1,0 +1,238 @@
+// One step of the particles of one cavity, chunk by chunk.
+//
+// Velocity Verlet. Forces that depend on the velocity take the one predicted from the last acceleration, v + dt a, which keeps
+// the second order:  v' = u + dt/2 (a' - a),  u' = v' + dt a',  x' = x + dt v' + dt^2/2 a',  u predicted, a the last.
+// A particle adds up the forces on it in the order of its contacts, whoever does it.
+#pragma once
+
+#include "dem/forces.hpp"
+#include "dem/neighbours.hpp"
+
+namespace rattlebox::dem {
+
+// How the laws of one list of contacts are computed.
+struct Kind {
+    enum Normal : int { hertz, linear, plastic } normal = hertz;
+    bool rough = false, rolls = false;
+    Contacting how;
+};
+
+struct Stopped {
+    Status status = Status::finished;
+    int particle = -1, wall = -1;
+    real value = 0;
+};
+
+class BedStep {
+    Bed& bed_;
+    const Problem& problem_;
+    Kind pair_, wall_;
+
+    const Encounter& between(int i, int j) const {
+        const Cavity& c = *bed_.cavity;
+        return at(problem_.encounters, at(c.particle_entry, at(bed_.kind, i) * c.kinds + at(bed_.kind, j)));
+    }
+    const Encounter& with_wall(int i, int w) const {
+        const Cavity& c = *bed_.cavity;
+        return at(problem_.encounters, at(c.wall_entry, at(bed_.kind, i) * c.wall_kinds + at(c.walls, w).kind));
+    }
+    static real moment_at_edge(Row position, Row velocity, Row spin) {
+        return position[3] / spin[3] + square(position[3]) / velocity[3];
+    }
+
+    Touch touch(int k, Partner partner) const {
+        const ContactList& list = partner == particle ? bed_.pairs : bed_.walls;
+        const int i = at(list.first, k), j = at(list.second, k);
+        const Row a = at(bed_.position, i);
+        const real edge = moment_at_edge(a, at(bed_.velocity, i), at(bed_.spin, i));
+        if (partner == particle) {
+            const Row b = at(bed_.position, j), way = b - a;
+            const real radius = 1 / (1 / a[3] + 1 / b[3]);
+            const real mass = 1 / (at(bed_.velocity, i)[3] + at(bed_.velocity, j)[3]);
+            const real other = moment_at_edge(b, at(bed_.velocity, j), at(bed_.spin, j));
+            return {&between(i, j), radius, mass, 1 / (1 / edge + 1 / other),
+                    dot(at(bed_.velocity, i) - at(bed_.velocity, j), way) / std::sqrt(dot(way, way))};
+        }
+        const Near near = nearest(at(bed_.cavity->walls, j), a - bed_.motion.displacement);
+        real mobility = at(bed_.velocity, i)[3];
+        for (const Row& shape : bed_.cavity->shape) mobility += square(dot(shape, near.normal));
+        return {&with_wall(i, j), a[3], 1 / mobility, edge,
+                dot(at(bed_.velocity, i) - bed_.motion.velocity, near.normal)};
+    }
+
+    // The curve that unloads from the deepest overlap so far, and the energy that reaching it has cost.
+    void settle(ContactList& list, int k, Partner partner, Tally& tally) const {
+        Row& dent = at(list.dent, k);
+        const Touch t = touch(k, partner);
+        scaled(*t.encounter, t).visit([&](const auto& law) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(law)>, Thornton>) {
+                if (dent[0] > law.yield_overlap()) {
+                    Memory now, before;
+                    now.phase = before.phase = Thornton::unloading;
+                    now.deepest = dent[0], before.deepest = dent[3];
+                    tally.plastic[partner] += law.plastic(now, 0) - law.plastic(before, 0);
+                    law.unloading_curve(dent[0], dent[1], dent[2]);
+                }
+            }
+        });
+        dent[3] = dent[0];
+    }
+
+    template <class View>
+    void visit(ContactList& list, const View& view, int chunk, int tiers, const Kind& kind, Partner partner, Tally& tally,
+               Stopped& stopped) {
+        const auto begun = [&](int k) {
+            const Touch t = touch(k, partner);
+            if (!begin(list, k, t, tally, partner) && stopped.status == Status::finished)
+                stopped = {Status::law_domain, at(bed_.name, at(list.first, k)), -1, t.speed};
+        };
+        const auto ended = [&](int k) {
+            if (list.dents && at(list.dent, k)[3] != at(list.dent, k)[0]) settle(list, k, partner, tally);
+            const Row spring = at(list.friction, k); // what the springs still hold is lost
+            if (kind.rough) tally.sliding[partner] += first_lane(0.5 * dot(spring, spring) / spring[3]);
+            if (kind.rolls) {
+                const Row roll = at(list.rolling, k);
+                tally.rolling[partner] += first_lane(0.5 * dot(roll, roll) / roll[3]);
+            }
+        };
+        find_touching(list, view, chunk, tiers, begun, ended);
+        if (at(list.actives, chunk) == 0) return;
+        const auto with_law = [&](auto law) {
+            using Law = decltype(law);
+            const auto settled = [&](int k) { settle(list, k, partner, tally); };
+            if (kind.rolls)
+                collide<Law, true, true>(list, view, chunk, kind.how, partner, tally, settled);
+            else if (kind.rough)
+                collide<Law, true, false>(list, view, chunk, kind.how, partner, tally, settled);
+            else
+                collide<Law, false, false>(list, view, chunk, kind.how, partner, tally, settled);
+        };
+        if (kind.normal == Kind::hertz)
+            with_law(HertzStep{});
+        else if (kind.normal == Kind::linear)
+            with_law(LinearStep{});
+        else
+            with_law(PlasticStep{});
+    }
+
+    static Lanes first_lane(real v) {
+        alignas(64) real x[lane_count] = {v};
+        return lanes(x);
+    }
+
+    void add(const ContactList& list, int k, int i, real sign, real roll_sign) {
+        const Row both = row(sign);
+        at(bed_.force, i) += both * at(list.force, k);
+        if (pair_.rough) at(bed_.couple, i) += at(list.couple, k);
+        if (pair_.rolls) at(bed_.roll, i) += row(roll_sign) * at(list.roll, k);
+    }
+
+public:
+    std::vector<Stopped> stopped; // of each chunk
+
+    BedStep(Bed& bed, const Problem& problem, const Kind& pair, const Kind& wall)
+        : bed_(bed), problem_(problem), pair_(pair), wall_(wall), stopped(static_cast<std::size_t>(bed.chunks())) {}
+
+    // Forces of all contacts that the chunk owns, and of its walls on its particles.
+    void forces(int chunk, bool sampled) {
+        Tally& tally = at(bed_.tally, chunk);
+        pair_.how.sampled = wall_.how.sampled = sampled;
+        // Those of tier t were at least t / tiers of the skin apart.
+        const real closed = 2 * bed_.since_scan / bed_.skin * ContactList::tiers * (1 + 1e-9);
+        const int tiers = std::min(1 + static_cast<int>(closed), ContactList::tiers);
+        bool curved = false;
+        for (const Wall& w : bed_.cavity->walls) curved |= w.form != Wall::plane;
+        visit(bed_.pairs, PairView{bed_}, chunk, tiers, pair_, particle, tally, at(stopped, chunk));
+        visit(bed_.walls, WallView{bed_, curved}, chunk, 1, wall_, wall, tally, at(stopped, chunk));
+        Row total{}, moment{};
+        const ContactList& list = bed_.walls;
+        const int* active = list.active.data() + list.begin(chunk, 0);
+        for (int a = 0; a < at(list.actives, chunk); ++a) {
+            const int k = active[a], i = at(list.first, k);
+            const Row f = at(list.force, k);
+            at(bed_.force, i) += f;
+            if (wall_.rough) at(bed_.couple, i) += at(list.couple, k);
+            if (wall_.rolls) at(bed_.roll, i) += at(list.roll, k);
+            total -= f;
+            if (sampled) {
+                const Row place = at(bed_.position, i) - bed_.motion.displacement;
+                const Near near = nearest(at(bed_.cavity->walls, at(list.second, k)), place);
+                moment -= cross(place + near.normal * near.distance, f);
+                if (wall_.rolls) moment -= at(list.roll, k);
+            }
+        }
+        tally.wall_force = total;
+        tally.wall_moment = moment;
+    }
+
+    // Forces of contacts that lower chunks own, on particles from `from` to `to`.
+    void incoming(const std::vector<int>& contacts) {
+        for (const int k : contacts)
+            if (at(bed_.pairs.touching, k)) add(bed_.pairs, k, at(bed_.pairs.second, k), -1, -1);
+    }
+
+    // Forces of contacts that the chunk owns, on particles below `to`.
+    void outgoing(int chunk, int to) {
+        const ContactList& list = bed_.pairs;
+        const int* active = list.active.data() + list.begin(chunk, 0);
+        for (int a = 0; a < at(list.actives, chunk); ++a) {
+            const int k = active[a], j = at(list.second, k);
+            add(list, k, at(list.first, k), 1, 1);
+            if (j < to) add(list, k, j, -1, -1);
+        }
+    }
+
+    // Velocities at this step, and on to the next. `body` is what accelerates all alike; `reference` a velocity that
+    // displacements are counted from; the first step has no step before.
+    template <bool sampled> void advance(int chunk, Row body, Row reference, bool first) {
+        Tally& tally = at(bed_.tally, chunk);
+        const bool spins = pair_.rough || wall_.rough, rolls = pair_.rolls || wall_.rolls;
+        const real dt = problem_.dt;
+        const real h = 0.5 * dt, ever = first ? 0 : h;
+        const Row back = row(ever, ever, ever), step = row(dt, dt, dt), half = row(h, h, h), space = row(1, 1, 1);
+        Row momentum{}, mass_moment{};
+        real drift = 0, kinetic = 0, rotation = 0;
+        for (int i = bed_.begin(chunk); i < bed_.end(chunk); ++i) {
+            Row &x = at(bed_.position, i), &u = at(bed_.velocity, i), &before = at(bed_.acceleration, i);
+            Row a = at(bed_.force, i) * u[3] + body;
+            const real mass = before[3];
+            a[3] = mass;
+            at(bed_.force, i) = Row{};
+            const Row v = u + back * (a - before);
+            const Row middle = v + half * a;
+            momentum += v * mass;
+            if constexpr (sampled) {
+                kinetic += dot(v, v) * mass;
+                mass_moment += x * space * mass;
+            }
+            x += step * middle;
+            u = v + step * a;
+            before = a;
+            const Row moved = middle - reference;
+            const real speed = dot(moved, moved);
+            drift = drift > speed ? drift : speed;
+            if (!spins) continue;
+            Row &w = at(bed_.spin, i), &rate_before = at(bed_.spin_rate, i);
+            Row c = at(bed_.couple, i);
+            at(bed_.couple, i) = Row{};
+            if (rolls) {
+                c += at(bed_.roll, i) / x[3];
+                at(bed_.roll, i) = Row{};
+            }
+            const Row b = c * w[3];
+            const Row s = w + back * (b - rate_before);
+            if constexpr (sampled) rotation += dot(s, s) * x[3] / w[3];
+            w = s + step * b;
+            rate_before = b;
+        }
+        tally.momentum = momentum;
+        tally.drift = drift;
+        if constexpr (sampled) {
+            tally.kinetic = 0.5 * kinetic;
+            tally.rotation = 0.5 * rotation;
+            tally.mass_moment = mass_moment;
+        }
+    }
+};
+
+} // namespace rattlebox::dem

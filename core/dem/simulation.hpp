@@ -1,0 +1,369 @@
+// A structure with cavities full of particles, advanced together step by step.
+//
+// The structure is propagated exactly between the steps; at each step it is kicked by the loads and by the forces that the
+// particles of its cavities have at the very same instant: second order, and action equals reaction.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <thread>
+
+#include "base/team.hpp"
+#include "dem/bed_step.hpp"
+#include "dem/records.hpp"
+
+namespace rattlebox::dem {
+
+class Simulation {
+    Problem problem_;
+    std::vector<Bed> beds_;
+    std::vector<Neighbours> neighbours_;
+    std::vector<BedStep> steps_;
+    std::vector<ModeState> modes_;
+    std::vector<real> modal_force_, load_value_;
+    std::vector<real> load_work_, base_work_, viscous_;
+    Loads loads_;
+    long step_ = 0;
+    Status status_ = Status::finished;
+    int stopped_cavity_ = 0;
+    Stopped stopped_;
+    long builds_ = 0, scans_ = 0;
+    bool halted_ = false;
+    long steps_since_ = 0;
+    std::vector<std::vector<std::vector<int>>> incoming_; // of each thread and bed
+    std::vector<std::vector<int>> pair_numbers_, wall_numbers_; // of each bed and chunk
+    Records records_;
+
+    friend class Door;
+
+    real h() const { return 0.5 * problem_.dt; }
+    real now() const { return static_cast<real>(step_) * problem_.dt; }
+    bool sampled() const { return step_ % problem_.every == 0 || step_ == problem_.steps; }
+
+    static Kind kind_of(const Encounter& e) {
+        Kind k;
+        e.normal.visit([&](const auto& law) {
+            using Law = std::decay_t<decltype(law)>;
+            k.normal = std::is_same_v<Law, HertzTsuji>      ? Kind::hertz
+                       : std::is_same_v<Law, LinearDashpot> ? Kind::linear
+                                                            : Kind::plastic;
+            if constexpr (!std::is_same_v<Law, Thornton>) k.how.never_pulls = law.zero_overlap == 0;
+        });
+        return k;
+    }
+
+    Kind kind_of(const std::vector<int>& entries) const {
+        Kind k = entries.empty() ? Kind{} : kind_of(at(problem_.encounters, entries.front()));
+        for (const int e : entries) {
+            const Encounter& one = at(problem_.encounters, e);
+            k.rough |= one.friction > 0, k.rolls |= one.rolling > 0;
+            if (one.friction > 0) k.how.mindlin = one.shear > 0;
+        }
+        k.rough |= k.rolls;
+        k.how.dt = problem_.dt;
+        return k;
+    }
+
+    void fill_bed(Bed& bed, const Cavity& cavity) {
+        bed.cavity = &cavity;
+        const int n = cavity.particles();
+        const auto size = static_cast<std::size_t>(n);
+        for (int i = 0; i < n; ++i) {
+            const real m = at(cavity.mass, i), radius = at(cavity.position, i)[3];
+            Row u = at(cavity.velocity, i), w = at(cavity.spin, i);
+            u[3] = 1 / m;
+            w[3] = radius / at(cavity.inertia, i);
+            bed.position.push_back(at(cavity.position, i));
+            bed.velocity.push_back(u);
+            bed.spin.push_back(w);
+            bed.acceleration.push_back(row(0, 0, 0, m));
+            bed.name.push_back(i);
+        }
+        bed.kind = cavity.kind;
+        for (auto* rows : {&bed.spin_rate, &bed.force, &bed.couple, &bed.roll}) rows->assign(size, Row{});
+        const int chunks = std::max(1, (n + bed.chunk - 1) / bed.chunk);
+        bed.tally.resize(static_cast<std::size_t>(chunks));
+    }
+
+    // ---- the structure
+
+    void place_cavities() {
+        for (Bed& bed : beds_) {
+            bed.motion = {};
+            for (std::size_t m = 0; m < modes_.size(); ++m) {
+                bed.motion.displacement += bed.cavity->shape[m] * modes_[m].q;
+                // As it will be after the last force has acted for half a step more.
+                bed.motion.velocity += bed.cavity->shape[m] * (modes_[m].p + h() * modal_force_[m]);
+            }
+        }
+    }
+
+    void load_values() {
+        loads_.advance(now());
+        for (std::size_t l = 0; l < load_value_.size(); ++l) load_value_[l] = loads_.piece(l).value(now());
+    }
+
+    Row body() const {
+        Row b = problem_.gravity;
+        for (std::size_t l = 0; l < load_value_.size(); ++l)
+            if (problem_.loads[l].base) b -= problem_.load_direction[l] * load_value_[l];
+        return b;
+    }
+
+    Row force_on(const Bed& bed) const {
+        Row total{};
+        for (const Tally& t : bed.tally) total += t.wall_force;
+        return total;
+    }
+
+    void find_modal_force() {
+        for (std::size_t m = 0; m < modes_.size(); ++m) {
+            real f = 0;
+            for (const Bed& bed : beds_) f += dot(bed.cavity->shape[m], force_on(bed));
+            for (std::size_t l = 0; l < load_value_.size(); ++l) f += problem_.loads[l].shape[m] * load_value_[l];
+            modal_force_[m] = f;
+        }
+    }
+
+    void kick() {
+        for (std::size_t m = 0; m < modes_.size(); ++m) {
+            const real mean = modes_[m].p + 0.5 * h() * modal_force_[m];
+            for (std::size_t l = 0; l < load_value_.size(); ++l) {
+                const real work = problem_.loads[l].shape[m] * load_value_[l] * h() * mean;
+                (problem_.loads[l].base ? base_work_ : load_work_)[l] += work;
+            }
+            modes_[m].p += h() * modal_force_[m];
+        }
+    }
+
+    void drift() {
+        for (std::size_t m = 0; m < modes_.size(); ++m) {
+            const Mode& mode = problem_.modes[m];
+            const FreeMode free(mode, modes_[m]);
+            viscous_[m] += free.dissipated(problem_.dt);
+            modes_[m] = free.at(problem_.dt);
+        }
+    }
+
+    // Work of the base on the particles of this step; half of it comes before the instant of the step.
+    void base_work(real part) {
+        Row momentum{};
+        for (const Bed& bed : beds_)
+            for (const Tally& t : bed.tally) momentum += t.momentum;
+        for (std::size_t l = 0; l < load_value_.size(); ++l)
+            if (problem_.loads[l].base)
+                base_work_[l] -= part * problem_.dt * load_value_[l] * dot(problem_.load_direction[l], momentum);
+    }
+
+    // ---- neighbours
+
+    void choose_reach(Bed& bed) {
+        static const real NB = getenv("NB") ? atof(getenv("NB")) : 80, NS = getenv("NS") ? atof(getenv("NS")) : 10;
+        // A build costs about as much as some ten scans, a scan as some ten steps.
+        real smallest = infinity;
+        for (int i = 0; i < bed.particles(); ++i) smallest = std::fmin(smallest, at(bed.position, i)[3]);
+        const real rate = steps_since_ > 0 ? bed.since_build / static_cast<real>(steps_since_) : 0;
+        bed.reach = rate > 0 ? std::clamp(2 * rate * NB, 0.02 * smallest, 0.6 * smallest) : 0.2 * smallest;
+        bed.skin = std::fmin(0.4 * bed.reach, rate > 0 ? std::fmax(2 * rate * NS, 2e-3 * smallest) : 0.1 * bed.reach);
+    }
+
+    // The next step may bring together what is on no list.
+    static bool is_stale(real since, real reach) { return !(2 * since < reach); }
+
+    void find_incoming(int thread, int threads) {
+        for (std::size_t b = 0; b < beds_.size(); ++b) {
+            auto& list = incoming_[static_cast<std::size_t>(thread)][b];
+            list.clear();
+            const int from = share(beds_[b].chunks(), thread, threads);
+            const int to = share(beds_[b].chunks(), thread + 1, threads);
+            if (from == to || from == 0) continue;
+            const int first = beds_[b].begin(from), end = beds_[b].end(to - 1);
+            const ContactList& pairs = beds_[b].pairs;
+            for (int k = 0; k < pairs.begin(from, 0); ++k)
+                if (at(pairs.second, k) >= first && at(pairs.second, k) < end) list.push_back(k);
+        }
+    }
+
+    template <class Team, class F> void each_chunk(Team& team, F&& f) {
+        for (std::size_t b = 0; b < beds_.size(); ++b) {
+            const int chunks = beds_[b].chunks();
+            for (int k = share(chunks, team.rank(), team.size()); k < share(chunks, team.rank() + 1, team.size()); ++k)
+                f(b, k);
+        }
+    }
+
+    template <class Team> void renew(Team& team) {
+        bool build = false;
+        for (const Bed& bed : beds_) build |= is_stale(bed.since_build, bed.reach - bed.skin);
+        team.sync();
+        if (build) {
+            if (team.leads()) {
+                for (std::size_t b = 0; b < beds_.size(); ++b) choose_reach(beds_[b]), neighbours_[b].sort(beds_[b]);
+                ++builds_;
+                steps_since_ = 0;
+            }
+            team.sync();
+            each_chunk(team, [&](std::size_t b, int k) { neighbours_[b].search(beds_[b], k); });
+            team.sync();
+            if (team.leads())
+                for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].join(beds_[b]);
+            team.sync();
+        }
+        each_chunk(team, [&](std::size_t b, int k) {
+            if (!build) neighbours_[b].mark(beds_[b], k);
+            neighbours_[b].count(beds_[b], k, &at(pair_numbers_[b], k * ContactList::tiers), at(wall_numbers_[b], k));
+        });
+        team.sync();
+        if (team.leads()) {
+            for (std::size_t b = 0; b < beds_.size(); ++b)
+                neighbours_[b].lay_out(beds_[b], pair_numbers_[b], wall_numbers_[b]);
+            ++scans_;
+        }
+        team.sync();
+        each_chunk(team, [&](std::size_t b, int k) { neighbours_[b].fill(beds_[b], k); });
+        team.sync();
+        find_incoming(team.rank(), team.size());
+        team.sync();
+    }
+
+    // ---- steps
+
+    template <class Team> void advance_all(Team& team, Row acceleration, bool first, bool sample) {
+        for (std::size_t b = 0; b < beds_.size(); ++b) {
+            const int chunks = beds_[b].chunks();
+            const int from = share(chunks, team.rank(), team.size()), to = share(chunks, team.rank() + 1, team.size());
+            if (from == to) continue;
+            steps_[b].incoming(incoming_[static_cast<std::size_t>(team.rank())][b]);
+            const Row reference = beds_[b].motion.velocity;
+            for (int k = from; k < to; ++k) {
+                steps_[b].outgoing(k, beds_[b].end(to - 1));
+                if (sample)
+                    steps_[b].advance<true>(k, acceleration, reference, first);
+                else
+                    steps_[b].advance<false>(k, acceleration, reference, first);
+            }
+        }
+    }
+
+    void check() {
+        for (std::size_t b = 0; b < steps_.size(); ++b)
+            for (const Stopped& s : steps_[b].stopped)
+                if (s.status != Status::finished && status_ == Status::finished) {
+                    status_ = s.status;
+                    stopped_ = s;
+                    stopped_cavity_ = static_cast<int>(b);
+                }
+    }
+
+    void move_on() {
+        const std::vector<Row> before = displacements();
+        kick();
+        drift();
+        place_cavities();
+        for (std::size_t b = 0; b < beds_.size(); ++b) {
+            Bed& bed = beds_[b];
+            real fastest = 0;
+            for (const Tally& t : bed.tally) fastest = std::fmax(fastest, t.drift);
+            if (!(fastest < infinity)) status_ = Status::not_finite;
+            const Row apart = bed.motion.displacement - before[b] - reference_[b] * problem_.dt;
+            const real moved = problem_.dt * std::sqrt(fastest) + std::sqrt(dot(apart, apart));
+            bed.since_build += moved;
+            bed.since_scan += moved;
+        }
+        ++step_;
+        ++steps_since_;
+    }
+
+    std::vector<Row> reference_;
+
+    std::vector<Row> displacements() const {
+        std::vector<Row> all;
+        for (const Bed& bed : beds_) all.push_back(bed.motion.displacement);
+        return all;
+    }
+
+    bool must_renew() const {
+        for (const Bed& bed : beds_)
+            if (is_stale(bed.since_scan, bed.skin)) return true;
+        return false;
+    }
+
+    template <class Team> void run(Team& team, long until, const std::atomic<bool>& stop) {
+        while (step_ <= until && status_ == Status::finished && !halted_) {
+            if (must_renew()) renew(team);
+            const bool first = step_ == 0, sample = sampled();
+            if (team.leads()) {
+                load_values();
+                reference_.clear();
+                for (const Bed& bed : beds_) reference_.push_back(bed.motion.velocity);
+                if (sample) records_.before(beds_);
+            }
+            team.sync();
+            each_chunk(team, [&](std::size_t b, int k) { steps_[b].forces(k, sample); });
+            team.sync();
+            advance_all(team, body(), first, sample);
+            team.sync();
+            if (team.leads()) {
+                find_modal_force();
+                if (!first) kick();
+                if (sample) {
+                    base_work(0.5);
+                    records_.take(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
+                    base_work(0.5);
+                } else {
+                    base_work(1);
+                }
+                check();
+                move_on();
+                halted_ = stop;
+            }
+            team.sync();
+        }
+    }
+
+public:
+    explicit Simulation(Problem&& problem) : problem_(std::move(problem)), loads_(problem_.loads) {
+        modes_ = problem_.start;
+        modal_force_.assign(modes_.size(), 0);
+        viscous_.assign(modes_.size(), 0);
+        for (auto* numbers : {&load_value_, &load_work_, &base_work_}) numbers->assign(problem_.loads.size(), 0);
+        const std::size_t count = problem_.cavities.size();
+        beds_.resize(count), neighbours_.resize(count), pair_numbers_.resize(count), wall_numbers_.resize(count);
+        for (std::size_t b = 0; b < count; ++b) {
+            const Cavity& cavity = problem_.cavities[b];
+            const Kind pair = kind_of(cavity.particle_entry), wall = kind_of(cavity.wall_entry);
+            Bed& bed = beds_[b];
+            fill_bed(bed, cavity);
+            const auto prepare = [](ContactList& list, const Kind& kind, int chunks) {
+                list.rolls = kind.rolls, list.dents = kind.normal == Kind::plastic;
+                list.lay_out(std::vector<int>(static_cast<std::size_t>(chunks), 0), 1);
+            };
+            prepare(bed.pairs, pair, bed.chunks());
+            prepare(bed.walls, wall, bed.chunks());
+            neighbours_[b].start(bed);
+            pair_numbers_[b].resize(bed.tally.size() * ContactList::tiers), wall_numbers_[b].resize(bed.tally.size());
+            steps_.emplace_back(bed, problem_, pair, wall);
+        }
+        place_cavities();
+    }
+
+    // Goes on until the sample of step `until` is taken, or something stops it.
+    void run(long until, int threads, const std::atomic<bool>& stop) {
+        halted_ = false;
+        incoming_.assign(static_cast<std::size_t>(threads), std::vector<std::vector<int>>(beds_.size()));
+        together(threads, [&](auto team) {
+            find_incoming(team.rank(), team.size());
+            run(team, until, stop);
+        });
+    }
+
+    long step() const { return step_; }
+    long builds() const { return builds_; }
+    long scans() const { return scans_; }
+    Status status() const { return status_; }
+    const Stopped& stopped() const { return stopped_; }
+    Records& records() { return records_; }
+    const std::vector<Bed>& beds() const { return beds_; }
+};
+
+} // namespace rattlebox::dem

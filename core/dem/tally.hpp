@@ -1,0 +1,30 @@
+// What one chunk of particles adds up in a step and over a run. Sums over chunks are taken in their order: the same bits for
+// any number of threads.
+#pragma once
+
+#include "base/rows.hpp"
+
+namespace rattlebox::dem {
+
+enum Partner : int { particle = 0, wall = 1 };
+
+struct alignas(64) Tally {
+    // over the run
+    Lanes normal[2]{}, sliding[2]{}, rolling[2]{};
+    real plastic[2]{};
+    long first_touches[2]{}, extrapolated = 0;
+    Lanes deepest{};  // overlap over the radius of the first partner
+    real fastest = 0; // approach
+
+    // in this step
+    Row wall_force{}, wall_moment{}, momentum{};
+    real drift = 0; // largest speed squared relative to the reference
+
+    // at a sample
+    Row mass_moment{};
+    real kinetic = 0, rotation = 0;
+    Lanes stored{};
+    long contacts[2]{};
+};
+
+} // namespace rattlebox::dem
