@@ -11,6 +11,7 @@ enum class Status : int {
     interrupted = 4,     // the user asked to stop
     not_finite = 5,      // a state became infinite or not a number
     ledger_open = 6,     // the end was reached, but the energy ledger does not close
+    escaped = 7,         // a particle has left its cavity
 };
 
 } // namespace rattlebox

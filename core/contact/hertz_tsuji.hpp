@@ -33,9 +33,10 @@ struct HertzTsuji {
     }
 
     // First touch: e is the restitution of this impact.
-    Memory begin(real e) const {
+    Memory begin(real e) const { return damped(zeta(e)); }
+    Memory damped(real ratio) const {
         Memory m;
-        m.zeta = zeta(e);
+        m.zeta = ratio;
         m.damping = std::sqrt(5.0) * m.zeta * std::sqrt(mass * stiffness);
         return m;
     }

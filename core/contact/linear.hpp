@@ -31,9 +31,10 @@ struct LinearDashpot {
                                    : 0.5 * damping / std::sqrt(mass * stiffness);
     }
 
-    Memory begin(real e) const {
+    Memory begin(real e) const { return damped(zeta(e)); }
+    Memory damped(real ratio) const {
         Memory m;
-        m.zeta = zeta(e);
+        m.zeta = ratio;
         m.damping = 2 * m.zeta * std::sqrt(mass * stiffness);
         return m;
     }

@@ -33,6 +33,21 @@ struct Bed {
     real since_build = 0, since_scan = 0; // bound on how far a particle has moved since
     Motion motion;
 
+    std::size_t memory() const {
+        std::size_t bytes = pairs.memory() + walls.memory() + tally.capacity() * sizeof(Tally);
+        for (const auto* v : {&position, &velocity, &acceleration, &spin, &spin_rate, &force, &couple, &roll})
+            bytes += v->capacity() * sizeof(Row);
+        for (const auto* v : {&name, &kind, &near_start, &near_second}) bytes += v->capacity() * sizeof(int);
+        return bytes;
+    }
+
+    template <class Archive> void keep(Archive& a) {
+        a(position, velocity, acceleration, spin, spin_rate, name, kind, near_start, near_second, tally, reach, skin,
+          since_build, since_scan);
+        pairs.keep(a);
+        walls.keep(a);
+    }
+
     int particles() const { return static_cast<int>(position.size()); }
     int chunks() const { return static_cast<int>(tally.size()); }
     int begin(int k) const { return std::min(k * chunk, particles()); }

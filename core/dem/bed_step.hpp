@@ -17,12 +17,6 @@ struct Kind {
     Contacting how;
 };
 
-struct Stopped {
-    Status status = Status::finished;
-    int particle = -1, wall = -1;
-    real value = 0;
-};
-
 class BedStep {
     Bed& bed_;
     const Problem& problem_;

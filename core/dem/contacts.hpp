@@ -72,6 +72,22 @@ struct ContactList {
         if (dents) dent[to] = old.dent[at];
     }
 
+    std::size_t memory() const {
+        std::size_t bytes = touching.capacity();
+        for (const auto* v : {&origin, &first, &second, &start, &active, &actives}) bytes += v->capacity() * sizeof(int);
+        for (const auto* v : {&force, &couple, &roll, &friction, &rolling, &law, &limit, &dent})
+            bytes += v->capacity() * sizeof(Row);
+        return bytes;
+    }
+
+    template <class Archive> void keep(Archive& a) {
+        a(count_, layers, origin, first, second, touching, friction, rolling, law, limit, dent, start, active, actives);
+        if (a.reads) { // what each step computes anew
+            force.resize(friction.size()), couple.resize(friction.size());
+            if (rolls) roll.resize(friction.size());
+        }
+    }
+
 private:
     int count_ = 0;
 };

@@ -80,6 +80,21 @@ public:
         wall_keep_.assign(static_cast<std::size_t>(bed.particles()), 0);
     }
 
+    std::size_t memory() const {
+        std::size_t bytes = old_pairs_.memory() + old_walls_.memory() + moved_.capacity() * sizeof(Row);
+        for (const auto* v : {&order_, &place_, &cell_, &cell_start_, &near_first_, &chunk_near_, &kept_, &near_place_,
+                              &wall_place_, &moved_numbers_})
+            bytes += v->capacity() * sizeof(int);
+        for (const auto* lists : {&found_first_, &found_second_})
+            for (const auto& v : *lists) bytes += v.capacity() * sizeof(int);
+        return bytes + kept_tier_.capacity() + wall_keep_.capacity() * sizeof(std::uint32_t);
+    }
+
+    template <class Archive> void keep(Archive& a) {
+        a(near_first_, chunk_near_, near_place_, wall_place_);
+        if (a.reads) kept_.resize(near_first_.size()), kept_tier_.resize(near_first_.size());
+    }
+
     // ---- a build: sort, search each chunk, join
 
     void sort(Bed& bed) {
@@ -177,7 +192,7 @@ public:
             at(wall_place_, at(bed.walls.first, k) * walls + at(bed.walls.second, k)) = k;
     }
 
-    void count(const Bed& bed, int chunk, int* tiers, int& walls) {
+    void count(const Bed& bed, int chunk, int* tiers, int& walls, Stopped& stopped) {
         const int from = at(chunk_near_, chunk), to = at(chunk_near_, chunk + 1);
         int found = from;
         int numbers[ContactList::tiers + 1] = {};
@@ -216,6 +231,10 @@ public:
                 alignas(64) real room[lane_count];
                 lanes(room) = Lanes::all(bed.skin) + a.w - distance(all_walls[w], place);
                 for (int l = 0; l < lane_count; ++l) mask[l] |= static_cast<std::uint32_t>(room[l] > 0) << w;
+                if (largest(lanes(room) - a.w) > bed.skin) [[unlikely]] // a centre is outside
+                    for (int l = 0; l < used; ++l)
+                        if (room[l] - at(bed.position, i + l)[3] > bed.skin)
+                            stopped = {Status::escaped, i + l, static_cast<int>(w), 0};
             }
             for (int l = 0; l < used; ++l) {
                 at(wall_keep_, i + l) = mask[l];

@@ -34,6 +34,7 @@ struct Encounter {
     real rolling = 0;                // mu_r
     real rolling_stiffness = 0;      // over k_t R*^2
     real rolling_damping = 0;        // damping ratio
+    real constant_zeta = not_a_number; // where neither speed nor size changes it
 };
 
 struct Cavity {

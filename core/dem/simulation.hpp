@@ -20,6 +20,7 @@ class Simulation {
     std::vector<Neighbours> neighbours_;
     std::vector<BedStep> steps_;
     std::vector<ModeState> modes_;
+    std::vector<std::pair<ModeState, ModeState>> turns_; // where a step takes displacement 1 and velocity 1
     std::vector<real> modal_force_, load_value_;
     std::vector<real> load_work_, base_work_, viscous_;
     Loads loads_;
@@ -33,8 +34,6 @@ class Simulation {
     std::vector<std::vector<std::vector<int>>> incoming_; // of each thread and bed
     std::vector<std::vector<int>> pair_numbers_, wall_numbers_; // of each bed and chunk
     Records records_;
-
-    friend class Door;
 
     real h() const { return 0.5 * problem_.dt; }
     real now() const { return static_cast<real>(step_) * problem_.dt; }
@@ -139,9 +138,10 @@ class Simulation {
     void drift() {
         for (std::size_t m = 0; m < modes_.size(); ++m) {
             const Mode& mode = problem_.modes[m];
-            const FreeMode free(mode, modes_[m]);
-            viscous_[m] += free.dissipated(problem_.dt);
-            modes_[m] = free.at(problem_.dt);
+            const ModeState from = modes_[m];
+            const auto& [of_q, of_p] = turns_[m];
+            modes_[m] = {of_q.q * from.q + of_p.q * from.p, of_q.p * from.q + of_p.p * from.p};
+            if (mode.decay > 0) viscous_[m] += from.energy(mode) - modes_[m].energy(mode);
         }
     }
 
@@ -211,7 +211,8 @@ class Simulation {
         }
         each_chunk(team, [&](std::size_t b, int k) {
             if (!build) neighbours_[b].mark(beds_[b], k);
-            neighbours_[b].count(beds_[b], k, &at(pair_numbers_[b], k * ContactList::tiers), at(wall_numbers_[b], k));
+            neighbours_[b].count(beds_[b], k, &at(pair_numbers_[b], k * ContactList::tiers), at(wall_numbers_[b], k),
+                                 at(steps_[b].stopped, k));
         });
         team.sync();
         if (team.leads()) {
@@ -253,6 +254,11 @@ class Simulation {
                     stopped_ = s;
                     stopped_cavity_ = static_cast<int>(b);
                 }
+        if (status_ != Status::escaped) return;
+        const Row u = at(beds_[static_cast<std::size_t>(stopped_cavity_)].velocity, stopped_.particle);
+        const Row along = u - beds_[static_cast<std::size_t>(stopped_cavity_)].motion.velocity;
+        stopped_.value = std::sqrt(dot(along, along));
+        stopped_.particle = at(beds_[static_cast<std::size_t>(stopped_cavity_)].name, stopped_.particle);
     }
 
     void move_on() {
@@ -263,8 +269,13 @@ class Simulation {
         for (std::size_t b = 0; b < beds_.size(); ++b) {
             Bed& bed = beds_[b];
             real fastest = 0;
-            for (const Tally& t : bed.tally) fastest = std::fmax(fastest, t.drift);
-            if (!(fastest < infinity)) status_ = Status::not_finite;
+            Row momentum{};
+            for (const Tally& t : bed.tally) {
+                fastest = larger(fastest, t.drift);
+                momentum += t.momentum;
+            }
+            if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity) || !(fastest < infinity))
+                status_ = Status::not_finite;
             const Row apart = bed.motion.displacement - before[b] - reference_[b] * problem_.dt;
             const real moved = problem_.dt * std::sqrt(fastest) + std::sqrt(dot(apart, apart));
             bed.since_build += moved;
@@ -323,7 +334,14 @@ class Simulation {
 
 public:
     explicit Simulation(Problem&& problem) : problem_(std::move(problem)), loads_(problem_.loads) {
+        for (Encounter& e : problem_.encounters) e.constant_zeta = constant_zeta(e);
         modes_ = problem_.start;
+        for (const Mode& mode : problem_.modes) {
+            FreeMode of_q(mode), of_p(mode);
+            of_q.begin({1, 0});
+            of_p.begin({0, 1});
+            turns_.push_back({of_q.at(problem_.dt), of_p.at(problem_.dt)});
+        }
         modal_force_.assign(modes_.size(), 0);
         viscous_.assign(modes_.size(), 0);
         for (auto* numbers : {&load_value_, &load_work_, &base_work_}) numbers->assign(problem_.loads.size(), 0);
@@ -349,6 +367,7 @@ public:
 
     // Goes on until the sample of step `until` is taken, or something stops it.
     void run(long until, int threads, const std::atomic<bool>& stop) {
+        until = std::min(until, problem_.steps);
         halted_ = false;
         incoming_.assign(static_cast<std::size_t>(threads), std::vector<std::vector<int>>(beds_.size()));
         together(threads, [&](auto team) {
@@ -357,6 +376,29 @@ public:
         });
     }
 
+    // All that the next step needs, in a fixed order: to write it down and to read it back.
+    template <class Archive> void keep(Archive& archive) {
+        archive(step_, status_, stopped_cavity_, stopped_, builds_, scans_, steps_since_, modes_, modal_force_, load_work_,
+                base_work_, viscous_);
+        for (std::size_t b = 0; b < beds_.size(); ++b) {
+            beds_[b].keep(archive);
+            neighbours_[b].keep(archive);
+            archive(steps_[b].stopped);
+        }
+    }
+
+    // After the state has been read back.
+    void resume() { place_cavities(); }
+
+    const Problem& problem() const { return problem_; }
+    const std::vector<ModeState>& modes() const { return modes_; }
+    const std::vector<real>& modal_force() const { return modal_force_; }
+    int stopped_cavity() const { return stopped_cavity_; }
+    std::size_t memory() const {
+        std::size_t bytes = 0;
+        for (std::size_t b = 0; b < beds_.size(); ++b) bytes += beds_[b].memory() + neighbours_[b].memory();
+        return bytes;
+    }
     long step() const { return step_; }
     long builds() const { return builds_; }
     long scans() const { return scans_; }

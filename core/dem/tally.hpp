@@ -3,10 +3,18 @@
 #pragma once
 
 #include "base/rows.hpp"
+#include "base/status.hpp"
 
 namespace rattlebox::dem {
 
 enum Partner : int { particle = 0, wall = 1 };
+
+// Why a run cannot go on.
+struct Stopped {
+    Status status = Status::finished;
+    int particle = -1, wall = -1; // number in the case
+    real value = 0;               // speed
+};
 
 struct alignas(64) Tally {
     // over the run

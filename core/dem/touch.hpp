@@ -39,6 +39,14 @@ inline Rebound rebound(const Encounter& e, const Touch& t) {
     return rattlebox::rebound(e.restitution, std::fmax(t.speed, 0.0) * scale);
 }
 
+// The damping ratio of all impacts, where there is one.
+inline real constant_zeta(const Encounter& e) {
+    return e.normal.visit([&](const auto& law) {
+        const bool constant = e.restitution.get_if<ConstantRestitution>() && law.needs_restitution();
+        return constant ? law.zeta(rattlebox::rebound(e.restitution, 0).e) : not_a_number;
+    });
+}
+
 // Writes what contact k remembers. False when the speed is beyond the restitution law.
 inline bool begin(ContactList& list, int k, const Touch& t, Tally& tally, Partner partner) {
     const Encounter& e = *t.encounter;
@@ -55,7 +63,7 @@ inline bool begin(ContactList& list, int k, const Touch& t, Tally& tally, Partne
             at(list.law, k) = row(law.stiffness, law.plastic_slope(), tangential, law.yield_overlap());
             at(list.dent, k) = row(0, law.stiffness, 0, 0);
         } else {
-            const Memory m = law.begin(r.e);
+            const Memory m = law.damped(std::isnan(e.constant_zeta) ? law.zeta(r.e) : e.constant_zeta);
             const real share = std::is_same_v<Law, HertzTsuji> ? std::sqrt(5.0 / 6.0) : 1;
             const real drag = 2 * e.tangential_damping * share * m.zeta * std::sqrt(t.mass * tangential);
             at(list.law, k) = row(law.stiffness, m.damping, tangential, drag);

@@ -4,6 +4,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "python/dem.hpp"
 #include "python/sweep.hpp"
 
 namespace nb = nanobind;
@@ -76,4 +77,5 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
         },
         "Names of the measures, and whether each needs samples of the motion.");
     module.def("restitution", &restitution, nb::arg("law"), nb::arg("speeds"));
+    door::add_dem(module);
 }

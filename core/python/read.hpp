@@ -99,7 +99,6 @@ public:
         if (!found) throw std::invalid_argument("the core has no law named '" + name + "'");
     }
 
-private:
     void signal(Signal& s, const nb::dict& d) {
         const auto kind = nb::cast<std::string>(d["kind"]);
         if (kind == "record") {
@@ -116,6 +115,7 @@ private:
         number(s.stop, d, "stop");
     }
 
+private:
     void settings(Settings& s, const nb::dict& d) {
         const auto method = nb::cast<std::string>(d["method"]);
         s.method = method == "newton"     ? Method::newton

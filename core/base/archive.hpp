@@ -1,0 +1,58 @@
+// Plain data written to bytes and read back, in the order in which it is named.
+#pragma once
+
+#include <cstring>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+namespace rattlebox {
+
+class Writer {
+    template <class T> void put(const T* data, std::size_t count) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const auto* from = reinterpret_cast<const char*>(data);
+        bytes.insert(bytes.end(), from, from + count * sizeof(T));
+    }
+    template <class T> void one(const T& value) { put(&value, 1); }
+    template <class T> void one(const std::vector<T>& values) {
+        one(values.size());
+        put(values.data(), values.size());
+    }
+
+public:
+    static constexpr bool reads = false;
+    std::vector<char> bytes;
+
+    template <class... T> void operator()(const T&... values) { (one(values), ...); }
+};
+
+class BackReader {
+    const char* next_;
+    const char* end_;
+
+    template <class T> void get(T* data, std::size_t count) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        if (count > static_cast<std::size_t>(end_ - next_) / sizeof(T)) throw std::invalid_argument("the state is cut short");
+        if (count > 0) std::memcpy(static_cast<void*>(data), next_, count * sizeof(T));
+        next_ += count * sizeof(T);
+    }
+    template <class T> void one(T& value) { get(&value, 1); }
+    template <class T> void one(std::vector<T>& values) {
+        std::size_t count;
+        one(count);
+        if (count > static_cast<std::size_t>(end_ - next_) / sizeof(T)) throw std::invalid_argument("the state is cut short");
+        values.resize(count);
+        get(values.data(), count);
+    }
+
+public:
+    static constexpr bool reads = true;
+
+    BackReader(const char* data, std::size_t size) : next_(data), end_(data + size) {}
+
+    template <class... T> void operator()(T&... values) { (one(values), ...); }
+    bool at_end() const { return next_ == end_; }
+};
+
+} // namespace rattlebox
