@@ -33,7 +33,8 @@ class BackReader {
 
     template <class T> void get(T* data, std::size_t count) {
         static_assert(std::is_trivially_copyable_v<T>);
-        if (count > static_cast<std::size_t>(end_ - next_) / sizeof(T)) throw std::invalid_argument("the state is cut short");
+        if (count > static_cast<std::size_t>(end_ - next_) / sizeof(T))
+            throw std::invalid_argument("the state is cut short");
         if (count > 0) std::memcpy(static_cast<void*>(data), next_, count * sizeof(T));
         next_ += count * sizeof(T);
     }
@@ -41,7 +42,8 @@ class BackReader {
     template <class T> void one(std::vector<T>& values) {
         std::size_t count;
         one(count);
-        if (count > static_cast<std::size_t>(end_ - next_) / sizeof(T)) throw std::invalid_argument("the state is cut short");
+        if (count > static_cast<std::size_t>(end_ - next_) / sizeof(T))
+            throw std::invalid_argument("the state is cut short");
         values.resize(count);
         get(values.data(), count);
     }

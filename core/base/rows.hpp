@@ -64,10 +64,18 @@ inline Lanes operator-(const Lanes& a) { return Lanes::all(0) - a; }
 template <class T> struct Vector {
     T x, y, z;
 
-    RATTLEBOX_INLINE friend Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    RATTLEBOX_INLINE friend Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    RATTLEBOX_INLINE friend Vector operator*(const T& s, const Vector& a) { return {s * a.x, s * a.y, s * a.z}; }
-    RATTLEBOX_INLINE friend T dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+    RATTLEBOX_INLINE friend Vector operator+(const Vector& a, const Vector& b) {
+        return {a.x + b.x, a.y + b.y, a.z + b.z};
+    }
+    RATTLEBOX_INLINE friend Vector operator-(const Vector& a, const Vector& b) {
+        return {a.x - b.x, a.y - b.y, a.z - b.z};
+    }
+    RATTLEBOX_INLINE friend Vector operator*(const T& s, const Vector& a) {
+        return {s * a.x, s * a.y, s * a.z};
+    }
+    RATTLEBOX_INLINE friend T dot(const Vector& a, const Vector& b) {
+        return a.x * b.x + a.y * b.y + a.z * b.z;
+    }
     RATTLEBOX_INLINE friend Vector cross(const Vector& a, const Vector& b) {
         return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     }
@@ -101,8 +109,10 @@ template <int n = lane_count, class At> RATTLEBOX_INLINE Columns<n> columns(At&&
 #endif
     } else if constexpr (n == 4) {
         const Row a = *at(0), b = *at(1), c = *at(2), d = *at(3);
-        const Row xz = __builtin_shufflevector(a, b, 0, 4, 2, 6), yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-        const Row zx = __builtin_shufflevector(c, d, 0, 4, 2, 6), wy = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+        const Row xz = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+                  yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+        const Row zx = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+                  wy = __builtin_shufflevector(c, d, 1, 5, 3, 7);
         return {{__builtin_shufflevector(xz, zx, 0, 1, 4, 5)},
                 {__builtin_shufflevector(yw, wy, 0, 1, 4, 5)},
                 {__builtin_shufflevector(xz, zx, 2, 3, 6, 7)},

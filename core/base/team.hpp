@@ -1,6 +1,7 @@
 // Who does the work of a phase: one thread alone, or several that wait for each other between phases.
 //
-// A phase is a loop over items none of which reads what another writes; each member of a team takes a contiguous share.
+// A phase is a loop over items none of which reads what another writes; each member of a team takes a
+// contiguous share.
 #pragma once
 
 #include <atomic>
@@ -59,7 +60,8 @@ template <class Work> void together(int threads, Work&& work) {
     if (threads <= 1) return work(Alone{});
     Meetingpoint point(threads);
     std::vector<std::thread> others;
-    for (int rank = 1; rank < threads; ++rank) others.emplace_back([&, rank] { work(Member(point, rank, threads)); });
+    for (int rank = 1; rank < threads; ++rank)
+        others.emplace_back([&, rank] { work(Member(point, rank, threads)); });
     work(Member(point, 0, threads));
     for (std::thread& t : others) t.join();
 }

@@ -26,8 +26,8 @@ struct Bed {
 
     ContactList pairs, walls;
     std::vector<int> near_start, near_second; // neighbours of each particle
-    int chunk = 128;                                       // particles in a chunk
-    std::vector<Tally> tally;                              // of each chunk
+    int chunk = 128;                          // particles in a chunk
+    std::vector<Tally> tally;                 // of each chunk
 
     real reach = 0, skin = 0;             // neighbours closer than reach, candidates closer than skin
     real since_build = 0, since_scan = 0; // bound on how far a particle has moved since
@@ -42,8 +42,8 @@ struct Bed {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(position, velocity, acceleration, spin, spin_rate, name, kind, near_start, near_second, tally, reach, skin,
-          since_build, since_scan);
+        a(position, velocity, acceleration, spin, spin_rate, name, kind, near_start, near_second, tally,
+          reach, skin, since_build, since_scan);
         pairs.keep(a);
         walls.keep(a);
     }

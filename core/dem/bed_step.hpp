@@ -1,8 +1,8 @@
 // One step of the particles of one cavity, chunk by chunk.
 //
-// Velocity Verlet. Forces that depend on the velocity take the one predicted from the last acceleration, v + dt a, which keeps
-// the second order:  v' = u + dt/2 (a' - a),  u' = v' + dt a',  x' = x + dt v' + dt^2/2 a',  u predicted, a the last.
-// A particle adds up the forces on it in the order of its contacts, whoever does it.
+// Velocity Verlet. Forces that depend on the velocity take the one predicted from the last acceleration, v +
+// dt a, which keeps the second order:  v' = u + dt/2 (a' - a),  u' = v' + dt a',  x' = x + dt v' + dt^2/2 a',
+// u predicted, a the last. A particle adds up the forces on it in the order of its contacts, whoever does it.
 #pragma once
 
 #include "dem/forces.hpp"
@@ -28,7 +28,8 @@ class BedStep {
     }
     const Encounter& with_wall(int i, int w) const {
         const Cavity& c = *bed_.cavity;
-        return at(problem_.encounters, at(c.wall_entry, at(bed_.kind, i) * c.wall_kinds + at(c.walls, w).kind));
+        return at(problem_.encounters,
+                  at(c.wall_entry, at(bed_.kind, i) * c.wall_kinds + at(c.walls, w).kind));
     }
     static real moment_at_edge(Row position, Row velocity, Row spin) {
         return position[3] / spin[3] + square(position[3]) / velocity[3];
@@ -73,8 +74,8 @@ class BedStep {
     }
 
     template <class View>
-    void visit(ContactList& list, const View& view, int chunk, int tiers, const Kind& kind, Partner partner, Tally& tally,
-               Stopped& stopped) {
+    void visit(ContactList& list, const View& view, int chunk, int tiers, const Kind& kind, Partner partner,
+               Tally& tally, Stopped& stopped) {
         const auto begun = [&](int k) {
             const Touch t = touch(k, partner);
             if (!begin(list, k, t, tally, partner) && stopped.status == Status::finished)
@@ -125,7 +126,8 @@ public:
     std::vector<Stopped> stopped; // of each chunk
 
     BedStep(Bed& bed, const Problem& problem, const Kind& pair, const Kind& wall)
-        : bed_(bed), problem_(problem), pair_(pair), wall_(wall), stopped(static_cast<std::size_t>(bed.chunks())) {}
+        : bed_(bed), problem_(problem), pair_(pair), wall_(wall),
+          stopped(static_cast<std::size_t>(bed.chunks())) {}
 
     // Forces of all contacts that the chunk owns, and of its walls on its particles.
     void forces(int chunk, bool sampled) {
@@ -176,14 +178,15 @@ public:
         }
     }
 
-    // Velocities at this step, and on to the next. `body` is what accelerates all alike; `reference` a velocity that
-    // displacements are counted from; the first step has no step before.
+    // Velocities at this step, and on to the next. `body` is what accelerates all alike; `reference` a
+    // velocity that displacements are counted from; the first step has no step before.
     template <bool sampled> void advance(int chunk, Row body, Row reference, bool first) {
         Tally& tally = at(bed_.tally, chunk);
         const bool spins = pair_.rough || wall_.rough, rolls = pair_.rolls || wall_.rolls;
         const real dt = problem_.dt;
         const real h = 0.5 * dt, ever = first ? 0 : h;
-        const Row back = row(ever, ever, ever), step = row(dt, dt, dt), half = row(h, h, h), space = row(1, 1, 1);
+        const Row back = row(ever, ever, ever), step = row(dt, dt, dt), half = row(h, h, h),
+                  space = row(1, 1, 1);
         Row momentum{}, mass_moment{};
         real drift = 0, kinetic = 0, rotation = 0;
         for (int i = bed_.begin(chunk); i < bed_.end(chunk); ++i) {

@@ -1,14 +1,15 @@
 // The forces of contacts that touch, eight at a time.
 //
 //     normal       the laws of core/contact, with x = d^(1/4)
-//     tangential   spring and dashpot, |F_t| <= mu N:  dF = -k_t v_t dt, k_t = B sqrt(d) (Mindlin: B = 8 G* sqrt(R*))
-//     rolling      the same with torques and relative spin, |M| <= mu_r R* N, k_r = (k_r / k_t) k_t
+//     tangential   spring and dashpot, |F_t| <= mu N:  dF = -k_t v_t dt, k_t = B sqrt(d) (Mindlin: B = 8 G*
+//     sqrt(R*)) rolling      the same with torques and relative spin, |M| <= mu_r R* N, k_r = (k_r / k_t) k_t
 //
-// The springs keep their force, not their stretch: when the normal force falls, so does k_t, and the spring's force with
-// it; when it rises, the force stays. Either way the energy F^2 / (2 k_t) never grows by itself, and what it loses counts as
-// sliding (micro-slip). R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327; C. Thornton, S. J. Cummins, P. W.
-// Cleary, Powder Technology 233 (2013) 30, section 3. A dashpot takes only what room the spring leaves below the limit.
-// Rolling: J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi, Powder Technology 206 (2011) 269, type C.
+// The springs keep their force, not their stretch: when the normal force falls, so does k_t, and the spring's
+// force with it; when it rises, the force stays. Either way the energy F^2 / (2 k_t) never grows by itself,
+// and what it loses counts as sliding (micro-slip). R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953)
+// 327; C. Thornton, S. J. Cummins, P. W. Cleary, Powder Technology 233 (2013) 30, section 3. A dashpot takes
+// only what room the spring leaves below the limit. Rolling: J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi,
+// Powder Technology 206 (2011) 269, type C.
 #pragma once
 
 #include "base/rows.hpp"
@@ -37,11 +38,12 @@ template <class T> struct Holding {
     T loss;                  // energy lost in this step
 };
 
-// `before` is the spring's force half a step ago: half of the stretch of a step comes before its force is needed and half
-// after it, which is the trapezoidal rule.
+// `before` is the spring's force half a step ago: half of the stretch of a step comes before its force is
+// needed and half after it, which is the trapezoidal rule.
 template <class T>
-RATTLEBOX_INLINE Holding<T> hold(const Vector<T>& before, const T& stiffness_before, const Vector<T>& normal, const T& stiffness,
-                const T& damping, const Vector<T>& velocity, const T& limit, const T& dt) {
+RATTLEBOX_INLINE Holding<T> hold(const Vector<T>& before, const T& stiffness_before, const Vector<T>& normal,
+                                 const T& stiffness, const T& damping, const Vector<T>& velocity,
+                                 const T& limit, const T& dt) {
     const T one = all(limit, 1), half = all(limit, 0.5), tiny = all(limit, 1e-290), zero = all(limit, 0);
     // Into the present plane, with its size, less what unloading takes.
     const Vector<T> flat = before - dot(before, normal) * normal;
@@ -71,7 +73,8 @@ struct Push {
 
 struct HertzStep {
     static constexpr bool plastic = false;
-    RATTLEBOX_INLINE static Push push(const Columns<8>& law, const Columns<8>&, const Lanes& overlap, const Lanes& rate) {
+    RATTLEBOX_INLINE static Push push(const Columns<8>& law, const Columns<8>&, const Lanes& overlap,
+                                      const Lanes& rate) {
         const Lanes s = root(overlap), elastic = law.x * overlap * s;
         return {elastic + law.y * root(s) * rate, elastic, s};
     }
@@ -82,7 +85,8 @@ struct HertzStep {
 
 struct LinearStep {
     static constexpr bool plastic = false;
-    RATTLEBOX_INLINE static Push push(const Columns<8>& law, const Columns<8>&, const Lanes& overlap, const Lanes& rate) {
+    RATTLEBOX_INLINE static Push push(const Columns<8>& law, const Columns<8>&, const Lanes& overlap,
+                                      const Lanes& rate) {
         const Lanes elastic = law.x * overlap;
         return {elastic + law.y * rate, elastic, root(overlap)};
     }
@@ -91,15 +95,16 @@ struct LinearStep {
     }
 };
 
-// Thornton: law holds A, the slope of yielding, B and the overlap at which it begins; dent the deepest overlap so far,
-// stiffness and origin of the curve that unloads from there.
+// Thornton: law holds A, the slope of yielding, B and the overlap at which it begins; dent the deepest
+// overlap so far, stiffness and origin of the curve that unloads from there.
 struct PlasticStep {
     static constexpr bool plastic = true;
     RATTLEBOX_INLINE static Lanes curve(const Lanes& stiffness, const Lanes& overlap) {
         const Lanes above = larger(overlap, Lanes::all(0));
         return stiffness * above * root(above);
     }
-    RATTLEBOX_INLINE static Push push(const Columns<8>& law, const Columns<8>& dent, const Lanes& overlap, const Lanes&) {
+    RATTLEBOX_INLINE static Push push(const Columns<8>& law, const Columns<8>& dent, const Lanes& overlap,
+                                      const Lanes&) {
         const Lanes yielding = curve(law.x, law.w) + law.y * (overlap - law.w);
         const Lanes first = choose(overlap - law.w, yielding, curve(law.x, overlap));
         const Lanes again = curve(dent.y, overlap - dent.z);

@@ -1,4 +1,5 @@
-// Those that touch or may touch soon, two particles or a particle and a wall, and what each contact remembers.
+// Those that touch or may touch soon, two particles or a particle and a wall, and what each contact
+// remembers.
 //
 // A list belongs to the chunks of particles that own its first partners: chunk k owns start[k] .. start[k+1].
 #pragma once
@@ -17,8 +18,9 @@ struct ContactList {
     std::vector<int> origin;        // of a pair: which of the neighbours it is
     std::vector<int> first, second; // numbers of particles; of a wall for the second of a wall list
     std::vector<char> touching;
-    std::vector<Row> force;    // on the first
-    std::vector<Row> couple;   // torque on the first over its radius; of a pair also that on the second over its own
+    std::vector<Row> force; // on the first
+    std::vector<Row>
+        couple; // torque on the first over its radius; of a pair also that on the second over its own
     std::vector<Row> roll;     // rolling torque on the first; with rolling resistance only
     std::vector<Row> friction; // force of the tangential spring on the first, and its stiffness
     std::vector<Row> rolling;  // torque of the rolling spring on the first, and its stiffness
@@ -60,7 +62,8 @@ struct ContactList {
 
     void forget(int k) { touching[static_cast<std::size_t>(k)] = 0; }
 
-    // Takes over what contact `from` of an older list remembers; `sign` is -1 where its partners have changed places.
+    // Takes over what contact `from` of an older list remembers; `sign` is -1 where its partners have changed
+    // places.
     void remember(int k, const ContactList& old, int from, real sign) {
         const auto to = static_cast<std::size_t>(k), at = static_cast<std::size_t>(from);
         const Row turn = row(sign, sign, sign, 1);
@@ -74,14 +77,16 @@ struct ContactList {
 
     std::size_t memory() const {
         std::size_t bytes = touching.capacity();
-        for (const auto* v : {&origin, &first, &second, &start, &active, &actives}) bytes += v->capacity() * sizeof(int);
+        for (const auto* v : {&origin, &first, &second, &start, &active, &actives})
+            bytes += v->capacity() * sizeof(int);
         for (const auto* v : {&force, &couple, &roll, &friction, &rolling, &law, &limit, &dent})
             bytes += v->capacity() * sizeof(Row);
         return bytes;
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(count_, layers, origin, first, second, touching, friction, rolling, law, limit, dent, start, active, actives);
+        a(count_, layers, origin, first, second, touching, friction, rolling, law, limit, dent, start, active,
+          actives);
         if (a.reads) { // what each step computes anew
             force.resize(friction.size()), couple.resize(friction.size());
             if (rolls) roll.resize(friction.size());

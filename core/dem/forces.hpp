@@ -54,7 +54,8 @@ struct WallView {
     const Wall& wall(int k) const { return at(bed.cavity->walls, at(bed.walls.second, k)); }
     static Vector<Lanes> same(Row r) { return {Lanes::all(r[0]), Lanes::all(r[1]), Lanes::all(r[2])}; }
 
-    RATTLEBOX_INLINE void near(const int* k, const Columns<8>& a, Vector<Lanes>& normal, Lanes& distance) const {
+    RATTLEBOX_INLINE void near(const int* k, const Columns<8>& a, Vector<Lanes>& normal,
+                               Lanes& distance) const {
         const Vector<Lanes> place = a.vector() - same(bed.motion.displacement);
         const auto axis = columns([&](int l) { return &wall(k[l]).axis; });
         const Lanes along = dot(axis.vector(), place);
@@ -69,7 +70,8 @@ struct WallView {
         const Vector<Lanes> q = place - (lanes(straight) * along) * axis.vector();
         const Lanes out = root(dot(q, q)), one_over = Lanes::all(1) / (out + Lanes::all(1e-290));
         distance = choose(lanes(bent), axis.w - out, distance);
-        normal = {choose(lanes(bent), one_over * q.x, normal.x), choose(lanes(bent), one_over * q.y, normal.y),
+        normal = {choose(lanes(bent), one_over * q.x, normal.x),
+                  choose(lanes(bent), one_over * q.y, normal.y),
                   choose(lanes(bent), one_over * q.z, normal.z)};
     }
 
@@ -98,8 +100,8 @@ struct WallView {
     }
 };
 
-// Lists those of the chunk that touch, of the first `tiers`; calls begun(k) and ended(k) for those that have just begun or
-// ended to.
+// Lists those of the chunk that touch, of the first `tiers`; calls begun(k) and ended(k) for those that have
+// just begun or ended to.
 template <class View, class Begun, class Ended>
 void find_touching(ContactList& list, const View& view, int chunk, int tiers, Begun&& begun, Ended&& ended) {
     const int from = list.begin(chunk, 0), to = list.begin(chunk, tiers);
@@ -142,8 +144,8 @@ struct Contacting {
 };
 
 template <class Law, bool rough, bool rolls, class View, class Settle>
-void collide(ContactList& list, const View& view, int chunk, const Contacting& how, Partner partner, Tally& tally,
-             Settle&& settle) {
+void collide(ContactList& list, const View& view, int chunk, const Contacting& how, Partner partner,
+             Tally& tally, Settle&& settle) {
     const int count = at(list.actives, chunk);
     const int* active = list.active.data() + list.begin(chunk, 0);
     const Lanes zero = Lanes::all(0), one = Lanes::all(1), dt = Lanes::all(how.dt);
@@ -187,7 +189,8 @@ void collide(ContactList& list, const View& view, int chunk, const Contacting& h
             const Lanes pressed = larger(push.force, zero), stiffness = law.z * firm;
             const Vector<Lanes> slip = m.velocity - rate * m.normal + cross(m.swirl, m.normal);
             const Lanes dashpot = Law::plastic ? zero : law.w * drag;
-            const auto h = hold(history.vector(), history.w, m.normal, stiffness, dashpot, slip, limit.x * pressed, dt);
+            const auto h =
+                hold(history.vector(), history.w, m.normal, stiffness, dashpot, slip, limit.x * pressed, dt);
             store(Columns<8>{h.ahead.x, h.ahead.y, h.ahead.z, stiffness}, rows(list.friction));
             tally.sliding[partner] += weight * h.loss;
             force = force + h.force;

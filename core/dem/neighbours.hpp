@@ -1,9 +1,11 @@
-// Who may touch whom soon: cells, neighbours within reach, and of these the candidates that every step looks at.
+// Who may touch whom soon: cells, neighbours within reach, and of these the candidates that every step looks
+// at.
 //
-// A pair farther apart than `reach` at the last build cannot touch before both have moved by reach / 2, and likewise for the
-// candidates and `skin`: both bounds are kept by adding up the largest speed of each step. Candidates lie in tiers by how far
-// apart they were at the scan, and a step looks at the tiers that may have closed by then. Particles are sorted by cell at
-// each build, so that neighbours are near in memory too, and a row of three cells is one range.
+// A pair farther apart than `reach` at the last build cannot touch before both have moved by reach / 2, and
+// likewise for the candidates and `skin`: both bounds are kept by adding up the largest speed of each step.
+// Candidates lie in tiers by how far apart they were at the scan, and a step looks at the tiers that may have
+// closed by then. Particles are sorted by cell at each build, so that neighbours are near in memory too, and
+// a row of three cells is one range.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +23,9 @@ class Neighbours {
     std::vector<int> order_, place_, cell_, cell_start_;
     std::vector<std::vector<int>> found_first_, found_second_; // of each chunk
     std::vector<int> near_first_, chunk_near_;
-    std::vector<int> kept_;             // neighbours that are candidates, from chunk_near_ on, tier by tier
+    std::vector<int> kept_; // neighbours that are candidates, from chunk_near_ on, tier by tier
     std::vector<char> kept_tier_;
-    std::vector<int> near_place_;       // contact of each neighbour before a scan, or none
+    std::vector<int> near_place_; // contact of each neighbour before a scan, or none
     std::vector<std::uint32_t> wall_keep_;
     std::vector<int> wall_place_;
     std::vector<Row> moved_;
@@ -38,7 +40,8 @@ class Neighbours {
         return {list.active.data() + list.begin(chunk, 0), static_cast<std::size_t>(at(list.actives, chunk))};
     }
 
-    template <class T> static void permute(std::vector<T>& values, std::vector<T>& spare, const std::vector<int>& order) {
+    template <class T>
+    static void permute(std::vector<T>& values, std::vector<T>& spare, const std::vector<int>& order) {
         spare.resize(values.size());
         for (std::size_t i = 0; i < order.size(); ++i) spare[i] = at(values, order[i]);
         std::copy(values.begin() + static_cast<std::ptrdiff_t>(order.size()), values.end(),
@@ -60,7 +63,8 @@ class Neighbours {
                 high[a] = std::fmax(high[a], at(bed.position, i)[a]);
             }
         size_ = (2 * largest_ + bed.reach) * (1 + 1e-12);
-        for (;; size_ *= 1.25) { // few particles in a large cavity need no more cells than there are particles
+        for (;;
+             size_ *= 1.25) { // few particles in a large cavity need no more cells than there are particles
             real total = 1;
             for (int a = 0; a < 3; ++a) total *= std::floor((high[a] - low_[a]) / size_) + 1;
             if (total <= 8.0 * bed.particles() + 64) break;
@@ -82,8 +86,8 @@ public:
 
     std::size_t memory() const {
         std::size_t bytes = old_pairs_.memory() + old_walls_.memory() + moved_.capacity() * sizeof(Row);
-        for (const auto* v : {&order_, &place_, &cell_, &cell_start_, &near_first_, &chunk_near_, &kept_, &near_place_,
-                              &wall_place_, &moved_numbers_})
+        for (const auto* v : {&order_, &place_, &cell_, &cell_start_, &near_first_, &chunk_near_, &kept_,
+                              &near_place_, &wall_place_, &moved_numbers_})
             bytes += v->capacity() * sizeof(int);
         for (const auto* lists : {&found_first_, &found_second_})
             for (const auto& v : *lists) bytes += v.capacity() * sizeof(int);
@@ -104,7 +108,8 @@ public:
         cell_start_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2] + 1), 0);
         for (int i = 0; i < n; ++i) {
             const Row& p = at(bed.position, i);
-            at(cell_, i) = (cell_along(p[2], 2) * cells_[1] + cell_along(p[1], 1)) * cells_[0] + cell_along(p[0], 0);
+            at(cell_, i) =
+                (cell_along(p[2], 2) * cells_[1] + cell_along(p[1], 1)) * cells_[0] + cell_along(p[0], 0);
             ++at(cell_start_, at(cell_, i) + 1);
         }
         for (std::size_t c = 1; c < cell_start_.size(); ++c) cell_start_[c] += cell_start_[c - 1];
@@ -159,7 +164,8 @@ public:
         near_place_.assign(total, none);
         kept_.resize(total + lane_count), kept_tier_.resize(total + lane_count);
         for (int k = 0; k < chunks; ++k) {
-            std::copy(at(found_first_, k).begin(), at(found_first_, k).end(), near_first_.begin() + at(chunk_near_, k));
+            std::copy(at(found_first_, k).begin(), at(found_first_, k).end(),
+                      near_first_.begin() + at(chunk_near_, k));
             std::copy(at(found_second_, k).begin(), at(found_second_, k).end(),
                       bed.near_second.begin() + at(chunk_near_, k));
         }
@@ -197,9 +203,10 @@ public:
         int found = from;
         int numbers[ContactList::tiers + 1] = {};
         for (int p = from; p < to; p += lane_count) {
-            const auto a = columns([&](int l) { return &at(bed.position, near_first_[static_cast<std::size_t>(p + l)]); });
-            const auto b =
-                columns([&](int l) { return &at(bed.position, bed.near_second[static_cast<std::size_t>(p + l)]); });
+            const auto a = columns(
+                [&](int l) { return &at(bed.position, near_first_[static_cast<std::size_t>(p + l)]); });
+            const auto b = columns(
+                [&](int l) { return &at(bed.position, bed.near_second[static_cast<std::size_t>(p + l)]); });
             const auto apart = a.vector() - b.vector();
             const Lanes near = a.w + b.w, distance = dot(apart, apart);
             Lanes tier = Lanes::all(0);
@@ -224,7 +231,8 @@ public:
         for (int i = bed.begin(chunk); i < bed.end(chunk); i += lane_count) {
             const int last = bed.particles() - 1;
             const auto a = columns([&](int l) { return &at(bed.position, std::min(i + l, last)); });
-            const Vector<Lanes> place = {a.x - Lanes::all(c[0]), a.y - Lanes::all(c[1]), a.z - Lanes::all(c[2])};
+            const Vector<Lanes> place = {a.x - Lanes::all(c[0]), a.y - Lanes::all(c[1]),
+                                         a.z - Lanes::all(c[2])};
             const int used = std::min(lane_count, bed.end(chunk) - i);
             std::uint32_t mask[lane_count] = {};
             for (std::size_t w = 0; w < all_walls.size(); ++w) {
@@ -265,7 +273,8 @@ public:
             const int before = at(near_place_, p);
             if (before == none) continue;
             at(near_place_, p) = none;
-            bed.pairs.remember(k, old_pairs_, before < none ? swapped(before) : before, before < none ? -1 : 1);
+            bed.pairs.remember(k, old_pairs_, before < none ? swapped(before) : before,
+                               before < none ? -1 : 1);
         }
         int k = bed.walls.begin(chunk, 0);
         const int walls = static_cast<int>(bed.cavity->walls.size());

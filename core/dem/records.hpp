@@ -52,7 +52,8 @@ struct Records {
             std::int64_t touching[2] = {};
             for (const Tally& one : bed.tally) {
                 moving += one.kinetic, turning += one.rotation, held += total(one.stored);
-                place += one.mass_moment, going += one.momentum, push += one.wall_force, twist += one.wall_moment;
+                place += one.mass_moment, going += one.momentum, push += one.wall_force,
+                    twist += one.wall_moment;
                 for (int k = 0; k < 2; ++k) touching[k] += one.contacts[k];
             }
             for (const real m : bed.cavity->mass) mass += m;

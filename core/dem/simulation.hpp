@@ -1,7 +1,8 @@
 // A structure with cavities full of particles, advanced together step by step.
 //
-// The structure is propagated exactly between the steps; at each step it is kicked by the loads and by the forces that the
-// particles of its cavities have at the very same instant: second order, and action equals reaction.
+// The structure is propagated exactly between the steps; at each step it is kicked by the loads and by the
+// forces that the particles of its cavities have at the very same instant: second order, and action equals
+// reaction.
 #pragma once
 
 #include <atomic>
@@ -31,7 +32,7 @@ class Simulation {
     long builds_ = 0, scans_ = 0;
     bool halted_ = false;
     long steps_since_ = 0;
-    std::vector<std::vector<std::vector<int>>> incoming_; // of each thread and bed
+    std::vector<std::vector<std::vector<int>>> incoming_;       // of each thread and bed
     std::vector<std::vector<int>> pair_numbers_, wall_numbers_; // of each bed and chunk
     Records records_;
 
@@ -119,7 +120,8 @@ class Simulation {
         for (std::size_t m = 0; m < modes_.size(); ++m) {
             real f = 0;
             for (const Bed& bed : beds_) f += dot(bed.cavity->shape[m], force_on(bed));
-            for (std::size_t l = 0; l < load_value_.size(); ++l) f += problem_.loads[l].shape[m] * load_value_[l];
+            for (std::size_t l = 0; l < load_value_.size(); ++l)
+                f += problem_.loads[l].shape[m] * load_value_[l];
             modal_force_[m] = f;
         }
     }
@@ -152,19 +154,22 @@ class Simulation {
             for (const Tally& t : bed.tally) momentum += t.momentum;
         for (std::size_t l = 0; l < load_value_.size(); ++l)
             if (problem_.loads[l].base)
-                base_work_[l] -= part * problem_.dt * load_value_[l] * dot(problem_.load_direction[l], momentum);
+                base_work_[l] -=
+                    part * problem_.dt * load_value_[l] * dot(problem_.load_direction[l], momentum);
     }
 
     // ---- neighbours
 
     void choose_reach(Bed& bed) {
-        static const real NB = getenv("NB") ? atof(getenv("NB")) : 80, NS = getenv("NS") ? atof(getenv("NS")) : 10;
+        static const real NB = getenv("NB") ? atof(getenv("NB")) : 80,
+                          NS = getenv("NS") ? atof(getenv("NS")) : 10;
         // A build costs about as much as some ten scans, a scan as some ten steps.
         real smallest = infinity;
         for (int i = 0; i < bed.particles(); ++i) smallest = std::fmin(smallest, at(bed.position, i)[3]);
         const real rate = steps_since_ > 0 ? bed.since_build / static_cast<real>(steps_since_) : 0;
         bed.reach = rate > 0 ? std::clamp(2 * rate * NB, 0.02 * smallest, 0.6 * smallest) : 0.2 * smallest;
-        bed.skin = std::fmin(0.4 * bed.reach, rate > 0 ? std::fmax(2 * rate * NS, 2e-3 * smallest) : 0.1 * bed.reach);
+        bed.skin = std::fmin(0.4 * bed.reach,
+                             rate > 0 ? std::fmax(2 * rate * NS, 2e-3 * smallest) : 0.1 * bed.reach);
     }
 
     // The next step may bring together what is on no list.
@@ -187,7 +192,8 @@ class Simulation {
     template <class Team, class F> void each_chunk(Team& team, F&& f) {
         for (std::size_t b = 0; b < beds_.size(); ++b) {
             const int chunks = beds_[b].chunks();
-            for (int k = share(chunks, team.rank(), team.size()); k < share(chunks, team.rank() + 1, team.size()); ++k)
+            for (int k = share(chunks, team.rank(), team.size());
+                 k < share(chunks, team.rank() + 1, team.size()); ++k)
                 f(b, k);
         }
     }
@@ -198,7 +204,8 @@ class Simulation {
         team.sync();
         if (build) {
             if (team.leads()) {
-                for (std::size_t b = 0; b < beds_.size(); ++b) choose_reach(beds_[b]), neighbours_[b].sort(beds_[b]);
+                for (std::size_t b = 0; b < beds_.size(); ++b)
+                    choose_reach(beds_[b]), neighbours_[b].sort(beds_[b]);
                 ++builds_;
                 steps_since_ = 0;
             }
@@ -211,8 +218,8 @@ class Simulation {
         }
         each_chunk(team, [&](std::size_t b, int k) {
             if (!build) neighbours_[b].mark(beds_[b], k);
-            neighbours_[b].count(beds_[b], k, &at(pair_numbers_[b], k * ContactList::tiers), at(wall_numbers_[b], k),
-                                 at(steps_[b].stopped, k));
+            neighbours_[b].count(beds_[b], k, &at(pair_numbers_[b], k * ContactList::tiers),
+                                 at(wall_numbers_[b], k), at(steps_[b].stopped, k));
         });
         team.sync();
         if (team.leads()) {
@@ -232,7 +239,8 @@ class Simulation {
     template <class Team> void advance_all(Team& team, Row acceleration, bool first, bool sample) {
         for (std::size_t b = 0; b < beds_.size(); ++b) {
             const int chunks = beds_[b].chunks();
-            const int from = share(chunks, team.rank(), team.size()), to = share(chunks, team.rank() + 1, team.size());
+            const int from = share(chunks, team.rank(), team.size()),
+                      to = share(chunks, team.rank() + 1, team.size());
             if (from == to) continue;
             steps_[b].incoming(incoming_[static_cast<std::size_t>(team.rank())][b]);
             const Row reference = beds_[b].motion.velocity;
@@ -344,9 +352,11 @@ public:
         }
         modal_force_.assign(modes_.size(), 0);
         viscous_.assign(modes_.size(), 0);
-        for (auto* numbers : {&load_value_, &load_work_, &base_work_}) numbers->assign(problem_.loads.size(), 0);
+        for (auto* numbers : {&load_value_, &load_work_, &base_work_})
+            numbers->assign(problem_.loads.size(), 0);
         const std::size_t count = problem_.cavities.size();
-        beds_.resize(count), neighbours_.resize(count), pair_numbers_.resize(count), wall_numbers_.resize(count);
+        beds_.resize(count), neighbours_.resize(count), pair_numbers_.resize(count),
+            wall_numbers_.resize(count);
         for (std::size_t b = 0; b < count; ++b) {
             const Cavity& cavity = problem_.cavities[b];
             const Kind pair = kind_of(cavity.particle_entry), wall = kind_of(cavity.wall_entry);
@@ -359,7 +369,8 @@ public:
             prepare(bed.pairs, pair, bed.chunks());
             prepare(bed.walls, wall, bed.chunks());
             neighbours_[b].start(bed);
-            pair_numbers_[b].resize(bed.tally.size() * ContactList::tiers), wall_numbers_[b].resize(bed.tally.size());
+            pair_numbers_[b].resize(bed.tally.size() * ContactList::tiers),
+                wall_numbers_[b].resize(bed.tally.size());
             steps_.emplace_back(bed, problem_, pair, wall);
         }
         place_cavities();
@@ -378,8 +389,8 @@ public:
 
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
-        archive(step_, status_, stopped_cavity_, stopped_, builds_, scans_, steps_since_, modes_, modal_force_, load_work_,
-                base_work_, viscous_);
+        archive(step_, status_, stopped_cavity_, stopped_, builds_, scans_, steps_since_, modes_,
+                modal_force_, load_work_, base_work_, viscous_);
         for (std::size_t b = 0; b < beds_.size(); ++b) {
             beds_[b].keep(archive);
             neighbours_[b].keep(archive);

@@ -1,5 +1,5 @@
-// What one chunk of particles adds up in a step and over a run. Sums over chunks are taken in their order: the same bits for
-// any number of threads.
+// What one chunk of particles adds up in a step and over a run. Sums over chunks are taken in their order:
+// the same bits for any number of threads.
 #pragma once
 
 #include "base/rows.hpp"

@@ -1,4 +1,5 @@
-// The first touch of two bodies: the restitution of this impact, and the coefficients that hold until they part.
+// The first touch of two bodies: the restitution of this impact, and the coefficients that hold until they
+// part.
 #pragma once
 
 #include "base/status.hpp"
@@ -9,9 +10,9 @@ namespace rattlebox::dem {
 
 struct Touch {
     const Encounter* encounter;
-    real radius, mass;   // R*, m*
-    real inertia = 0;    // of rolling: both moments about the contact point in series
-    real speed;          // approach
+    real radius, mass; // R*, m*
+    real inertia = 0;  // of rolling: both moments about the contact point in series
+    real speed;        // approach
 };
 
 // A law for the pair at hand, from that of the reference pair.
@@ -34,7 +35,8 @@ inline NormalLaw scaled(const Encounter& e, const Touch& t) {
 // Speeds of plastic laws go as sqrt(R*^3 / m*).
 inline Rebound rebound(const Encounter& e, const Touch& t) {
     const bool plastic = e.restitution.get_if<JacksonGreenRestitution>() ||
-                         e.restitution.get_if<ThorntonRestitution>() || e.restitution.get_if<JohnsonRestitution>();
+                         e.restitution.get_if<ThorntonRestitution>() ||
+                         e.restitution.get_if<JohnsonRestitution>();
     const real scale = plastic ? std::sqrt(t.mass / e.mass * cube(e.radius / t.radius)) : 1;
     return rattlebox::rebound(e.restitution, std::fmax(t.speed, 0.0) * scale);
 }

@@ -13,7 +13,8 @@ struct Near {
 
 inline Near nearest(const Wall& wall, Row place) {
     const real along = dot(wall.axis, place);
-    if (wall.form == Wall::plane) return {row(wall.axis[0], wall.axis[1], wall.axis[2]), wall.axis[3] - along};
+    if (wall.form == Wall::plane)
+        return {row(wall.axis[0], wall.axis[1], wall.axis[2]), wall.axis[3] - along};
     const real taken = wall.form == Wall::cylinder ? along : 0;
     const Row q = row(place[0] - taken * wall.axis[0], place[1] - taken * wall.axis[1],
                       place[2] - taken * wall.axis[2]);

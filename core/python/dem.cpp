@@ -107,7 +107,8 @@ class Dem {
             reader.number(e.rolling_damping, entry, "rolling_damping");
             p.encounters.push_back(e);
         }
-        for (nb::handle item : nb::cast<nb::list>(d["cavities"])) p.cavities.push_back(cavity(nb::cast<nb::dict>(item)));
+        for (nb::handle item : nb::cast<nb::list>(d["cavities"]))
+            p.cavities.push_back(cavity(nb::cast<nb::dict>(item)));
         return p;
     }
 
@@ -118,10 +119,12 @@ class Dem {
         std::vector<real> values(static_cast<std::size_t>(bed.particles()) * width);
         for (int i = 0; i < bed.particles(); ++i) {
             const Row r = f(i);
-            for (std::size_t a = 0; a < width; ++a) values[static_cast<std::size_t>(at(bed.name, i)) * width + a] = r[a];
+            for (std::size_t a = 0; a < width; ++a)
+                values[static_cast<std::size_t>(at(bed.name, i)) * width + a] = r[a];
         }
         const auto n = static_cast<std::size_t>(bed.particles());
-        return array(std::move(values), width == 1 ? std::vector<std::size_t>{n} : std::vector<std::size_t>{n, width});
+        return array(std::move(values),
+                     width == 1 ? std::vector<std::size_t>{n} : std::vector<std::size_t>{n, width});
     }
 
 public:
@@ -238,9 +241,11 @@ public:
             touches.insert(touches.end(), sum, sum + 2);
         }
         const std::size_t cavities = simulation_->beds().size();
-        d["steps"] = simulation_->step(), d["rebuilds"] = simulation_->builds(), d["refreshes"] = simulation_->scans();
+        d["steps"] = simulation_->step(), d["rebuilds"] = simulation_->builds(),
+        d["refreshes"] = simulation_->scans();
         d["first_touches"] = array(std::move(touches), {cavities, 2});
-        d["largest_overlap"] = deepest, d["largest_approach_speed"] = fastest, d["extrapolated"] = extrapolated;
+        d["largest_overlap"] = deepest, d["largest_approach_speed"] = fastest,
+        d["extrapolated"] = extrapolated;
         d["memory_bytes"] = simulation_->memory();
         d["seconds"] = seconds_;
         return d;
@@ -250,7 +255,8 @@ public:
         nb::dict d;
         const Stopped& s = simulation_->stopped();
         d["cavity"] = simulation_->stopped_cavity(), d["particle"] = s.particle, d["wall"] = s.wall;
-        d["time"] = static_cast<real>(simulation_->step() - 1) * simulation_->problem().dt, d["speed"] = s.value;
+        d["time"] = static_cast<real>(simulation_->step() - 1) * simulation_->problem().dt,
+        d["speed"] = s.value;
         return d;
     }
 
