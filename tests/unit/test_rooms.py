@@ -27,7 +27,7 @@ ARROWS = {
     "core/structure": {"core/base"},
     "core/base": set(),
 }
-UPWARDS = {("results", "run.py", "plots")}  # run.plot
+UPWARDS = {("results", "run.py", "plots"), ("results", "granular.py", "plots")}  # run.plot
 
 
 def _below(room: str) -> set[str]:
