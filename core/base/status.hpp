@@ -12,6 +12,7 @@ enum class Status : int {
     not_finite = 5,      // a state became infinite or not a number
     ledger_open = 6,     // the end was reached, but the energy ledger does not close
     escaped = 7,         // a particle has left its cavity
+    no_rebound = 8,      // a dashpot was asked for a restitution of zero
 };
 
 } // namespace rattlebox

@@ -36,4 +36,9 @@ inline Rebound rebound(const RestitutionLaw& law, real speed) {
     });
 }
 
+// Can a contact with this law rebound so? To lose all, a dashpot would have to be infinite.
+inline bool possible(const NormalLaw& law, const Rebound& r) {
+    return law.visit([&](const auto& l) { return !l.needs_restitution() || r.e >= 1e-6; });
+}
+
 } // namespace rattlebox

@@ -335,8 +335,8 @@ public:
             const real change = sweep(pass == 0);
             if (!(change < 1)) return false;
             // The next change would be rounding, or it no longer falls because it is rounding.
-            if (change * change < 1e-5 * problem_.settings.tolerance * before ||
-                (change < 64 * epsilon && change > 0.1 * before)) {
+            if (pass > 0 && (change * change <= 1e-5 * problem_.settings.tolerance * before ||
+                             (change < 64 * epsilon && change > 0.1 * before))) {
                 rates();
                 return true;
             }

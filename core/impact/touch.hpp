@@ -21,6 +21,7 @@ protected:
         const real speed = std::max(system_.approach(state_.y.data(), c), 0.0);
         const Rebound r = rebound(contact(c).restitution, speed);
         if (r.outside) return fail(Status::law_domain, c, speed);
+        if (!hard() && !possible(contact(c).normal, r)) return fail(Status::no_rebound, c, speed);
         result_.counts.extrapolated += r.extrapolated;
         if (hard()) return strike(c, speed, r.e);
         if (speed == 0) { // by rounding: what presses it, if anything, will tell
@@ -180,7 +181,9 @@ protected:
             if (phase(c) != Phase::touching) continue;
             const Gap g = gap(problem_, contact(c), state_.y.data());
             if (g.value >= 0 || g.rate >= 0) continue;
-            begin_contact(c, 0, rebound(contact(c).restitution, 0).e, std::sqrt(std::sqrt(-g.value)));
+            const Rebound r = rebound(contact(c).restitution, 0);
+            if (!possible(contact(c).normal, r)) return fail(Status::no_rebound, c, 0);
+            begin_contact(c, 0, r.e, std::sqrt(std::sqrt(-g.value)));
             system_.active.back().speed = -g.rate;
         }
     }

@@ -173,8 +173,8 @@ class TwoStep {
                 // Restitution for a touch within the next step; fixed by the first step that ends in overlap.
                 if (g.value > problem_.settings.dt_flight * std::fmax(2 * rate, 0.0) && g.value > 0) continue;
                 const Rebound r = rebound(contact.restitution, std::fmax(rate, 0.0));
-                if (r.outside) {
-                    result_.status = Status::law_domain;
+                if (r.outside || !possible(contact.normal, r)) {
+                    result_.status = r.outside ? Status::law_domain : Status::no_rebound;
                     result_.stopped_contact = static_cast<int>(c);
                     result_.stopped_value = rate;
                     return false;

@@ -17,6 +17,11 @@ STATUSES: tuple[tuple[str, str], ...] = (
         "The run reached its end, but its energy ledger closes only to {value:.2g} of the energy put in: do not trust it.",
     ),
     ("escaped", "{contact} left its cavity at {value:.6g} m/s, at t = {time:.9g} s."),
+    (
+        "no_rebound",
+        "{contact} was struck at {value:.6g} m/s, where its restitution law gives no rebound, which no contact with a "
+        "dashpot can do, at t = {time:.9g} s.",
+    ),
 )
 _NAMES = [name for name, _ in STATUSES]
 INTERRUPTED, NOT_FINITE, LEDGER_OPEN = map(_NAMES.index, ("interrupted", "not_finite", "ledger_open"))
@@ -34,6 +39,10 @@ _ADVICE: dict[str, dict[str, str]] = {
         "method, whose contacts take their time.",
     },
     "step_too_small": {"": "Loosen the tolerance. " + _SIZES},
+    "no_rebound": {
+        "": "Check the law (yield stress, table, extrapolation), use a contact that yields (Thornton), or the Newton "
+        "method, whose impacts may be fully plastic."
+    },
     "not_finite": {
         "": _SIZES,
         "two_step": "Shorten the time steps dt_flight and dt_contact.",
