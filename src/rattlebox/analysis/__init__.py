@@ -3,6 +3,7 @@
 from .chaos import lyapunov_exponent
 from .decay import damping_ratio, decay_envelope
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
+from .granular import shaken_cavity
 from .measures import peak_reduction, rms_reduction, settling_time
 from .sections import impacts_per_cycle, phase_portrait, poincare_section
 from .spectra import amplitude_spectrum
@@ -21,5 +22,6 @@ __all__ = [
     "poincare_section",
     "rms_reduction",
     "settling_time",
+    "shaken_cavity",
     "specific_damping_capacity",
 ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -61,14 +60,13 @@ def simulate_dem(case: Case, *, threads: int | None = None, progress: Progress |
     CaseError
         When the step that is given is too long, or particles do not settle.
     """
-    began = time.perf_counter()
     assert isinstance(case.method, Dem)
     packed, step, tables = pack_dem(case)
     dem = core().Dem(packed)
     dem.threads = threads or case.method.threads or os.cpu_count() or 1
     status = _follow(dem, step, progress)
     raw = dem.records()
-    arrays = _arrays(case, packed, raw, dem, status, step, tables, time.perf_counter() - began)
+    arrays = _arrays(case, packed, raw, dem, status, step, tables)
     run = GranularRun(arrays, case.to_toml, Provenance.now(method=case.method.kind, seed=case.seed))
     if run.ok and not run.ledger.closes(CLOSES):
         end = NOT_FINITE if np.isnan(run.closure) else LEDGER_OPEN
@@ -113,7 +111,7 @@ def pack_dem(case: Case) -> tuple[Packed, Step, list[ContactTable]]:
     """
     modes = case.modes
     shapes = [modes.space_shape(damper.point, damper.direction) for damper in case.particle_dampers]
-    tables = [damper.contact_table(shape) for damper, shape in zip(case.particle_dampers, shapes, strict=True)]
+    tables = [damper.contact_table for damper in case.particle_dampers]
     loads = _loads(case)
     velocities = _without_particles(case, loads)
     speeds = expected_speeds(case, [velocities @ shape for shape in shapes])
@@ -185,7 +183,7 @@ def _cavity(damper: ParticleDamper, shape: Array, displacement: Array, table: Co
         "shape": _array(shape),
         "wall_axis": _array(walls.axis),
         "wall_offset": _array(walls.offset),
-        "wall_curved": np.ascontiguousarray(walls.curved, dtype=np.int64),
+        "wall_curved": _array(walls.curved),
         "wall_kind": np.ascontiguousarray(table.wall_kind, dtype=np.int64),
         "position": _array(position + displacement),
         "velocity": _array(start.velocity),
@@ -222,7 +220,6 @@ def _arrays(
     status: int,
     step: Step,
     tables: list[ContactTable],
-    seconds: float,
 ) -> GranularArrays:
     modes, dampers = case.modes, case.particle_dampers
     times, q, p = raw["time"], raw["q"], raw["p"]
@@ -294,7 +291,7 @@ def _arrays(
         },
         figures=figures,
         notes=tuple(notes),
-        wall_time=seconds,
+        wall_time=counters["seconds"],
     )
 
 
@@ -302,8 +299,7 @@ def _told(case: Case, names: list[str], dem: Any, status: int, step: Step) -> tu
     """Name of the status, and what happened."""
     if status == 0:
         return describe(0, case.duration, "", 0.0, case.method.kind)
-    stopped = dem.stopped
-    where = f"Particle {stopped['particle']} of {names[stopped['cavity']]!r}" if stopped else ""
-    time_, speed = (stopped["time"], stopped["speed"]) if stopped else (dem.state()["time"], 0.0)
-    name, message = describe(status, time_, where, speed, case.method.kind)
+    stopped = dem.stopped()
+    where = f"Particle {stopped['particle']} of {names[stopped['cavity']]!r}"
+    name, message = describe(status, stopped["time"], where, stopped["speed"], case.method.kind)
     return name, f"{message} The step was {step.dt:.4g} s."

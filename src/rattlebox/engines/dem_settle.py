@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-ROUNDS = 3000
+ROUNDS = 5000
 SWELL = 2e-3  # how much larger particles are made while they are pushed apart, so that in the end none touch
 SINK = 0.05  # overlap over radius at the largest speed of the fall
 RESTITUTION = 0.1
@@ -101,24 +101,28 @@ def push_apart(cavity: Cavity, places: Array, radii: Array, swell: float) -> Arr
     """
     places, grown = places.copy(), radii * (1 + swell)
     walls = cavity.walls()
-    for _ in range(ROUNDS):
+    move, stride, mixing, downhill = np.zeros_like(places), 0.3, 0.1, 0
+    for _ in range(ROUNDS):  # steepest descent with inertia (FIRE) on the squares of all overlaps
         first, second, apart = overlapping(places, grown)
-        worst = max(float((-apart / np.minimum(radii[first], radii[second])).max(initial=0.0)), 0.0)
-        move, count = np.zeros_like(places), np.zeros(len(places))
-        between = places[first] - places[second]
-        length = np.linalg.norm(between, axis=1)
-        unit = np.where(length[:, None] > 0, between / np.maximum(length, 1e-300)[:, None], [0.0, 0.0, 1.0])
-        share = (radii[second] ** 3 / (radii[first] ** 3 + radii[second] ** 3))[:, None]
-        np.add.at(move, first, -apart[:, None] * unit * share)
-        np.add.at(move, second, apart[:, None] * unit * (1 - share))
-        np.add.at(count, first, 1)
-        np.add.at(count, second, 1)
-        places += move / np.maximum(count / 1.5, 1)[:, None]
         depth = walls.distances(places) - grown[:, None]
-        worst = max(worst, float((-depth / radii[:, None]).max()))
-        places += _off_walls(walls, places, depth)
-        if worst <= 0.5 * swell:
+        small = np.minimum(grown[first], grown[second])
+        if max((-apart / small).max(initial=0.0), (-depth / grown[:, None]).max()) <= 0.5 * swell:
             return places
+        between = places[first] - places[second]
+        length = np.linalg.norm(between, axis=1)[:, None]
+        push = -apart[:, None] * np.where(length > 0, between / np.maximum(length, 1e-300), [0.0, 0.0, 1.0])
+        force = _off_walls(walls, places, depth)
+        np.add.at(force, first, push)
+        np.add.at(force, second, -push)
+        if np.sum(force * move) > 0:
+            move = (1 - mixing) * move + mixing * force * np.linalg.norm(move) / np.linalg.norm(force)
+            downhill += 1
+            if downhill > 5:
+                stride, mixing = min(1.1 * stride, 0.8), 0.99 * mixing
+        else:
+            move, stride, mixing, downhill = np.zeros_like(places), 0.5 * stride, 0.1, 0
+        move += stride * force
+        places += stride * move
     filled = float(np.sum(radii**3)) * 4 / 3 * math.pi / cavity.volume
     raise Hint(
         f"{radii.size} particles cannot be inserted at random: they would fill {100 * filled:.3g} % of the cavity",
@@ -188,7 +192,7 @@ def _fall(damper: ParticleDamper, places: Array, at_rest: float) -> Array:
                     "shape": np.zeros((0, 3)),
                     "wall_axis": np.ascontiguousarray(walls.axis),
                     "wall_offset": walls.offset,
-                    "wall_curved": np.ascontiguousarray(walls.curved, dtype=np.int64),
+                    "wall_curved": np.array(walls.curved, dtype=float),
                     "wall_kind": np.zeros(walls.offset.size, np.int64),
                     "position": places,
                     "velocity": np.zeros_like(places),
@@ -221,5 +225,5 @@ def _fall(damper: ParticleDamper, places: Array, at_rest: float) -> Array:
 
 def _friction(damper: ParticleDamper) -> float:
     """The largest coefficient of friction among the particles."""
-    entries = damper.contact_table(np.zeros((0, 3))).entries
+    entries = damper.contact_table.entries
     return max((entry.friction.coefficient for entry in entries if entry.friction is not None), default=0.0)

@@ -315,7 +315,7 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
             raise Hint(
                 f"dt = {_time(longest)} is too long to be stable: the bound is {_time(refusing.bound)}, for the "
                 f"{refusing.what}",
-                'dt = "auto"',
+                f'dt = "auto", or dt = "{0.99e6 * refusing.bound:.3g} us"',
             )
     interval = case.duration / samples
     every = math.ceil(interval / longest * (1 - 1e-12))

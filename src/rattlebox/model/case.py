@@ -229,7 +229,7 @@ class Case(Part):
 
     def _check_entries(self, damper: ParticleDamper) -> None:
         """Let every law look at the pairs of bodies that it is used for."""
-        for entry in damper.contact_table(self.modes.space_shape(damper.point, damper.direction)).entries:
+        for entry in damper.contact_table.entries:
             with at(*entry.place), _computable():
                 _check_finite(damper.softened(entry)[1])
                 _check_finite(damper.softened_friction(entry))

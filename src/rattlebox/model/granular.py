@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from .base import AlsoTakes, Part
-from .cavities import PLANE, SPHERE, AnyCavity
+from .cavities import AnyCavity
 from .contacts import AnyContact, Linear
 from .elementwise import Vector
 from .errors import Hint, at
@@ -84,7 +84,7 @@ class Entry:
     Attributes
     ----------
     pair
-        The bodies; of a species that has several sizes, particles of its mean radius.
+        The bodies of reference: of a species that has several sizes, particles of its mean radius; a wall that cannot move.
     contact, friction, rolling
         The laws.
     names
@@ -112,7 +112,7 @@ class ContactTable:
     particle_entry : (k, k) int
         Entry of two species.
     wall_entry : (k, w) int
-        Entry of a species and a kind of wall: walls differ by the mass that a push on them feels.
+        Entry of a species and a kind of wall.
     wall_kind : (walls,) int
         Kind of each wall.
     """
@@ -342,19 +342,17 @@ class ParticleDamper(Part):
         wall = getattr(self, f"wall_{field}", None) if second == WALL else None
         return (wall, (f"wall_{field}",)) if wall is not None else (getattr(self, field), (field,))
 
-    def _laws(self, mobility: Vector | None = None) -> Iterator[Entry]:
-        """Entries of all pairs of species, then of each species with walls of the given mobilities [1/kg]."""
+    def _laws(self) -> Iterator[Entry]:
+        """Entries of all pairs of species, then of each species with the wall, which stands as if immovable."""
         names = [species.label for species in self.particles]
         bodies = [self._body(index) for index in range(len(names))]
         wall = self.particles[0].material if self.wall is None else self.wall
-        material = wall if isinstance(wall, Material) else None
-        sides = [Body(material, mass=1 / m if m else math.inf) for m in ([0.0] if mobility is None else mobility)]
+        side = Body(wall if isinstance(wall, Material) else None)
         for i, first in enumerate(bodies):
             for j in range(i, len(bodies)):
                 yield self._entry(names[i], names[j], Pair(first, bodies[j]))
         for name, body in zip(names, bodies, strict=True):
-            for side in sides:
-                yield self._entry(name, WALL, Pair(body, side))
+            yield self._entry(name, WALL, Pair(body, side))
 
     def _entry(self, first: str, second: str, pair: Pair) -> Entry:
         contact, place = self._law("contact", first, second)
@@ -367,26 +365,18 @@ class ParticleDamper(Part):
         radius = float(contents.radius[contents.species == index].mean())
         return Body(material, radius, 4 / 3 * math.pi * radius**3 * material.density)
 
-    def contact_table(self, shape: Vector) -> ContactTable:
-        """Return the entries of all pairs.
-
-        Parameters
-        ----------
-        shape
-            Mode shapes of the cavity, (m, 3) [kg^-1/2].
-        """
-        walls = self.cavity.walls()
-        push = shape.T @ shape  # what a unit push does in each direction
-        mobility = np.array([_mobility(push, *wall) for wall in zip(walls.axis, walls.curved, strict=True)])
-        scale = float(mobility.max()) or 1.0
-        distinct, kind = np.unique((mobility / scale).round(12), return_inverse=True)
-        entries = tuple(self._laws(scale * distinct))
+    @property
+    def contact_table(self) -> ContactTable:
+        """Entries of all pairs."""
         k = len(self.particles)
         particle = np.zeros((k, k), np.int64)
         particle[np.triu_indices(k)] = np.arange(k * (k + 1) // 2)
-        particle = np.maximum(particle, particle.T)
-        wall_entry = k * (k + 1) // 2 + np.arange(k * distinct.size).reshape(k, -1)
-        return ContactTable(entries, particle, wall_entry, kind)
+        return ContactTable(
+            tuple(self._laws()),
+            np.maximum(particle, particle.T),
+            k * (k + 1) // 2 + np.arange(k)[:, None],
+            np.zeros(self.cavity.walls().offset.size, np.int64),
+        )
 
     def softened(self, entry: Entry) -> tuple[str, dict[str, Any]]:
         """Return the core's name of a contact law and its coefficients, with moduli divided by the softening.
@@ -408,11 +398,3 @@ class ParticleDamper(Part):
                 values["tangential_stiffness"] *= self.softening
         rolling = Rolling(coefficient=0.0) if entry.rolling is None else entry.rolling
         return values | rolling.coefficients()
-
-
-def _mobility(push: Vector, axis: Vector, curved: int) -> float:
-    """Acceleration of a wall per unit of force on it [1/kg]; for what is curved, the mean over its directions."""
-    along = float(axis @ push @ axis)
-    if curved == PLANE:
-        return along
-    return float(np.trace(push)) / 3 if curved == SPHERE else float(np.trace(push) - along) / 2

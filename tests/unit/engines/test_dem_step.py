@@ -1,0 +1,187 @@
+"""The step of particles: contact times are those of the laws, the tightest limit is named, too long a step is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_trapezoid, solve_ivp
+
+import rattlebox as rb
+from rattlebox.engines.dem_settle import insert, push_apart
+from rattlebox.engines.dem_step import choose_step, contact_time, expected_speeds, limits, outcome
+from rattlebox.model.packing import check_packing
+
+STEEL = rb.materials()["steel"]
+CUBE = rb.Box(size=("40 mm",) * 3)
+
+
+def case(damper: dict[str, Any] | None = None, **options: Any) -> rb.Case:
+    """Return a case with two kinds of steel balls in a cube that stands still without gravity."""
+    usual: dict[str, Any] = {
+        "particles": [
+            rb.Particles(material="steel", diameter="4 mm", count=20),
+            rb.Particles(name="fine", material="steel", diameter="2 mm", count=20),
+        ],
+        "cavity": CUBE,
+        "contact": rb.Tsuji(restitution=0.9),
+        "gravity": (0, 0, 0),
+        "velocity": ("0.5 m/s", 0, 0),
+    }
+    made = rb.ParticleDamper(**{**usual, **(damper or {})})
+    return rb.Case(**{"structure": rb.Fixed(), "damper": made, "duration": 1.0, **options})
+
+
+def tables(of: rb.Case) -> list[Any]:
+    """Return the pairs in each damper of a case."""
+    return [damper.contact_table for damper in of.particle_dampers]
+
+
+def integrated(force: Any, mass: float, speed: float) -> float:
+    """Return how long a body that hits a spring at a speed stays in contact."""
+
+    def leaves(_: float, y: Any) -> float:
+        return float(y[0])
+
+    leaves.terminal, leaves.direction = True, -1.0  # type: ignore[attr-defined]
+    tries = solve_ivp(
+        lambda _, y: [y[1], -force(max(y[0], 0.0)) / mass], (0, 1.0), [0.0, speed], events=leaves, rtol=1e-9, atol=1e-15
+    )
+    return float(tries.t_events[0][-1])
+
+
+def test_contact_times_are_those_of_the_motion() -> None:
+    """Hertz and linear contacts last as long as their equation of motion says."""
+    hertz = {"stiffness": 5e9, "mass": 1e-4}
+    for speed in (0.01, 1.0, 20.0):
+        expected = integrated(lambda d: 5e9 * d**1.5, 1e-4, speed)
+        assert contact_time("hertz_tsuji", hertz, speed) == pytest.approx(expected, rel=1e-5)
+    linear = {"stiffness": 1e6, "mass": 1e-4}
+    assert contact_time("linear", linear, 3.0) == pytest.approx(integrated(lambda d: 1e6 * d, 1e-4, 3.0), rel=1e-5)
+
+
+@pytest.mark.parametrize("speed", [0.001, 0.1, 1.0, 10.0, 100.0])
+def test_yielding_contacts_are_not_stiffer_than_told(speed: float) -> None:
+    """The time told of a contact that yields is that of its stiffest moment: unloading begins no faster."""
+    radius, modulus, pressure, mass = 1e-3, 1.1e11, 1.6e9, 1e-4
+    stiffness = 4 / 3 * modulus * math.sqrt(radius)
+    law = {"stiffness": stiffness, "mass": mass, "radius": radius, "modulus": modulus, "yield_pressure": pressure}
+    lasts = contact_time("thornton", law, speed)
+    depth = radius * (math.pi * pressure / (2 * modulus)) ** 2
+    yielding = stiffness * depth**1.5
+    slope = math.pi * pressure * radius
+
+    d = np.linspace(0, 1e-3, 1_000_001)
+    along = np.where(d <= depth, stiffness * d**1.5, yielding + slope * (d - depth))
+    energy = cumulative_trapezoid(along, d, initial=0.0)
+    largest = float(np.interp(0.5 * mass * speed**2, energy, along))
+    if largest <= yielding:
+        assert lasts == pytest.approx(contact_time("hertz_tsuji", law, speed))
+        return
+    wide = 4 * modulus / (3 * largest) * ((2 * largest + yielding) / (2 * math.pi * pressure)) ** 1.5
+    steepest = 2 * modulus * math.sqrt(wide) * (3 * largest / (4 * modulus * math.sqrt(wide))) ** (1 / 3)
+    assert 4.03 / lasts == pytest.approx(math.sqrt(steepest / mass), rel=0.02)
+
+
+def test_the_smallest_pair_limits_the_step() -> None:
+    """Of several sizes it is the contact of the smallest that lasts shortest, and the report says so."""
+    made = case()
+    speeds = expected_speeds(made, [np.zeros((0, 3))])
+    assert speeds == (1.0,)
+    step = choose_step(made, tables(made), speeds)
+    radius, mass = 0.5e-3, 0.5 * 4 / 3 * math.pi * 1e-9 * STEEL.density
+    modulus = STEEL.young / (2 * (1 - STEEL.poisson**2))
+    lasts = contact_time("hertz_tsuji", {"stiffness": 4 / 3 * modulus * math.sqrt(radius), "mass": mass}, 1.0)
+    assert step.shortest.duration == pytest.approx(lasts)
+    assert "fine and fine (diameter 2 mm) at 1 m/s" in step.shortest.what
+    assert step.dt <= 0.025 * lasts
+    assert step.dt * step.every * made.even_samples() == pytest.approx(made.duration, rel=1e-14)
+
+
+def test_slow_contacts_are_limited_by_waves() -> None:
+    """Where contacts are slow, the time of a Rayleigh wave along the smallest particle limits the step."""
+    made = case({"velocity": (1e-6, 0, 0)})
+    step = choose_step(made, tables(made), expected_speeds(made, [np.zeros((0, 3))]))
+    assert step.limit.what.startswith("Rayleigh wave along fine (diameter 2 mm)")
+    shear = STEEL.young / (2 * (1 + STEEL.poisson))
+    wave = math.pi * 1e-3 * math.sqrt(STEEL.density / shear) / (0.1631 * STEEL.poisson + 0.8766)
+    assert step.dt == pytest.approx(0.2 * wave, rel=1e-3)
+
+
+def test_a_fast_mode_limits_the_step() -> None:
+    """A structure that swings faster than any contact limits the step by its period."""
+    made = case({"softening": 1e6}, structure=rb.SDOF(mass=1e-3, stiffness=1e9), duration=1e-3)
+    found = limits(made, tables(made), (1.0,))
+    assert min(found, key=lambda limit: limit.step).what.startswith("period of mode 1")
+
+
+def test_too_long_a_step_is_refused_with_its_bound() -> None:
+    """A step beyond the bound is refused, the bound is told, and a step at the bound is accepted."""
+    made = case()
+    shortest = choose_step(made, tables(made), (1.0,)).shortest
+    for dt, good in [(1.001 * shortest.bound, False), (0.999 * shortest.bound, True)]:
+        tried = case(method=rb.Dem(dt=dt))
+        if good:
+            assert choose_step(tried, tables(tried), (1.0,)).dt <= dt
+        else:
+            with pytest.raises(
+                rb.CaseError, match=r"too long to be stable: the bound is 1\.23 µs, for the contact of fine"
+            ):
+                choose_step(tried, tables(tried), (1.0,))
+
+
+def test_strong_dashpots_lower_the_bound() -> None:
+    """A dashpot that is faster than its spring lowers the bound."""
+    bounds = []
+    for e in (0.9, 1e-3):
+        made = case({"contact": rb.Tsuji(restitution=e)})
+        bounds.append(choose_step(made, tables(made), (1.0,)).shortest.bound)
+    assert bounds[1] < 0.5 * bounds[0]
+
+
+def test_expected_speeds_add_what_moves() -> None:
+    """A shaker's span of velocity and a fall through the cavity add up."""
+    shaken = case(
+        {"velocity": (0, 0, 0), "gravity": (0, 0, -9.81)},
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="50 Hz", direction="z")),
+    )
+    expected = 2 * 1e-3 * 100 * math.pi + math.sqrt(2 * 9.81 * 0.04)
+    assert expected_speeds(shaken, [np.zeros((0, 3))])[0] == pytest.approx(expected, rel=1e-4)
+
+
+def test_outcomes_are_judged() -> None:
+    """Too few steps in the shortest contact and too large overlaps are told, softening with what it does."""
+    made = case({"softening": 100})
+    step = choose_step(made, tables(made), (1.0,))
+    _, quiet = outcome(made, tables(made), step, 1e-3, 1.0)
+    assert not any("warning" in note for note in quiet)
+    assert any("contacts last 6.31 times as long" in note for note in quiet)
+    figures, loud = outcome(made, tables(made), step, 0.05, 100.0)
+    assert sum("warning" in note for note in loud) == 2
+    assert figures["steps_per_contact"] == pytest.approx(step.shortest.duration / step.dt * 100**-0.2, rel=1e-6)
+
+
+@pytest.mark.parametrize("filled", [0.2, 0.55])
+def test_particles_inserted_at_random_do_not_overlap(filled: float) -> None:
+    """Random places are pushed apart until nothing overlaps or sticks out, the same for the same seed."""
+    cavity = rb.Cylinder(diameter="40 mm", length="30 mm", axis=(0, 1, 1))
+    radii = (
+        rb.LogNormal(median="4 mm", spread=1.2, smallest="3 mm", largest="6 mm").diameters(
+            np.linspace(0.001, 0.999, 500)
+        )
+        / 2
+    )
+    radii *= (filled * cavity.volume / np.sum(4 / 3 * math.pi * radii**3)) ** (1 / 3)
+    places = insert(cavity, radii, seed=1)
+    check_packing(cavity, places, radii)
+    assert np.array_equal(places, insert(cavity, radii, seed=1))
+    assert not np.allclose(places, insert(cavity, radii, seed=2))
+    assert np.abs(places.mean(axis=0)).max() < 1e-3
+
+
+def test_what_cannot_be_inserted_is_told() -> None:
+    """Where there is no room, inserting ends with a message."""
+    with pytest.raises(rb.CaseError, match="cannot be inserted at random: they would fill 7"):
+        push_apart(CUBE, np.zeros((100, 3)) + np.linspace(0, 1e-3, 300).reshape(100, 3), np.full(100, 4.77e-3), 2e-3)
