@@ -67,6 +67,12 @@ def choice() -> tuple[str, str]:
     return best, f"the processor lacks instructions of {built()[0]}, or they could not be read"
 
 
+def instructions() -> str:
+    """Return the name of the instructions that decide the last bits."""
+    level = choice()[0]
+    return platform.machine() if level == "native" else level
+
+
 @cache
 def core() -> Any:
     """Return the compiled core."""

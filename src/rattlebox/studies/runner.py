@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import pickle
-import platform
 import threading
 import time
 import warnings
@@ -197,10 +196,9 @@ def cores() -> int:
 
 def _core() -> str:
     """Name of the instructions that decide the last bits."""
-    from rattlebox.engines.core import choice
+    from rattlebox.engines.core import instructions
 
-    level = choice()[0]
-    return platform.machine() if level == "native" else level
+    return instructions()
 
 
 def _bits() -> str:

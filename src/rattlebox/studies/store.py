@@ -8,20 +8,19 @@ import math
 import os
 import shutil
 import socket
-import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property
-from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox.model.differences import differences
 from rattlebox.model.errors import CaseError
 
 from .blocks import Blocks
@@ -39,8 +38,6 @@ JOURNAL = "trials.journal"
 """In which a design, which has no runs of its own, keeps its trials."""
 
 _PROGRESS, _MAP = "progress", "map"
-_TOLD = 8  # differences on one screen
-_NOTHING = object()
 
 
 @dataclass(frozen=True)
@@ -240,11 +237,9 @@ class Store:
 
     def _compare(self) -> None:
         there, here = _attributes(self.path)["manifest"], self._plan.manifest
-        lines = [f"  {line}" for line in _differences(there, here)]
+        lines = differences(there, here)
         if not lines:
             return
-        if len(lines) > _TOLD:
-            lines[_TOLD:] = [f"  and {len(lines) - _TOLD} more"]
         hint = "another folder, or remove this one"
         if len(lines) == 1 and there["core"] != here["core"]:
             hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another folder"
@@ -463,27 +458,3 @@ def _missing(kind: np.dtype[Any]) -> Any:
     if kind.kind in "iu":
         return np.iinfo(kind).min if kind.kind == "i" else np.iinfo(kind).max
     return False if kind.kind == "b" else np.nan
-
-
-def _differences(there: Any, here: Any, path: str = "") -> Iterator[str]:
-    """Where two trees differ; of a list, the first place."""
-    if isinstance(there, str) and isinstance(here, str) and "\n" in there:
-        with suppress(tomllib.TOMLDecodeError):
-            there, here = tomllib.loads(there), tomllib.loads(here)
-    if isinstance(there, dict) and isinstance(here, dict):
-        for name in sorted(there.keys() | here.keys()):
-            below = f"{path}.{name}" if path else name
-            yield from _differences(there.get(name, _NOTHING), here.get(name, _NOTHING), below)
-    elif isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
-        places = (_differences(*pair, f"{path}[{i}]") for i, pair in enumerate(zip(there, here, strict=True)))
-        yield from islice(chain.from_iterable(places), 1)
-    elif there is not here and _shown(there) != _shown(here):
-        yield f"{path}: {_cut(_shown(there))} there, {_cut(_shown(here))} here"
-
-
-def _shown(value: Any) -> str:
-    return "nothing" if value is _NOTHING else json.dumps(value, default=str, ensure_ascii=False)
-
-
-def _cut(text: str) -> str:
-    return text if len(text) <= 40 else f"{text[:37]}..."
