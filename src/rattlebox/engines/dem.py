@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 Packed = dict[str, Any]
 Progress = Callable[[int, int], object]
 
+PARTICLES_EACH = 4000
+"""Of a thread, at least: with fewer they wait for each other."""
+
 CLOSES = 0.01
 """Of the energy put in: a ledger that misses more has a status."""
 
@@ -46,9 +49,9 @@ def simulate_dem(case: Case, *, threads: int | None = None, progress: Progress |
     case
         What to run.
     threads
-        How many at once; default those of the method, or as many as there are cores.
+        How many at once; default those of the method, or as many as there are cores and work for them.
     progress
-        Called now and then with the number of steps done and of all.
+        Called now and then with the number of steps done and of all; False stops the run, as Ctrl-C does.
 
     Returns
     -------
@@ -63,7 +66,7 @@ def simulate_dem(case: Case, *, threads: int | None = None, progress: Progress |
     assert isinstance(case.method, Dem)
     packed, step, tables = pack_dem(case)
     dem = core().Dem(packed)
-    dem.threads = threads or case.method.threads or os.cpu_count() or 1
+    dem.threads = threads or case.method.threads or useful_threads(packed)
     status = _follow(dem, step, progress)
     raw = dem.records()
     arrays = _arrays(case, packed, raw, dem, status, step, tables)
@@ -75,13 +78,20 @@ def simulate_dem(case: Case, *, threads: int | None = None, progress: Progress |
     return run
 
 
+def useful_threads(packed: Packed) -> int:
+    """Return how many threads have enough to do, at most as many as there are cores."""
+    particles: int = sum(cavity["radius"].size for cavity in packed["cavities"])
+    return max(1, min(os.cpu_count() or 1, particles // PARTICLES_EACH))
+
+
 def _follow(dem: Any, step: Step, progress: Progress | None) -> int:
     """Run to the end; Ctrl-C ends the run with a status."""
     try:
-        dem.run(step.count, None if progress is None else lambda done: progress(done, step.count))
+        finished = dem.run(step.count, None if progress is None else lambda done: progress(done, step.count))
     except KeyboardInterrupt:
-        return INTERRUPTED
-    return int(dem.status)
+        finished = False
+    status: int = dem.status
+    return status if finished or status else INTERRUPTED
 
 
 # ---- packing

@@ -207,7 +207,7 @@ def _fall(damper: ParticleDamper, places: Array, at_rest: float) -> Array:
             ],
         }
     )
-    dem.threads = os.cpu_count() or 1
+    dem.threads = max(1, min(os.cpu_count() or 1, count // 4000))
     still = at_rest * float(contents.mass @ contents.radius) * pull
     quiet = 0
     for sample in range(1, longest + 1):

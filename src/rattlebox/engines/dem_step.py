@@ -198,7 +198,11 @@ def contact_limits(damper: ParticleDamper, table: ContactTable, speed: float, fr
     fraction
         Of a contact, for a step.
     """
+    labels = [species.label for species in damper.particles]
+    numbers = np.bincount(damper.contents.species, minlength=len(labels))
     for entry in table.entries:
+        if entry.names[0] == entry.names[1] and numbers[labels.index(entry.names[0])] < 2:
+            continue  # nothing to meet
         law, values = damper.softened(entry)
         by_time = isinstance(entry.contact, Linear) and entry.contact.contact_time is not None
         duration, sizes = math.inf, ""

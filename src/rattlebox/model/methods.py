@@ -88,7 +88,8 @@ class Dem(Part):
     fraction
         With "auto": of the shortest contact and of the period of the fastest mode.
     threads
-        How many at once; default as many as there are cores. The results do not depend on it, to the last bit.
+        How many at once; default as many as there are cores and enough particles for. The results do not depend on it, to
+        the last bit.
     checkpoint
         How often the state is written to a file from which the run can go on [s of computing]; default never.
     """

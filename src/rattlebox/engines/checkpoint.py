@@ -1,0 +1,177 @@
+"""Runs that are not over, on disk: what a run with particles needs to go on, bit by bit."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.engines.core import instructions
+from rattlebox.model.differences import differences
+from rattlebox.model.errors import CaseError
+from rattlebox.results.provenance import Provenance
+from rattlebox.results.whole import telling, whole
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
+FORMAT = 1
+"""Number of the layout; files with a higher one are refused."""
+
+_FREE: dict[str, tuple[str, ...]] = {"method": ("threads", "checkpoint"), "output": ("snapshots",)}
+"""Fields of the case that may change: the bits do not depend on them."""
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What a checkpoint holds.
+
+    Attributes
+    ----------
+    numbers
+        Fingerprint of all that the core was given.
+    time
+        How far the run is [s].
+    seconds
+        Computing time so far [s].
+    positions
+        Of the particles at the start, in each damper, (n, 3) [m].
+    records
+        Samples so far, as the core gives them.
+    state : (bytes,) uint8
+        Of the core.
+    """
+
+    numbers: str
+    time: float
+    seconds: float
+    positions: tuple[NDArray[np.float64], ...]
+    records: Mapping[str, NDArray[Any]]
+    state: NDArray[np.uint8]
+
+
+class Checkpoint:
+    """The file that a run goes on from.
+
+    Parameters
+    ----------
+    path
+        File, which need not exist.
+    case
+        What is run.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], case: Case) -> None:
+        self.path = Path(path)
+        self.time: float | None = None  # of what is in the file
+        self._about = {"case": _bare(case), "version": Provenance.now().version, "core": instructions()}
+
+    def read(self) -> Kept | None:
+        """Return what is in the file, None where there is no file.
+
+        Raises
+        ------
+        CaseError
+            When the file is something else, or of another case, version or core; with what differs.
+        """
+        if not self.path.exists():
+            return None
+        try:
+            with np.load(self.path, allow_pickle=False) as file:
+                about = json.loads(file["about"].tobytes())
+                if about["format"] > FORMAT:
+                    raise CaseError(f"{self.path} was written by a later Rattlebox\n  try: update Rattlebox")
+                self._compare(about)
+                names = [name.split(".", 1) for name in file.files if "." in name]
+                groups = {g: {name: file[f"{g}.{name}"] for h, name in names if g == h} for g in ("records", "position")}
+                state = file["state"]
+        except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+            if isinstance(error, CaseError):
+                raise
+            raise CaseError(f"{self.path} is not a whole checkpoint\n  try: another file, or remove this one") from None
+        positions = tuple(groups["position"][str(k)] for k in range(len(groups["position"])))
+        self.time = about["time"]
+        return Kept(about["numbers"], about["time"], about["seconds"], positions, groups["records"], state)
+
+    def check(self, kept: Kept, packed: Mapping[str, Any]) -> None:
+        """Refuse a checkpoint of a case that reads the same but has other numbers."""
+        if kept.numbers != _fingerprint(packed):
+            raise CaseError(
+                f"{self.path} holds another run\n  the case reads the same but has other numbers: a file that it names has "
+                "changed, or a library that prepares it\n  try: another file, or remove this one"
+            )
+
+    def write(self, dem: Any, packed: Mapping[str, Any], records: Mapping[str, NDArray[Any]], seconds: float) -> None:
+        """Put a state in the place of the one in the file.
+
+        Raises
+        ------
+        OSError
+            When that cannot be done; the file is then as it was.
+        """
+        time = dem.step * packed["dt"]
+        told = {"format": FORMAT, "time": time, "seconds": seconds, "numbers": _fingerprint(packed), **self._about}
+        arrays = {f"records.{name}": values for name, values in records.items()}
+        arrays |= {f"position.{k}": cavity["position"] for k, cavity in enumerate(packed["cavities"])}
+        about = np.frombuffer(json.dumps(told).encode(), np.uint8)
+        lost = "make room and give the same command again, which goes on from the last checkpoint"
+        with telling(self.path, lost), whole(self.path) as name, name.open("wb") as file:
+            np.savez(file, about=about, state=dem.save(), **arrays)
+        self.time = time
+
+    def _compare(self, about: Mapping[str, Any]) -> None:
+        there = {name: about[name] for name in self._about}
+        if lines := differences(there, self._about):
+            hint = "another file, or remove this one"
+            if len(lines) == 1 and there["core"] != self._about["core"]:
+                hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another file"
+            raise CaseError("\n".join([f"{self.path} holds another run", *lines, f"  try: {hint}"]))
+
+
+def joined(pieces: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+    """Return samples that were taken one piece after another as one.
+
+    Parameters
+    ----------
+    pieces
+        As the core gives them, time first.
+    """
+    return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+
+
+def _bare(case: Case) -> str:
+    """The text of a case file without what may change."""
+    update = {
+        part: getattr(case, part).model_copy(update=dict.fromkeys(names)) for part, names in _FREE.items()
+    }
+    return case.model_copy(update=update).to_toml()
+
+
+def _fingerprint(packed: Mapping[str, Any]) -> str:
+    digest = hashlib.sha256()
+
+    def add(value: Any) -> None:
+        if isinstance(value, Mapping):
+            for name in sorted(value):
+                digest.update(name.encode())
+                add(value[name])
+        elif isinstance(value, (list, tuple)):
+            digest.update(b"%d" % len(value))
+            for item in value:
+                add(item)
+        elif isinstance(value, np.ndarray):
+            digest.update(f"{value.dtype}{value.shape}".encode())
+            digest.update(np.ascontiguousarray(value).tobytes())
+        else:
+            digest.update(repr(value).encode())
+
+    add(packed)
+    return digest.hexdigest()

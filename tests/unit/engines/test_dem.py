@@ -1,0 +1,282 @@
+"""Particle dampers run through the whole engine: momentum, weight, ledger, directions, statuses, files."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.model.packing import check_packing
+from rattlebox.results import GranularRun
+
+CUBE = rb.Box(size=("24 mm",) * 3)
+
+
+def balls(count: int = 60) -> rb.Particles:
+    """Return steel balls of 4 mm."""
+    return rb.Particles(material="steel", diameter="4 mm", count=count)
+
+
+def damper(**options: Any) -> rb.ParticleDamper:
+    """Return a damper of sixty steel balls in a cube, with soft contacts."""
+    usual: dict[str, Any] = {
+        "particles": balls(),
+        "cavity": CUBE,
+        "contact": rb.Tsuji(restitution=0.7),
+        "friction": 0.3,
+        "softening": 1000,
+    }
+    return rb.ParticleDamper(**{**usual, **options})
+
+
+def simulate(*dampers: rb.ParticleDamper, **options: Any) -> GranularRun:
+    """Run dampers on a structure of 0.1 kg that was kicked."""
+    usual: dict[str, Any] = {
+        "structure": rb.SDOF(mass=0.1, stiffness=1e4, damping=0.5, velocity=0.5),
+        "duration": 0.05,
+        "output": rb.Output(rate="10 kHz"),
+    }
+    run = rb.simulate(rb.Case(**{**usual, "dampers": dampers or (damper(),), **options}))
+    assert isinstance(run, GranularRun)
+    return run
+
+
+def shaker(**motion: Any) -> rb.Shaker:
+    """Return a shaker at 40 Hz."""
+    return rb.Shaker(motion=rb.Harmonic(**{"amplitude": "3 mm", "frequency": "40 Hz", **motion}))
+
+
+def test_momentum_of_a_free_structure_and_its_particles_stays() -> None:
+    """Without spring, dashpot, gravity and load the momentum of structure and particles together is kept to round-off."""
+    run = simulate(damper(gravity=(0, 0, 0)), structure=rb.SDOF(mass=0.1, stiffness=0, velocity=0.5))
+    total = 0.1 * run.arrays.velocity[:, 0] + run.arrays.momentum[:, 0, 0]
+    assert np.abs(total - 0.05).max() < 1e-12 * 0.05
+    assert run.arrays.counts["first_touches_wall"] > 10
+
+
+def test_the_ledger_closes_better_with_shorter_steps() -> None:
+    """Energy put in is found again by channel and by partner, the better the shorter the steps."""
+    closures = []
+    for fraction in (0.05, 0.0125):
+        run = simulate(damper(rolling=0.02), method=rb.Dem(fraction=fraction))
+        closures.append(run.closure)
+        assert run.ok
+        assert sum(run.ledger.shares.values()) == pytest.approx(1, abs=2 * run.closure)
+        assert all(run.ledger.shares[channel] > 0 for channel in ("viscous", "normal", "sliding", "rolling"))
+        in_contacts = sum(run.ledger.shares[channel] for channel in ("normal", "plastic", "sliding", "rolling"))
+        assert run.ledger.partner_share.sum() == pytest.approx(in_contacts)
+    assert closures[1] < 0.25 * closures[0] < 0.01
+
+
+def test_a_settled_bed_weighs_on_the_floor() -> None:
+    """A bed that has settled rests: contacts persist, hardly anything moves, and the floor carries its weight."""
+    still = damper(packing=rb.Settled(seed=2), cavity=rb.Cylinder(diameter="20 mm", length="30 mm"))
+    run = simulate(still, structure=rb.Fixed(), duration=0.1)
+    weight = run.arrays.particle_mass[0] * 9.81
+    late = run.arrays.time > 0.08
+    assert run.arrays.cavity_force[late, 0, 2].mean() == pytest.approx(-weight, rel=2e-3)
+    assert run.arrays.kinetic_energy[-1, 0] < 1e-4 * run.arrays.particle_mass[0] * 9.81 * 2e-3
+    assert 3 < run.ledger.coordination[-1, 0] < 7
+    assert run.arrays.position[:, 2].min() == pytest.approx(-0.013, abs=1e-5)
+
+
+def test_settling_is_reproducible() -> None:
+    """The same seed gives the same bed, another one another, and no two particles overlap."""
+    from rattlebox.engines.dem_settle import settle
+
+    beds = [settle(damper(packing=rb.Settled(seed=seed))) for seed in (1, 1, 2)]
+    assert np.array_equal(beds[0], beds[1])
+    assert not np.allclose(beds[0], beds[2])
+    check_packing(CUBE, beds[0], np.full(60, 2e-3))
+    assert beds[0][:, 2].max() < 0.0
+
+
+def test_bits_do_not_depend_on_threads() -> None:
+    """A run on two threads is the run on one, to the last bit."""
+    one, two = (simulate(method=rb.Dem(threads=threads), duration=0.02) for threads in (1, 2))
+    assert np.array_equal(one.arrays.position, two.arrays.position)
+    assert np.array_equal(one.arrays.sliding_loss, two.arrays.sliding_loss)
+    assert one.arrays.counts["first_touches_particle"] == two.arrays.counts["first_touches_particle"]
+
+
+def test_a_point_in_space_moves_as_the_same_point_on_a_line() -> None:
+    """A mode along z given by three components is the same structure as one on a line in a damper along z."""
+    load = {"amplitude": "200 N", "duration": "1 ms"}
+    line = simulate(damper(direction="z"), structure=rb.SDOF(mass=0.1, stiffness=1e4), load=rb.HalfSine(**load))
+    modal = rb.Modal(
+        frequencies=[math.sqrt(1e5) / (2 * math.pi)],
+        damping_ratios=[0],
+        shapes={"tip": [[0, 0, math.sqrt(10)]]},
+        participation=[[0, 0, math.sqrt(0.1)]],
+    )
+    space = simulate(damper(), structure=modal, load=rb.HalfSine(**load, direction="z"))
+    assert space.arrays.points == ("tip x", "tip y", "tip z")
+    before = line.arrays.time < 0.01  # afterwards rounding has grown
+    np.testing.assert_allclose(
+        space.arrays.displacement[before, 2], line.arrays.displacement[before, 0], rtol=1e-6, atol=1e-9
+    )
+    assert not space.arrays.displacement[:, :2].any()
+
+
+def test_a_base_across_the_structure_moves_particles_only() -> None:
+    """A base that moves across a structure's one direction does not excite it, but shakes what is in its cavity."""
+    run = simulate(
+        damper(gravity=(0, 0, 0), friction=0),
+        structure=rb.SDOF(mass=1e6, stiffness=1e4),
+        base=rb.Harmonic(amplitude="100 m/s^2", frequency="50 Hz", direction="y"),
+    )
+    assert np.abs(run.arrays.velocity).max() < 1e-4
+    assert np.abs(run.arrays.centre_of_mass[:, 0, 1]).max() > 1e-3
+    assert run.arrays.base_acceleration[:, 1] == pytest.approx(100 * np.sin(100 * np.pi * run.arrays.time), abs=1e-9)
+
+
+def test_two_cavities_at_one_point_share_its_motion() -> None:
+    """Two dampers at a point displace together, and each tells its own force, mass and contacts."""
+    run = simulate(damper(), damper(name="second", particles=balls(10)))
+    assert run.arrays.dampers == ("damper", "second")
+    assert np.array_equal(run.arrays.cavity_displacement[:, 0], run.arrays.cavity_displacement[:, 1])
+    assert run.arrays.particle_mass[0] == pytest.approx(6 * run.arrays.particle_mass[1])
+    assert np.bincount(run.arrays.particle_damper).tolist() == [60, 10]
+
+
+def test_a_displaced_cavity_takes_its_particles_along() -> None:
+    """Particles of a structure that starts displaced start in its cavity."""
+    run = simulate(structure=rb.SDOF(mass=0.1, stiffness=1e4, displacement="5 mm"))
+    assert run.arrays.cavity_displacement[0, 0, 0] == pytest.approx(5e-3)
+    made = damper()
+    centre = made.start.position.mean(axis=0)
+    assert run.arrays.centre_of_mass[0, 0] == pytest.approx(centre, abs=1e-12)
+
+
+def test_samples_are_where_they_are_asked_for() -> None:
+    """The step divides the time between samples, so that samples are at their times."""
+    run = simulate(output=rb.Output(rate="3 kHz"), duration=0.02)
+    assert run.arrays.time == pytest.approx(np.arange(61) / 3000, rel=1e-12)
+    run = simulate(output=rb.Output(times=np.linspace(0, 0.02, 7)), duration=0.02)
+    assert run.arrays.time == pytest.approx(np.linspace(0, 0.02, 7), rel=1e-12)
+
+
+def test_force_on_the_cavity_is_what_changes_momentum() -> None:
+    """The impulse of the cavity on the particles is the change of their momentum, sample by sample."""
+    run = simulate(damper(gravity=(0, 0, 0)), output=rb.Output(rate="1 MHz"), duration=0.005)
+    assert run.arrays.figures["step"] == pytest.approx(1e-6)  # every step is a sample
+    force = run.arrays.cavity_force
+    impulse = -0.5 * (force[1:] + force[:-1]) * np.diff(run.arrays.time)[:, None, None]
+    change = np.diff(run.arrays.momentum, axis=0)
+    assert np.abs(impulse).max() > 0
+    np.testing.assert_allclose(impulse, change, rtol=0, atol=1e-12 * np.abs(run.arrays.momentum).max())
+
+
+def test_loss_and_mass_of_a_shaken_cavity_in_two_ways() -> None:
+    """Force times velocity and the ledger tell the same loss, force and momentum the same mass."""
+    run = simulate(damper(gravity=(0, 0, 0)), structure=shaker(), duration=0.25, output=rb.Output(rate="8 kHz"))
+    found = rb.analysis.shaken_cavity(run, frequency=40, after=0.1)
+    taken, lost = found.active_power.values
+    assert found.attrs["cycles"] == 6
+    assert taken == pytest.approx(lost + float(found.stored_power), rel=0.01)
+    assert found.effective_mass[0] == pytest.approx(float(found.effective_mass[1]), rel=0.01)
+    assert float(found.dimensionless_loss[1]) == pytest.approx(
+        lost / 40 / (run.arrays.particle_mass[0] * (0.003 * 80 * math.pi) ** 2), rel=1e-6
+    )
+    with pytest.raises(ValueError, match="damper is one of damper"):
+        rb.analysis.shaken_cavity(run, frequency=40, damper="none")
+    with pytest.raises(ValueError, match="no whole cycle"):
+        rb.analysis.shaken_cavity(run, frequency=40, after=0.24)
+
+
+def test_glued_particles_have_their_whole_mass() -> None:
+    """A ball held without play between its walls rides along: effective mass its own, no loss."""
+    held = damper(
+        particles=rb.Particles(material="steel", diameter="4 mm"),
+        packing=rb.Positions(positions=[[0, 0, 0]]),
+        cavity=rb.Box(size=("4 mm", "20 mm", "20 mm")),
+        gravity=(0, 0, 0),
+        contact=rb.Tsuji(restitution=1.0),
+        softening=1,
+    )
+    run = simulate(held, structure=shaker(amplitude="0.1 mm"), duration=0.05, output=rb.Output(rate="20 kHz"))
+    found = rb.analysis.shaken_cavity(run, frequency=40)
+    assert found.effective_mass.values == pytest.approx(np.full(2, run.arrays.particle_mass[0]), rel=0.01)
+    assert np.abs(found.loss_factor.values).max() < 0.01
+
+
+def test_a_particle_that_leaves_is_named() -> None:
+    """A contact far too soft lets a fast particle through: the run ends with its number, time, speed and the step."""
+    run = simulate(damper(particles=balls(1), velocity=(100, 0, 0), softening=1e6), structure=rb.Fixed(), duration=1e-3)
+    assert run.status == "escaped"
+    assert run.message.startswith("Particle 0 of 'damper' left its cavity at 9")
+    assert "The step was" in run.message
+    assert run.arrays.time[-1] < 1e-3
+
+
+def test_laws_are_not_used_beyond_their_domain() -> None:
+    """An impact faster than its restitution law covers ends the run with a status."""
+    fast = damper(contact=rb.Tsuji(restitution=rb.JacksonGreen()), velocity=(200, 0, 0), gravity=(0, 0, 0), softening=1)
+    run = simulate(fast, structure=rb.Fixed(), duration=1e-3, output=rb.Output())
+    assert run.status == "law_domain"
+    assert "was struck at" in run.message
+
+
+@pytest.mark.parametrize("how", ["ctrl-c", "false"])
+def test_a_stopped_run_keeps_what_it_has(how: str) -> None:
+    """Ctrl-C and a progress that returns False end the run with a status; samples until then are kept."""
+
+    def stop(done: int, total: int) -> bool:
+        if how == "ctrl-c":
+            raise KeyboardInterrupt
+        return False
+
+    case = rb.Case(structure=rb.Fixed(), damper=damper(velocity=(1, 0, 0)), duration=60, output=rb.Output(rate="1 kHz"))
+    run = rb.simulate(case, progress=stop)
+    assert run.status == "interrupted"
+    assert 0 < run.arrays.time[-1] < 60
+
+
+def test_too_long_a_step_is_refused_before_the_run() -> None:
+    """A step above the bound is refused, with the field and the bound."""
+    with pytest.raises(rb.CaseError, match="too long to be stable: the bound is"):
+        simulate(method=rb.Dem(dt="1 ms"))
+
+
+def test_cases_of_both_kinds_run_side_by_side() -> None:
+    """Runs come back in the order of the cases, whatever is in them."""
+    ball = rb.ImpactDamper(
+        ball=rb.Sphere(radius="5 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.9)
+    )
+    structure = rb.SDOF(mass=1, stiffness=1e4, velocity=0.1)
+    impact = rb.Case(structure=structure, damper=ball, duration=0.01)
+    space = rb.Case(structure=structure, damper=damper(), duration=0.01)
+    kinds = [isinstance(run, GranularRun) for run in rb.simulate_many([space, impact, space])]
+    assert kinds == [True, False, True]
+
+
+def test_a_run_is_the_same_in_a_file(tmp_path: Path) -> None:
+    """A run that is saved reads back equal; CSV and MAT files hold its variables; summaries stand side by side."""
+    from scipy.io import loadmat
+
+    run = simulate(duration=0.01)
+    assert rb.load(run.save(tmp_path / "run.nc")) == run
+    files = run.to_csv(tmp_path)
+    assert [file.name for file in files] == ["motion.csv", "energy.csv", "particles.csv"]
+    assert "cavity_force damper z [N]" in files[0].read_text(encoding="utf-8").splitlines()[0]
+    content = loadmat(run.to_mat(tmp_path / "run.mat"), simplify_cells=True)
+    assert content["particles"]["position"].shape == (60, 3)
+    assert run.motion.cavity_force.dims == ("time", "damper", "axis")
+    assert run.energy.sliding_loss.sel(partner="wall").attrs["units"] == "J"
+    text = str(run.summary())
+    for said in ("lost in sliding", "lost at walls", "particle-steps a second", "limited by the contact of steel"):
+        assert said in text
+    assert run.summary().values["particles"] == 60
+    with pytest.raises(AttributeError, match="no list of impacts"):
+        _ = run.impacts
+
+
+def test_figures_are_drawn() -> None:
+    """Motion and energy of a run with two cavities are drawn with a panel for each cavity."""
+    run = simulate(damper(), damper(name="second", particles=balls(10)), duration=0.01)
+    assert len(run.plot.motion().axes) == 4
+    assert len(run.plot.energy(size="page").axes) == 2
