@@ -33,7 +33,7 @@ protected:
 
     void sample_closed(const std::vector<real>& y) {
         std::copy_n(y.begin(), state_.y.size(), scratch_.y.begin());
-        Ledger ledger = ledger_;
+        Ledger& ledger = sampled_ = ledger_;
         const std::size_t at = system_.time_index();
         ledger.load_work += y[at + 1];
         ledger.base_work += y[at + 2];
@@ -56,7 +56,7 @@ protected:
             for (std::size_t i = 0; i < system_.stuck.size(); ++i)
                 add_wall_force(system_.stuck[i], system_.stuck_forces()[i]);
         }
-        record(problem_.sample_times[next_sample_++], scratch_, std::move(ledger));
+        record(problem_.sample_times[next_sample_++], scratch_, ledger);
     }
 
     // First step in transformed time: a tenth of the way through the contact that is soonest over.

@@ -399,14 +399,22 @@ public:
         account(now, ledger);
     }
 
-    // The phase at a time after first touch, roughly: between nodes.
+    // The phase at a time after first touch, as good as the clock between its nodes.
     real psi_at(real time) const {
-        const PhaseGrid& g = grid_;
+        const auto& rule = grid_.rule();
         const Row& at = integral_[clock];
         int i = 0;
         while (i + 1 < n - 1 && at[i + 1] < time) ++i;
         const real part = (time - at[i]) / (at[i + 1] - at[i]);
-        return std::fmin(std::fmax(g.psi[i] + part * (g.psi[i + 1] - g.psi[i]), 1e-3), g.end);
+        real x = rule.node[i] + part * (rule.node[i + 1] - rule.node[i]);
+        for (int pass = 0; pass < 4; ++pass) {
+            const real late = (time - rule.interpolate(at, x)) / rule.interpolate(slope_[clock], x);
+            if (!(x + late > 0 && x + late < 1)) break; // on a node, or near an end
+            x += late;
+        }
+        real psi, sine, cosine;
+        grid_.phase(std::fmin(std::fmax(x, 0.0), 1.0), psi, sine, cosine);
+        return std::fmin(std::fmax(psi, 1e-3), grid_.end);
     }
 
     // dpsi/dt at an instant, but for the closing acceleration's small part.

@@ -18,7 +18,7 @@ protected:
     const std::atomic<bool>* stop_;
     Loads loads_;
     State state_, scratch_;
-    Ledger ledger_;
+    Ledger ledger_, sampled_; // so far, and of a sample
     Flight flight_;
     System system_;
     std::vector<Phase> phase_;
@@ -50,7 +50,8 @@ protected:
         return contact(r.contact).normal.visit([&](const auto& law) { return law.stored(r.memory, x); });
     }
 
-    void record(real t, const State& state, Ledger ledger) {
+    // The ledger is that of the sample; what released contacts have lost by then is added.
+    void record(real t, const State& state, Ledger& ledger) {
         for (const Released& r : released_) {
             const real left = recovering(r, state.y.data());
             stored_[damper_of(r.contact)] += left;
@@ -94,8 +95,9 @@ protected:
 public:
     Progress(const Problem& problem, const std::atomic<bool>* stop)
         : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem),
-          ledger_(problem), flight_(problem), system_(problem), phase_(problem.contacts.size(), Phase::open),
-          stored_(problem.dampers.size()), force_(problem.dampers.size()) {}
+          ledger_(problem), sampled_(problem), flight_(problem), system_(problem),
+          phase_(problem.contacts.size(), Phase::open), stored_(problem.dampers.size()),
+          force_(problem.dampers.size()) {}
 };
 
 } // namespace rattlebox

@@ -38,6 +38,7 @@ class System {
     const Loads* loads_ = nullptr;
     real start_ = 0;
     std::vector<real> cavity_rate_, cavity_push_, ball_push_, clock_;
+    std::vector<real> signal_;          // by load
     std::vector<real> matrix_, forces_; // stuck contacts
 
     std::size_t mode_count() const { return problem_.modes.size(); }
@@ -65,7 +66,7 @@ class System {
     }
 
     // Accelerations of modes and balls for the pushes gathered so far.
-    void accelerate(const real* y, real t, real* dy) {
+    void accelerate(const real* y, real* dy) {
         const std::size_t m = mode_count(), b = ball_count();
         real* dv = velocities(problem_, dy);
         for (std::size_t k = 0; k < m; ++k) {
@@ -80,7 +81,7 @@ class System {
         if (!loads_->active()) return;
         for (std::size_t l = 0; l < loads_->size(); ++l) {
             if (loads_->piece(l).silent()) continue;
-            const real f = loads_->piece(l).value(t);
+            const real f = signal_[l];
             for (std::size_t k = 0; k < m; ++k) dy[2 * k + 1] += loads_->load(l).shape[k] * f;
             if (loads_->load(l).base)
                 for (std::size_t i = 0; i < b; ++i) dv[i] -= f;
@@ -112,7 +113,7 @@ public:
 
     explicit System(const Problem& problem)
         : problem_(problem), cavity_rate_(problem.dampers.size()), cavity_push_(problem.dampers.size()),
-          ball_push_(problem.ball_mass.size()) {}
+          ball_push_(problem.ball_mass.size()), signal_(problem.loads.size()) {}
 
     void begin(const Loads& loads, real start) {
         loads_ = &loads;
@@ -193,9 +194,11 @@ public:
             dy[at + 1] = clock * lost;
         }
 
-        const real t = start_ + y[time_index()];
+        if (loads_->active())
+            for (std::size_t l = 0; l < loads_->size(); ++l)
+                signal_[l] = loads_->piece(l).value(start_ + y[time_index()]);
         real* dv = velocities(problem_, dy);
-        accelerate(y, t, dy);
+        accelerate(y, dy);
         if (!stuck.empty()) {
             solve_stuck(dy);
             clear_pushes();
@@ -216,7 +219,7 @@ public:
                 for (std::size_t k = 0; k < m; ++k) speed += load.shape[k] * y[2 * k + 1];
                 if (load.base)
                     for (std::size_t i = 0; i < b; ++i) speed -= problem_.ball_mass[i] * v[i];
-                work[load.base] += loads_->piece(l).value(t) * speed;
+                work[load.base] += signal_[l] * speed;
             }
         }
         for (std::size_t k = 0; k < m; ++k) {

@@ -62,7 +62,7 @@ protected:
     void sample_lone(int c, const HertzTsuji& law, real speed, real zeta) {
         const real t = problem_.sample_times[next_sample_++];
         State at(problem_);
-        Ledger ledger = ledger_;
+        sampled_ = ledger_;
         LoneContact::Instant now;
         real psi = lone_.psi_at(t - state_.t);
         for (int pass = 0; pass < 8; ++pass) {
@@ -73,11 +73,11 @@ protected:
             if (std::fabs(late) <= 2 * epsilon * t) break;
             psi = std::fmax(psi + late * sampler_.turning(now), 0.5 * psi);
         }
-        sampler_.finish(now, at, ledger);
+        sampler_.finish(now, at, sampled_);
         clear_contact_samples();
         stored_[damper_of(c)] = law.stored({}, now.x);
         add_wall_force(c, now.force);
-        record(t, at, std::move(ledger));
+        record(t, at, sampled_);
     }
 
     // The whole contact at once, where that is possible and its energy balance agrees.

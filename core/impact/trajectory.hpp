@@ -16,11 +16,11 @@ class Trajectory : ClosedContacts {
     void sample_flight(real until) {
         while (sample_due(until)) {
             const real t = problem_.sample_times[next_sample_++];
-            Ledger ledger = ledger_;
-            flight_.account(t - state_.t, ledger);
+            sampled_ = ledger_;
+            flight_.account(t - state_.t, sampled_);
             flight_.at(t - state_.t, scratch_);
             clear_contact_samples();
-            record(t, scratch_, std::move(ledger));
+            record(t, scratch_, sampled_);
         }
     }
 
@@ -83,7 +83,8 @@ public:
         if (sample_due(0)) {
             ++next_sample_;
             clear_contact_samples();
-            record(0, state_, ledger_);
+            sampled_ = ledger_;
+            record(0, state_, sampled_);
         }
         while (running() && state_.t < problem_.settings.duration) {
             if (state_.t >= loads_.next_knot()) loads_.advance(state_.t);
