@@ -91,7 +91,9 @@ class Checkpoint:
                     raise CaseError(f"{self.path} was written by a later Rattlebox\n  try: update Rattlebox")
                 self._compare(about)
                 names = [name.split(".", 1) for name in file.files if "." in name]
-                groups = {g: {name: file[f"{g}.{name}"] for h, name in names if g == h} for g in ("records", "position")}
+                groups = {
+                    g: {name: file[f"{g}.{name}"] for h, name in names if g == h} for g in ("records", "position")
+                }
                 state = file["state"]
         except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
             if isinstance(error, CaseError):
@@ -124,7 +126,7 @@ class Checkpoint:
         about = np.frombuffer(json.dumps(told).encode(), np.uint8)
         lost = "make room and give the same command again, which goes on from the last checkpoint"
         with telling(self.path, lost), whole(self.path) as name, name.open("wb") as file:
-            np.savez(file, about=about, state=dem.save(), **arrays)
+            np.savez(file, allow_pickle=False, about=about, state=dem.save(), **arrays)
         self.time = time
 
     def _compare(self, about: Mapping[str, Any]) -> None:
@@ -149,9 +151,7 @@ def joined(pieces: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[An
 
 def _bare(case: Case) -> str:
     """The text of a case file without what may change."""
-    update = {
-        part: getattr(case, part).model_copy(update=dict.fromkeys(names)) for part, names in _FREE.items()
-    }
+    update = {part: getattr(case, part).model_copy(update=dict.fromkeys(names)) for part, names in _FREE.items()}
     return case.model_copy(update=update).to_toml()
 
 

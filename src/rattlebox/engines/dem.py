@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rattlebox.engines.base_motion import base_motion
+from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.core import core
+from rattlebox.engines.dem_follow import Journey
 from rattlebox.engines.dem_settle import settle
+from rattlebox.engines.dem_snapshots import snapshots_of
 from rattlebox.engines.dem_step import Step, choose_step, expected_speeds, outcome
 from rattlebox.engines.pack import pack, restitution
 from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
@@ -41,7 +45,14 @@ CLOSES = 0.01
 """Of the energy put in: a ledger that misses more has a status."""
 
 
-def simulate_dem(case: Case, *, threads: int | None = None, progress: Progress | None = None) -> GranularRun:
+def simulate_dem(
+    case: Case,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    checkpoint: Path | None = None,
+    snapshots: Path | None = None,
+) -> GranularRun:
     """Run a case with particle dampers.
 
     Parameters
@@ -52,6 +63,10 @@ def simulate_dem(case: Case, *, threads: int | None = None, progress: Progress |
         How many at once; default those of the method, or as many as there are cores and work for them.
     progress
         Called now and then with the number of steps done and of all; False stops the run, as Ctrl-C does.
+    checkpoint
+        File in which the state is kept, and from which the run goes on if it is there.
+    snapshots
+        File to which snapshots are written.
 
     Returns
     -------
@@ -61,15 +76,25 @@ def simulate_dem(case: Case, *, threads: int | None = None, progress: Progress |
     Raises
     ------
     CaseError
-        When the step that is given is too long, or particles do not settle.
+        When the step that is given is too long, particles do not settle, or the checkpoint is of another run.
+    OSError
+        When a file cannot be written.
     """
     assert isinstance(case.method, Dem)
-    packed, step, tables = pack_dem(case)
+    file = None if checkpoint is None else Checkpoint(checkpoint, case)
+    kept = None if file is None else file.read()
+    packed, step, tables = pack_dem(case, None if kept is None else kept.positions)
     dem = core().Dem(packed)
     dem.threads = threads or case.method.threads or useful_threads(packed)
-    status = _follow(dem, step, progress)
-    raw = dem.records()
-    arrays = _arrays(case, packed, raw, dem, status, step, tables)
+    journey = Journey(dem, packed, file, case.method.checkpoint)
+    if file is not None and kept is not None:
+        file.check(kept, packed)
+        journey.resume(kept)
+    if snapshots is not None:
+        journey.watch(*snapshots_of(case, packed, snapshots))
+    status = journey.go(progress)
+    raw = journey.records()
+    arrays = _arrays(case, packed, raw, dem, status, step, tables, journey)
     run = GranularRun(arrays, case.to_toml, Provenance.now(method=case.method.kind, seed=case.seed))
     if run.ok and not run.ledger.closes(CLOSES):
         end = NOT_FINITE if np.isnan(run.closure) else LEDGER_OPEN
@@ -84,26 +109,18 @@ def useful_threads(packed: Packed) -> int:
     return max(1, min(os.cpu_count() or 1, particles // PARTICLES_EACH))
 
 
-def _follow(dem: Any, step: Step, progress: Progress | None) -> int:
-    """Run to the end; Ctrl-C ends the run with a status."""
-    try:
-        finished = dem.run(step.count, None if progress is None else lambda done: progress(done, step.count))
-    except KeyboardInterrupt:
-        finished = False
-    status: int = dem.status
-    return status if finished or status else INTERRUPTED
-
-
 # ---- packing
 
 
-def pack_dem(case: Case) -> tuple[Packed, Step, list[ContactTable]]:
+def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[Packed, Step, list[ContactTable]]:
     """Pack a case with particle dampers for the core.
 
     Parameters
     ----------
     case
         What the user describes.
+    starts
+        Where particles that settle start, as packed before for each damper, (n, 3) [m]; default they are let fall.
 
     Returns
     -------
@@ -131,7 +148,8 @@ def pack_dem(case: Case) -> tuple[Packed, Step, list[ContactTable]]:
     cavities = []
     for index, (damper, shape, table) in enumerate(zip(case.particle_dampers, shapes, tables, strict=True)):
         with at("dampers", index):
-            cavities.append(_cavity(damper, shape, modes.q0 @ shape, table, len(contacts)))
+            start = None if starts is None else starts[index]
+            cavities.append(_cavity(damper, shape, modes.q0 @ shape, table, len(contacts), start))
         contacts += [_contact(damper, entry) for entry in table.entries]
     packed = {
         "dt": step.dt,
@@ -182,20 +200,22 @@ def _without_particles(case: Case, loads: list[Packed]) -> Array:
     return _array(raw["state"].reshape(raw["time"].size, -1)[:, 1::2])
 
 
-def _cavity(damper: ParticleDamper, shape: Array, displacement: Array, table: ContactTable, first: int) -> Packed:
+def _cavity(
+    damper: ParticleDamper, shape: Array, displacement: Array, table: ContactTable, first: int, settled: Array | None
+) -> Packed:
     """A cavity and what is in it; its entries begin at a number in the list of contacts."""
     walls, contents, start = damper.cavity.walls(), damper.contents, damper.start
-    position = start.position
+    position = start.position + displacement
     if isinstance(damper.packing, Settled):
         with at("packing"):
-            position = settle(damper)
+            position = settle(damper) + displacement if settled is None else settled
     return {
         "shape": _array(shape),
         "wall_axis": _array(walls.axis),
         "wall_offset": _array(walls.offset),
         "wall_curved": _array(walls.curved),
         "wall_kind": np.ascontiguousarray(table.wall_kind, dtype=np.int64),
-        "position": _array(position + displacement),
+        "position": _array(position),
         "velocity": _array(start.velocity),
         "spin": _array(start.spin),
         "radius": _array(contents.radius),
@@ -230,6 +250,7 @@ def _arrays(
     status: int,
     step: Step,
     tables: list[ContactTable],
+    journey: Journey,
 ) -> GranularArrays:
     modes, dampers = case.modes, case.particle_dampers
     times, q, p = raw["time"], raw["q"], raw["p"]
@@ -243,7 +264,7 @@ def _arrays(
     counters = dem.counters()
     figures, notes = outcome(case, tables, step, counters["largest_overlap"], counters["largest_approach_speed"])
     names = [damper.label(index) for index, damper in enumerate(dampers)]
-    name, message = _told(case, names, dem, status, step)
+    name, message = _told(case, names, dem, status, step, journey.checkpoint)
     state = dem.state()
     centres = [state["q"] @ shape for shape in shapes]
     ends = state["cavities"]
@@ -301,15 +322,22 @@ def _arrays(
         },
         figures=figures,
         notes=tuple(notes),
-        wall_time=counters["seconds"],
+        wall_time=journey.seconds,
     )
 
 
-def _told(case: Case, names: list[str], dem: Any, status: int, step: Step) -> tuple[str, str]:
+def _told(
+    case: Case, names: list[str], dem: Any, status: int, step: Step, checkpoint: Checkpoint | None
+) -> tuple[str, str]:
     """Name of the status, and what happened."""
     if status == 0:
         return describe(0, case.duration, "", 0.0, case.method.kind)
     stopped = dem.stopped()
     where = f"Particle {stopped['particle']} of {names[stopped['cavity']]!r}"
     name, message = describe(status, stopped["time"], where, stopped["speed"], case.method.kind)
-    return name, f"{message} The step was {step.dt:.4g} s."
+    if status == INTERRUPTED:
+        return name, message if checkpoint is None else f"{message} The same call goes on from {checkpoint.path}."
+    message += f" The step was {step.dt:.4g} s."
+    if checkpoint is not None and checkpoint.time is not None:
+        message += f" The last checkpoint is of t = {checkpoint.time:.6g} s, in {checkpoint.path}."
+    return name, message

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from numpy.typing import NDArray
 
 from rattlebox.engines.checkpoint import Checkpoint, Kept, joined
 from rattlebox.engines.status import INTERRUPTED
+from rattlebox.model.errors import CaseError
 from rattlebox.results.snapshots import SnapshotFile
 
 Records = dict[str, NDArray[Any]]
@@ -19,7 +19,6 @@ USUAL = 600.0
 """Time between checkpoints [s]."""
 
 
-@dataclass
 class Journey:
     """A run on its way.
 
@@ -29,38 +28,56 @@ class Journey:
         The core.
     packed
         What the core was given.
-    checkpoint, interval
-        Where the state is kept, if anywhere, and how often [s].
-    snapshots, shots
-        Where snapshots are kept, if anywhere, and at which steps.
+    checkpoint
+        Where the state is kept, if anywhere.
+    interval
+        Time between checkpoints [s]; default USUAL.
     """
 
-    dem: Any
-    packed: Mapping[str, Any]
-    checkpoint: Checkpoint | None = None
-    interval: float = USUAL
-    snapshots: SnapshotFile | None = None
-    shots: Sequence[int] = ()
-
-    def __post_init__(self) -> None:
+    def __init__(
+        self, dem: Any, packed: Mapping[str, Any], checkpoint: Checkpoint | None = None, interval: float | None = None
+    ) -> None:
+        self.checkpoint = checkpoint
+        self._dem, self._packed = dem, packed
+        self._interval = USUAL if interval is None else interval
+        self._due = time.monotonic() + self._interval
         self._pieces: list[Records] = []
         self._earlier = 0.0
-        self._began = time.perf_counter()
+        self._snapshots: SnapshotFile | None = None
+        self._shots: list[int] = []
 
     def resume(self, kept: Kept) -> None:
         """Go on from a checkpoint."""
-        self.dem.restore(kept.state)
+        self._dem.restore(kept.state)
         self._pieces = [dict(kept.records)]
         self._earlier = kept.seconds
+
+    def watch(self, snapshots: SnapshotFile, shots: Sequence[int]) -> None:
+        """Take snapshots at these steps; those of a run that goes on are in the file, up to where it goes on from.
+
+        Raises
+        ------
+        CaseError
+            When they are not.
+        """
+        self._snapshots, self._shots = snapshots, list(shots)
+        before = sum(shot < self._dem.step for shot in shots)
+        if not before:
+            snapshots.create()
+        elif snapshots.taken < before:
+            raise CaseError(
+                f"{snapshots.path} lacks the {before} snapshots before the checkpoint\n"
+                "  try: put the file back, or remove the checkpoint to begin anew"
+            )
 
     @property
     def seconds(self) -> float:
         """Computing time so far [s], that before a restart included."""
-        return self._earlier + time.perf_counter() - self._began
+        return self._earlier + float(self._dem.counters()["seconds"])
 
     def records(self) -> Records:
         """Samples so far."""
-        self._pieces = [joined([*self._pieces, self.dem.records()])]
+        self._pieces = [joined([*self._pieces, self._dem.records()])]
         return self._pieces[0]
 
     def go(self, progress: Callable[[int, int], object] | None = None) -> int:
@@ -76,37 +93,37 @@ class Journey:
         int
             Status.
         """
-        last = int(self.packed["steps"])
+        last = int(self._packed["steps"])
         try:
-            if self.dem.step == 0:
+            if self._dem.step == 0:
                 self._keep()
-            finished = self._through([k for k in self.shots if k >= self.dem.step], last, progress)
+            finished = self._through([k for k in self._shots if k >= self._dem.step], last, progress)
         except KeyboardInterrupt:
             finished = False
-        if not self.dem.status:  # what went wrong would go wrong again: the state before is the one to look at
+        if not self._dem.status:  # what went wrong would go wrong again: the state before is the one to look at
             self._keep()
-        return int(self.dem.status) if finished or self.dem.status else INTERRUPTED
+        return int(self._dem.status) if finished or self._dem.status else INTERRUPTED
 
     def _through(self, shots: Sequence[int], last: int, progress: Callable[[int, int], object] | None) -> bool:
         """Run to each snapshot and to the end."""
         for shot in [*shots, None]:
             if shot != 0 and not self._run(last if shot is None else shot - 1, last, progress):
                 return False
-            if shot is not None and self.snapshots is not None and not self.dem.status:
-                self.snapshots.take(self.shots.index(shot), self.dem.state())
+            if shot is not None and self._snapshots is not None and not self._dem.status:
+                self._snapshots.take(self._shots.index(shot), self._dem.state())
         return True
 
     def _run(self, until: int, last: int, progress: Callable[[int, int], object] | None) -> bool:
         """Run until a step is done, with checkpoints on the way."""
         while True:
-            due, stopped = time.monotonic() + self.interval, False
+            stopped = False
 
-            def go_on(done: int, due: float = due) -> bool:
+            def go_on(done: int) -> bool:
                 nonlocal stopped
                 stopped = progress is not None and progress(done, last) is False
-                return not stopped and (self.checkpoint is None or time.monotonic() < due)
+                return not stopped and (self.checkpoint is None or time.monotonic() < self._due)
 
-            if self.dem.run(until, go_on):
+            if self._dem.run(until, go_on):
                 return not stopped
             if stopped:
                 return False
@@ -114,4 +131,5 @@ class Journey:
 
     def _keep(self) -> None:
         if self.checkpoint is not None:
-            self.checkpoint.write(self.dem, self.packed, self.records(), self.seconds)
+            self.checkpoint.write(self._dem, self._packed, self.records(), self.seconds)
+            self._due = time.monotonic() + self._interval

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,27 +26,55 @@ if TYPE_CHECKING:
 _MOST_EVENTS = 200_000
 
 
-def simulate(case: Case, *, progress: Callable[[int, int], object] | None = None) -> Run:
+def simulate(
+    case: Case,
+    *,
+    checkpoint: str | os.PathLike[str] | None = None,
+    snapshots: str | os.PathLike[str] | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Run:
     """Run a case.
 
     Parameters
     ----------
     case
         What to run. The method is part of it.
+    checkpoint
+        Of particles in space: file in which the state is kept every ten minutes (`Dem(checkpoint=...)`), on Ctrl-C and at
+        the end. Where it is there, the run goes on from it; the results are the same to the last bit.
+    snapshots
+        Of particles in space: file (.vtkhdf) that takes the particles at the times of `Output(snapshots=...)`, for ParaView.
     progress
-        Of particles in space: called now and then with the number of steps done and of all.
+        Of particles in space: called now and then with the number of steps done and of all; False stops the run, as Ctrl-C
+        does.
 
     Returns
     -------
     Run
         Motion, energy ledger, impacts, and a status: a run that cannot be finished ends with a status and a message,
         not with an exception, and keeps what it has. Of particles in space a GranularRun.
+
+    Raises
+    ------
+    CaseError
+        When the checkpoint is of another case, version or core, with what differs; or when files are given that the run
+        has no use for.
+    OSError
+        When a file cannot be written.
     """
     if case.particle_dampers:
         from rattlebox.engines.dem import simulate_dem
 
-        return simulate_dem(case, progress=progress)
+        if snapshots is None and case.output.snapshots is not None:
+            raise Hint("the output asks for snapshots, and there is no file for them", 'snapshots="run.vtkhdf"')
+        return simulate_dem(case, progress=progress, checkpoint=_path(checkpoint), snapshots=_path(snapshots))
+    if checkpoint is not None or snapshots is not None:
+        raise Hint("checkpoints and snapshots are of particles in space, and there are none", "leave them out")
     return simulate_many([case])[0]
+
+
+def _path(path: str | os.PathLike[str] | None) -> Path | None:
+    return None if path is None else Path(path)
 
 
 def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[Run]:

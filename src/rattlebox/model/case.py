@@ -152,6 +152,8 @@ class Case(Part):
         if self.particle_dampers:
             check_in_space(self)
             return
+        if self.output.snapshots is not None:
+            raise Hint("snapshots are of particles in space, and there are none", "rate", ["output", "snapshots"])
         if isinstance(self.method, Dem):
             raise Hint(
                 "dem computes particles in space, and there is no damper with particles"

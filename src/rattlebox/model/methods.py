@@ -91,7 +91,7 @@ class Dem(Part):
         How many at once; default as many as there are cores and enough particles for. The results do not depend on it, to
         the last bit.
     checkpoint
-        How often the state is written to a file from which the run can go on [s of computing]; default never.
+        How often the state is kept from which the run can go on, where a file for it is given [s]; default ten minutes.
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("method",)
@@ -116,6 +116,9 @@ class Dem(Part):
 AnyMethod = Annotated[EventDriven | TwoStep | Newton | Dem, Field(discriminator="kind")]
 
 
+USUAL_SNAPSHOTS = 101
+
+
 def _times(value: Any) -> Any:
     if value is None:
         return None
@@ -126,6 +129,16 @@ def _times(value: Any) -> Any:
         with at(index):
             times.add(parse(item, ("s",))[0])
     return tuple(sorted(times))
+
+
+def _count_or_times(value: Any) -> Any:
+    if isinstance(value, (bool, str, float)):
+        raise Hint("a number of snapshots is needed, or a list of times", "snapshots = 100")
+    if not isinstance(value, int):
+        return _times(value)
+    if value < 2:
+        raise Hint("two snapshots are the least: at 0 and at the end", "snapshots = 100")
+    return value
 
 
 class Output(Part):
@@ -142,12 +155,16 @@ class Output(Part):
         Samples per second [Hz].
     times
         Instead: the times themselves [s].
+    snapshots
+        Of particles in space: how many snapshots, evenly spaced from 0 to the end, go to the file that is given for them, or
+        their times [s]; default 101.
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("output",)
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("rate", "times"),)
     rate: PositiveFrequency | None = None
     times: Annotated[tuple[float, ...] | None, BeforeValidator(_times)] = None
+    snapshots: Annotated[int | tuple[float, ...] | None, BeforeValidator(_count_or_times)] = None
 
     @model_validator(mode="after")
     def _one_of_both(self) -> Output:
@@ -155,10 +172,10 @@ class Output(Part):
             raise Hint("give rate or times, not both")
         return self
 
-    @field_validator("times")
+    @field_validator("times", "snapshots")
     @classmethod
-    def _not_before(cls, times: tuple[float, ...] | None) -> tuple[float, ...] | None:
-        if times and times[0] < 0:
+    def _not_before(cls, times: tuple[float, ...] | int | None) -> tuple[float, ...] | int | None:
+        if isinstance(times, tuple) and times and times[0] < 0:
             raise Hint("output times must not be negative")
         return times
 
@@ -185,3 +202,15 @@ class Output(Part):
         count = int(np.floor(duration * self.rate * (1 + 1e-12)))
         times = np.arange(count + 1) / self.rate
         return times if abs(times[-1] - duration) <= 1e-9 / self.rate else np.append(times, duration)
+
+    def snapshot_times(self, duration: float) -> Vector:
+        """Return the times of snapshots of a run, (n,) [s].
+
+        Parameters
+        ----------
+        duration
+            Of the run [s].
+        """
+        if isinstance(self.snapshots, tuple):
+            return np.array([time for time in self.snapshots if time <= duration])
+        return np.linspace(0.0, duration, self.snapshots or USUAL_SNAPSHOTS)

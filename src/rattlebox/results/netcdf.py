@@ -9,7 +9,6 @@ left out together with the variables that need them, except `impact`, which is u
 from __future__ import annotations
 
 import os
-import tempfile
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +20,7 @@ from .datasets import columns, labels
 from .granular import GranularArrays, GranularRun
 from .provenance import Provenance
 from .schema import GRANULAR, IMPACT, IMPACT_VARIABLES, Form, Kind
+from .whole import whole
 
 if TYPE_CHECKING:
     from .run import Run
@@ -144,20 +144,8 @@ def save(run: Run, path: Path) -> Path:
     OSError
         When the file cannot be written.
     """
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"cannot write {path}: there is no folder {path.parent}")
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
-    try:
-        _write(run, temporary)
-        mask = os.umask(0)
-        os.umask(mask)
-        temporary.chmod(0o666 & ~mask)
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
+    with whole(path) as name:
+        _write(run, name)
     return path
 
 

@@ -1,0 +1,59 @@
+"""When snapshots of particles are taken, and how their file is laid out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.results.snapshots import SnapshotFile
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rattlebox.model.case import Case
+
+APART = 1.25
+"""Between the centres of cavities side by side, over half the sum of their lengths along x."""
+
+
+def snapshots_of(case: Case, packed: Mapping[str, Any], path: Path) -> tuple[SnapshotFile, list[int]]:
+    """Plan the snapshots of a run.
+
+    Parameters
+    ----------
+    case
+        What is run.
+    packed
+        What the core is given.
+    path
+        File to write.
+
+    Returns
+    -------
+    SnapshotFile
+        The file, not yet made.
+    list of int
+        Steps at which they are taken, each once.
+    """
+    dt, last = packed["dt"], packed["steps"]
+    times = case.output.snapshot_times(case.duration)
+    shots = np.unique(np.clip(np.rint(times / dt).astype(np.int64), 0, last))
+    contents = [damper.contents for damper in case.particle_dampers]
+    fixed = {
+        "radius": np.concatenate([each.radius for each in contents]),
+        "mass": np.concatenate([each.mass for each in contents]),
+        "cavity": np.repeat(np.arange(len(contents)), [each.radius.size for each in contents]),
+        "species": np.concatenate([each.species for each in contents]),
+    }
+    shapes = [cavity["shape"] for cavity in packed["cavities"]]
+    return SnapshotFile(path, shots * dt, _places(case), shapes, fixed, case.to_toml()), shots.tolist()
+
+
+def _places(case: Case) -> NDArray[np.float64]:
+    """Centres of the cavities side by side along x, (D, 3) [m]."""
+    lengths = np.array([damper.cavity.extent(np.array([1.0, 0.0, 0.0])) for damper in case.particle_dampers])
+    along = np.concatenate([[0.0], np.cumsum(APART * (lengths[1:] + lengths[:-1]) / 2)])
+    return np.stack([along, np.zeros_like(along), np.zeros_like(along)], axis=1)

@@ -1,0 +1,243 @@
+"""Where all particles are at chosen times, in one VTKHDF file that grows during a run and opens in ParaView.
+
+The file is a PolyData with time steps (VTKHDF 2): points with radius, velocity and spin, and the displacement of each
+cavity as field data. Nothing but numbers at fixed places changes after the first snapshot, so that whatever ends the
+process, the snapshots before are there.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .arrays import FloatArray, IntArray
+from .whole import telling, whole
+
+FORMAT = 1
+"""Number of what is said beside the VTKHDF; files with a higher one are refused."""
+
+_ROOT = "VTKHDF"
+_MOVING = ("velocity", "spin")
+_FIXED = ("radius", "mass", "cavity", "species")
+_LOST = "make room and give the same call again, with fewer snapshots or another folder"
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The particles at one time.
+
+    Attributes
+    ----------
+    time
+        [s].
+    position, velocity, spin : (N, 3) float
+        From the rest place of the centre of the particle's own cavity [m], relative to the base [m/s], [rad/s].
+    radius, mass : (N,) float
+        [m], [kg].
+    cavity, species : (N,) int
+        Numbers, from 0.
+    displacement : (D, 3) float
+        Of each cavity [m].
+    """
+
+    time: float
+    position: FloatArray
+    velocity: FloatArray
+    spin: FloatArray
+    radius: FloatArray
+    mass: FloatArray
+    cavity: IntArray
+    species: IntArray
+    displacement: FloatArray
+
+
+class SnapshotFile:
+    """The file that a run adds snapshots to.
+
+    Parameters
+    ----------
+    path
+        File to write.
+    times : (n,)
+        Of all snapshots [s].
+    places : (D, 3)
+        Where each cavity is drawn [m]: cavities have no place of their own in a case, so they stand side by side.
+    shapes
+        For each cavity, what a unit of each mode displaces it by, (m, 3).
+    fixed
+        "radius", "mass", "cavity" and "species" of the particles, (N,).
+    case_toml
+        The case, as the text of a case file.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        times: FloatArray,
+        places: FloatArray,
+        shapes: Sequence[FloatArray],
+        fixed: Mapping[str, NDArray[Any]],
+        case_toml: str,
+    ) -> None:
+        self.path = Path(path)
+        self._times, self._places, self._shapes, self._fixed = times, places, shapes, fixed
+        self._case = case_toml
+
+    def create(self) -> None:
+        """Make the file, without a snapshot, in the place of an earlier one.
+
+        Raises
+        ------
+        OSError
+            When it cannot be written.
+        """
+        import h5py  # type: ignore[import-untyped]
+
+        steps, count, cavities = self._times.size, self._fixed["radius"].size, len(self._places)
+        with telling(self.path, _LOST), whole(self.path) as name, h5py.File(name, "w") as file:
+            file.attrs["rattlebox_format"] = FORMAT
+            file.attrs["case"] = self._case
+            root = file.create_group(_ROOT)
+            root.attrs["Version"] = (2, 0)
+            root.attrs.create("Type", b"PolyData", dtype="S8")
+            root["NumberOfPoints"] = [count]
+            root.create_dataset("Points", (steps * count, 3), "f8")
+            for cells in ("Vertices", "Lines", "Polygons", "Strips"):
+                number = count if cells == "Vertices" else 0
+                root[f"{cells}/NumberOfCells"] = [number]
+                root[f"{cells}/NumberOfConnectivityIds"] = [number]
+                root[f"{cells}/Offsets"] = np.arange(number + 1)
+                root[f"{cells}/Connectivity"] = np.arange(number)
+            every, once = np.arange(steps), np.zeros(steps, np.int64)
+            kept = root.create_group("Steps")
+            kept.attrs["NSteps"] = 0
+            kept["Values"] = self._times
+            kept["NumberOfParts"] = np.ones(steps, np.int64)
+            kept["PartOffsets"] = once
+            kept["PointOffsets"] = every * count
+            kept["CellOffsets"] = np.zeros((steps, 4), np.int64)
+            kept["ConnectivityIdOffsets"] = np.zeros((steps, 4), np.int64)
+            for field in _MOVING:
+                root.create_dataset(f"PointData/{field}", (steps * count, 3), "f8")
+                kept[f"PointDataOffsets/{field}"] = every * count
+            for field in _FIXED:
+                root[f"PointData/{field}"] = self._fixed[field]
+                kept[f"PointDataOffsets/{field}"] = once
+            root.create_dataset("FieldData/displacement", (steps * cavities, 3), "f8")
+            kept["FieldDataOffsets/displacement"] = every * cavities
+            kept["FieldDataSizes/displacement"] = np.tile([3, cavities], (steps, 1))
+            root["FieldData/place"] = self._places
+            kept["FieldDataOffsets/place"] = once
+            kept["FieldDataSizes/place"] = np.tile([3, cavities], (steps, 1))
+            # Storage is given out with the first values, and nothing but numbers changes later.
+            for dataset in (root["Points"], *(root[f"PointData/{f}"] for f in _MOVING), root["FieldData/displacement"]):
+                if dataset.size:
+                    dataset[-1] = 0.0
+
+    @property
+    def taken(self) -> int:
+        """Number of snapshots of this very run in the file; 0 without a file."""
+        if not self.path.exists():
+            return 0
+        found = Snapshots(self.path)
+        same = found.case_toml == self._case and np.array_equal(found.planned, self._times)
+        return len(found) if same else 0
+
+    def take(self, number: int, state: Mapping[str, Any]) -> None:
+        """Add a snapshot.
+
+        Parameters
+        ----------
+        number
+            Which one, from 0; those before it are there.
+        state
+            As the core gives it.
+
+        Raises
+        ------
+        OSError
+            When it cannot be written.
+        """
+        import h5py
+
+        cavities = state["cavities"]
+        displacement = np.array([state["q"] @ shape for shape in self._shapes])
+        placed = [each["position"] + place for each, place in zip(cavities, self._places, strict=True)]
+        # Without a lock, so that others may look at the file during the run.
+        with telling(self.path, _LOST), h5py.File(self.path, "r+", locking=False) as file:
+            root = file[_ROOT]
+            count = root["NumberOfPoints"][0]
+            rows = slice(number * count, (number + 1) * count)
+            root["Points"][rows] = np.concatenate(placed)
+            for field in _MOVING:
+                root[f"PointData/{field}"][rows] = np.concatenate([each[field] for each in cavities])
+            root["FieldData/displacement"][number * len(cavities) : (number + 1) * len(cavities)] = displacement
+            file.flush()
+            root["Steps"].attrs.modify("NSteps", max(number + 1, int(root["Steps"].attrs["NSteps"])))
+
+
+class Snapshots:
+    """The snapshots of a run, read when they are used.
+
+    Parameters
+    ----------
+    path
+        File that a run wrote.
+
+    Raises
+    ------
+    FileNotFoundError
+        When there is no such file.
+    ValueError
+        When it holds no snapshots of particles, or is one of a later version.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        import h5py
+
+        self.path = Path(path)
+        if not self.path.is_file():
+            raise FileNotFoundError(f"there is no file {self.path}")
+        try:
+            with h5py.File(self.path, "r", locking=False) as file:
+                layout = file.attrs.get("rattlebox_format")
+                if layout is None or _ROOT not in file:
+                    raise ValueError(f"{self.path} holds no snapshots of particles written by Rattlebox")
+                if layout > FORMAT:
+                    raise ValueError(f"{self.path} was written by a later Rattlebox; update to read it")
+                self.case_toml = str(file.attrs["case"])
+                root = file[_ROOT]
+                self.planned: FloatArray = root["Steps/Values"][...]
+                self.times = self.planned[: int(root["Steps"].attrs["NSteps"])]
+                self._fixed = {field: root[f"PointData/{field}"][...] for field in _FIXED}
+                self._places: FloatArray = root["FieldData/place"][...]
+        except OSError as error:
+            raise ValueError(f"{self.path} is not an HDF5 file that is whole") from error
+
+    def __len__(self) -> int:
+        return int(self.times.size)
+
+    def __iter__(self) -> Iterator[Frame]:
+        return (self[number] for number in range(len(self)))
+
+    def __getitem__(self, number: int) -> Frame:
+        import h5py
+
+        number = range(len(self))[number]
+        count, cavities = self._fixed["radius"].size, len(self._places)
+        rows = slice(number * count, (number + 1) * count)
+        with h5py.File(self.path, "r", locking=False) as file:
+            root = file[_ROOT]
+            return Frame(
+                time=float(self.times[number]),
+                position=root["Points"][rows] - self._places[self._fixed["cavity"]],
+                displacement=root["FieldData/displacement"][number * cavities : (number + 1) * cavities],
+                **{field: root[f"PointData/{field}"][rows] for field in _MOVING},
+                **self._fixed,
+            )

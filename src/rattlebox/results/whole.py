@@ -1,0 +1,61 @@
+"""Files that are either whole or not there."""
+
+from __future__ import annotations
+
+import errno
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """Give a name to write to, and put that file in the place of another one once it is complete.
+
+    Parameters
+    ----------
+    path
+        File to write, in a folder that exists.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written; an earlier one is then as it was.
+    """
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"cannot write {path}: there is no folder {path.parent}")
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        mask = os.umask(0)
+        os.umask(mask)
+        temporary.chmod(0o666 & ~mask)
+        temporary.replace(path)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
+def telling(path: Path, lost: str) -> Iterator[None]:
+    """Say of a disk that takes no more what that means.
+
+    Parameters
+    ----------
+    path
+        What is written.
+    lost
+        What a full disk means, and what to do when there is room.
+    """
+    try:
+        yield
+    except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            said = f"no space is left on the disk\n  try: {lost}"
+        else:
+            said = f"it cannot be written: {error.strerror or error}\n  try: another folder"
+        raise OSError(error.errno or errno.EIO, said, str(path)) from error
