@@ -16,8 +16,8 @@ STEEL = rb.materials()["steel"]
 PRESSURE = 1.6 * STEEL.yield_stress
 SMALL, LARGE = Ball(2e-3), Ball(7e-3)
 
-# The deepest overlap falls between two steps: order 2, like Verlet itself. The factor is what was measured, a fifth above the
-# worst of four phases, with 40 to 640 steps in an elastic contact and speeds from the yield speed to a hundred times of it.
+# The deepest overlap falls between two steps: order 2, like Verlet itself. The factor is what was measured, a fifth above
+# the worst of four phases, with 40 to 640 steps in an elastic contact and speeds from the yield speed to a hundred times.
 FACTOR, ORDER = 0.8, 2
 
 
@@ -129,7 +129,7 @@ def test_reloading_is_elastic_up_to_the_deepest_overlap() -> None:
     assert np.abs(-arrays.cavity_force[:, 0, 2] - force).max() < 1e-9 * force.max()
     loss = arrays.plastic_loss[:, 0, 1]
     assert loss == pytest.approx(plastic, rel=1e-9, abs=1e-12 * plastic[-1])
-    # Forty swings without loss, but for what lies between the step that was deepest at first and the very top:
+    # Twenty swings without loss, but for what lies between the step that was deepest at first and the very top:
     # (pi/200)^2/2 of a swing.
     assert loss[half] == pytest.approx(loss[200], rel=2e-4)
     assert np.ptp(overlap[half - 400 : half]) == pytest.approx(np.ptp(overlap[400:800]), rel=1e-4)

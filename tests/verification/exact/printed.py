@@ -52,3 +52,7 @@ IMPACT_OSCILLATOR = {
     (0.05, 2.0, 0.0, 0.8): 3.9016493,
     (0.05, 2.0, 0.3, 0.5): 0.9119661,
 }
+OBLIQUE = {10: (0.687, 213), 20: (0.616, 511), 30: (0.684, 617), 50: (0.845, 457), 70: (0.932, 246)}
+"""Y. C. Chung, J. Y. Ooi, Granular Matter 13 (2011) 643, test 4: angle from the normal, tangential restitution, spin."""
+OBLIQUE_MEASURED = {20.2: 0.599, 39.5: 0.774, 49.6: 0.848, 71.1: 0.937}
+"""A. H. Kharaz, D. A. Gorham, A. D. Salman, Powder Technology 120 (2001) 281: the same, measured."""
