@@ -1,0 +1,60 @@
+"""Contacts and forces of elastic, smooth spheres, by looking at every pair and every wall."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Found:
+    """What touches: pairs (first, second), second counted on beyond the particles for walls; overlaps, forces on each."""
+
+    pairs: set[tuple[int, int]]
+    doubtful: set[tuple[int, int]]
+    force: Array
+    on_cavity: Array
+    moment: Array
+
+
+def look(positions: Array, radii: Array, walls: Any, inside: Array, wall: Array, doubt: float) -> Found:
+    """Return contacts and forces at a moment.
+
+    Parameters
+    ----------
+    positions, radii
+        From the centre of the cavity, (n, 3) and (n,) [m].
+    walls
+        Axis, offset and curvature of each, as a cavity gives them.
+    inside, wall
+        Factor of sqrt(R*) in the Hertz stiffness, (n, n) among particles and (n,) at walls.
+    doubt
+        Overlaps smaller than this may be there or not [m].
+    """
+    n = len(radii)
+    force, on_cavity, moment = np.zeros((n, 3)), np.zeros(3), np.zeros(3)
+    pairs, doubtful = set(), set()
+    apart = positions[:, None] - positions[None]
+    distance = np.sqrt((apart**2).sum(axis=2))
+    overlap = radii[:, None] + radii[None] - distance
+    for i, j in zip(*np.nonzero(np.triu(overlap > -doubt, 1)), strict=True):
+        (doubtful if overlap[i, j] < doubt else pairs).add((int(i), int(j)))
+        stiff = inside[i, j] * np.sqrt(radii[i] * radii[j] / (radii[i] + radii[j]))
+        push = stiff * max(overlap[i, j], 0.0) ** 1.5 * apart[i, j] / distance[i, j]
+        force[i] += push
+        force[j] -= push
+    for k, (axis, offset, curved) in enumerate(zip(walls.axis, walls.offset, walls.curved, strict=True)):
+        across = positions - np.outer(positions @ axis, axis) if curved == 1 else positions
+        reach = np.linalg.norm(across, axis=1) if curved else positions @ axis
+        for i in np.nonzero(reach + radii > offset - doubt)[0]:
+            deep = reach[i] + radii[i] - offset
+            (doubtful if deep < doubt else pairs).add((int(i), n + k))
+            normal = across[i] / reach[i] if curved else axis
+            push = wall[i] * np.sqrt(radii[i]) * max(deep, 0.0) ** 1.5 * normal
+            force[i] -= push
+            on_cavity += push
+            moment += np.cross(positions[i] + (offset - reach[i]) * normal, push)
+    return Found(pairs, doubtful, force, on_cavity, moment)
