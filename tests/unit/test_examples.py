@@ -1,5 +1,6 @@
 """Every example is run and checked on a number."""
 
+import runpy
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ def test_all_examples_are_checked_here() -> None:
         "row_on_beam",
         "shaker",
         "steel_balls_in_a_box",
+        "two_cavities_on_a_beam",
     }
 
 
@@ -62,3 +64,30 @@ def test_many_small_balls_calm_a_structure_sooner_than_one_large_ball() -> None:
     ]
     assert settled[0] < 0.7 * settled[1]
     assert box.ledger.shares["sliding"] > 0.3 > ball.ledger.shares["impact"]
+
+
+def test_two_cavities_on_a_beam_both_take_energy() -> None:
+    """Both cavities take up energy, and the beam swings less than without them."""
+    case = rb.Case.from_file(EXAMPLES / "two_cavities_on_a_beam.toml")
+    run = rb.simulate(case)
+    assert run.ok
+    assert run.closure < 5e-3
+    alone = rb.simulate(case.model_copy(update={"dampers": (), "method": rb.EventDriven()}))
+    largest = [
+        abs(each.motion.displacement.sel(point="middle")).where(each.motion.time > 0.4).max() for each in (run, alone)
+    ]
+    assert largest[0] < 0.8 * largest[1]
+    lost = (run.arrays.normal_loss + run.arrays.sliding_loss)[-1].sum(axis=1)
+    assert lost.min() > 0.05 * run.ledger.supplied[-1]
+    assert run.arrays.particle_mass[1] == pytest.approx(0.04, rel=0.02)
+
+
+def test_a_shaken_box_rides_along_or_is_thrown() -> None:
+    """Below the acceleration of gravity the balls' mass counts in full; thrown slowly they take more than m v^2 a cycle."""
+    found = runpy.run_path(str(EXAMPLES / "shaken_box.py"))["loss_map"]([5.0, 150.0], [30.0])
+    ratio = (found.effective_mass / found.particle_mass).isel({"structure.motion.frequency": 0})
+    assert ratio.values[0] == pytest.approx([1, 1], abs=0.02)
+    assert found.loss_factor.values[0, 0] == pytest.approx([0, 0], abs=0.02)
+    assert 1 < found.reduced_loss.sel(way="energy").values[1, 0] < 4  # 4: every ball loses all of twice the speed
+    taken, lost = found.active_power.values[1, 0]
+    assert taken == pytest.approx(lost + float(found.stored_power[1, 0]), rel=0.02)

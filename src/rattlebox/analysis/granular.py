@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from rattlebox.results import GranularRun
 
-METHODS = ("complex power", "energy")
+WAYS = ("complex power", "energy")
 
 
 def shaken_cavity(
@@ -41,9 +41,9 @@ def shaken_cavity(
     Returns
     -------
     xarray.Dataset
-        Over `method`: `active_power` [W], `dissipated_energy` in a cycle [J], `effective_mass` [kg], `loss_factor` (active
+        Over `way`: `active_power` [W], `loss_per_cycle` in a cycle [J], `effective_mass` [kg], `loss_factor` (active
         over magnitude of reactive power, which is the energy of a cycle over 2 pi times the largest kinetic energy of the
-        effective mass) and `dimensionless_loss`, energy of a cycle over m v^2 with all mass and the amplitude of the
+        effective mass) and `reduced_loss`, energy of a cycle over m v^2 with all mass and the amplitude of the
         velocity. Besides, `stored_power` [W]: what the energy of the particles rose by; complex power counts it as taken up,
         the energy lost does not. Attributes tell frequency, cycles and amplitude.
 
@@ -95,18 +95,18 @@ def shaken_cavity(
     reactive = 0.5 * omega * np.abs(masses) * size**2
 
     def over(values: Any, units: str, long_name: str) -> Any:
-        return "method", values, {"units": units, "long_name": long_name}
+        return "way", values, {"units": units, "long_name": long_name}
 
     return xarray.Dataset(
         {
             "active_power": over(powers, "W", "power taken up"),
-            "dissipated_energy": over(powers / frequency, "J", "energy taken up in a cycle"),
+            "loss_per_cycle": over(powers / frequency, "J", "energy taken up in a cycle"),
             "effective_mass": over(masses, "kg", "effective mass"),
             "loss_factor": over(powers / reactive, "1", "loss factor"),
-            "dimensionless_loss": over(powers / (frequency * mass * size**2), "1", "energy of a cycle over m v^2"),
+            "reduced_loss": over(powers / (frequency * mass * size**2), "1", "energy of a cycle over m v^2"),
             "stored_power": ((), stored, {"units": "W", "long_name": "rise of the particles' energy"}),
         },
-        {"method": ("method", list(METHODS), {"long_name": "where it comes from"})},
+        {"way": ("way", list(WAYS), {"long_name": "where it comes from"})},
         {"frequency": frequency, "cycles": cycles, "velocity_amplitude": size, "damper": damper},
     )
 

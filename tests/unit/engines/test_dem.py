@@ -179,7 +179,7 @@ def test_loss_and_mass_of_a_shaken_cavity_in_two_ways() -> None:
     assert found.attrs["cycles"] == 6
     assert taken == pytest.approx(lost + float(found.stored_power), rel=0.01)
     assert found.effective_mass[0] == pytest.approx(float(found.effective_mass[1]), rel=0.01)
-    assert float(found.dimensionless_loss[1]) == pytest.approx(
+    assert float(found.reduced_loss[1]) == pytest.approx(
         lost / 40 / (run.arrays.particle_mass[0] * (0.003 * 80 * math.pi) ** 2), rel=1e-6
     )
     with pytest.raises(ValueError, match="damper is one of damper"):

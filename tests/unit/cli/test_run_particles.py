@@ -1,0 +1,62 @@
+"""`rattlebox run` with particles in space."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import rattlebox as rb
+
+CASE = """
+name = "beads"
+duration = "20 ms"
+structure = { kind = "sdof", mass = "0.1 kg", stiffness = "10 kN/m", velocity = "0.5 m/s" }
+output = { rate = "5 kHz" }
+[damper]
+particles = { material = "glass", diameter = "3 mm", fill_ratio = 0.3 }
+cavity = { kind = "sphere", diameter = "20 mm" }
+contact = { kind = "tsuji", restitution = 0.8 }
+friction = 0.2
+softening = 100
+"""
+
+
+def run(folder: Path, *options: str, case: str = CASE) -> subprocess.CompletedProcess[str]:
+    """Run a case file in a process of its own."""
+    (folder / "case.toml").write_text(case, encoding="utf-8")
+    command = [sys.executable, "-m", "rattlebox.cli", "run", str(folder / "case.toml"), "-o", str(folder / "out")]
+    return subprocess.run([*command, *options], capture_output=True, text=True, timeout=100, check=False)
+
+
+def test_a_case_with_particles_runs_from_its_file(tmp_path: Path) -> None:
+    """The terminal tells particles, contacts, energy, closure, the step with its limit, and the speed; files are written."""
+    done = run(tmp_path, "--csv")
+    assert done.returncode == 0, done.stderr
+    told = " ".join(done.stdout.split())
+    for said in (
+        "particles",
+        "contacts in the mean",
+        "lost in sliding",
+        "lost at walls",
+        "ledger closure",
+        "time step",
+    ):
+        assert said in told
+    for said in ("particle-steps a second", "limited by the contact of glass and glass", "moduli are divided by 100"):
+        assert said in told
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert {"run.nc", "motion.csv", "energy.csv", "particles.csv", "motion.png", "energy.png"} <= names
+    assert rb.load(tmp_path / "out" / "run.nc").ok
+
+
+def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
+    """Too many particles, and too long a step, are told on one screen with exit code 2."""
+    for old, new, said in (
+        ("fill_ratio = 0.3", "count = 4000", "do not fit"),
+        ("softening = 100", 'softening = 100\n[method]\nkind = "dem"\ndt = "1 ms"', "the bound is"),
+    ):
+        done = run(tmp_path, case=CASE.replace(old, new))
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert "Traceback" not in done.stderr
