@@ -1,0 +1,144 @@
+"""The same bits: for any number of threads, after a stop and a restart, for any output."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+from . import cases
+
+LAWS: dict[str, tuple[Any, Any]] = {
+    "Hertz": (rb.Tsuji(restitution=rb.JacksonGreen()), rb.Mindlin(0.4)),
+    "linear": (rb.Linear(contact_time="0.2 ms", restitution=0.8), rb.LinearSpring(0.4, ratio=0.3)),
+    "yielding": (rb.Thornton(yield_pressure="20 MPa"), rb.Mindlin(0.4)),
+}
+
+
+def shaken(
+    law: str, *, duration: float = 0.02, rate: float = 2000.0, threads: int | None = None, count: int = 400
+) -> Any:
+    """Return two cavities of rough, soft spheres of two kinds on a structure that shakes; what lies and what flies."""
+    soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25, yield_stress=5e6)
+    contact, friction = LAWS[law]
+    common: dict[str, Any] = {
+        "contact": contact,
+        "friction": friction,
+        "rolling": 0.05,
+        "packing": rb.Lattice(noise=1.0, seed=4),
+        "velocity": (0.5, 0.2, -1.0),
+    }
+    few = rb.Particles(name="few", material=soft, radius="2 mm", count=40)
+    many = rb.Particles(name="many", material=soft, distribution=SIZES, count=count)
+    return rb.Case(
+        structure=rb.SDOF(mass=0.5, stiffness=2e4, damping_ratio=0.02, velocity=1.0),
+        dampers=[
+            rb.ParticleDamper(name="box", particles=[few, many], cavity=rb.Box(size=("40 mm",) * 3), **common),
+            rb.ParticleDamper(
+                name="can", particles=few, cavity=rb.Cylinder(diameter="30 mm", length="30 mm"), **common
+            ),
+        ],
+        load=[
+            rb.Harmonic(amplitude=50.0, frequency=40.0),
+            rb.Record(times=[0, 0.002, 0.0035, 0.005, 0.009, 0.02], values=[0, 40, -30, 60, -20, 0]),
+            rb.HalfSine(amplitude=100.0, duration="4 ms", start="1 ms"),
+        ],
+        duration=duration,
+        output=rb.Output(rate=rate),
+        method=rb.Dem(threads=threads),
+    )
+
+
+SIZES = rb.Normal(mean="3 mm", deviation="0.3 mm", smallest="2.5 mm", largest="3.5 mm")
+
+
+def flat(value: Any) -> bytes:
+    """Return all bits of arrays in dictionaries and lists."""
+    if isinstance(value, dict):
+        return b"".join(flat(value[key]) for key in sorted(value) if key not in ("seconds", "memory_bytes"))
+    if isinstance(value, list):
+        return b"".join(map(flat, value))
+    return np.ascontiguousarray(value).tobytes()
+
+
+def end(dem: Any) -> bytes:
+    """Return all bits that tell of a simulation so far, but for its samples."""
+    return flat(dem.state()) + flat(dem.counters()) + flat([dem.contacts(k) for k in range(2)])
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_threads_give_the_same_bits(law: str) -> None:
+    """One, two, three and five threads compute the same bits: samples, state, contacts and counts."""
+    told = []
+    for threads in (1, 2, 3, 5):
+        dem, last = cases.dem_of(shaken(law, duration=0.005), threads)
+        dem.run(last)
+        assert dem.status == 0
+        told.append(flat(dem.records()) + end(dem))
+    assert len(told[0]) > 1000 and len(set(told)) == 1
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_restart_gives_the_same_bits(law: str) -> None:
+    """A run that goes on from a saved state, with other threads, has the bits of the unbroken one, history and all."""
+    case = shaken(law, duration=0.01)
+    whole, last = cases.dem_of(case)
+    for until in (7, 7, last // 3, last // 2):
+        whole.run(until)
+    assert sum(len(whole.contacts(k)["first"]) for k in range(2)) > 10
+    kept, told = whole.save(), flat(whole.state()) + flat(whole.counters())
+    early = whole.records()
+    whole.run(last)
+    again, _ = cases.dem_of(case, threads=2)
+    again.restore(kept)
+    assert flat(again.state()) + flat(again.counters()) == told
+    again.run(last)
+    assert end(again) == end(whole)
+    assert flat(again.records()) == flat(whole.records())
+    unbroken, _ = cases.dem_of(case)
+    unbroken.run(last)
+    assert end(unbroken) == end(whole)
+    assert len(early["time"]) < len(unbroken.records()["time"])
+
+
+def test_restart_in_another_process_gives_the_same_bits(tmp_path: Path) -> None:
+    """Another process that goes on from a file of the state ends with the bits of this one."""
+    case = shaken("Hertz", duration=0.01)
+    dem, last = cases.dem_of(case)
+    dem.run(last // 2)
+    np.save(tmp_path / "state.npy", dem.save())
+    dem.run(last)
+    code = (
+        "import sys, importlib; sys.path.insert(0, sys.argv[1]);"
+        "importlib.import_module('verification.dem.test_bits').go_on(*sys.argv[2:])"
+    )
+    folder = Path(__file__).resolve().parents[2]
+    command = [sys.executable, "-c", code, str(folder), str(tmp_path / "state.npy"), str(tmp_path / "end")]
+    subprocess.run(command, check=True)
+    assert (tmp_path / "end").read_bytes() == end(dem)
+
+
+def go_on(state: str, target: str) -> None:
+    """Finish the case of the test above from a saved state, and write the bits of its end."""
+    dem, last = cases.dem_of(shaken("Hertz", duration=0.01))
+    dem.restore(np.load(state))
+    dem.run(last)
+    Path(target).write_bytes(end(dem))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_output_does_not_change_the_run(law: str) -> None:
+    """Whether every step is sampled or only the last one: the end has the same bits."""
+    case = shaken(law, duration=0.004, rate=500.0)
+    packed, step, _ = cases.pack_dem(case)
+    ends = []
+    for every in (1, step.count):
+        dem = cases.core().Dem({**packed, "every": every})
+        dem.run(step.count)
+        ends.append(flat(dem.state()) + flat([dem.contacts(k) for k in range(2)]))
+        assert len(dem.records()["time"]) == step.count // every + 1
+    assert ends[0] == ends[1]
