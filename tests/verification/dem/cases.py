@@ -144,3 +144,9 @@ def rebound(result: Any) -> float:
     """Relative velocity along x at the end: of two balls, or of one [m/s]."""
     v = result.arrays.particle_velocity[:, 0]
     return float(-v[0] if v.size == 1 else v[1] - v[0])
+
+
+def particles_start(case: Any) -> dict[str, Any]:
+    """Return positions, velocities and spins of the particles of the first damper at the start."""
+    start = case.dampers[0].start
+    return {"position": start.position, "velocity": start.velocity, "spin": start.spin}

@@ -1,0 +1,122 @@
+"""Momentum and angular momentum are kept to rounding, whatever the laws; forces on the cavity answer those on particles."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+from . import cases
+
+SOFT = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25, yield_stress=5e6)
+SIZES = rb.LogNormal(median="2.5 mm", spread=1.5, smallest="1 mm", largest="5 mm")
+LAWS: dict[str, dict[str, Any]] = {
+    "smooth": {"contact": rb.Tsuji(restitution=0.8)},
+    "rough": {"contact": rb.Tsuji(restitution=0.8), "friction": 0.5},
+    "rolling": {"contact": rb.Tsuji(restitution=0.8), "friction": 0.5, "rolling": rb.Rolling(0.1, damping=0.3)},
+    "linear": {
+        "contact": rb.Linear(contact_time="0.2 ms", restitution=0.8, ending="zero_overlap"),
+        "friction": rb.LinearSpring(0.5, ratio=0.3),
+        "rolling": 0.1,
+    },
+    "yielding": {"contact": rb.Thornton(), "friction": 0.5, "rolling": 0.1},
+}
+
+
+def cloud(
+    law: str, *, inwards: float = 0.0, random: float = 0.0, size: float = 0.04, count: int = 120, **options: Any
+) -> Any:
+    """Return a case of spheres of many sizes that turn, and fly at random and towards the middle."""
+    rng = np.random.default_rng(3)
+    structure, duration = options.pop("structure", rb.Fixed()), options.pop("duration", 0.02)
+    method, rate = options.pop("method", rb.Dem()), options.pop("rate", 5000.0)
+    usual: dict[str, Any] = {
+        "particles": rb.Particles(material=SOFT, distribution=SIZES, count=count),
+        "cavity": rb.Box(size=(size,) * 3),
+        "gravity": (0, 0, 0),
+        **LAWS[law],
+        **options,
+    }
+    places = rb.ParticleDamper(**{**usual, "cavity": rb.Box(size=(0.04,) * 3)}).start.position
+    start = rb.Positions(
+        positions=places,
+        velocities=random * rng.standard_normal((count, 3)) - inwards * places / 0.02,
+        spins=300 * rng.standard_normal((count, 3)),
+    )
+    damper = rb.ParticleDamper(**usual, packing=start)
+    return rb.Case(structure=structure, damper=damper, duration=duration, output=rb.Output(rate=rate), method=method)
+
+
+def momenta(now: dict[str, Any], contents: Any) -> tuple[Any, Any]:
+    """Return momentum and angular momentum about the origin of all particles, each (n, 3)."""
+    momentum = contents.mass[:, None] * now["velocity"]
+    turning = contents.inertia[:, None] * now["spin"]
+    return momentum, np.cross(now["position"], momentum) + turning
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_particles_alone_keep_both_momenta(law: str) -> None:
+    """Spheres that collide far from walls keep momentum and angular momentum to rounding, friction and rolling included."""
+    case = cloud(law, inwards=2.0, random=0.3, size=0.4)
+    contents = case.dampers[0].contents
+    dem, last = cases.dem_of(case)
+    dem.run(0)
+    (before, turning), kept = momenta(cases.particles_start(case), contents), []
+    for k in range(1, 9):
+        dem.run(last * k // 8)
+        after, turned = momenta(cases.particles_now(dem), contents)
+        scale = np.abs(before).sum(), np.abs(turning).sum()
+        assert np.abs(after.sum(axis=0) - before.sum(axis=0)).max() < 1e-13 * scale[0]
+        assert np.abs(turned.sum(axis=0) - turning.sum(axis=0)).max() < 1e-13 * scale[1]
+        kept.append(np.abs(after - before).sum() / scale[0])
+    touches = dem.counters()["first_touches"][0]
+    assert touches[0] > 200 and touches[1] == 0
+    assert kept[-1] > 0.1
+
+
+MASS = 0.3
+ROOT = MASS**-0.5
+FREE = rb.Modal(
+    frequencies=[0, 0, 0],
+    damping_ratios=[0, 0, 0],
+    shapes={"cavity": [[ROOT, 0, 0], [0, 0.6 * ROOT, 0.8 * ROOT], [0, -0.8 * ROOT, 0.6 * ROOT]]},
+    velocity=[0.1, -0.2, 0.1],
+)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("cavity", [rb.Box(size=(0.04,) * 3), rb.SphericalCavity(radius=0.04)], ids=["box", "sphere"])
+def test_a_free_cavity_and_its_particles_keep_their_momentum(law: str, cavity: Any) -> None:
+    """A cavity that nothing holds and what is in it keep their momentum in all three directions, to rounding."""
+    case = cloud(law, random=1.0, cavity=cavity, structure=FREE)
+    arrays = cases.run(case).arrays
+    total = arrays.momentum[:, 0] + MASS * arrays.cavity_velocity[:, 0]
+    scale = np.abs(arrays.mass[:, None] * arrays.particle_velocity).sum() + MASS
+    assert np.abs(total - total[0]).max() < 1e-13 * scale
+    assert np.ptp(arrays.momentum[:, 0], axis=0).max() > 1e-3 * scale
+    assert arrays.counts["first_touches_wall"] > 50
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_force_on_the_cavity_is_the_change_of_momentum(law: str) -> None:
+    """In each step the mean force on a cavity is the rate at which its particles lose momentum, and their weight."""
+    dt = 4e-6
+    case = cloud(
+        law,
+        random=1.0,
+        gravity=(1.0, 2.0, -9.81),
+        structure=FREE,
+        duration=600 * dt,
+        rate=1 / dt,
+        method=rb.Dem(dt=dt * (1 + 1e-9)),
+    )
+    arrays = cases.run(case).arrays
+    assert arrays.time.size == arrays.counts["steps"] > 500
+    mean = 0.5 * (arrays.cavity_force[1:, 0] + arrays.cavity_force[:-1, 0])
+    weight = arrays.mass.sum() * np.array([1.0, 2.0, -9.81])
+    rate = np.diff(arrays.momentum[:, 0], axis=0) / np.diff(arrays.time)[:, None]
+    assert np.abs(mean).max() > 1
+    assert mean == pytest.approx(
+        weight - rate, abs=1e-9 * np.abs(mean).max() + 1e-13 * np.abs(arrays.momentum).max() / dt
+    )
