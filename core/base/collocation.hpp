@@ -17,6 +17,7 @@ template <int n> struct Collocation {
         const real& operator[](int i) const { return at[i]; }
         Lanes& eight(int i) { return lanes(at + i); }
         const Lanes& eight(int i) const { return lanes(at + i); }
+        Lanes read(int i) const { return rattlebox::read<lane_count>(at + i); }
     };
     alignas(64) real node[n], weight[n], barycentric[n]; // the last: weights of interpolation
     // Nodes and weights are symmetric, so f splits into an odd and an even part and the work into halves:

@@ -67,6 +67,13 @@ inline Lanes& operator+=(Lanes& a, const Lanes& b) { return a = a + b; }
 // Neighbours in memory, at an address that is a multiple of their size.
 template <int n> const Pack<n>& pack(const real* p) { return *reinterpret_cast<const Pack<n>*>(p); }
 template <int n> Pack<n>& pack(real* p) { return *reinterpret_cast<Pack<n>*>(p); }
+// Their value, read by registers: compilers copy a struct in smaller pieces, which then wait for each other.
+template <int n> Pack<n> read(const real* p) {
+    if constexpr (n == register_width)
+        return pack<n>(p);
+    else
+        return {read<n / 2>(p), read<n / 2>(p + n / 2)};
+}
 inline const Lanes& lanes(const real* p) { return pack<lane_count>(p); }
 inline Lanes& lanes(real* p) { return pack<lane_count>(p); }
 

@@ -119,7 +119,7 @@ class LoneContact {
         if (loads_->active())
             for (std::size_t l = 0; l < loads_->size(); ++l)
                 for (int i = 0; i < n; i += lane_count) {
-                    const Lanes t = integral_[clock].eight(i);
+                    const Lanes t = integral_[clock].read(i);
                     Lanes sum = Lanes::all(pull_[l].c[degree_]);
                     for (int k = degree_ - 1; k >= 0; --k) sum = sum * t + Lanes::all(pull_[l].c[k]);
                     signal_[l].eight(i) = sum;
@@ -180,7 +180,7 @@ class LoneContact {
         const PhaseGrid& g = grid_;
         const Lanes one = Lanes::all(1);
         for (int i = 0; i < n; i += lane_count) {
-            const Lanes grow = grow_.eight(i), r = r1_.eight(i) * fifth_power(grow);
+            const Lanes grow = grow_.read(i), r = r1_.eight(i) * fifth_power(grow);
             const Lanes rate = g.slope.eight(i) / (swing_.eight(i) * (one + integral_[gain].eight(i)) -
                                                    a_.eight(i) * g.sine.eight(i));
             x_.eight(i) = x0_.eight(i) * grow;
@@ -253,7 +253,7 @@ class LoneContact {
         grid_.rule().integrate<1>(&slope_[gain], &integral_[gain]);
         Lanes most = {};
         for (int i = 0; i < n; i += lane_count) {
-            const Lanes grow = grow_.eight(i);
+            const Lanes grow = grow_.read(i);
             const Lanes change = (one + integral_[gain].eight(i)) / (grow * fifth_power(grow)) - one;
             grow_.eight(i) = grow * sixth_root(change);
             most = larger(most, absolute(change));
@@ -325,7 +325,7 @@ public:
             turn_.eight(i) = s_ * g.cosine.eight(i) - zeta_ * g.sine.eight(i);
             swing_.eight(i) = s_ * s_ * wave_ * x0_.eight(i) * r1_.eight(i);
             // r^2 is V^2 + 2 a d for constant a and no damping.
-            const Lanes x = x0_.eight(i), z = 2 * a_[0] / square(speed_) * x * x * (x * x);
+            const Lanes x = x0_.read(i), z = 2 * a_[0] / square(speed_) * x * x * (x * x);
             const Lanes grow = Lanes::all(1) + 0.1 * z * (Lanes::all(1) - 0.45 * z);
             integral_[gain].eight(i) = grow * fifth_power(grow) - Lanes::all(1);
             grow_.eight(i) = grow;
@@ -358,7 +358,7 @@ public:
         Instant now;
         const real log_r = std::log1p(gained) / 1.2 - zeta_ / s_ * psi;
         const real grow = std::exp(0.2 * log_r), r = r0_ * fifth_power(grow);
-        now.x = depth0_ * std::pow(std::fmax(sine, 0.0), 0.2) * grow;
+        now.x = sine > 0 ? depth0_ * std::pow(sine, 0.2) * grow : 0;
         now.rate = r * (s_ * cosine - zeta_ * sine);
         now.force = now.x * (law_.stiffness * now.x * square(now.x * now.x) + damping_ * now.rate);
         return now;
