@@ -41,11 +41,15 @@ def run(
     csv: Annotated[bool, typer.Option(help="Write CSV files too.")] = False,
     mat: Annotated[bool, typer.Option(help="Write a MAT file too.")] = False,
     figures: Annotated[bool, typer.Option(help="Draw motion, energy and impacts.")] = True,
+    checkpoint: Annotated[
+        Path | None,
+        typer.Option(help="File that keeps a run with particles on its way; default run.checkpoint in the folder."),
+    ] = None,
 ) -> None:
-    """Run a case file: summary on the terminal, netCDF and figures in a folder."""
+    """Run a case file: summary on the terminal, netCDF and figures in a folder. The same command goes on after a stop."""
     from rattlebox.cli.run import run_case
 
-    run_case(case, out, csv=csv, mat=mat, figures=figures)
+    run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint)
 
 
 @app.command()

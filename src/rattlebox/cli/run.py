@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -30,18 +31,25 @@ def make_folder(out: Path) -> None:
         raise CaseError(f"the folder {out} cannot be made: {error.strerror}\n  try: --out results") from None
 
 
-def _simulated(case: Case) -> Run:
-    """Run a case; one with particles shows on a terminal how far it is."""
+def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
+    """Run a case; one with particles shows on a terminal how far it is, and goes on where it was stopped."""
     if not case.particle_dampers:
         return simulate(case)
-    console = Console(stderr=True)
+    console = Console(stderr=True, highlight=False)
+    if checkpoint.exists():
+        console.print(f"going on from {checkpoint}", soft_wrap=True)
+    snapshots = out / "run.vtkhdf" if case.output.snapshots is not None else None
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         line = bar.add_task("steps", total=None)
-        return simulate(case, progress=lambda done, total: bar.update(line, completed=done, total=total))
+
+        def progress(done: int, total: int) -> None:
+            bar.update(line, completed=done, total=total)
+
+        return simulate(case, checkpoint=checkpoint, snapshots=snapshots, progress=progress)
 
 
-def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool) -> None:
+def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, checkpoint: Path | None = None) -> None:
     """Run a case file and write what comes back.
 
     Parameters
@@ -52,14 +60,26 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool) -> N
         Folder for results, made if needed.
     csv, mat, figures
         What to write besides run.nc.
+    checkpoint
+        From which a run with particles goes on; default run.checkpoint in the folder. Removed when the results are written.
     """
     case = Case.from_file(path)
+    if checkpoint is not None and not case.particle_dampers:
+        raise CaseError(
+            "--checkpoint: there are no particles in space, and other runs take no time\n  try: leave it out"
+        )
     make_folder(out)
-    run = _simulated(case)
+    checkpoint = checkpoint or out / "run.checkpoint"
+    run = _simulated(case, out, checkpoint)
+    if run.status == "interrupted" and case.particle_dampers:
+        typer.echo(run.message, err=True)
+        sys.exit(130)
     console = Console()
     console.print(run.summary())
     run.save(out / "run.nc")
     written = ["run.nc"]
+    if (out / "run.vtkhdf").exists() and case.output.snapshots is not None:
+        written.append("run.vtkhdf")
     if mat:
         run.to_mat(out / "run.mat")
         written.append("run.mat")
@@ -70,6 +90,8 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool) -> N
             getattr(run.plot, name)().savefig(out / f"{name}.png")
             written.append(f"{name}.png")
     console.print(f"written to {out}: {', '.join(written)}")
+    if run.arrays.time[-1] == case.duration:
+        checkpoint.unlink(missing_ok=True)
     if not run.ok:
         console.print(f"[bold]{run.status}[/bold]: {run.message}")
         sys.exit(1)

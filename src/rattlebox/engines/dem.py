@@ -336,7 +336,7 @@ def _told(
     where = f"Particle {stopped['particle']} of {names[stopped['cavity']]!r}"
     name, message = describe(status, stopped["time"], where, stopped["speed"], case.method.kind)
     if status == INTERRUPTED:
-        return name, message if checkpoint is None else f"{message} The same call goes on from {checkpoint.path}."
+        return name, message if checkpoint is None else f"{message} Run again, it goes on from {checkpoint.path}."
     message += f" The step was {step.dt:.4g} s."
     if checkpoint is not None and checkpoint.time is not None:
         message += f" The last checkpoint is of t = {checkpoint.time:.6g} s, in {checkpoint.path}."
