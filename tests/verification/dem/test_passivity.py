@@ -1,0 +1,163 @@
+"""No impact gives energy: random ones at all angles, with all laws, up to the longest step that is not refused."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.engines.dem_step import expected_speeds, limits
+
+from . import cases
+
+GLASS = rb.Material(name="glassy", density=2500, young=5e9, poisson=0.25, yield_stress=5e7)
+FASTEST, SMALLEST, LARGEST = 2.0, 1e-3, 6e-3
+FLIGHT = 2e-5  # before the impacts, at least [s]
+CONTACTS: dict[str, Any] = {
+    "elastic": rb.Tsuji(restitution=1.0),
+    "Hertz": rb.Tsuji(restitution=0.7),
+    "pulling": rb.Tsuji(restitution=0.7, ending="zero_overlap"),
+    "yielding": rb.Thornton(),
+    "linear": rb.Linear(contact_time="40 us", restitution=0.7),
+}
+FRICTIONS: dict[str, dict[str, Any]] = {
+    "none": {},
+    "little": {"friction": 0.1},
+    "Mindlin": {"friction": 0.5},
+    "without dashpot": {"friction": rb.Mindlin(1.0, damping=0.0)},
+    "spring": {"friction": rb.LinearSpring(0.5, stiffness=2e5)},
+    "rolling": {"friction": 0.5, "rolling": 0.3},
+    "rolling with dashpot": {"friction": 1.0, "rolling": rb.Rolling(0.5, stiffness=3.0, damping=0.5)},
+}
+FITS = [
+    (contact, friction)
+    for contact in CONTACTS
+    for friction in FRICTIONS
+    if contact != "linear" or friction in ("none", "spring")
+]
+
+
+def bound(case: Any) -> float:
+    """Return the longest step that the engine takes [s]."""
+    damper = case.dampers[0]
+    tables, speeds = [damper.contact_table], expected_speeds(case, [np.zeros((0, 3))])
+    return min(limit.bound for limit in limits(case, tables, speeds))
+
+
+def directions(rng: np.random.Generator, count: int) -> tuple[Any, Any]:
+    """Return normals and relative velocities at all angles, a tenth of them head-on and a tenth grazing."""
+    normal = rng.standard_normal((count, 3))
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    along = np.cross(normal, rng.standard_normal((count, 3)))
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    cosine = rng.uniform(0, 1, count)
+    kind = rng.random(count)
+    cosine = np.where(kind < 0.1, 1 - 0.01 * cosine**2, np.where(kind > 0.9, 1e-3 * cosine, cosine))
+    speed = FASTEST * rng.uniform(0.05, 1, count)
+    velocity = speed[:, None] * (cosine[:, None] * normal + np.sqrt(1 - cosine**2)[:, None] * along)
+    return normal, velocity
+
+
+def spins(rng: np.random.Generator, radii: Any) -> Any:
+    """Return spins, a third of them none."""
+    turning = FASTEST * rng.uniform(0, 2, radii.size) * (rng.random(radii.size) < 0.67) / radii
+    return turning[:, None] * rng.standard_normal((radii.size, 3))
+
+
+def pairs(count: int, seed: int) -> tuple[Any, dict[str, Any]]:
+    """Return a wide box and so many pairs in it that are about to meet."""
+    rng = np.random.default_rng(seed)
+    number = int(np.ceil(count ** (1 / 3)))
+    cell = 8 * LARGEST
+    index = np.indices((number,) * 3).reshape(3, -1).T[:count]
+    middle = (index + 0.5 - 0.5 * number) * cell
+    radii = rng.uniform(SMALLEST, LARGEST, (count, 2))
+    normal, velocity = directions(rng, count)
+    ahead = velocity * (FLIGHT * (1 + rng.random(count)))[:, None]
+    first = middle - radii[:, :1] * normal - 0.5 * ahead
+    second = middle + radii[:, 1:] * normal + 0.5 * ahead
+    start = {
+        "positions": np.stack([first, second], axis=1).reshape(-1, 3),
+        "velocities": np.stack([0.5 * velocity, -0.5 * velocity], axis=1).reshape(-1, 3),
+        "spins": spins(rng, radii.ravel()),
+        "radii": radii.ravel(),
+    }
+    return rb.Box(size=(number * cell,) * 3), start
+
+
+def at_wall(count: int, seed: int) -> tuple[Any, dict[str, Any]]:
+    """Return a wide sphere and balls that are about to hit it."""
+    rng = np.random.default_rng(seed)
+    radii = rng.uniform(SMALLEST, LARGEST, count)
+    _, velocity = directions(rng, count)
+    # Spread evenly over the sphere; velocities that go outwards.
+    k = np.arange(count) + 0.5
+    polar, turn = np.arccos(1 - 2 * k / count), np.pi * (1 + 5**0.5) * k
+    normal = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
+    normal_speed = np.abs((velocity * normal).sum(axis=1))
+    velocity += (normal_speed - (velocity * normal).sum(axis=1))[:, None] * normal
+    size = 0.5
+    place = (size - radii)[:, None] * normal - velocity * (FLIGHT * (1 + rng.random(count)))[:, None]
+    start = {"positions": place, "velocities": velocity, "spins": spins(rng, radii), "radii": radii}
+    return rb.SphericalCavity(radius=size), start
+
+
+def gains(make: Any, share: float, **laws: Any) -> tuple[Any, Any]:
+    """Return what each impact gains over the energy before, and the run; the step is a share of the bound."""
+    cavity, start = make(300, 11)
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material=GLASS),
+        cavity=cavity,
+        packing=rb.Positions(**start),
+        gravity=(0, 0, 0),
+        **laws,
+    )
+    case = rb.Case(structure=rb.Fixed(), damper=damper, duration=1e-3, output=rb.Output(times=[1e-3]))
+    dt = share * bound(case)
+    steps = int(np.ceil(1e-3 / dt))
+    case = rb.Case(
+        structure=rb.Fixed(),
+        damper=damper,
+        duration=steps * dt,
+        output=rb.Output(times=[steps * dt]),
+        method=rb.Dem(dt=dt * (1 + 1e-9)),
+    )
+    result = cases.run(case, closes=False)
+    contents, arrays = damper.contents, result.arrays
+
+    def energy(velocity: Any, spin: Any) -> Any:
+        each = 0.5 * contents.mass * (velocity**2).sum(axis=1) + 0.5 * contents.inertia * (spin**2).sum(axis=1)
+        return each.reshape(300, -1).sum(axis=1)
+
+    before = energy(start["velocities"], start["spins"])
+    return energy(arrays.particle_velocity, arrays.spin) / before - 1, result
+
+
+# Verlet keeps the energy of an elastic Hertz contact to the order 5/2, and what yields is elastic below the yield speed. A
+# linear contact that ends within a step of its beginning may gain, of the little of the motion that goes into it.
+LOOSE = {"elastic": 0.005, "yielding": 0.005, "linear": 1e-9}
+
+
+@pytest.mark.parametrize("make", [pairs, at_wall])
+@pytest.mark.parametrize(("contact", "friction"), FITS)
+def test_no_impact_gives_energy(contact: str, friction: str, make: Any) -> None:
+    """Three hundred impacts, grazing to head-on, spinning or not, never end with more than they began with."""
+    for share in (0.999, 0.4, 0.08):
+        gained, result = gains(make, share, contact=CONTACTS[contact], **FRICTIONS[friction])
+        counts = result.arrays.counts
+        assert counts["first_touches_particle"] + counts["first_touches_wall"] >= 280
+        assert gained.max() <= LOOSE.get(contact, 0.0) * share**2.5 + 1e-13
+        assert np.median(gained) < (1e-4 if friction == "none" else 0)
+
+
+def test_gain_of_elastic_impacts_falls_at_the_stated_order() -> None:
+    """Without any loss the mean error of the energy falls with the power 5/2 of the step."""
+    coarse, fine = (np.abs(gains(pairs, share, contact=CONTACTS["elastic"])[0]).mean() for share in (0.8, 0.05))
+    assert coarse > 1e-5
+    assert np.log2(coarse / fine) / 4 == pytest.approx(2.5, abs=0.2)
+
+
+def test_step_beyond_the_bound_is_refused() -> None:
+    """A little more than the bound is refused."""
+    with pytest.raises(rb.CaseError, match="too long to be stable"):
+        gains(pairs, 1.001, contact=CONTACTS["elastic"])
