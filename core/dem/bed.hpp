@@ -16,12 +16,13 @@ struct Motion {
 
 struct Bed {
     const Cavity* cavity = nullptr;
-    std::vector<Row> position;     // and radius
-    std::vector<Row> velocity;     // predicted for the end of the step, and 1 / mass
-    std::vector<Row> acceleration; // of the step before, and mass
-    std::vector<Row> spin;         // predicted, and radius / inertia
-    std::vector<Row> spin_rate;    // of the step before
-    std::vector<Row> force, couple, roll;
+    std::vector<Row> position; // and radius
+    std::vector<Row> velocity; // predicted for the end of the step, and 1 / mass
+    // Of those that touched something in the step before (others were accelerated as all are, and turned
+    // evenly), and of those that do in this.
+    std::vector<Row> acceleration, spin_rate, force, couple, roll;
+    std::vector<char> touched;   // bits: in the step before, in this step
+    std::vector<Row> spin;       // predicted, and radius / inertia
     std::vector<int> name, kind; // number in the case, material
 
     ContactList pairs, walls;
@@ -42,8 +43,8 @@ struct Bed {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(position, velocity, acceleration, spin, spin_rate, name, kind, near_start, near_second, tally,
-          reach, skin, since_build, since_scan);
+        a(position, velocity, acceleration, spin, spin_rate, touched, name, kind, near_start, near_second,
+          tally, reach, skin, since_build, since_scan);
         pairs.keep(a);
         walls.keep(a);
     }

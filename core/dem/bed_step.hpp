@@ -18,6 +18,8 @@ struct Kind {
 };
 
 class BedStep {
+    static constexpr char touched_before = 1, touched_now = 2;
+
     Bed& bed_;
     const Problem& problem_;
     Kind pair_, wall_;
@@ -117,6 +119,7 @@ class BedStep {
 
     void add(const ContactList& list, int k, int i, real sign, real roll_sign) {
         const Row both = row(sign);
+        at(bed_.touched, i) |= touched_now;
         at(bed_.force, i) += both * at(list.force, k);
         if (pair_.rough) at(bed_.couple, i) += at(list.couple, k);
         if (pair_.rolls) at(bed_.roll, i) += row(roll_sign) * at(list.roll, k);
@@ -146,6 +149,7 @@ public:
         for (int a = 0; a < at(list.actives, chunk); ++a) {
             const int k = active[a], i = at(list.first, k);
             const Row f = at(list.force, k);
+            at(bed_.touched, i) |= touched_now;
             at(bed_.force, i) += f;
             if (wall_.rough) at(bed_.couple, i) += at(list.couple, k);
             if (wall_.rolls) at(bed_.roll, i) += at(list.roll, k);
@@ -178,49 +182,63 @@ public:
         }
     }
 
-    // Velocities at this step, and on to the next. `body` is what accelerates all alike; `reference` a
-    // velocity that displacements are counted from; the first step has no step before.
-    template <bool sampled> void advance(int chunk, Row body, Row reference, bool first) {
+    // Velocities at this step, and on to the next. `body` is what accelerates all alike, `body_before` in the
+    // step before; displacements are counted from those that `reference` makes; the first step has no step
+    // before.
+    template <bool sampled> void advance(int chunk, Row body, Row body_before, Row reference, bool first) {
         Tally& tally = at(bed_.tally, chunk);
         const bool spins = pair_.rough || wall_.rough, rolls = pair_.rolls || wall_.rolls;
-        const real dt = problem_.dt;
-        const real h = 0.5 * dt, ever = first ? 0 : h;
+        const real dt = problem_.dt, h = 0.5 * dt, ever = first ? 0 : h;
         const Row back = row(ever, ever, ever), step = row(dt, dt, dt), half = row(h, h, h),
                   space = row(1, 1, 1);
+        const Row evenly = back * (body - body_before);
         Row momentum{}, mass_moment{};
         real drift = 0, kinetic = 0, rotation = 0;
         for (int i = bed_.begin(chunk); i < bed_.end(chunk); ++i) {
-            Row &x = at(bed_.position, i), &u = at(bed_.velocity, i), &before = at(bed_.acceleration, i);
-            Row a = at(bed_.force, i) * u[3] + body;
-            const real mass = before[3];
-            a[3] = mass;
-            at(bed_.force, i) = Row{};
-            const Row v = u + back * (a - before);
-            const Row middle = v + half * a;
-            momentum += v * mass;
+            Row &x = at(bed_.position, i), &u = at(bed_.velocity, i);
+            char& touched = at(bed_.touched, i);
+            Row a = body, v = u + evenly;
+            if (touched) {
+                const bool before = touched & touched_before, now = touched & touched_now;
+                if (now) {
+                    a = at(bed_.force, i) * u[3] + body;
+                    at(bed_.force, i) = Row{};
+                }
+                v = u + back * (a - (before ? at(bed_.acceleration, i) : body_before));
+                at(bed_.acceleration, i) = a;
+                if (spins) {
+                    Row &w = at(bed_.spin, i), rate = Row{},
+                        rate_before = before ? at(bed_.spin_rate, i) : Row{};
+                    if (now) {
+                        rate = at(bed_.couple, i);
+                        at(bed_.couple, i) = Row{};
+                        if (rolls) {
+                            rate += at(bed_.roll, i) / x[3];
+                            at(bed_.roll, i) = Row{};
+                        }
+                        rate *= w[3];
+                    }
+                    w += back * (rate - rate_before);
+                    if constexpr (sampled) rotation += dot(w, w) * x[3] / w[3];
+                    w += step * rate;
+                    at(bed_.spin_rate, i) = rate;
+                }
+                touched = now ? touched_before : 0;
+            } else if constexpr (sampled) {
+                const Row w = at(bed_.spin, i);
+                rotation += dot(w, w) * x[3] / w[3];
+            }
+            const Row middle = v + half * a, weighed = v / u[3];
+            momentum += weighed;
             if constexpr (sampled) {
-                kinetic += dot(v, v) * mass;
-                mass_moment += x * space * mass;
+                kinetic += dot(v, weighed);
+                mass_moment += x * space / u[3];
             }
             x += step * middle;
             u = v + step * a;
-            before = a;
             const Row moved = middle - reference;
             const real speed = dot(moved, moved);
             drift = drift > speed ? drift : speed;
-            if (!spins) continue;
-            Row &w = at(bed_.spin, i), &rate_before = at(bed_.spin_rate, i);
-            Row c = at(bed_.couple, i);
-            at(bed_.couple, i) = Row{};
-            if (rolls) {
-                c += at(bed_.roll, i) / x[3];
-                at(bed_.roll, i) = Row{};
-            }
-            const Row b = c * w[3];
-            const Row s = w + back * (b - rate_before);
-            if constexpr (sampled) rotation += dot(s, s) * x[3] / w[3];
-            w = s + step * b;
-            rate_before = b;
         }
         tally.momentum = momentum;
         tally.drift = drift;

@@ -30,6 +30,7 @@ class Neighbours {
     std::vector<int> wall_place_;
     std::vector<Row> moved_;
     std::vector<int> moved_numbers_;
+    std::vector<char> moved_marks_;
     real largest_ = 0, low_[3] = {}, size_ = 0;
     int cells_[3] = {};
 
@@ -119,6 +120,7 @@ public:
         for (int i = 0; i < n; ++i) at(order_, at(place_, i)) = i;
         for (auto* rows : {&bed.position, &bed.velocity, &bed.acceleration, &bed.spin, &bed.spin_rate})
             permute(*rows, moved_, order_);
+        permute(bed.touched, moved_marks_, order_);
         permute(bed.name, moved_numbers_, order_);
         permute(bed.kind, moved_numbers_, order_);
         bed.since_build = 0;

@@ -31,6 +31,7 @@ class Simulation {
     Stopped stopped_;
     long builds_ = 0, scans_ = 0;
     bool halted_ = false;
+    Row body_before_{};
     long steps_since_ = 0;
     std::vector<std::vector<std::vector<int>>> incoming_;       // of each thread and bed
     std::vector<std::vector<int>> pair_numbers_, wall_numbers_; // of each bed and chunk
@@ -76,11 +77,12 @@ class Simulation {
             bed.position.push_back(at(cavity.position, i));
             bed.velocity.push_back(u);
             bed.spin.push_back(w);
-            bed.acceleration.push_back(row(0, 0, 0, m));
             bed.name.push_back(i);
         }
         bed.kind = cavity.kind;
-        for (auto* rows : {&bed.spin_rate, &bed.force, &bed.couple, &bed.roll}) rows->assign(size, Row{});
+        bed.touched.assign(size, 0);
+        for (auto* rows : {&bed.acceleration, &bed.spin_rate, &bed.force, &bed.couple, &bed.roll})
+            rows->assign(size, Row{});
         const int chunks = std::max(1, (n + bed.chunk - 1) / bed.chunk);
         bed.tally.resize(static_cast<std::size_t>(chunks));
     }
@@ -247,9 +249,9 @@ class Simulation {
             for (int k = from; k < to; ++k) {
                 steps_[b].outgoing(k, beds_[b].end(to - 1));
                 if (sample)
-                    steps_[b].advance<true>(k, acceleration, reference, first);
+                    steps_[b].advance<true>(k, acceleration, body_before_, reference, first);
                 else
-                    steps_[b].advance<false>(k, acceleration, reference, first);
+                    steps_[b].advance<false>(k, acceleration, body_before_, reference, first);
             }
         }
     }
@@ -333,6 +335,7 @@ class Simulation {
                     base_work(1);
                 }
                 check();
+                body_before_ = body();
                 move_on();
                 halted_ = stop;
             }
@@ -389,8 +392,8 @@ public:
 
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
-        archive(step_, status_, stopped_cavity_, stopped_, builds_, scans_, steps_since_, modes_,
-                modal_force_, load_work_, base_work_, viscous_);
+        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, scans_, steps_since_,
+                modes_, modal_force_, load_work_, base_work_, viscous_);
         for (std::size_t b = 0; b < beds_.size(); ++b) {
             beds_[b].keep(archive);
             neighbours_[b].keep(archive);
