@@ -23,6 +23,7 @@ class BedStep {
     Bed& bed_;
     const Problem& problem_;
     Kind pair_, wall_;
+    bool curved_ = false;
 
     const Encounter& between(int i, int j) const {
         const Cavity& c = *bed_.cavity;
@@ -37,8 +38,7 @@ class BedStep {
         return position[3] / spin[3] + square(position[3]) / velocity[3];
     }
 
-    Touch touch(int k, Partner partner) const {
-        const ContactList& list = partner == particle ? bed_.pairs : bed_.walls;
+    Touch touch(const Contacts& list, int k, Partner partner) const {
         const int i = at(list.first, k), j = at(list.second, k);
         const Row a = at(bed_.position, i);
         const real edge = moment_at_edge(a, at(bed_.velocity, i), at(bed_.spin, i));
@@ -47,20 +47,36 @@ class BedStep {
             const real radius = 1 / (1 / a[3] + 1 / b[3]);
             const real mass = 1 / (at(bed_.velocity, i)[3] + at(bed_.velocity, j)[3]);
             const real other = moment_at_edge(b, at(bed_.velocity, j), at(bed_.spin, j));
-            return {&between(i, j), radius, mass, 1 / (1 / edge + 1 / other),
-                    dot(at(bed_.velocity, i) - at(bed_.velocity, j), way) / std::sqrt(dot(way, way))};
+            const real distance = std::sqrt(dot(way, way)), lever = distance / (a[3] + b[3]);
+            const Row normal = way * row(1, 1, 1) / distance,
+                      velocity = at(bed_.velocity, i) - at(bed_.velocity, j);
+            const Row swirl = (at(bed_.spin, i) * a[3] + at(bed_.spin, j) * b[3]) * lever;
+            const real speed = dot(velocity, normal);
+            return {&between(i, j), radius,
+                    mass,           1 / (1 / edge + 1 / other),
+                    speed,          a[3] + b[3] - distance,
+                    normal,         velocity * row(1, 1, 1) - normal * speed + cross(swirl, normal)};
         }
         const Near near = nearest(at(bed_.cavity->walls, j), a - bed_.motion.displacement);
         real mobility = at(bed_.velocity, i)[3];
         for (const Row& shape : bed_.cavity->shape) mobility += square(dot(shape, near.normal));
-        return {&with_wall(i, j), a[3], 1 / mobility, edge,
-                dot(at(bed_.velocity, i) - bed_.motion.velocity, near.normal)};
+        const Row velocity = at(bed_.velocity, i) - bed_.motion.velocity;
+        const real speed = dot(velocity, near.normal);
+        return {&with_wall(i, j),
+                a[3],
+                1 / mobility,
+                edge,
+                speed,
+                a[3] - near.distance,
+                near.normal,
+                velocity * row(1, 1, 1) - near.normal * speed +
+                    cross(at(bed_.spin, i) * near.distance, near.normal)};
     }
 
     // The curve that unloads from the deepest overlap so far, and the energy that reaching it has cost.
-    void settle(ContactList& list, int k, Partner partner, Tally& tally) const {
-        Row& dent = at(list.dent, k);
-        const Touch t = touch(k, partner);
+    void settle(Contacts& list, int k, Partner partner, Tally& tally) const {
+        Row& dent = at(list.dent, at(list.slot, k));
+        const Touch t = touch(list, k, partner);
         scaled(*t.encounter, t).visit([&](const auto& law) {
             if constexpr (std::is_same_v<std::decay_t<decltype(law)>, Thornton>) {
                 if (dent[0] > law.yield_overlap()) {
@@ -76,33 +92,42 @@ class BedStep {
     }
 
     template <class View>
-    void visit(ContactList& list, const View& view, int chunk, int tiers, const Kind& kind, Partner partner,
-               Tally& tally, Stopped& stopped) {
+    void visit(Contacts& list, const View& view, int candidates, std::vector<int>& slot_of, const Kind& kind,
+               Partner partner, Chunk& chunk) {
+        Tally& tally = chunk.tally;
         const auto begun = [&](int k) {
-            const Touch t = touch(k, partner);
-            if (!begin(list, k, t, tally, partner) && stopped.status == Status::finished)
-                stopped = {Status::law_domain, at(bed_.name, at(list.first, k)), -1, t.speed};
+            const int s = list.take();
+            at(list.slot, k) = at(slot_of, at(list.origin, k)) = s;
+            const Touch t = touch(list, k, partner);
+            chunk.late.push_back({s, Row{}});
+            if (!begin(list, s, t, problem_.dt, chunk.late.back().force, tally, partner) &&
+                chunk.stopped.status == Status::finished)
+                chunk.stopped = {Status::law_domain, at(list.first, k), -1, t.speed};
         };
         const auto ended = [&](int k) {
-            if (list.dents && at(list.dent, k)[3] != at(list.dent, k)[0]) settle(list, k, partner, tally);
-            const Row spring = at(list.friction, k); // what the springs still hold is lost
+            const int s = at(list.slot, k);
+            if (list.dents && at(list.dent, s)[3] != at(list.dent, s)[0]) settle(list, k, partner, tally);
+            const Row spring = at(list.friction, s); // what the springs still hold is lost
             if (kind.rough) tally.sliding[partner] += first_lane(0.5 * dot(spring, spring) / spring[3]);
             if (kind.rolls) {
-                const Row roll = at(list.rolling, k);
+                const Row roll = at(list.rolling, s);
                 tally.rolling[partner] += first_lane(0.5 * dot(roll, roll) / roll[3]);
             }
+            list.free.push_back(s);
+            at(list.slot, k) = at(slot_of, at(list.origin, k)) = Contacts::none;
         };
-        find_touching(list, view, chunk, tiers, begun, ended);
-        if (at(list.actives, chunk) == 0) return;
+        chunk.late.clear();
+        find_touching(list, view, candidates, begun, ended);
+        if (list.actives == 0) return;
         const auto with_law = [&](auto law) {
             using Law = decltype(law);
             const auto settled = [&](int k) { settle(list, k, partner, tally); };
             if (kind.rolls)
-                collide<Law, true, true>(list, view, chunk, kind.how, partner, tally, settled);
+                collide<Law, true, true>(list, view, kind.how, partner, tally, settled);
             else if (kind.rough)
-                collide<Law, true, false>(list, view, chunk, kind.how, partner, tally, settled);
+                collide<Law, true, false>(list, view, kind.how, partner, tally, settled);
             else
-                collide<Law, false, false>(list, view, chunk, kind.how, partner, tally, settled);
+                collide<Law, false, false>(list, view, kind.how, partner, tally, settled);
         };
         if (kind.normal == Kind::hertz)
             with_law(HertzStep{});
@@ -110,83 +135,75 @@ class BedStep {
             with_law(LinearStep{});
         else
             with_law(PlasticStep{});
+        for (const Late& l : chunk.late) at(list.force, l.slot) += l.force;
     }
 
-    static Lanes first_lane(real v) {
-        alignas(64) real x[lane_count] = {v};
-        return lanes(x);
-    }
-
-    void add(const ContactList& list, int k, int i, real sign, real roll_sign) {
+    void add(const Contacts& list, int s, int i, real sign) {
         const Row both = row(sign);
         at(bed_.touched, i) |= touched_now;
-        at(bed_.force, i) += both * at(list.force, k);
-        if (pair_.rough) at(bed_.couple, i) += at(list.couple, k);
-        if (pair_.rolls) at(bed_.roll, i) += row(roll_sign) * at(list.roll, k);
+        at(bed_.force, i) += both * at(list.force, s);
+        if (pair_.rough) at(bed_.couple, i) += at(list.couple, s);
+        if (pair_.rolls) at(bed_.roll, i) += both * at(list.roll, s);
     }
 
 public:
-    std::vector<Stopped> stopped; // of each chunk
-
     BedStep(Bed& bed, const Problem& problem, const Kind& pair, const Kind& wall)
-        : bed_(bed), problem_(problem), pair_(pair), wall_(wall),
-          stopped(static_cast<std::size_t>(bed.chunks())) {}
+        : bed_(bed), problem_(problem), pair_(pair), wall_(wall) {
+        for (const Wall& w : bed.cavity->walls) curved_ |= w.form != Wall::plane;
+    }
 
     // Forces of all contacts that the chunk owns, and of its walls on its particles.
-    void forces(int chunk, bool sampled) {
-        Tally& tally = at(bed_.tally, chunk);
+    void forces(Chunk& chunk, bool sampled) {
         pair_.how.sampled = wall_.how.sampled = sampled;
         // Those of tier t were at least t / tiers of the skin apart.
-        const real closed = 2 * bed_.since_scan / bed_.skin * ContactList::tiers * (1 + 1e-9);
-        const int tiers = std::min(1 + static_cast<int>(closed), ContactList::tiers);
-        bool curved = false;
-        for (const Wall& w : bed_.cavity->walls) curved |= w.form != Wall::plane;
-        visit(bed_.pairs, PairView{bed_}, chunk, tiers, pair_, particle, tally, at(stopped, chunk));
-        visit(bed_.walls, WallView{bed_, curved}, chunk, 1, wall_, wall, tally, at(stopped, chunk));
+        const real closed = 2 * bed_.since_scan / bed_.skin * Contacts::tiers * (1 + 1e-9);
+        const int tier = std::min(static_cast<int>(closed), Contacts::tiers - 1);
+        visit(chunk.pairs, PairView{bed_, chunk.pairs}, chunk.pairs.tier_end[tier], chunk.near_slot, pair_,
+              particle, chunk);
+        visit(chunk.walls, WallView{bed_, chunk.walls, curved_}, chunk.walls.size(), chunk.wall_slot, wall_,
+              wall, chunk);
         Row total{}, moment{};
-        const ContactList& list = bed_.walls;
-        const int* active = list.active.data() + list.begin(chunk, 0);
-        for (int a = 0; a < at(list.actives, chunk); ++a) {
-            const int k = active[a], i = at(list.first, k);
-            const Row f = at(list.force, k);
+        const Contacts& list = chunk.walls;
+        for (int a = 0; a < list.actives; ++a) {
+            const int k = at(list.active, a), s = at(list.slot, k), i = at(list.first, k);
+            const Row f = at(list.force, s);
             at(bed_.touched, i) |= touched_now;
             at(bed_.force, i) += f;
-            if (wall_.rough) at(bed_.couple, i) += at(list.couple, k);
-            if (wall_.rolls) at(bed_.roll, i) += at(list.roll, k);
+            if (wall_.rough) at(bed_.couple, i) += at(list.couple, s);
+            if (wall_.rolls) at(bed_.roll, i) += at(list.roll, s);
             total -= f;
             if (sampled) {
                 const Row place = at(bed_.position, i) - bed_.motion.displacement;
                 const Near near = nearest(at(bed_.cavity->walls, at(list.second, k)), place);
                 moment -= cross(place + near.normal * near.distance, f);
-                if (wall_.rolls) moment -= at(list.roll, k);
+                if (wall_.rolls) moment -= at(list.roll, s);
             }
         }
-        tally.wall_force = total;
-        tally.wall_moment = moment;
+        chunk.tally.wall_force = total;
+        chunk.tally.wall_moment = moment;
     }
 
-    // Forces of contacts that lower chunks own, on particles from `from` to `to`.
-    void incoming(const std::vector<int>& contacts) {
-        for (const int k : contacts)
-            if (at(bed_.pairs.touching, k)) add(bed_.pairs, k, at(bed_.pairs.second, k), -1, -1);
+    // The force of a candidate that a lower chunk owns on its second partner, if it touches.
+    void incoming(const Contacts& list, int k) {
+        const int s = at(list.slot, k);
+        if (s >= 0) add(list, s, at(list.second, k), -1);
     }
 
     // Forces of contacts that the chunk owns, on particles below `to`.
-    void outgoing(int chunk, int to) {
-        const ContactList& list = bed_.pairs;
-        const int* active = list.active.data() + list.begin(chunk, 0);
-        for (int a = 0; a < at(list.actives, chunk); ++a) {
-            const int k = active[a], j = at(list.second, k);
-            add(list, k, at(list.first, k), 1, 1);
-            if (j < to) add(list, k, j, -1, -1);
+    void outgoing(const Chunk& chunk, int to) {
+        const Contacts& list = chunk.pairs;
+        for (int a = 0; a < list.actives; ++a) {
+            const int k = at(list.active, a), s = at(list.slot, k), j = at(list.second, k);
+            add(list, s, at(list.first, k), 1);
+            if (j < to) add(list, s, j, -1);
         }
     }
 
     // Velocities at this step, and on to the next. `body` is what accelerates all alike, `body_before` in the
     // step before; displacements are counted from those that `reference` makes; the first step has no step
     // before.
-    template <bool sampled> void advance(int chunk, Row body, Row body_before, Row reference, bool first) {
-        Tally& tally = at(bed_.tally, chunk);
+    template <bool sampled> void advance(Chunk& chunk, Row body, Row body_before, Row reference, bool first) {
+        Tally& tally = chunk.tally;
         const bool spins = pair_.rough || wall_.rough, rolls = pair_.rolls || wall_.rolls;
         const real dt = problem_.dt, h = 0.5 * dt, ever = first ? 0 : h;
         const Row back = row(ever, ever, ever), step = row(dt, dt, dt), half = row(h, h, h),
@@ -194,7 +211,7 @@ public:
         const Row evenly = back * (body - body_before);
         Row momentum{}, mass_moment{};
         real drift = 0, kinetic = 0, rotation = 0;
-        for (int i = bed_.begin(chunk); i < bed_.end(chunk); ++i) {
+        for (int i = chunk.begin; i < chunk.end; ++i) {
             Row &x = at(bed_.position, i), &u = at(bed_.velocity, i);
             char& touched = at(bed_.touched, i);
             Row a = body, v = u + evenly;

@@ -1,23 +1,29 @@
-// Those that touch or may touch soon, two particles or a particle and a wall, and what each contact
+// Those of a chunk of particles that touch or may touch soon, others or walls, and what each contact
 // remembers.
-//
-// A list belongs to the chunks of particles that own its first partners: chunk k owns start[k] .. start[k+1].
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "base/rows.hpp"
 
 namespace rattlebox::dem {
 
-struct ContactList {
-    static constexpr int tiers = 4; // by distance at the last scan
+template <class T> T& at(std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
+template <class T> const T& at(const std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
 
-    // of each candidate
-    std::vector<int> origin;        // of a pair: which of the neighbours it is
-    std::vector<int> first, second; // numbers of particles; of a wall for the second of a wall list
-    std::vector<char> touching;
+struct Contacts {
+    static constexpr int tiers = 4; // candidates by distance at the last scan
+    static constexpr int none = -1;
+
+    // Candidates, tier by tier; lanes may read a few past the end.
+    std::vector<int> first, second; // numbers of particles; of a wall for the second at a wall
+    std::vector<int> origin;        // which of the neighbours it is
+    std::vector<int> slot;          // where its memory is, or none
+    int tier_end[tiers] = {};
+    std::vector<int> active; // candidates that touch
+    int actives = 0;
+
+    // Memory of those that touch, by slot.
     std::vector<Row> force; // on the first
     std::vector<Row>
         couple; // torque on the first over its radius; of a pair also that on the second over its own
@@ -28,56 +34,54 @@ struct ContactList {
     std::vector<Row> limit;    // mu, mu_r R*, k_r / k_t, c_r
     std::vector<Row> dent;     // of a plastic law: deepest overlap, stiffness and origin of the curve that
                                // unloads, and the deepest overlap that this curve is for
-
-    std::vector<int> start;           // of each chunk and tier, and the end
-    int layers = 1;                   // tiers in this list
-    std::vector<int> active, actives; // those that touch, from begin(chunk, 0) on, and how many they are
+    std::vector<int> free;
     bool rolls = false, dents = false;
 
-    int size() const { return count_; }
+    int size() const { return tier_end[tiers - 1]; }
 
-    int begin(int chunk, int tier) const { return start[static_cast<std::size_t>(chunk * layers + tier)]; }
-    int end(int chunk) const { return start[static_cast<std::size_t>((chunk + 1) * layers)]; }
-
-    // `numbers` are how many there are in each tier of each chunk.
-    void lay_out(const std::vector<int>& numbers, int tiers_of_chunk) {
-        layers = tiers_of_chunk;
-        start.assign(numbers.size() + 1, 0);
-        for (std::size_t k = 0; k < numbers.size(); ++k) start[k + 1] = start[k] + numbers[k];
-        actives.assign(numbers.size() / static_cast<std::size_t>(layers), 0);
-        resize(static_cast<std::size_t>(start.back()));
-    }
-
-    // Lanes may read a few numbers past the end.
-    void resize(std::size_t n) {
+    void resize(int candidates) {
+        const auto n = static_cast<std::size_t>(candidates);
         for (auto* numbers : {&first, &second}) numbers->resize(n + lane_count);
-        for (auto* numbers : {&active, &origin}) numbers->resize(n);
-        count_ = static_cast<int>(n);
-        touching.resize(n + lane_count);
-        for (auto* rows : {&force, &couple, &friction, &law, &limit}) rows->resize(n);
-        if (rolls)
-            for (auto* rows : {&roll, &rolling}) rows->resize(n);
-        if (dents) dent.resize(n);
+        slot.resize(n + lane_count, none);
+        for (auto* numbers : {&origin, &active}) numbers->resize(n);
     }
 
-    void forget(int k) { touching[static_cast<std::size_t>(k)] = 0; }
+    int take() {
+        if (!free.empty()) {
+            const int s = free.back();
+            free.pop_back();
+            return s;
+        }
+        for (auto* rows : {&force, &couple, &friction, &law, &limit}) rows->push_back(Row{});
+        if (rolls)
+            for (auto* rows : {&roll, &rolling}) rows->push_back(Row{});
+        if (dents) dent.push_back(Row{});
+        return static_cast<int>(force.size()) - 1;
+    }
 
-    // Takes over what contact `from` of an older list remembers; `sign` is -1 where its partners have changed
-    // places.
-    void remember(int k, const ContactList& old, int from, real sign) {
-        const auto to = static_cast<std::size_t>(k), at = static_cast<std::size_t>(from);
+    void forget_all() {
+        for (auto* rows : {&force, &couple, &roll, &friction, &rolling, &law, &limit, &dent}) rows->clear();
+        free.clear();
+        actives = 0;
+        resize(0);
+        for (int& end : tier_end) end = 0;
+    }
+
+    // Takes over what another remembers at `from`; `sign` is -1 where the partners have changed places.
+    int remember(const Contacts& old, int from, real sign) {
+        const int s = take();
         const Row turn = row(sign, sign, sign, 1);
-        touching[to] = old.touching[at];
-        friction[to] = turn * old.friction[at];
-        law[to] = old.law[at];
-        limit[to] = old.limit[at];
-        if (rolls) rolling[to] = turn * old.rolling[at];
-        if (dents) dent[to] = old.dent[at];
+        at(friction, s) = turn * at(old.friction, from);
+        at(law, s) = at(old.law, from);
+        at(limit, s) = at(old.limit, from);
+        if (rolls) at(rolling, s) = turn * at(old.rolling, from);
+        if (dents) at(dent, s) = at(old.dent, from);
+        return s;
     }
 
     std::size_t memory() const {
-        std::size_t bytes = touching.capacity();
-        for (const auto* v : {&origin, &first, &second, &start, &active, &actives})
+        std::size_t bytes = 0;
+        for (const auto* v : {&first, &second, &origin, &slot, &active, &free})
             bytes += v->capacity() * sizeof(int);
         for (const auto* v : {&force, &couple, &roll, &friction, &rolling, &law, &limit, &dent})
             bytes += v->capacity() * sizeof(Row);
@@ -85,16 +89,12 @@ struct ContactList {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(count_, layers, origin, first, second, touching, friction, rolling, law, limit, dent, start, active,
-          actives);
-        if (a.reads) { // what each step computes anew
+        a(first, second, origin, slot, tier_end, active, actives, friction, rolling, law, limit, dent, free);
+        if constexpr (Archive::reads) { // what each step computes anew
             force.resize(friction.size()), couple.resize(friction.size());
             if (rolls) roll.resize(friction.size());
         }
     }
-
-private:
-    int count_ = 0;
 };
 
 } // namespace rattlebox::dem

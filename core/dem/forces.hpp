@@ -9,12 +9,13 @@ namespace rattlebox::dem {
 // A pair of particles, and a particle at a wall, in lanes.
 struct PairView {
     const Bed& bed;
+    const Contacts& list;
 
     RATTLEBOX_INLINE Columns<8> first(const std::vector<Row>& rows, const int* k) const {
-        return columns([&](int l) { return &at(rows, at(bed.pairs.first, k[l])); });
+        return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
     }
     RATTLEBOX_INLINE Columns<8> second(const std::vector<Row>& rows, const int* k) const {
-        return columns([&](int l) { return &at(rows, at(bed.pairs.second, k[l])); });
+        return columns([&](int l) { return &at(rows, at(list.second, k[l])); });
     }
 
     // Positive where the pair touches.
@@ -46,12 +47,13 @@ struct PairView {
 
 struct WallView {
     const Bed& bed;
+    const Contacts& list;
     bool curved;
 
     RATTLEBOX_INLINE Columns<8> first(const std::vector<Row>& rows, const int* k) const {
-        return columns([&](int l) { return &at(rows, at(bed.walls.first, k[l])); });
+        return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
     }
-    const Wall& wall(int k) const { return at(bed.cavity->walls, at(bed.walls.second, k)); }
+    const Wall& wall(int k) const { return at(bed.cavity->walls, at(list.second, k)); }
     static Vector<Lanes> same(Row r) { return {Lanes::all(r[0]), Lanes::all(r[1]), Lanes::all(r[2])}; }
 
     RATTLEBOX_INLINE void near(const int* k, const Columns<8>& a, Vector<Lanes>& normal,
@@ -100,15 +102,14 @@ struct WallView {
     }
 };
 
-// Lists those of the chunk that touch, of the first `tiers`; calls begun(k) and ended(k) for those that have
-// just begun or ended to.
+// Lists the candidates up to `to` that touch; calls begun(k) and ended(k) for those that have just begun or
+// ended to.
 template <class View, class Begun, class Ended>
-void find_touching(ContactList& list, const View& view, int chunk, int tiers, Begun&& begun, Ended&& ended) {
-    const int from = list.begin(chunk, 0), to = list.begin(chunk, tiers);
-    int* active = list.active.data() + from;
-    char* touching = list.touching.data();
+void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ended&& ended) {
+    int* active = list.active.data();
+    const int* slot = list.slot.data();
     int count = 0;
-    for (int base = from; base < to; base += lane_count) {
+    for (int base = 0; base < to; base += lane_count) {
         int k[lane_count];
         for (int l = 0; l < lane_count; ++l) k[l] = base + l;
         alignas(64) real room[lane_count];
@@ -119,21 +120,15 @@ void find_touching(ContactList& list, const View& view, int chunk, int tiers, Be
             const int touches = room[l] > 0;
             active[count] = base + l;
             count += touches;
-            changed |= touches ^ touching[base + l];
+            changed |= touches ^ (slot[base + l] >= 0);
         }
         if (changed) [[unlikely]]
             for (int l = 0; l < used; ++l) {
                 const bool touches = room[l] > 0;
-                if (touches == (touching[base + l] != 0)) continue;
-                if (touches) {
-                    begun(base + l);
-                } else {
-                    ended(base + l);
-                    list.forget(base + l);
-                }
+                if (touches != (slot[base + l] >= 0)) touches ? begun(base + l) : ended(base + l);
             }
     }
-    at(list.actives, chunk) = count;
+    list.actives = count;
 }
 
 struct Contacting {
@@ -144,19 +139,20 @@ struct Contacting {
 };
 
 template <class Law, bool rough, bool rolls, class View, class Settle>
-void collide(ContactList& list, const View& view, int chunk, const Contacting& how, Partner partner,
-             Tally& tally, Settle&& settle) {
-    const int count = at(list.actives, chunk);
-    const int* active = list.active.data() + list.begin(chunk, 0);
+void collide(Contacts& list, const View& view, const Contacting& how, Partner partner, Tally& tally,
+             Settle&& settle) {
+    const int count = list.actives;
+    const int* active = list.active.data();
     const Lanes zero = Lanes::all(0), one = Lanes::all(1), dt = Lanes::all(how.dt);
     alignas(64) real used[lane_count];
     for (int base = 0; base < count; base += lane_count) {
-        int k[lane_count];
+        int k[lane_count], s[lane_count];
         for (int l = 0; l < lane_count; ++l) {
             k[l] = active[std::min(base + l, count - 1)];
+            s[l] = at(list.slot, k[l]);
             used[l] = base + l < count;
         }
-        const auto rows = [&](std::vector<Row>& v) { return [&](int l) { return &at(v, k[l]); }; };
+        const auto rows = [&](std::vector<Row>& v) { return [&](int l) { return &at(v, s[l]); }; };
         const Lanes weight = lanes(used);
         const auto m = view.template meeting<rough>(k);
         const auto law = columns(rows(list.law));
@@ -165,7 +161,7 @@ void collide(ContactList& list, const View& view, int chunk, const Contacting& h
             alignas(64) real overlap[lane_count];
             lanes(overlap) = m.overlap;
             for (int l = 0; l < lane_count; ++l) {
-                Row& d = at(list.dent, k[l]);
+                Row& d = at(list.dent, s[l]);
                 if (how.sampled) d[0] = std::fmax(d[0], overlap[l]);
                 if (d[3] != d[0] && (overlap[l] < d[0] || how.sampled)) settle(k[l]);
             }

@@ -11,8 +11,9 @@ struct Losses {
 
 inline Losses losses(const Bed& bed) {
     Losses sum;
-    for (const Tally& t : bed.tally)
+    for (const Chunk& c : bed.chunks)
         for (int p = 0; p < 2; ++p) {
+            const Tally& t = c.tally;
             sum.normal[p] += total(t.normal[p]);
             sum.plastic[p] += t.plastic[p];
             sum.sliding[p] += total(t.sliding[p]);
@@ -34,7 +35,8 @@ struct Records {
         before_.clear();
         for (Bed& bed : beds) {
             before_.push_back(losses(bed));
-            for (Tally& t : bed.tally) t.stored = Lanes{}, t.contacts[0] = t.contacts[1] = 0;
+            for (Chunk& c : bed.chunks)
+                c.tally.stored = Lanes{}, c.tally.contacts[0] = c.tally.contacts[1] = 0;
         }
     }
 
@@ -50,7 +52,8 @@ struct Records {
             real moving = 0, turning = 0, held = 0, mass = 0;
             Row place{}, going{}, push{}, twist{};
             std::int64_t touching[2] = {};
-            for (const Tally& one : bed.tally) {
+            for (const Chunk& c : bed.chunks) {
+                const Tally& one = c.tally;
                 moving += one.kinetic, turning += one.rotation, held += total(one.stored);
                 place += one.mass_moment, going += one.momentum, push += one.wall_force,
                     twist += one.wall_moment;

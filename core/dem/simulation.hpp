@@ -20,7 +20,8 @@ class Simulation {
     std::vector<Bed> beds_;
     std::vector<Neighbours> neighbours_;
     std::vector<BedStep> steps_;
-    std::vector<ModeState> modes_;
+    std::vector<ModeState> modes_,
+        modes_shown_; // at the next step, and at the last one whose forces are known
     std::vector<std::pair<ModeState, ModeState>> turns_; // where a step takes displacement 1 and velocity 1
     std::vector<real> modal_force_, load_value_;
     std::vector<real> load_work_, base_work_, viscous_;
@@ -33,8 +34,9 @@ class Simulation {
     bool halted_ = false;
     Row body_before_{};
     long steps_since_ = 0;
-    std::vector<std::vector<std::vector<int>>> incoming_;       // of each thread and bed
-    std::vector<std::vector<int>> pair_numbers_, wall_numbers_; // of each bed and chunk
+    // Candidates, by chunk and number, that lower chunks own and that act on the share of a thread, of each
+    // bed.
+    std::vector<std::vector<std::vector<std::pair<int, int>>>> incoming_;
     Records records_;
 
     real h() const { return 0.5 * problem_.dt; }
@@ -83,8 +85,10 @@ class Simulation {
         bed.touched.assign(size, 0);
         for (auto* rows : {&bed.acceleration, &bed.spin_rate, &bed.force, &bed.couple, &bed.roll})
             rows->assign(size, Row{});
-        const int chunks = std::max(1, (n + bed.chunk - 1) / bed.chunk);
-        bed.tally.resize(static_cast<std::size_t>(chunks));
+        for (int from = 0; from < n; from += Bed::chunk_size) {
+            Chunk& chunk = bed.chunks.emplace_back();
+            chunk.begin = from, chunk.end = std::min(from + Bed::chunk_size, n);
+        }
     }
 
     // ---- the structure
@@ -114,7 +118,7 @@ class Simulation {
 
     Row force_on(const Bed& bed) const {
         Row total{};
-        for (const Tally& t : bed.tally) total += t.wall_force;
+        for (const Chunk& c : bed.chunks) total += c.tally.wall_force;
         return total;
     }
 
@@ -153,7 +157,7 @@ class Simulation {
     void base_work(real part) {
         Row momentum{};
         for (const Bed& bed : beds_)
-            for (const Tally& t : bed.tally) momentum += t.momentum;
+            for (const Chunk& c : bed.chunks) momentum += c.tally.momentum;
         for (std::size_t l = 0; l < load_value_.size(); ++l)
             if (problem_.loads[l].base)
                 base_work_[l] -=
@@ -181,22 +185,23 @@ class Simulation {
         for (std::size_t b = 0; b < beds_.size(); ++b) {
             auto& list = incoming_[static_cast<std::size_t>(thread)][b];
             list.clear();
-            const int from = share(beds_[b].chunks(), thread, threads);
-            const int to = share(beds_[b].chunks(), thread + 1, threads);
-            if (from == to || from == 0) continue;
-            const int first = beds_[b].begin(from), end = beds_[b].end(to - 1);
-            const ContactList& pairs = beds_[b].pairs;
-            for (int k = 0; k < pairs.begin(from, 0); ++k)
-                if (at(pairs.second, k) >= first && at(pairs.second, k) < end) list.push_back(k);
+            const auto& chunks = beds_[b].chunks;
+            const int from = share(beds_[b].chunk_count(), thread, threads);
+            const int to = share(beds_[b].chunk_count(), thread + 1, threads);
+            if (from == to) continue;
+            const int first = at(chunks, from).begin, end = at(chunks, to - 1).end;
+            for (int c = 0; c < from; ++c) {
+                const Contacts& pairs = at(chunks, c).pairs;
+                for (int k = 0; k < pairs.size(); ++k)
+                    if (at(pairs.second, k) >= first && at(pairs.second, k) < end) list.push_back({c, k});
+            }
         }
     }
 
     template <class Team, class F> void each_chunk(Team& team, F&& f) {
         for (std::size_t b = 0; b < beds_.size(); ++b) {
-            const int chunks = beds_[b].chunks();
-            for (int k = share(chunks, team.rank(), team.size());
-                 k < share(chunks, team.rank() + 1, team.size()); ++k)
-                f(b, k);
+            const int chunks = beds_[b].chunk_count(), to = share(chunks, team.rank() + 1, team.size());
+            for (int k = share(chunks, team.rank(), team.size()); k < to; ++k) f(b, at(beds_[b].chunks, k));
         }
     }
 
@@ -212,27 +217,19 @@ class Simulation {
                 steps_since_ = 0;
             }
             team.sync();
-            each_chunk(team, [&](std::size_t b, int k) { neighbours_[b].search(beds_[b], k); });
+            each_chunk(team, [&](std::size_t b, Chunk& chunk) { neighbours_[b].search(beds_[b], chunk); });
             team.sync();
             if (team.leads())
-                for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].join(beds_[b]);
+                for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].unpack(beds_[b]);
             team.sync();
         }
-        each_chunk(team, [&](std::size_t b, int k) {
-            if (!build) neighbours_[b].mark(beds_[b], k);
-            neighbours_[b].count(beds_[b], k, &at(pair_numbers_[b], k * ContactList::tiers),
-                                 at(wall_numbers_[b], k), at(steps_[b].stopped, k));
-        });
-        team.sync();
-        if (team.leads()) {
-            for (std::size_t b = 0; b < beds_.size(); ++b)
-                neighbours_[b].lay_out(beds_[b], pair_numbers_[b], wall_numbers_[b]);
-            ++scans_;
-        }
-        team.sync();
-        each_chunk(team, [&](std::size_t b, int k) { neighbours_[b].fill(beds_[b], k); });
+        each_chunk(team, [&](std::size_t b, Chunk& chunk) { neighbours_[b].scan(beds_[b], chunk); });
         team.sync();
         find_incoming(team.rank(), team.size());
+        if (team.leads()) {
+            for (Bed& bed : beds_) bed.since_scan = 0;
+            ++scans_;
+        }
         team.sync();
     }
 
@@ -240,35 +237,36 @@ class Simulation {
 
     template <class Team> void advance_all(Team& team, Row acceleration, bool first, bool sample) {
         for (std::size_t b = 0; b < beds_.size(); ++b) {
-            const int chunks = beds_[b].chunks();
-            const int from = share(chunks, team.rank(), team.size()),
-                      to = share(chunks, team.rank() + 1, team.size());
+            auto& chunks = beds_[b].chunks;
+            const int count = beds_[b].chunk_count();
+            const int from = share(count, team.rank(), team.size()),
+                      to = share(count, team.rank() + 1, team.size());
             if (from == to) continue;
-            steps_[b].incoming(incoming_[static_cast<std::size_t>(team.rank())][b]);
+            for (const auto& [c, k] : incoming_[static_cast<std::size_t>(team.rank())][b])
+                steps_[b].incoming(at(chunks, c).pairs, k);
             const Row reference = beds_[b].motion.velocity;
-            for (int k = from; k < to; ++k) {
-                steps_[b].outgoing(k, beds_[b].end(to - 1));
+            for (int c = from; c < to; ++c) {
+                Chunk& chunk = at(chunks, c);
+                steps_[b].outgoing(chunk, at(chunks, to - 1).end);
                 if (sample)
-                    steps_[b].advance<true>(k, acceleration, body_before_, reference, first);
+                    steps_[b].advance<true>(chunk, acceleration, body_before_, reference, first);
                 else
-                    steps_[b].advance<false>(k, acceleration, body_before_, reference, first);
+                    steps_[b].advance<false>(chunk, acceleration, body_before_, reference, first);
             }
         }
     }
 
     void check() {
-        for (std::size_t b = 0; b < steps_.size(); ++b)
-            for (const Stopped& s : steps_[b].stopped)
-                if (s.status != Status::finished && status_ == Status::finished) {
-                    status_ = s.status;
-                    stopped_ = s;
-                    stopped_cavity_ = static_cast<int>(b);
-                }
-        if (status_ != Status::escaped) return;
-        const Row u = at(beds_[static_cast<std::size_t>(stopped_cavity_)].velocity, stopped_.particle);
-        const Row along = u - beds_[static_cast<std::size_t>(stopped_cavity_)].motion.velocity;
-        stopped_.value = std::sqrt(dot(along, along));
-        stopped_.particle = at(beds_[static_cast<std::size_t>(stopped_cavity_)].name, stopped_.particle);
+        for (std::size_t b = 0; b < beds_.size(); ++b)
+            for (const Chunk& c : beds_[b].chunks) {
+                if (c.stopped.status == Status::finished || status_ != Status::finished) continue;
+                status_ = c.stopped.status;
+                stopped_ = c.stopped;
+                stopped_cavity_ = static_cast<int>(b);
+                const Row along = at(beds_[b].velocity, stopped_.particle) - beds_[b].motion.velocity;
+                if (status_ == Status::escaped) stopped_.value = std::sqrt(dot(along, along));
+                stopped_.particle = at(beds_[b].name, stopped_.particle);
+            }
     }
 
     void move_on() {
@@ -280,9 +278,9 @@ class Simulation {
             Bed& bed = beds_[b];
             real fastest = 0;
             Row momentum{};
-            for (const Tally& t : bed.tally) {
-                fastest = larger(fastest, t.drift);
-                momentum += t.momentum;
+            for (const Chunk& c : bed.chunks) {
+                fastest = larger(fastest, c.tally.drift);
+                momentum += c.tally.momentum;
             }
             if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity) || !(fastest < infinity))
                 status_ = Status::not_finite;
@@ -320,13 +318,15 @@ class Simulation {
                 if (sample) records_.before(beds_);
             }
             team.sync();
-            each_chunk(team, [&](std::size_t b, int k) { steps_[b].forces(k, sample); });
+            each_chunk(team, [&](std::size_t b, Chunk& chunk) { steps_[b].forces(chunk, sample); });
             team.sync();
             advance_all(team, body(), first, sample);
             team.sync();
             if (team.leads()) {
                 find_modal_force();
                 if (!first) kick();
+                modes_shown_ = modes_;
+                for (Bed& bed : beds_) bed.shown = bed.motion.displacement;
                 if (sample) {
                     base_work(0.5);
                     records_.take(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
@@ -358,32 +358,31 @@ public:
         for (auto* numbers : {&load_value_, &load_work_, &base_work_})
             numbers->assign(problem_.loads.size(), 0);
         const std::size_t count = problem_.cavities.size();
-        beds_.resize(count), neighbours_.resize(count), pair_numbers_.resize(count),
-            wall_numbers_.resize(count);
+        beds_.resize(count), neighbours_.resize(count);
         for (std::size_t b = 0; b < count; ++b) {
             const Cavity& cavity = problem_.cavities[b];
             const Kind pair = kind_of(cavity.particle_entry), wall = kind_of(cavity.wall_entry);
             Bed& bed = beds_[b];
             fill_bed(bed, cavity);
-            const auto prepare = [](ContactList& list, const Kind& kind, int chunks) {
+            const auto prepare = [](Contacts& list, const Kind& kind) {
                 list.rolls = kind.rolls, list.dents = kind.normal == Kind::plastic;
-                list.lay_out(std::vector<int>(static_cast<std::size_t>(chunks), 0), 1);
+                list.forget_all();
             };
-            prepare(bed.pairs, pair, bed.chunks());
-            prepare(bed.walls, wall, bed.chunks());
+            for (Chunk& chunk : bed.chunks) prepare(chunk.pairs, pair), prepare(chunk.walls, wall);
             neighbours_[b].start(bed);
-            pair_numbers_[b].resize(bed.tally.size() * ContactList::tiers),
-                wall_numbers_[b].resize(bed.tally.size());
             steps_.emplace_back(bed, problem_, pair, wall);
         }
         place_cavities();
+        modes_shown_ = modes_;
+        for (Bed& bed : beds_) bed.shown = bed.motion.displacement;
     }
 
     // Goes on until the sample of step `until` is taken, or something stops it.
     void run(long until, int threads, const std::atomic<bool>& stop) {
         until = std::min(until, problem_.steps);
         halted_ = false;
-        incoming_.assign(static_cast<std::size_t>(threads), std::vector<std::vector<int>>(beds_.size()));
+        incoming_.assign(static_cast<std::size_t>(threads),
+                         {beds_.size(), std::vector<std::pair<int, int>>{}});
         together(threads, [&](auto team) {
             find_incoming(team.rank(), team.size());
             run(team, until, stop);
@@ -393,11 +392,9 @@ public:
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
         archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, scans_, steps_since_,
-                modes_, modal_force_, load_work_, base_work_, viscous_);
+                modes_, modes_shown_, modal_force_, load_work_, base_work_, viscous_);
         for (std::size_t b = 0; b < beds_.size(); ++b) {
             beds_[b].keep(archive);
-            neighbours_[b].keep(archive);
-            archive(steps_[b].stopped);
         }
     }
 
@@ -405,7 +402,8 @@ public:
     void resume() { place_cavities(); }
 
     const Problem& problem() const { return problem_; }
-    const std::vector<ModeState>& modes() const { return modes_; }
+    const std::vector<ModeState>& modes() const { return modes_shown_; }
+    Row body_shown() const { return body_before_; }
     const std::vector<real>& modal_force() const { return modal_force_; }
     int stopped_cavity() const { return stopped_cavity_; }
     std::size_t memory() const {

@@ -16,6 +16,13 @@ struct Stopped {
     real value = 0;               // speed
 };
 
+// What the first step within a contact would miss: the touch lies between two steps, and forces grow from it
+// like roots of the time since, which the trapezoidal rule does not see.
+struct Late {
+    int slot;
+    Row force; // on the first, in the first step
+};
+
 struct alignas(64) Tally {
     // over the run
     Lanes normal[2]{}, sliding[2]{}, rolling[2]{};

@@ -11,8 +11,10 @@ namespace rattlebox::dem {
 struct Touch {
     const Encounter* encounter;
     real radius, mass; // R*, m*
-    real inertia = 0;  // of rolling: both moments about the contact point in series
+    real inertia;      // of rolling: both moments about the contact point in series
     real speed;        // approach
+    real overlap;      // at the first step within
+    Row normal, slip;  // towards the second; velocity of the first along the second
 };
 
 // A law for the pair at hand, from that of the reference pair.
@@ -41,6 +43,11 @@ inline Rebound rebound(const Encounter& e, const Touch& t) {
     return rattlebox::rebound(e.restitution, std::fmax(t.speed, 0.0) * scale);
 }
 
+inline Lanes first_lane(real v) {
+    alignas(64) real x[lane_count] = {v};
+    return lanes(x);
+}
+
 // The damping ratio of all impacts, where there is one.
 inline real constant_zeta(const Encounter& e) {
     return e.normal.visit([&](const auto& law) {
@@ -49,10 +56,21 @@ inline real constant_zeta(const Encounter& e) {
     });
 }
 
-// Writes what contact k remembers. False when the speed is beyond the restitution law.
-inline bool begin(ContactList& list, int k, const Touch& t, Tally& tally, Partner partner) {
+// What the sum over steps of t^(1/4) misses of its integral from 0 on, the first step being at theta, for
+// steps of length 1: minus Hurwitz' zeta function of -1/4 and theta.
+inline real missed_root(real theta) {
+    const auto fourth_root = [](real t) { return std::sqrt(std::sqrt(t)); };
+    const real end = theta + 2, last = fourth_root(end);
+    return last * (0.8 * end - 0.5 + 1 / (48 * end)) - fourth_root(theta) - fourth_root(theta + 1);
+}
+
+// Writes what the contact in slot k remembers. False when the speed is beyond the restitution law.
+inline bool begin(Contacts& list, int k, const Touch& t, real dt, Row& late, Tally& tally, Partner partner) {
     const Encounter& e = *t.encounter;
     const Rebound r = rebound(e, t);
+    // Since the touch, at this speed; of what overlaps from the start nothing is known.
+    const bool comes_late = t.speed > 0 && t.overlap < 1.01 * t.speed * dt;
+    const real since = comes_late ? t.overlap / t.speed : 0.5 * dt;
     ++tally.first_touches[partner];
     tally.extrapolated += r.extrapolated;
     tally.fastest = std::fmax(tally.fastest, t.speed);
@@ -65,18 +83,29 @@ inline bool begin(ContactList& list, int k, const Touch& t, Tally& tally, Partne
             at(list.law, k) = row(law.stiffness, law.plastic_slope(), tangential, law.yield_overlap());
             at(list.dent, k) = row(0, law.stiffness, 0, 0);
         } else {
-            const Memory m = law.damped(std::isnan(e.constant_zeta) ? law.zeta(r.e) : e.constant_zeta);
-            const real share = std::is_same_v<Law, HertzTsuji> ? std::sqrt(5.0 / 6.0) : 1;
-            const real drag = 2 * e.tangential_damping * share * m.zeta * std::sqrt(t.mass * tangential);
-            at(list.law, k) = row(law.stiffness, m.damping, tangential, drag);
+            const Memory now = law.damped(std::isnan(e.constant_zeta) ? law.zeta(r.e) : e.constant_zeta);
+            constexpr bool hertz = std::is_same_v<Law, HertzTsuji>;
+            const real x = std::sqrt(std::sqrt(t.overlap)), theta = since / dt;
+            const real dashpot = law.force(now, x, t.speed) - law.force({}, x, 0);
+            const real lost =
+                dashpot * dt * (hertz ? missed_root(theta) / std::sqrt(std::sqrt(theta)) : theta - 0.5);
+            if (comes_late) {
+                late = t.normal * (-lost / dt);
+                tally.normal[partner] += first_lane(lost * t.speed);
+            }
+            const real share = hertz ? std::sqrt(5.0 / 6.0) : 1;
+            const real drag = 2 * e.tangential_damping * share * now.zeta * std::sqrt(t.mass * tangential);
+            at(list.law, k) = row(law.stiffness, now.damping, tangential, drag);
         }
         const real roll = e.rolling_stiffness > 0 ? e.rolling_stiffness * square(t.radius) : 1;
         at(list.limit, k) = row(e.friction, e.rolling * t.radius, roll,
                                 2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential));
     });
-    at(list.friction, k) = row(0, 0, 0, 1e290);
+    // The spring as if it had been stretched since half a step ago, which makes it stretched since the touch.
+    const real stiffness = at(list.law, k)[2] * (e.shear > 0 ? std::sqrt(t.overlap) : 1);
+    at(list.friction, k) = t.slip * (-stiffness * (since - 0.5 * dt));
+    at(list.friction, k)[3] = stiffness;
     if (list.rolls) at(list.rolling, k) = row(0, 0, 0, 1e290);
-    at(list.touching, k) = 1;
     return !r.outside;
 }
 

@@ -180,24 +180,32 @@ public:
         return d;
     }
 
-    // Velocities are those at the last instant whose forces are known: taken back from the prediction.
+    // At the last step whose forces are known: taken back from where particles are going to.
     nb::dict state() const {
+        const long last = std::max(simulation_->step() - 1, 0L);
+        const real dt = simulation_->step() > 0 ? simulation_->problem().dt : 0;
         nb::dict d;
         nb::list cavities;
         for (const Bed& b : simulation_->beds()) {
+            const auto touched = [&](int i) { return (at(b.touched, i) & 1) != 0; };
+            const auto pull = [&](int i) {
+                return touched(i) ? at(b.acceleration, i) : simulation_->body_shown();
+            };
             nb::dict one;
-            one["position"] = sorted(b, 3, [&](int i) { return at(b.position, i); });
-            one["velocity"] = sorted(b, 3, [&](int i) { return at(b.velocity, i); });
-            one["spin"] = sorted(b, 3, [&](int i) { return at(b.spin, i); });
-            one["acceleration"] = sorted(b, 3, [&](int i) { return at(b.acceleration, i); });
-            one["spin_rate"] = sorted(b, 3, [&](int i) { return at(b.spin_rate, i); });
+            one["position"] = sorted(b, 3, [&](int i) {
+                return at(b.position, i) - (at(b.velocity, i) - pull(i) * (0.5 * dt)) * dt;
+            });
+            one["velocity"] = sorted(b, 3, [&](int i) { return at(b.velocity, i) - pull(i) * dt; });
+            one["spin"] = sorted(b, 3, [&](int i) {
+                return touched(i) ? at(b.spin, i) - at(b.spin_rate, i) * dt : at(b.spin, i);
+            });
             std::vector<real> place;
-            for (int a = 0; a < 3; ++a) place.push_back(b.motion.displacement[a]);
+            for (int a = 0; a < 3; ++a) place.push_back(b.shown[a]);
             one["displacement"] = array(std::move(place));
             cavities.append(one);
         }
-        d["step"] = simulation_->step();
-        d["time"] = static_cast<real>(simulation_->step()) * simulation_->problem().dt;
+        d["step"] = last;
+        d["time"] = static_cast<real>(last) * simulation_->problem().dt;
         d["cavities"] = cavities;
         std::vector<real> q, p;
         for (const ModeState& m : simulation_->modes()) q.push_back(m.q), p.push_back(m.p);
@@ -210,14 +218,15 @@ public:
         const Bed& b = bed(number);
         std::vector<std::int64_t> first, second;
         std::vector<real> force;
-        for (const ContactList* list : {&b.pairs, &b.walls})
-            for (int k = 0; k < list->size(); ++k) {
-                if (!at(list->touching, k)) continue;
-                const int j = at(list->second, k);
-                first.push_back(at(b.name, at(list->first, k)));
-                second.push_back(list == &b.pairs ? at(b.name, j) : b.particles() + j);
-                for (int a = 0; a < 3; ++a) force.push_back(at(list->force, k)[a]);
-            }
+        for (const Chunk& chunk : b.chunks)
+            for (const Contacts* list : {&chunk.pairs, &chunk.walls})
+                for (int k = 0; k < list->size(); ++k) {
+                    const int s = at(list->slot, k), j = at(list->second, k);
+                    if (s == Contacts::none) continue;
+                    first.push_back(at(b.name, at(list->first, k)));
+                    second.push_back(list == &chunk.pairs ? at(b.name, j) : b.particles() + j);
+                    for (int a = 0; a < 3; ++a) force.push_back(at(list->force, s)[a]);
+                }
         nb::dict d;
         const std::size_t n = first.size();
         d["first"] = array(std::move(first)), d["second"] = array(std::move(second));
@@ -232,7 +241,8 @@ public:
         std::int64_t extrapolated = 0;
         for (const Bed& b : simulation_->beds()) {
             std::int64_t sum[2] = {};
-            for (const Tally& t : b.tally) {
+            for (const Chunk& c : b.chunks) {
+                const Tally& t = c.tally;
                 for (int k = 0; k < 2; ++k) sum[k] += t.first_touches[k];
                 deepest = std::fmax(deepest, largest(t.deepest));
                 fastest = std::fmax(fastest, t.fastest);
