@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,10 +23,14 @@ if TYPE_CHECKING:
 
 ROUNDS = 5000
 SWELL = 2e-3  # how much larger particles are made while they are pushed apart, so that in the end none touch
-SINK = 0.05  # overlap over radius at the largest speed of the fall
+GROWN = 2e-4  # the same while they fall
+SINK = 0.1  # overlap over radius at the largest speed of the fall; it is two hundredths of it under the own weight
+LIGHTER = (0.5, 0.25, 0.12, 0.06, 0.03, 0.015, 0.008, 0.004, 0.002, 0.001)  # parts of the weight, one after the other
+CALM = 3  # times twenty contact times under each
 RESTITUTION = 0.1
-STEPS = 30  # in a contact
+STEPS = 20  # in a contact
 FALLS = 200  # times that a fall through the cavity takes, after which a bed should rest
+QUIET = 5  # times twenty contact times
 
 
 def settle(damper: ParticleDamper) -> Array:
@@ -45,8 +50,8 @@ def settle(damper: ParticleDamper) -> Array:
     assert isinstance(packing, Settled)
     radii = damper.contents.radius
     inserted = insert(damper.cavity, radii, packing.seed)
-    fallen = _fall(damper, inserted, packing.at_rest)
-    settled = push_apart(damper.cavity, fallen, radii, 1e-9)
+    bed = _Bed(damper)
+    settled = bed.expand(bed.fall(inserted, packing.at_rest), damper.cavity)
     check_packing(damper.cavity, settled, radii)
     return settled
 
@@ -101,15 +106,23 @@ def push_apart(cavity: Cavity, places: Array, radii: Array, swell: float) -> Arr
     """
     places, grown = places.copy(), radii * (1 + swell)
     walls = cavity.walls()
+    margin = 0.3 * float(grown.min())
+    looked = np.full_like(places, np.inf)
     move, stride, mixing, downhill = np.zeros_like(places), 0.3, 0.1, 0
     for _ in range(ROUNDS):  # steepest descent with inertia (FIRE) on the squares of all overlaps
-        first, second, apart = overlapping(places, grown)
+        if not 2 * np.abs(places - looked).max() * math.sqrt(3) < margin:
+            near = overlapping(places, grown, margin)[:2]
+            looked = places.copy()
+        between = places[near[0]] - places[near[1]]
+        length = np.linalg.norm(between, axis=1)
+        apart = length - grown[near[0]] - grown[near[1]]
+        deep = apart < 0
+        first, second, apart = near[0][deep], near[1][deep], apart[deep]
         depth = walls.distances(places) - grown[:, None]
         small = np.minimum(grown[first], grown[second])
         if max((-apart / small).max(initial=0.0), (-depth / grown[:, None]).max()) <= 0.5 * swell:
             return places
-        between = places[first] - places[second]
-        length = np.linalg.norm(between, axis=1)[:, None]
+        between, length = between[deep], length[deep][:, None]
         push = -apart[:, None] * np.where(length > 0, between / np.maximum(length, 1e-300), [0.0, 0.0, 1.0])
         force = _off_walls(walls, places, depth)
         np.add.at(force, first, push)
@@ -144,83 +157,89 @@ def _off_walls(walls: Any, places: Array, depth: Array) -> Array:
     return move
 
 
-def _fall(damper: ParticleDamper, places: Array, at_rest: float) -> Array:
-    """Let particles fall in a cavity that stands still, with soft and sticky contacts, until they rest."""
-    contents, walls = damper.contents, damper.cavity.walls()
-    gravity = np.array(damper.gravity)
-    pull = float(np.linalg.norm(gravity))
-    height = damper.cavity.extent(gravity / pull)
-    speed = math.sqrt(2 * pull * height)
-    small = float(contents.radius.min())
-    # a contact that lasts pi m V / ... : overlap V t_c / pi at most SINK of the smallest radius
-    lasts = math.pi * SINK * small / speed
-    mass = float(contents.mass.min()) / 2
-    friction = _friction(damper)
-    contact = {
-        "normal": {"law": "linear", "stiffness": mass * (math.pi / lasts) ** 2, "mass": mass, "zero_overlap": 0.0},
-        "restitution": {"law": "constant", "e": RESTITUTION, "maximum": 1.0},
-        "radius": small / 2,
-        "mass": mass,
-        "by_time": True,
-        "friction": friction,
-        "shear": 0.0,
-        "tangential_stiffness": 2 / 7 * mass * (math.pi / lasts) ** 2,
-        "tangential_damping": 1.0,
-        "rolling": 0.0,
-        "rolling_stiffness": 1.0,
-        "rolling_damping": 0.0,
-    }
-    every = 20 * STEPS
-    dt = lasts / STEPS
-    longest = max(1, math.ceil(FALLS * math.sqrt(2 * height / pull) / (every * dt)))
-    none = np.zeros(0)
-    count = contents.radius.size
-    dem = core().Dem(
-        {
-            "dt": dt,
-            "steps": longest * every,
-            "every": every,
-            "gravity": gravity,
-            "mode_decay": none,
-            "mode_stiffness": none,
-            "mode_displacement": none,
-            "mode_velocity": none,
-            "loads": [],
-            "contacts": [contact],
-            "cavities": [
-                {
-                    "shape": np.zeros((0, 3)),
-                    "wall_axis": np.ascontiguousarray(walls.axis),
-                    "wall_offset": walls.offset,
-                    "wall_curved": np.array(walls.curved, dtype=float),
-                    "wall_kind": np.zeros(walls.offset.size, np.int64),
-                    "position": places,
-                    "velocity": np.zeros_like(places),
-                    "spin": np.zeros_like(places),
-                    "radius": contents.radius,
-                    "mass": contents.mass,
-                    "inertia": contents.inertia,
-                    "kind": np.zeros(count, np.int64),
-                    "particle_entry": np.zeros((1, 1), np.int64),
-                    "wall_entry": np.zeros((1, 1), np.int64),
-                }
-            ],
+class _Bed:
+    """Particles, a little larger than they are, in a cavity that stands still, with soft and sticky contacts."""
+
+    def __init__(self, damper: ParticleDamper) -> None:
+        self._contents, self._walls = damper.contents, damper.cavity.walls()
+        self._gravity = np.array(damper.gravity)
+        self._pull = float(np.linalg.norm(self._gravity))
+        height = damper.cavity.extent(self._gravity / self._pull)
+        self._fall = math.sqrt(2 * height / self._pull)
+        small = float(self._contents.radius.min())
+        # the largest overlap is speed times duration over pi
+        self._lasts = math.pi * SINK * small / (self._pull * self._fall)
+        mass = float(self._contents.mass.min()) / 2
+        stiffness = mass * (math.pi / self._lasts) ** 2
+        self._contact = {
+            "normal": {"law": "linear", "stiffness": stiffness, "mass": mass, "zero_overlap": 0.0},
+            "restitution": {"law": "constant", "e": RESTITUTION, "maximum": 1.0},
+            "radius": small / 2,
+            "mass": mass,
+            "by_time": True,
+            "friction": _friction(damper),
+            "shear": 0.0,
+            "tangential_stiffness": 2 / 7 * stiffness,
+            "tangential_damping": 1.0,
+            "rolling": 0.0,
+            "rolling_stiffness": 1.0,
+            "rolling_damping": 0.0,
         }
-    )
-    dem.threads = max(1, min(os.cpu_count() or 1, count // 4000))
-    still = at_rest * float(contents.mass @ contents.radius) * pull
-    quiet = 0
-    for sample in range(1, longest + 1):
-        dem.run(sample * every, None)
-        if dem.status:
-            raise Hint(f"particles do not settle: the run ended with status {dem.status}")
-        energy = float(dem.records()["kinetic"][-1].sum())
-        quiet = quiet + 1 if energy < still else 0
-        if quiet == 5:
-            return np.asarray(dem.state()["cavities"][0]["position"])
-    raise Hint(
-        f"particles do not come to rest within {longest * every * dt:.3g} s", "friction among them, or a larger at_rest"
-    )
+
+    def fall(self, places: Array, at_rest: float) -> Array:
+        """Let particles fall until they rest."""
+        rounds = max(1, math.ceil(FALLS * self._fall / (20 * self._lasts)))
+        still = at_rest * float(self._contents.mass @ self._contents.radius) * self._pull
+        quiet = 0
+        for now, energy in self._followed(places, 1.0, rounds):
+            quiet = quiet + 1 if energy < still else 0
+            if quiet == QUIET:
+                return now
+        raise Hint(
+            f"particles do not come to rest within {FALLS * self._fall:.3g} s",
+            "friction among them, or a larger at_rest",
+        )
+
+    def expand(self, places: Array, cavity: Cavity) -> Array:
+        """Lift the weight little by little, until no particle in its true size overlaps another one."""
+        radii = self._contents.radius
+        for weight in LIGHTER:
+            for now, _ in self._followed(places, weight, CALM):
+                if cavity.room(now, radii).min() >= 0 and not overlapping(now, radii)[0].size:
+                    return now
+            places = now
+        return push_apart(cavity, places, radii, SWELL)
+
+    def _followed(self, places: Array, weight: float, rounds: int) -> Iterator[tuple[Array, float]]:
+        """Places and kinetic energy every twenty contact times, under a part of the weight."""
+        every, none, count = 20 * STEPS, np.zeros(0), self._contents.radius.size
+        cavity = {
+            "shape": np.zeros((0, 3)),
+            "wall_axis": np.ascontiguousarray(self._walls.axis),
+            "wall_offset": self._walls.offset,
+            "wall_curved": np.array(self._walls.curved, dtype=float),
+            "wall_kind": np.zeros(self._walls.offset.size, np.int64),
+            "position": np.ascontiguousarray(places),
+            "velocity": np.zeros_like(places),
+            "spin": np.zeros_like(places),
+            "radius": self._contents.radius * (1 + GROWN),
+            "mass": self._contents.mass,
+            "inertia": self._contents.inertia,
+            "kind": np.zeros(count, np.int64),
+            "particle_entry": np.zeros((1, 1), np.int64),
+            "wall_entry": np.zeros((1, 1), np.int64),
+        }
+        modes = dict.fromkeys(("mode_decay", "mode_stiffness", "mode_displacement", "mode_velocity"), none)
+        steps = {"dt": self._lasts / STEPS, "steps": rounds * every, "every": every}
+        gravity = self._gravity * weight
+        parts = {"gravity": gravity, "loads": [], "contacts": [self._contact], "cavities": [cavity]}
+        dem = core().Dem(steps | modes | parts)
+        dem.threads = max(1, min(os.cpu_count() or 1, count // 4000))
+        for sample in range(1, rounds + 1):
+            dem.run(sample * every, None)
+            if dem.status:
+                raise Hint(f"particles do not settle: the run ended with status {dem.status}")
+            yield np.asarray(dem.state()["cavities"][0]["position"]), float(dem.records()["kinetic"][-1].sum())
 
 
 def _friction(damper: ParticleDamper) -> float:

@@ -71,8 +71,8 @@ class Lattice(Packing):
 class Settled(Packing):
     """Particles inserted at random, then settled under gravity until they rest.
 
-    The fall is computed beforehand with soft, sticky contacts and the friction of the damper; what overlaps they leave
-    are pushed apart.
+    The fall is computed beforehand with soft, sticky contacts and the largest friction of the damper. In the end particles
+    almost touch, without overlap.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Settled(Packing):
 
     kind: Literal["settled"] = "settled"
     seed: Annotated[int, Field(ge=0)] = 0
-    at_rest: Annotated[float, Field(gt=0, le=0.1)] = 1e-4
+    at_rest: Annotated[float, Field(gt=0, le=0.1)] = 1e-3
 
 
 def _table(columns: int, unit: str, what: str) -> Any:
@@ -316,7 +316,7 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
             raise Hint(f"particles {one} and {other} overlap by {-1e3 * apart[k]:.4g} mm")
 
 
-def overlapping(positions: Vector, radii: Vector) -> tuple[Any, Any, Vector]:
+def overlapping(positions: Vector, radii: Vector, within: float = 0.0) -> tuple[Any, Any, Vector]:
     """Return the pairs of spheres that overlap: first, second (p,) int, and their distances (p,) [m], below zero.
 
     Parameters
@@ -325,6 +325,8 @@ def overlapping(positions: Vector, radii: Vector) -> tuple[Any, Any, Vector]:
         Centres, (n, 3) [m].
     radii
         Radii, (n,) [m].
+    within
+        Pairs nearer than this too [m].
     """
     from scipy.spatial import cKDTree
 
@@ -334,11 +336,11 @@ def overlapping(positions: Vector, radii: Vector) -> tuple[Any, Any, Vector]:
     found = []
     for k, (members, tree) in enumerate(zip(classes, trees, strict=True)):
         for others, other in zip(classes[k:], trees[k:], strict=True):
-            reach = float(radii[members].max() + radii[others].max())
+            reach = float(radii[members].max() + radii[others].max()) + within
             near = tree.sparse_distance_matrix(other, reach, output_type="ndarray")
             i, j = members[near["i"]], others[near["j"]]
             apart = near["v"] - radii[i] - radii[j]
-            kept = (apart < 0) & ((i < j) if other is tree else True)
+            kept = (apart < within) & ((i < j) if other is tree else True)
             found.append((i[kept], j[kept], apart[kept]))
     first, second, apart = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return first, second, apart
