@@ -11,9 +11,9 @@ from pydantic import Field, model_validator
 
 from .base import Part
 from .elementwise import Vector
-from .errors import Hint, at
+from .errors import Hint
 from .space import Direction, Lengths, unit_vector
-from .units import PositiveLength, parse
+from .units import PositiveLength, radius_of_diameter
 
 PLANE, CYLINDER, SPHERE = 0, 1, 2
 
@@ -136,14 +136,9 @@ class _Round(Cavity):
     @model_validator(mode="before")
     @classmethod
     def _radius_of_diameter(cls, values: Any) -> Any:
-        if isinstance(values, dict):
-            if (values.get("radius") is None) == (values.get("diameter") is None):
-                raise Hint("either radius or diameter is needed, not both", 'diameter = "40 mm"')
-            if values.get("radius") is None:
-                with at("diameter"):
-                    diameter = parse(values["diameter"], ("m",))[0]
-                return {**{k: v for k, v in values.items() if k != "diameter"}, "radius": diameter / 2}
-        return values
+        if isinstance(values, dict) and values.get("radius") is None and values.get("diameter") is None:
+            raise Hint("either radius or diameter is needed", 'diameter = "40 mm"')
+        return radius_of_diameter(values)
 
 
 class Cylinder(_Round):

@@ -13,7 +13,7 @@ from .base import Part
 from .elementwise import Vector
 from .errors import Hint, at
 from .materials import AnyMaterial
-from .units import SI, PositiveLength, PositiveMass, parse
+from .units import SI, PositiveLength, PositiveMass, parse, radius_of_diameter
 
 _MANY = 4096  # sizes from which the mean volume is taken
 
@@ -186,17 +186,11 @@ class Particles(Part):
     @model_validator(mode="before")
     @classmethod
     def _radius_of_diameter(cls, values: Any) -> Any:
-        if isinstance(values, dict) and values.get("diameter") is not None and values.get("radius") is None:
-            with at("diameter"):
-                diameter = parse(values["diameter"], ("m",))[0]
-            if not diameter > 0:
-                raise Hint("must be greater than zero", place=["diameter"])
-            return {**{k: v for k, v in values.items() if k != "diameter"}, "radius": diameter / 2}
-        return values
+        return radius_of_diameter(values)
 
     @model_validator(mode="after")
     def _sound(self) -> Particles:
-        if self.diameter is not None or (self.radius is not None and self.distribution is not None):
+        if self.radius is not None and self.distribution is not None:
             raise Hint("one size is needed: radius, diameter or distribution", 'radius = "2 mm"')
         amounts = [name for name in ("count", "mass", "fill_ratio") if getattr(self, name) is not None]
         if len(amounts) > 1:

@@ -154,6 +154,23 @@ def _example(units: tuple[str, ...]) -> str:
     return " or ".join(f'"{_EXAMPLES[unit]}"' for unit in units if unit in _EXAMPLES)
 
 
+def radius_of_diameter(values: Any) -> Any:
+    """Return the fields of a round part with a radius in place of a diameter.
+
+    Raises
+    ------
+    Hint
+        When the diameter is no positive length, or both are given.
+    """
+    if not isinstance(values, dict) or values.get("diameter") is None:
+        return values
+    if values.get("radius") is not None:
+        raise Hint("give radius or diameter, not both")
+    with at("diameter"):
+        radius = _positive(parse(values["diameter"], ("m",))[0]) / 2
+    return {**{name: value for name, value in values.items() if name != "diameter"}, "radius": radius}
+
+
 def numbers(value: Any) -> NDArray[np.float64]:
     """Read an array of finite numbers.
 
