@@ -85,7 +85,7 @@ class Checkpoint:
         if not self.path.exists():
             return None
         try:
-            with np.load(self.path, allow_pickle=False) as file:
+            with self.path.open("rb") as content, np.load(content, allow_pickle=False) as file:
                 about = json.loads(file["about"].tobytes())
                 if about["format"] > FORMAT:
                     raise CaseError(f"{self.path} was written by a later Rattlebox\n  try: update Rattlebox")
@@ -105,7 +105,7 @@ class Checkpoint:
 
     def check(self, kept: Kept, packed: Mapping[str, Any]) -> None:
         """Refuse a checkpoint of a case that reads the same but has other numbers."""
-        if kept.numbers != _fingerprint(packed):
+        if kept.numbers != fingerprint(packed):
             raise CaseError(
                 f"{self.path} holds another run\n  the case reads the same but has other numbers: a file that it names has "
                 "changed, or a library that prepares it\n  try: another file, or remove this one"
@@ -120,7 +120,7 @@ class Checkpoint:
             When that cannot be done; the file is then as it was.
         """
         time = dem.step * packed["dt"]
-        told = {"format": FORMAT, "time": time, "seconds": seconds, "numbers": _fingerprint(packed), **self._about}
+        told = {"format": FORMAT, "time": time, "seconds": seconds, "numbers": fingerprint(packed), **self._about}
         arrays = {f"records.{name}": values for name, values in records.items()}
         arrays |= {f"position.{k}": cavity["position"] for k, cavity in enumerate(packed["cavities"])}
         about = np.frombuffer(json.dumps(told).encode(), np.uint8)
@@ -155,7 +155,8 @@ def _bare(case: Case) -> str:
     return case.model_copy(update=update).to_toml()
 
 
-def _fingerprint(packed: Mapping[str, Any]) -> str:
+def fingerprint(packed: Mapping[str, Any]) -> str:
+    """Return a short text that differs when any number that the core is given differs."""
     digest = hashlib.sha256()
 
     def add(value: Any) -> None:

@@ -265,9 +265,7 @@ def _arrays(
     figures, notes = outcome(case, tables, step, counters["largest_overlap"], counters["largest_approach_speed"])
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     name, message = _told(case, names, dem, status, step, journey.checkpoint)
-    state = dem.state()
-    centres = [state["q"] @ shape for shape in shapes]
-    ends = state["cavities"]
+    ends = dem.state()["cavities"]
     contents = [damper.contents for damper in dampers]
     touches = np.asarray(counters["first_touches"])
     return GranularArrays(
@@ -302,7 +300,7 @@ def _arrays(
         plastic_loss=raw["plastic_loss"],
         sliding_loss=raw["sliding_loss"],
         rolling_loss=raw["rolling_loss"],
-        position=np.concatenate([end["position"] - c for end, c in zip(ends, centres, strict=True)]),
+        position=np.concatenate([end["position"] - end["displacement"] for end in ends]),
         particle_velocity=np.concatenate([end["velocity"] for end in ends]),
         spin=np.concatenate([end["spin"] for end in ends]),
         radius=np.concatenate([each.radius for each in contents]),

@@ -61,7 +61,7 @@ class Journey:
             When they are not.
         """
         self._snapshots, self._shots = snapshots, list(shots)
-        before = sum(shot < self._dem.step for shot in shots)
+        before = sum(shot + 1 < self._dem.step for shot in shots)
         if not before:
             snapshots.create()
         elif snapshots.taken < before:
@@ -97,7 +97,7 @@ class Journey:
         try:
             if self._dem.step == 0:
                 self._keep()
-            finished = self._through([k for k in self._shots if k >= self._dem.step], last, progress)
+            finished = self._through([k for k in self._shots if k + 1 >= self._dem.step], last, progress)
         except KeyboardInterrupt:
             finished = False
         if not self._dem.status:  # what went wrong would go wrong again: the state before is the one to look at
@@ -107,7 +107,7 @@ class Journey:
     def _through(self, shots: Sequence[int], last: int, progress: Callable[[int, int], object] | None) -> bool:
         """Run to each snapshot and to the end."""
         for shot in [*shots, None]:
-            if shot != 0 and not self._run(last if shot is None else shot - 1, last, progress):
+            if not self._run(last if shot is None else shot, last, progress):
                 return False
             if shot is not None and self._snapshots is not None and not self._dem.status:
                 self._snapshots.take(self._shots.index(shot), self._dem.state())

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox.engines.checkpoint import fingerprint
 from rattlebox.results.snapshots import SnapshotFile
 
 if TYPE_CHECKING:
@@ -48,8 +49,7 @@ def snapshots_of(case: Case, packed: Mapping[str, Any], path: Path) -> tuple[Sna
         "cavity": np.repeat(np.arange(len(contents)), [each.radius.size for each in contents]),
         "species": np.concatenate([each.species for each in contents]),
     }
-    shapes = [cavity["shape"] for cavity in packed["cavities"]]
-    return SnapshotFile(path, shots * dt, _places(case), shapes, fixed, case.to_toml()), shots.tolist()
+    return SnapshotFile(path, shots * dt, _places(case), fixed, case.to_toml(), fingerprint(packed)), shots.tolist()
 
 
 def _places(case: Case) -> NDArray[np.float64]:

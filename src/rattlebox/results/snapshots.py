@@ -8,7 +8,7 @@ process, the snapshots before are there.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -68,12 +68,12 @@ class SnapshotFile:
         Of all snapshots [s].
     places : (D, 3)
         Where each cavity is drawn [m]: cavities have no place of their own in a case, so they stand side by side.
-    shapes
-        For each cavity, what a unit of each mode displaces it by, (m, 3).
     fixed
         "radius", "mass", "cavity" and "species" of the particles, (N,).
     case_toml
         The case, as the text of a case file.
+    numbers
+        What tells the run from others.
     """
 
     def __init__(
@@ -81,13 +81,13 @@ class SnapshotFile:
         path: str | os.PathLike[str],
         times: FloatArray,
         places: FloatArray,
-        shapes: Sequence[FloatArray],
         fixed: Mapping[str, NDArray[Any]],
         case_toml: str,
+        numbers: str,
     ) -> None:
         self.path = Path(path)
-        self._times, self._places, self._shapes, self._fixed = times, places, shapes, fixed
-        self._case = case_toml
+        self._times, self._places, self._fixed = times, places, fixed
+        self._case, self._numbers = case_toml, numbers
 
     def create(self) -> None:
         """Make the file, without a snapshot, in the place of an earlier one.
@@ -103,6 +103,7 @@ class SnapshotFile:
         with telling(self.path, _LOST), whole(self.path) as name, h5py.File(name, "w") as file:
             file.attrs["rattlebox_format"] = FORMAT
             file.attrs["case"] = self._case
+            file.attrs["numbers"] = self._numbers
             root = file.create_group(_ROOT)
             root.attrs["Version"] = (2, 0)
             root.attrs.create("Type", b"PolyData", dtype="S8")
@@ -146,7 +147,7 @@ class SnapshotFile:
         if not self.path.exists():
             return 0
         found = Snapshots(self.path)
-        same = found.case_toml == self._case and np.array_equal(found.planned, self._times)
+        same = found.numbers == self._numbers and np.array_equal(found.planned, self._times)
         return len(found) if same else 0
 
     def take(self, number: int, state: Mapping[str, Any]) -> None:
@@ -167,7 +168,7 @@ class SnapshotFile:
         import h5py
 
         cavities = state["cavities"]
-        displacement = np.array([state["q"] @ shape for shape in self._shapes])
+        displacement = np.array([each["displacement"] for each in cavities])
         placed = [each["position"] + place for each, place in zip(cavities, self._places, strict=True)]
         # Without a lock, so that others may look at the file during the run.
         with telling(self.path, _LOST), h5py.File(self.path, "r+", locking=False) as file:
@@ -211,7 +212,7 @@ class Snapshots:
                     raise ValueError(f"{self.path} holds no snapshots of particles written by Rattlebox")
                 if layout > FORMAT:
                     raise ValueError(f"{self.path} was written by a later Rattlebox; update to read it")
-                self.case_toml = str(file.attrs["case"])
+                self.case_toml, self.numbers = str(file.attrs["case"]), str(file.attrs["numbers"])
                 root = file[_ROOT]
                 self.planned: FloatArray = root["Steps/Values"][...]
                 self.times = self.planned[: int(root["Steps"].attrs["NSteps"])]

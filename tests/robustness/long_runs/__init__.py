@@ -1,0 +1,1 @@
+"""Long runs of particles that are stopped, killed, resumed, refused."""
