@@ -31,18 +31,6 @@ def dem_of(case: Any, threads: int = 1) -> Any:
     return dem, step.count
 
 
-def particles_now(dem: Any, cavity: int = 0) -> dict[str, Any]:
-    """Return positions, velocities and spins of particles at the last instant whose forces are known."""
-    state = dem.state()["cavities"][cavity]
-    dt = dem.state()["time"] / dem.state()["step"]
-    velocity = state["velocity"] - dt * state["acceleration"]
-    return {
-        "position": state["position"] - dt * (velocity + 0.5 * dt * state["acceleration"]),
-        "velocity": velocity,
-        "spin": state["spin"] - dt * state["spin_rate"],
-    }
-
-
 @dataclass(frozen=True)
 class Ball:
     """One particle: size, material, and how it moves at the start."""

@@ -1,0 +1,230 @@
+"""What runs of particles in space give where an exact value is known: shared by the tests and by the table of the docs."""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+import rattlebox as rb
+from rattlebox.model.contacts import alpha_of_restitution
+
+from ..exact import dashpot, oblique, printed, restitution_laws
+from ..measures import Line
+from . import cases
+from .cases import Ball
+
+FINE = 2000
+"""Steps in a contact."""
+
+
+def stuff(young: float, poisson: float, density: float) -> Any:
+    """Return a material."""
+    return rb.Material(name="as printed", young=young, poisson=poisson, density=density)
+
+
+IMPACTS: dict[str, tuple[Ball, bool, float]] = {
+    "two glass spheres": (Ball(0.01, material=stuff(48e9, 0.20, 2800)), False, 20.0),
+    "two limestone spheres": (Ball(0.01, material=stuff(20e9, 0.25, 2500)), False, 20.0),
+    "aluminium on a rigid plane": (Ball(0.1, material=stuff(70e9, 0.30, 2699)), True, 0.2),
+    "magnesium on a rigid plane": (Ball(0.1, material=stuff(40e9, 0.35, 1800)), True, 0.2),
+}
+"""Tests 1 and 2 of Chung and Ooi: the ball, whether it hits a plane, and the speed at which two come closer."""
+
+
+def elastic_impact(ball: Ball, plane: bool, speed: float) -> tuple[float, float, float]:
+    """Return peak force [N], peak overlap [m] and contact time [s] of an elastic impact."""
+    other = None if plane else ball
+    time = cases.contact_time(ball, other, speed, "rigid")
+    dt = time / FINE
+    law = rb.Tsuji(restitution=1.0)
+    case = cases.head_on(ball, other, speed, dt=dt, phase=0.5, lasts=1.2 * time, contact=law, wall="rigid")
+    dem, last = cases.dem_of(case)
+    forces = []
+    for step in range(FINE // 2, FINE // 2 + 12):
+        dem.run(step)
+        forces.append(float(np.abs(dem.contacts(0)["force"]).max()))
+    assert 0 < np.argmax(forces) < 11
+    dem.run(last)
+    x = dem.state()["cavities"][0]["position"][:, 0]
+    gap = 0.5 * case.dampers[0].cavity.size[0] - x[0] - ball.radius if plane else x[1] - x[0] - 2 * ball.radius
+    left = dem.state()["time"] - gap / speed
+    return max(forces), dem.counters()["largest_overlap"] * ball.radius, left - 5.5 * dt
+
+
+def elastic_impacts() -> Iterator[Line]:
+    """Yield force, overlap and time of elastic impacts, against Hertz."""
+    for name, (ball, plane, speed) in IMPACTS.items():
+        other = None if plane else ball
+        mass = ball.mass if plane else 0.5 * ball.mass
+        stiffness = cases.stiffness(ball, other, "rigid")
+        overlap = (1.25 * mass * speed**2 / stiffness) ** 0.4
+        exact = stiffness * overlap**1.5, overlap, dashpot.HERTZ_TIME * overlap / speed
+        for what, a, b in zip(
+            ("force", "overlap", "contact time"), exact, elastic_impact(ball, plane, speed), strict=True
+        ):
+            # Verlet: the square of the step, (pi / 2000)^2 / 2, or less.
+            yield Line("dem", f"{name}: {what}", a, b, 2e-6)
+
+
+def asked() -> Iterator[Line]:
+    """Yield the restitution that comes out where one is asked for."""
+    ball = Ball(0.01)
+    time = cases.contact_time(ball, None, 1.0)
+    for e in (0.1, 0.2, 0.4, 0.6, 0.8, 0.99):
+        for ending in ("zero_force", "zero_overlap"):
+            law = rb.Tsuji(restitution=e, ending=ending)
+            case = cases.head_on(ball, None, 1.0, dt=time / FINE, phase=0.3, lasts=4 * time, contact=law)
+            got = cases.rebound(cases.run(case))
+            # Orders and factors: see test_normal.
+            allowed = 2.4 * FINE**-2 if ending == "zero_force" else 0.38 * FINE**-1.25
+            yield Line("dem", f"e = {e} asked for, {ending.replace('_', ' ')}", e, got, allowed / e)
+
+
+def yielding() -> Iterator[Line]:
+    """Yield the restitution of contacts that yield."""
+    ball, steel = Ball(0.01), rb.materials()["steel"]
+    modulus = steel.young / (1 - steel.poisson**2) / 2
+    scale = restitution_laws.thornton_speed(ball.radius, ball.mass, modulus, 1.6 * steel.yield_stress)
+    for ratio in printed.THORNTON:
+        speed = ratio * scale
+        time = cases.contact_time(ball, None, speed)
+        case = cases.head_on(ball, None, speed, dt=time / FINE, phase=0.3, lasts=4 * time, contact=rb.Thornton())
+        exact = restitution_laws.thornton(ratio)
+        yield Line(
+            "dem", f"Thornton, V/V_y = {ratio}: restitution", exact, cases.rebound(cases.run(case)) / speed, 1e-6
+        )
+
+
+ALUMINA = Ball(0.0025, material=stuff(380e9, 0.23, 4000))
+OBLIQUE_SPEED, OBLIQUE_FRICTION, OBLIQUE_E = 3.9, 0.092, 0.98
+
+
+def oblique_impact(angle: float, per_contact: int, **options: Any) -> tuple[float, float, float, Any]:
+    """Return tangential and normal velocity, spin, and the run, of an alumina sphere that hits the floor at an angle."""
+    radius = ALUMINA.radius
+    down, along = OBLIQUE_SPEED * math.cos(angle), OBLIQUE_SPEED * math.sin(angle)
+    dt = cases.contact_time(ALUMINA, None, down) / per_contact
+    half = 20 * radius
+    spin = options.pop("spin", 0.0)
+    start = (0, 0, radius - half + 5.5 * dt * down)
+    ball = Ball(radius, start, (along, 0, -down), (0, spin, 0), ALUMINA.material)
+    usual = {"contact": rb.Tsuji(restitution=OBLIQUE_E), "friction": rb.Mindlin(OBLIQUE_FRICTION)}
+    case = cases.case([ball], dt=dt, steps=4 * per_contact, cavity=rb.Box(size=(2 * half,) * 3), **{**usual, **options})
+    result = cases.run(case)
+    velocity, turning = result.arrays.particle_velocity[0], result.arrays.spin[0]
+    assert velocity[1] == turning[0] == turning[2] == 0
+    return float(velocity[0]), float(velocity[2]), float(turning[1]), result
+
+
+def oblique_law(angle: float, e: float, damping: float, steps: int = 4000) -> tuple[float, float, float]:
+    """Return tangential and normal velocity and spin from a fine integration of the law."""
+    down = OBLIQUE_SPEED * math.cos(angle)
+    law = oblique.Impact(
+        alpha=float(alpha_of_restitution(e)),
+        ratio=oblique.mindlin_ratio(ALUMINA.stuff.poisson),
+        friction=OBLIQUE_FRICTION,
+        damping=damping,
+        stiffness=cases.stiffness(ALUMINA) * ALUMINA.radius**2.5 / (ALUMINA.mass * down**2),
+    )
+    along, spin, up = law.follow(math.tan(angle), steps)
+    return along * down, up * down, -spin * down / ALUMINA.radius
+
+
+def oblique_impacts() -> Iterator[Line]:
+    """Yield tangential restitution and spin of test 4 of Chung and Ooi, against the closed form and a fine integration."""
+    for degrees in printed.OBLIQUE:
+        angle = math.radians(degrees)
+        before = OBLIQUE_SPEED * math.sin(angle)
+        along, _, spin, _ = oblique_impact(angle, FINE)
+        exact = oblique_law(angle, OBLIQUE_E, 1.0, 16000)
+        yield Line(
+            "dem", f"alumina at {degrees} degrees: tangential restitution", exact[0] / before, along / before, 1e-5
+        )
+        yield Line("dem", f"alumina at {degrees} degrees: spin", exact[2], spin, 2e-5)
+
+
+def falling(e: float, dt: float = 1e-5) -> tuple[float, float, float]:
+    """Return approach and rebound speed [m/s], and duration [s], of the first bounce of MFiX's test DEM01."""
+    ball = Ball(0.1, material=stuff(1e9, 0.3, 2600))
+    height, end = 2.0, 0.45
+    case = cases.case(
+        [Ball(0.1, (0, 0, 0.5 - 0.5 * height), material=ball.material)],
+        dt=dt,
+        steps=round(end / dt),
+        cavity=rb.Box(size=(1.0, 1.0, height)),
+        contact=rb.Linear(stiffness=1e4, restitution=e, ending="zero_overlap"),
+        gravity=(0, 0, -9.81),
+    )
+    arrays = cases.run(case).arrays
+    high, speed = arrays.position[0, 2] + 0.5 * height - 0.1, arrays.particle_velocity[0, 2]
+    rebound = math.sqrt(speed**2 + 2 * 9.81 * high)
+    approach = arrays.figures["largest_approach_speed"]
+    return approach, rebound, end - (rebound - speed) / 9.81 - approach / 9.81
+
+
+def bounce(e: float) -> tuple[float, float, float]:
+    """Return the same, from the swing of a spring and dashpot under gravity until the overlap is zero again."""
+    mass, stiffness = 2600 * 4 / 3 * math.pi * 0.1**3, 1e4
+    approach = math.sqrt(2 * 9.81 * 0.4)
+    zeta = -math.log(e) / math.hypot(math.pi, math.log(e))
+    omega = math.sqrt(stiffness / mass)
+    swing, decay, rest = omega * math.sqrt(1 - zeta**2), zeta * omega, 9.81 / omega**2
+
+    def overlap(t: float) -> float:
+        part = math.cos(swing * t) + decay / swing * math.sin(swing * t)
+        return rest + math.exp(-decay * t) * (approach / swing * math.sin(swing * t) - rest * part)
+
+    time = float(brentq(overlap, 0.5 * math.pi / swing, 1.5 * math.pi / swing, xtol=1e-15, rtol=1e-14))
+    slope = math.cos(swing * time) - decay / swing * math.sin(swing * time)
+    rate = math.exp(-decay * time) * (approach * slope + rest * omega**2 / swing * math.sin(swing * time))
+    return approach, -rate, time
+
+
+def falling_ball() -> Iterator[Line]:
+    """Yield speeds and contact time of MFiX's falling ball."""
+    for e in (0.6, 0.9):
+        for what, a, b in zip(("touches at", "leaves at", "contact time"), bounce(e), falling(e), strict=True):
+            # The force of a linear dashpot jumps within a step, which lasts a ten thousandth of the contact.
+            yield Line("dem", f"ball falling on a linear spring, e = {e}: {what}", a, b, 1e-4)
+
+
+def slipping(start: float, friction: float, dt: float = 2e-5) -> tuple[float, float]:
+    """Return the velocity in the end, and when it is reached, of a ball that slips till it rolls (MFiX's test DEM04)."""
+    ball = Ball(0.05, (-0.6, 0, 0.0), (start, 0, 0), material=stuff(1e7, 0.3, 2000))
+    case = cases.case(
+        [ball],
+        dt=dt,
+        steps=round(0.25 / dt),
+        samples=round(0.25 / dt),
+        cavity=rb.Box(size=(2.0, 1.0, 0.1)),
+        contact=rb.Tsuji(restitution=0.3),
+        friction=friction,
+        gravity=(0, 0, -9.81),
+    )
+    arrays = cases.run(case).arrays
+    speed = arrays.momentum[:, 0, 0] / arrays.mass[0]
+    rolls = float(speed[-1])
+    # The line of the slope, where a tenth and nine tenths of the way are done, meets the end.
+    down = [float(np.interp(-(start + share * (rolls - start)), -speed, arrays.time)) for share in (0.1, 0.9)]
+    return rolls, down[0] + (down[1] - down[0]) * 0.9 / 0.8
+
+
+def slip_to_roll() -> Iterator[Line]:
+    """Yield velocity and time of the ball that slips till it rolls."""
+    start, friction = 1.0, 0.2
+    speed, time = slipping(start, friction)
+    # The lever is shorter than the radius by the overlap, 0.04 %, and the ball swings on the floor at first.
+    yield Line("dem", "ball slips, then rolls: velocity", 5 / 7 * start, speed, 1e-3)
+    yield Line("dem", "ball slips, then rolls: time", 2 * start / (7 * friction * 9.81), time, 5e-3)
+
+
+ALL: tuple[Callable[[], Iterator[Line]], ...] = (
+    elastic_impacts,
+    asked,
+    yielding,
+    oblique_impacts,
+    falling_ball,
+    slip_to_roll,
+)
