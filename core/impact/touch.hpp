@@ -21,8 +21,8 @@ protected:
         const real speed = std::max(system_.approach(state_.y.data(), c), 0.0);
         const Rebound r = rebound(contact(c).restitution, speed);
         if (r.outside) return fail(Status::law_domain, c, speed);
-        if (!hard() && !possible(contact(c).normal, r)) return fail(Status::no_rebound, c, speed);
         result_.counts.extrapolated += r.extrapolated;
+        if (!hard() && !possible(contact(c).normal, r)) return fail(Status::no_rebound, c, speed);
         if (hard()) return strike(c, speed, r.e);
         if (speed == 0) { // by rounding: what presses it, if anything, will tell
             phase(c) = Phase::touching;
