@@ -35,9 +35,11 @@ if TYPE_CHECKING:
     from rattlebox.plots.loss_map import plot_loss_map
     from rattlebox.plots.lyapunov import plot_lyapunov
     from rattlebox.plots.maps import plot_map
+    from rattlebox.plots.particles import film_particles, plot_particles
     from rattlebox.plots.response import plot_frequency_response
     from rattlebox.plots.sensitivity import plot_sensitivity
     from rattlebox.results import Run, load
+    from rattlebox.results.snapshots import Snapshots
     from rattlebox.studies.basins import basins
     from rattlebox.studies.bifurcation import bifurcation
     from rattlebox.studies.design import design
@@ -65,6 +67,9 @@ _LATER = {
     "bifurcation": "rattlebox.studies.bifurcation",
     "plot_basins": "rattlebox.plots.basins",
     "plot_bifurcation": "rattlebox.plots.bifurcation",
+    "film_particles": "rattlebox.plots.particles",
+    "plot_particles": "rattlebox.plots.particles",
+    "Snapshots": "rattlebox.results.snapshots",
     "plot_design": "rattlebox.plots.design",
     "plot_frequency_response": "rattlebox.plots.response",
     "plot_loss_map": "rattlebox.plots.loss_map",
@@ -121,6 +126,7 @@ __all__ = [
     "Settled",
     "Shaker",
     "Sieve",
+    "Snapshots",
     "Sphere",
     "SphericalCavity",
     "Tabulated",
@@ -135,6 +141,7 @@ __all__ = [
     "chirp",
     "contact_pairs",
     "design",
+    "film_particles",
     "frequency_response",
     "geomspace",
     "linspace",
@@ -150,6 +157,7 @@ __all__ = [
     "plot_loss_map",
     "plot_lyapunov",
     "plot_map",
+    "plot_particles",
     "plot_sensitivity",
     "random_design",
     "random_record",

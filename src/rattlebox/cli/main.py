@@ -79,18 +79,30 @@ def show(study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")]
 
 @app.command()
 def plot(
-    study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")],
-    out: Annotated[Path, typer.Option("--out", "-o", help="File to write: PNG, SVG or PDF.")] = Path("study.png"),
+    study: Annotated[Path, typer.Argument(help="Folder that sweep wrote; or run.nc or run.vtkhdf that run wrote.")],
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="File to write: PNG, SVG or PDF; a film of snapshots as GIF or MP4.")
+    ] = Path("study.png"),
     kind: Annotated[
-        str | None, typer.Option(help="map or lines of a measure, or the kind that the study file names; default that.")
+        str | None,
+        typer.Option(
+            help="map or lines of a measure, or the kind that the study file names; default that. "
+            "Of a run motion, energy, impacts or particles."
+        ),
     ] = None,
     of: Annotated[str | None, typer.Option(help="Measure; default the first.")] = None,
     at: Annotated[
         list[str] | None, typer.Option(help='Value of a further axis, "load.amplitude=5 kN"; repeat for more.')
     ] = None,
+    number: Annotated[int | None, typer.Option(help="Which snapshot, from 0; default the last.")] = None,
     size: Annotated[str | None, typer.Option(help="column, page or slide.")] = None,
 ) -> None:
-    """Draw a study: its own figure, or a measure over one or two of its axes."""
+    """Draw a study: its own figure, or a measure over one or two of its axes. Draw a run, or film its particles."""
+    if study.is_file():
+        from rattlebox.cli.plot_run import plot_run
+
+        plot_run(study, out, kind=kind, number=number, size=size)
+        return
     from rattlebox.cli.plot import plot_study
 
     plot_study(study, out, kind=kind, of=of, at=at or (), size=size)

@@ -49,14 +49,7 @@ def plot_study(
     CaseError
         When an argument does not fit, or there is no such study.
     """
-    if out.suffix not in FORMATS:
-        raise CaseError(
-            f"-o {out}: the ending must be one of {', '.join(FORMATS)}\n  try: -o {out.stem or 'study'}.png"
-        )
-    if size is not None and size not in WIDTHS:
-        raise CaseError(f"--size {size}: there is no such size\n  try: {', '.join(WIDTHS)}")
-    if not out.parent.is_dir():
-        raise CaseError(f"-o {out}: there is no folder {out.parent}")
+    check_target(out, size)
     data, options = open_study(study), {"of": of, "size": size}
     own = str(data.attrs.get("study", "sweep"))
     options = {name: value for name, value in options.items() if value is not None}
@@ -68,6 +61,33 @@ def plot_study(
         raise CaseError(f"--kind {kind}: there is no such kind\n  {nearest(kind, ('map', 'lines', *MAPS))}")
     figure.savefig(out)
     Console(highlight=False).print(f"written: {out}", soft_wrap=True)
+
+
+def check_target(out: Path, size: str | None, formats: Sequence[str] = FORMATS) -> None:
+    """Refuse what cannot be written.
+
+    Parameters
+    ----------
+    out
+        File to write.
+    size
+        Width, if one is asked for.
+    formats
+        Endings that are possible.
+
+    Raises
+    ------
+    CaseError
+        When it cannot.
+    """
+    if out.suffix not in formats:
+        raise CaseError(
+            f"-o {out}: the ending must be one of {', '.join(formats)}\n  try: -o {out.stem or 'study'}.png"
+        )
+    if size is not None and size not in WIDTHS:
+        raise CaseError(f"--size {size}: there is no such size\n  try: {', '.join(WIDTHS)}")
+    if not out.parent.is_dir():
+        raise CaseError(f"-o {out}: there is no folder {out.parent}")
 
 
 def _map(data: xr.Dataset, kind: str, own: str, options: dict[str, Any], at: dict[str, str]) -> Figure:

@@ -8,11 +8,13 @@ from .granular import plot_granular_motion
 from .impacts import plot_impacts
 from .lyapunov import plot_lyapunov
 from .motion import plot_motion
+from .particles import film_particles, plot_particles
 from .phase import plot_phase_portrait
 from .response import plot_frequency_response
 from .style import paper
 
 __all__ = [
+    "film_particles",
     "paper",
     "plot_basins",
     "plot_bifurcation",
@@ -23,5 +25,6 @@ __all__ = [
     "plot_impacts",
     "plot_lyapunov",
     "plot_motion",
+    "plot_particles",
     "plot_phase_portrait",
 ]

@@ -285,7 +285,7 @@ class GranularRun(Run):
 
     @property
     def plot(self) -> GranularPlots:  # type: ignore[override]
-        """Figures of this run: `motion`, `energy`."""
+        """Figures of this run: `motion`, `energy`, `particles`."""
         return GranularPlots(self)
 
     def to_csv(self, folder: Any) -> Any:
@@ -346,3 +346,15 @@ class GranularPlots:
         from ..plots import plot_energy
 
         return plot_energy(self._run, **options)
+
+    def particles(self, **options: Any) -> Figure:
+        """The particles in their cavities at the end of the run.
+
+        Parameters
+        ----------
+        **options
+            Passed on to `rattlebox.plots.plot_particles`.
+        """
+        from ..plots import plot_particles
+
+        return plot_particles(self._run, **options)

@@ -230,7 +230,9 @@ class Snapshots:
     def __getitem__(self, number: int) -> Frame:
         import h5py
 
-        number = range(len(self))[number]
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"{self.path} holds {len(self)} snapshots, numbered from 0; there is no number {number}")
+        number %= len(self)
         count, cavities = self._fixed["radius"].size, len(self._places)
         rows = slice(number * count, (number + 1) * count)
         with h5py.File(self.path, "r", locking=False) as file:

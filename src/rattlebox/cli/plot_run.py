@@ -1,0 +1,90 @@
+"""`rattlebox plot` of a run on disk: its figures, or pictures and films of its particles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.progress import Progress
+
+from rattlebox.cli.plot import FORMATS, check_target
+from rattlebox.model.errors import CaseError, nearest
+from rattlebox.plots.particles import FILMS, film_particles, plot_particles
+from rattlebox.plots.spheres import usual_renderer
+from rattlebox.results import GranularRun, load
+from rattlebox.results.snapshots import Snapshots
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def plot_run(path: Path, out: Path, *, kind: str | None, number: int | None, size: str | None) -> None:
+    """Draw a run or its snapshots and write the figure or the film.
+
+    Parameters
+    ----------
+    path
+        run.nc or run.vtkhdf.
+    out
+        File to write: PNG, SVG or PDF, or of snapshots GIF or MP4.
+    kind
+        "motion", "energy", "impacts" or "particles"; default the first, of snapshots the last.
+    number
+        Which snapshot, from 0; default the last.
+    size
+        Width; default that of the figure.
+
+    Raises
+    ------
+    CaseError
+        When an argument does not fit, or there is no such file.
+    """
+    check_target(out, size, (*FORMATS, *FILMS))
+    options: dict[str, Any] = {} if size is None else {"size": size}
+    try:
+        of = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
+    except (FileNotFoundError, ValueError) as error:
+        raise CaseError(str(error)) from None
+    if number is not None and not isinstance(of, Snapshots):
+        raise CaseError(
+            "--number: a run has no snapshots\n  try: run.vtkhdf beside it, with output.snapshots in the case"
+        )
+    console = Console(highlight=False)
+    try:
+        if out.suffix in FILMS:
+            _film(of, out, options)
+        else:
+            _figure(of, kind, -1 if number is None else number, options).savefig(out)
+    except (ValueError, IndexError) as error:
+        raise CaseError(str(error)) from None
+    if (kind == "particles" or isinstance(of, Snapshots)) and usual_renderer() == "plain":
+        console.print("drawn without PyVista, which is faster: python -m pip install 'rattlebox\\[3d]'", soft_wrap=True)
+    console.print(f"written: {out}", soft_wrap=True)
+
+
+def _film(of: Any, out: Path, options: dict[str, Any]) -> None:
+    if not isinstance(of, Snapshots):
+        raise CaseError(f"-o {out}: a film needs snapshots\n  try: run.vtkhdf, with output.snapshots in the case")
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
+        line = bar.add_task("pictures", total=len(of))
+        try:
+            film_particles(of, out, progress=lambda done, _: bar.update(line, completed=done), **options)
+        except ModuleNotFoundError:
+            raise CaseError(
+                "MP4 needs imageio-ffmpeg\n  try: python -m pip install 'rattlebox[3d]', or -o film.gif"
+            ) from None
+
+
+def _figure(of: Any, kind: str | None, number: int, options: dict[str, Any]) -> Figure:
+    if isinstance(of, Snapshots):
+        kinds: tuple[str, ...] = ("particles",)
+    else:
+        kinds = ("motion", "energy", "particles" if isinstance(of, GranularRun) else "impacts")
+    if (kind or kinds[0]) not in kinds:
+        raise CaseError(f"--kind {kind}: there is no such kind here\n  {nearest(str(kind), kinds)}")
+    if isinstance(of, Snapshots):
+        return plot_particles(of, number=number, **options)
+    figure: Figure = getattr(of.plot, kind or kinds[0])(**options)
+    return figure

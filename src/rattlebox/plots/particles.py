@@ -1,0 +1,288 @@
+"""Pictures and films of the particles in their cavities."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from pydantic import TypeAdapter
+
+from ..model.cavities import AnyCavity, Box, Cavity, Cylinder
+from ..results import GranularRun
+from ..results.snapshots import Frame, Snapshots
+from .spheres import Renderer, draw_spheres
+from .style import INK, PaperFigure, Size, paper, pen, scaled
+
+Array = NDArray[np.float64]
+
+FILMS = (".gif", ".mp4")
+
+_AZIMUTH, _HEIGHT = np.radians(-60.0), np.radians(18.0)
+_TOWARDS = np.array([np.cos(_HEIGHT) * np.cos(_AZIMUTH), np.cos(_HEIGHT) * np.sin(_AZIMUTH), np.sin(_HEIGHT)])
+_RIGHT = np.array([-np.sin(_AZIMUTH), np.cos(_AZIMUTH), 0.0])
+VIEW: Array = np.array([_RIGHT, np.cross(_TOWARDS, _RIGHT), _TOWARDS])
+"""Right, up and towards the viewer, (3, 3), one a row: x points to the right, z upwards."""
+
+
+def plot_particles(
+    of: GranularRun | Snapshots, *, number: int = -1, size: Size = "page", renderer: Renderer | None = None
+) -> Figure:
+    """Draw the particles in their cavities at one time, coloured by their speed.
+
+    Parameters
+    ----------
+    of
+        A run, whose end is drawn, or its snapshots.
+    number
+        Which snapshot.
+    size
+        Width of the figure: "column", "page" or "slide".
+    renderer
+        "pyvista" or "plain"; default PyVista where it is installed.
+
+    Returns
+    -------
+    Figure
+        With one panel for each cavity.
+
+    Raises
+    ------
+    ValueError
+        When there is no snapshot, or the size is unknown.
+    """
+    if isinstance(of, Snapshots) and not len(of):
+        raise ValueError(f"{of.path} holds no snapshot yet")
+    frame = of[number] if isinstance(of, Snapshots) else _end(of)
+    with paper(size):
+        return _Scene([frame], _cavities(of.case_toml), size, renderer).figure
+
+
+def film_particles(
+    snapshots: Snapshots,
+    out: str | os.PathLike[str],
+    *,
+    rate: int = 20,
+    size: Size = "column",
+    renderer: Renderer | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Path:
+    """Write a film of the particles in their cavities, with a picture for each snapshot.
+
+    Parameters
+    ----------
+    snapshots
+        Of a run.
+    out
+        File to write, .gif or .mp4.
+    rate
+        Pictures a second.
+    size
+        Width: "column", "page" or "slide".
+    renderer
+        "pyvista" or "plain"; default PyVista where it is installed.
+    progress
+        Called with the number of pictures done and of all.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        When there is no snapshot, or the ending is another one.
+    ModuleNotFoundError
+        When .mp4 is asked for and imageio-ffmpeg is not installed.
+    OSError
+        When the file cannot be written.
+    """
+    path = Path(out)
+    if path.suffix not in FILMS:
+        raise ValueError(f"{path}: a film is {' or '.join(FILMS)}")
+    if not len(snapshots):
+        raise ValueError(f"{snapshots.path} holds no snapshot yet")
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    with paper(size):
+        import matplotlib as mpl
+
+        if path.suffix == ".mp4":
+            from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped]
+
+            mpl.rcParams["animation.ffmpeg_path"] = get_ffmpeg_exe()
+        scene = _Scene(list(snapshots), _cavities(snapshots.case_toml), size, renderer)
+        writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
+        with writer.saving(scene.figure, os.fspath(path), dpi=scene.film_dpi):
+            for number in range(len(snapshots)):
+                scene.show(number)
+                writer.grab_frame()
+                if progress is not None:
+                    progress(number + 1, len(snapshots))
+    return path
+
+
+def _end(run: GranularRun) -> Frame:
+    """The particles at the end of a run."""
+    arrays = run.arrays
+    displacement = arrays.cavity_displacement[-1]
+    return Frame(
+        time=float(arrays.time[-1]),
+        position=arrays.position + displacement[arrays.particle_damper],
+        velocity=arrays.particle_velocity,
+        spin=arrays.spin,
+        radius=arrays.radius,
+        mass=arrays.mass,
+        cavity=arrays.particle_damper,
+        species=arrays.particle_species,
+        displacement=displacement,
+    )
+
+
+def _cavities(case_toml: str) -> list[tuple[str, Cavity]]:
+    """Names and forms of the cavities of a case, whose other files need not be there."""
+    dampers = tomllib.loads(case_toml)["dampers"]
+    form: TypeAdapter[Cavity] = TypeAdapter(AnyCavity)
+    return [
+        (damper.get("name") or f"damper {number}", form.validate_python(damper["cavity"]))
+        for number, damper in enumerate(dampers, start=1)
+    ]
+
+
+def outline(cavity: Cavity) -> list[Array]:
+    """Return lines that show a cavity, each (n, 3) [m] from its centre.
+
+    Parameters
+    ----------
+    cavity
+        What to show: edges of a box, ends and two lines of a cylinder's side, the rim of a sphere.
+    """
+    if isinstance(cavity, Box):
+        corners = np.array(np.meshgrid(*[(-1, 1)] * 3, indexing="ij")).reshape(3, -1).T
+        pairs = [(i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit]
+        return [corners[list(pair)] * cavity.lengths / 2 for pair in pairs]
+    if isinstance(cavity, Cylinder):
+        along = cavity.frame[2]
+        side = np.cross(along, VIEW[2]) if abs(along @ VIEW[2]) < 1 - 1e-9 else cavity.frame[0]
+        side /= np.linalg.norm(side)
+        rim = cavity.radius * _arc(side, np.cross(along, side))
+        ends = np.array([[-1.0], [1.0]]) * cavity.length / 2 * along
+        halves = [half + end for end in ends for half in (rim[:37], rim[36:])]  # of which one may be hidden
+        return [*halves, *(ends + sign * cavity.radius * side for sign in (-1, 1))]
+    return [cavity.lengths[0] / 2 * _arc(VIEW[0], VIEW[1])]
+
+
+def _arc(first: Array, second: Array) -> Array:
+    """A circle of radius 1 from one direction by another, (73, 3)."""
+    angle = np.linspace(0, 2 * np.pi, 73)
+    return np.asarray(np.outer(np.cos(angle), first) + np.outer(np.sin(angle), second))
+
+
+@dataclass
+class _Panel:
+    axes: Axes
+    image: Any
+    lines: list[Any]
+    extent: tuple[float, float, float, float]
+
+
+class _Scene:
+    """A figure that shows one frame of several."""
+
+    def __init__(
+        self, frames: Sequence[Frame], cavities: Sequence[tuple[str, Cavity]], size: Size, renderer: Renderer | None
+    ) -> None:
+        self._frames, self._cavities, self._renderer = frames, cavities, renderer
+        speeds = np.concatenate([_speed(frame) for frame in frames])
+        self._scale = scaled(speeds, "m/s")
+        top = float(np.quantile(speeds, 0.99)) if len(frames) > 1 else float(speeds.max())
+        self._norm = Normalize(0.0, max(top, 1e-12) / self._scale.divisor)
+        extents = [self._extent(k) for k in range(len(cavities))]
+        sides = [(right - left, top - bottom) for left, right, bottom, top in extents]
+        ratio = max(h for _, h in sides) / sum(w for w, _ in sides)
+        self.figure = PaperFigure(size, min(0.86 * ratio + 0.1, 1.1))
+        self.film_dpi = 110 if size == "slide" else 160
+        panels = self.figure.subplots(1, len(cavities), squeeze=False, width_ratios=[w for w, _ in sides])[0]
+        self._panels = [self._panel(k, axes, extents[k]) for k, axes in enumerate(panels)]
+        bar = self.figure.colorbar(ScalarMappable(self._norm, _colours()), ax=list(panels), aspect=28, pad=0.02)
+        bar.set_label(f"Speed ({self._scale.unit})")
+        bar.outline.set_visible(False)
+        self.show(0)
+
+    def _extent(self, k: int) -> tuple[float, float, float, float]:
+        """Edges of a panel that holds the cavity wherever it goes."""
+        corners = np.concatenate(outline(self._cavities[k][1])) @ VIEW.T
+        moves = np.array([frame.displacement[k] for frame in self._frames]) @ VIEW.T
+        low, high = corners.min(axis=0) + moves.min(axis=0), corners.max(axis=0) + moves.max(axis=0)
+        margin = 0.03 * float((high - low)[:2].max())
+        return low[0] - margin, high[0] + margin, low[1] - 3 * margin, high[1] + margin
+
+    def _panel(self, k: int, axes: Axes, extent: tuple[float, float, float, float]) -> _Panel:
+        axes.set_axis_off()
+        image = axes.imshow(np.zeros((1, 1, 4), np.uint8), extent=extent, zorder=2, interpolation="antialiased")
+        lines = []
+        for line in outline(self._cavities[k][1]):
+            behind = line.mean(axis=0) @ VIEW[2] < 0
+            (drawn,) = axes.plot([], [], color=INK, linewidth=pen(0.7), alpha=0.6 if behind else 1.0)
+            drawn.set_zorder(1 if behind else 3)
+            lines.append((drawn, line))
+        _ruler(axes, extent)
+        axes.set_xlim(extent[0], extent[1])
+        axes.set_ylim(extent[2], extent[3])
+        axes.set_aspect("equal")
+        return _Panel(axes, image, lines, extent)
+
+    def show(self, number: int) -> None:
+        """Show a frame."""
+        frame = self._frames[number]
+        colours = _colours()(self._norm(_speed(frame) / self._scale.divisor))[:, :3]
+        time = scaled([self._frames[-1].time], "s")
+        for k, panel in enumerate(self._panels):
+            here = frame.cavity == k
+            width = round(self.figure.get_figwidth() * min(self.figure.dpi, 300) * 0.85 / len(self._panels))
+            panel.image.set_data(
+                draw_spheres(
+                    frame.position[here] @ VIEW.T,
+                    frame.radius[here],
+                    colours[here],
+                    panel.extent,
+                    width,
+                    self._renderer,
+                )
+            )
+            for drawn, line in panel.lines:
+                placed = (line + frame.displacement[k]) @ VIEW.T
+                drawn.set_data(placed[:, 0], placed[:, 1])
+            name = f"{self._cavities[k][0]}, " if len(self._panels) > 1 else ""
+            panel.axes.set_title(f"{name}{frame.time / time.divisor:.4g} {time.unit}")
+
+
+def _ruler(axes: Axes, extent: tuple[float, float, float, float]) -> None:
+    """A length to measure by, at the lower left."""
+    left, right, bottom, top = extent
+    about = 0.25 * (right - left)
+    length = max(step for step in np.outer(10.0 ** np.arange(-7, 3), [1, 2, 5]).ravel() if step <= about)
+    height = bottom + 0.025 * (top - bottom)
+    axes.plot([left, left + length], [height, height], color=INK, linewidth=pen(1.6), solid_capstyle="butt")
+    unit = scaled([length], "m")
+    axes.text(left + 1.15 * length, height, f"{length / unit.divisor:g} {unit.unit}", va="center")
+
+
+def _speed(frame: Frame) -> Array:
+    return np.asarray(np.linalg.norm(frame.velocity, axis=1))
+
+
+def _colours() -> Any:
+    from cmcrameri import cm  # type: ignore[import-untyped]
+
+    return cm.batlow

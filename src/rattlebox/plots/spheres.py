@@ -1,0 +1,125 @@
+"""Draws many spheres as seen from far away: with PyVista where it is installed, else by itself."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Renderer = Literal["pyvista", "plain"]
+
+LIGHT = np.array([-0.45, 0.65, 0.61])
+"""Towards the light, in the picture: right, up, towards the viewer."""
+_AMBIENT, _DIFFUSE = 0.35, 0.7
+_MANY = 3000  # spheres, from which on each is small
+_FINER = 2  # pixels are averaged over so many in each direction
+
+
+def usual_renderer() -> Renderer:
+    """Return PyVista where it is installed."""
+    return "pyvista" if find_spec("pyvista") is not None else "plain"
+
+
+def draw_spheres(
+    places: Array,
+    radii: Array,
+    colours: Array,
+    extent: tuple[float, float, float, float],
+    width: int,
+    renderer: Renderer | None = None,
+) -> NDArray[np.uint8]:
+    """Return a picture of spheres, without perspective.
+
+    Parameters
+    ----------
+    places
+        Centres: right, up and towards the viewer, (n, 3).
+    radii
+        (n,).
+    colours
+        Red, green, blue from 0 to 1, (n, 3).
+    extent
+        Left, right, bottom and top of the picture.
+    width
+        Of the picture in pixels.
+    renderer
+        Default PyVista where it is installed.
+
+    Returns
+    -------
+    (height, width, 4) uint8
+        The first row is at the top; nothing is transparent but the background.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        When PyVista is asked for and not installed.
+    """
+    height = max(1, round(width * (extent[3] - extent[2]) / (extent[1] - extent[0])))
+    draw = _pyvista if (renderer or usual_renderer()) == "pyvista" else _plain
+    return draw(places, radii, colours, extent, width, height)
+
+
+def _plain(
+    places: Array, radii: Array, colours: Array, extent: tuple[float, ...], width: int, height: int
+) -> NDArray[np.uint8]:
+    """The nearest sphere at each pixel, shaded by the angle to the light."""
+    light = LIGHT / np.linalg.norm(LIGHT)
+    size = (_FINER * height, _FINER * width)
+    scale = size[1] / (extent[1] - extent[0])
+    nearest = np.full(size, -np.inf)
+    picture = np.zeros((*size, 4))
+    across = (places[:, 0] - extent[0]) * scale
+    down = (extent[3] - places[:, 1]) * scale
+    for x, y, z, r, colour in zip(across, down, places[:, 2] * scale, radii * scale, colours, strict=True):
+        left, right = max(0, int(x - r)), min(size[1], int(x + r) + 1)
+        top, bottom = max(0, int(y - r)), min(size[0], int(y + r) + 1)
+        if left >= right or top >= bottom:
+            continue
+        u = (np.arange(left, right) + 0.5 - x) / r
+        v = (y - np.arange(top, bottom) - 0.5)[:, None] / r
+        square = 1 - u**2 - v**2
+        w = np.sqrt(np.maximum(square, 0.0))
+        window = np.s_[top:bottom, left:right]
+        seen = (square > 0) & (z + r * w > nearest[window])
+        shade = _AMBIENT + _DIFFUSE * np.maximum(u * light[0] + v * light[1] + w * light[2], 0.0)
+        nearest[window][seen] = (z + r * w)[seen]
+        picture[window][seen, 3] = 1.0
+        picture[window][seen, :3] = colour * shade[seen, None]
+    averaged = picture.reshape(height, _FINER, width, _FINER, 4).mean(axis=(1, 3))
+    covered = averaged[..., 3:]
+    averaged[..., :3] = np.divide(averaged[..., :3], covered, out=np.zeros((height, width, 3)), where=covered > 0)
+    return np.asarray(255 * np.clip(averaged, 0, 1), np.uint8)
+
+
+def _pyvista(
+    places: Array, radii: Array, colours: Array, extent: tuple[float, ...], width: int, height: int
+) -> NDArray[np.uint8]:
+    import pyvista
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # without a screen it warns before it goes on without
+    plotter: Any = pyvista.Plotter(off_screen=True, window_size=[width, height], lighting="none")
+    try:
+        cloud = pyvista.PolyData(places)
+        cloud["radius"], cloud["colour"] = radii, colours
+        fine = 2 if len(places) < _MANY else 1
+        ball = pyvista.Sphere(radius=1.0, theta_resolution=24 * fine, phi_resolution=16 * fine)
+        balls = cloud.glyph(geom=ball, scale="radius", orient=False, factor=1.0)
+        plotter.add_mesh(
+            balls, scalars="colour", rgb=True, smooth_shading=True, ambient=_AMBIENT, diffuse=_DIFFUSE, specular=0.25
+        )
+        middle = np.array([(extent[0] + extent[1]) / 2, (extent[2] + extent[3]) / 2, 0.0])
+        far = 10 * (extent[1] - extent[0]) + float(np.abs(places[:, 2]).max(initial=0.0))
+        plotter.add_light(pyvista.Light(position=middle + far * LIGHT, focal_point=middle, light_type="scene light"))
+        plotter.enable_parallel_projection()
+        plotter.camera_position = [middle + np.array([0.0, 0.0, far]), middle, (0, 1, 0)]
+        plotter.camera.parallel_scale = (extent[3] - extent[2]) / 2
+        plotter.camera.clipping_range = (0.01 * far, 3 * far)
+        plotter.enable_anti_aliasing("ssaa")
+        return np.asarray(plotter.screenshot(transparent_background=True, return_img=True))
+    finally:
+        plotter.close()
