@@ -56,3 +56,12 @@ OBLIQUE = {10: (0.687, 213), 20: (0.616, 511), 30: (0.684, 617), 50: (0.845, 457
 """Y. C. Chung, J. Y. Ooi, Granular Matter 13 (2011) 643, test 4: angle from the normal, tangential restitution, spin."""
 OBLIQUE_MEASURED = {20.2: 0.599, 39.5: 0.774, 49.6: 0.848, 71.1: 0.937}
 """A. H. Kharaz, D. A. Gorham, A. D. Salman, Powder Technology 120 (2001) 281: the same, measured."""
+ELASTIC = {
+    "two glass spheres": (10696.9, 274.113e-6, 40.3395e-6),
+    "two limestone spheres": (7108.24, 368.304e-6, 54.201e-6),
+    "aluminium on a rigid plane": (11369.9, 49.7172e-6, 731.657e-6),
+    "magnesium on a rigid plane": (7232.68, 52.1233e-6, 767.066e-6),
+}
+"""The same, tests 1 and 2: largest force [N], overlap [m] and contact time [s]."""
+FALLING = {0.9: (2.8014282, 2.475857, 0.111819), 0.6: (2.8014282, 1.491954, None)}
+"""MFiX, test DEM01: restitution, and speed of approach and rebound [m/s], and contact time [s]."""

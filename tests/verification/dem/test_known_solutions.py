@@ -1,0 +1,79 @@
+"""Runs in space against exact solutions: the lines of the verification table, and the order at which they are met."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+from ..exact import printed
+from ..measures import Line
+from . import measures
+
+
+@pytest.mark.parametrize("lines", measures.ALL, ids=lambda f: f.__name__)
+def test_run_has_the_exact_value(lines: Callable[[], Iterator[Line]]) -> None:
+    """Every line of the verification table holds within what the method allows."""
+    found = list(lines())
+    assert found
+    failed = [f"{line.case}: {line.ours!r}, exact {line.exact!r}" for line in found if not line.held]
+    assert not failed, "\n".join(failed)
+
+
+@pytest.mark.parametrize("name", measures.IMPACTS)
+def test_elastic_impacts_have_the_printed_values(name: str) -> None:
+    """Tests 1 and 2 of Chung and Ooi: force, overlap and time agree with all six digits that are printed."""
+    for ours, shown in zip(measures.elastic_impact(*measures.IMPACTS[name]), printed.ELASTIC[name], strict=True):
+        assert ours == pytest.approx(shown, rel=1e-5)
+
+
+@pytest.mark.parametrize("e", printed.FALLING)
+def test_falling_ball_has_the_printed_values(e: float) -> None:
+    """MFiX's falling ball: the swing under gravity has the printed speeds and time to six digits."""
+    for exact, shown in zip(measures.bounce(e), printed.FALLING[e], strict=True):
+        assert shown is None or exact == pytest.approx(shown, rel=5e-6)
+
+
+@pytest.mark.parametrize("law", measures.LAWS)
+def test_one_ball_in_one_direction_is_that_of_the_impact_engine(law: str) -> None:
+    """Structure and ball tend to what the impact engine computes, over eight impacts or more, as the step squared."""
+    *exact, impacts = measures.one_ball_exactly(law)
+    assert impacts >= 8
+
+    def error(dt: float) -> Any:
+        return [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(measures.one_ball(law, dt), exact, strict=True)]
+
+    coarse, fine = np.array(error(4e-7)), np.array(error(2.5e-8))
+    # The phase of each touch in its step is a matter of chance, so the order is a mean one.
+    assert np.log2(coarse / fine) / 4 == pytest.approx(2, abs=0.4)
+    assert fine[1] < 1e-4 * measures.PLAY
+
+
+@pytest.mark.parametrize("part", [0.3, 0.8, 0.97])
+def test_ball_stands_on_a_gentle_slope(part: float) -> None:
+    """Below the slope that is the coefficient of rolling resistance a ball stands, after it has given way a little."""
+    path, speed = measures.along(
+        measures.on_floor(0.0, 0.0, 0.5, rolling=rb.Rolling(0.05, damping=0.3), slope=part * 0.05)
+    )
+    assert np.abs(speed[-1]) < 1e-9
+    assert 0 < path[-1] < 5e-6
+    assert path[-1] == pytest.approx(path[500], abs=1e-9)
+
+
+def test_ball_without_resistance_rolls_on() -> None:
+    """Without rolling resistance a ball that rolls keeps its speed, and none of its energy is lost by friction."""
+    result = measures.on_floor(0.3, 0.3 / 0.02, 0.5)
+    _, speed = measures.along(result)
+    assert speed[-1] == pytest.approx(0.3, rel=1e-4)
+    energy = 0.7 * result.arrays.mass[0] * 0.3**2
+    assert result.arrays.sliding_loss[-1].sum() < 1e-4 * energy
+    assert result.arrays.rolling_loss[-1].sum() == 0
+
+
+@pytest.mark.parametrize("name", measures.FILLED)
+def test_settled_fill_loads_its_cavity_downwards_only(name: str) -> None:
+    """The walls of a settled fill push against each other: sideways the cavity feels nothing."""
+    force, weight = measures.settled(name)
+    assert np.abs(force[:2]).max() < 1e-4 * weight
