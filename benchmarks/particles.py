@@ -24,7 +24,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import rattlebox as rb
 from rattlebox.engines.core import core
@@ -37,7 +36,7 @@ WINDOWS = {100: (5, 50), 1000: (5, 10), 10_000: (5, 5), 100_000: (1, 1)}
 """Periods before the clock starts, and while it runs."""
 
 
-def shaken(count: int, packing: Any = None, gravity: float = 9.81, amplitude: float = 98.1) -> rb.Case:
+def shaken(count: int, amplitude: float = 98.1) -> rb.Case:
     """Return the box, on a shaker that starts from rest."""
     edge = (count * np.pi * DIAMETER**3 / 6 / FILL) ** (1 / 3)
     motion = rb.Harmonic(amplitude=f"{amplitude} m/s^2", frequency=1 / PERIOD, phase=np.pi / 2, direction="z")
@@ -48,9 +47,8 @@ def shaken(count: int, packing: Any = None, gravity: float = 9.81, amplitude: fl
             cavity=rb.Box(size=(edge, edge, edge)),
             contact=rb.Tsuji(restitution=0.75),
             friction=rb.Mindlin(0.3),
-            gravity=(0.0, 0.0, -gravity),
             direction="z",
-            packing=packing or rb.Lattice(noise=0.45),
+            packing=rb.Lattice(noise=0.45),
         ),
         duration=1000.0,
         method=rb.Dem(dt=DT),
@@ -94,8 +92,11 @@ def one(kind: str, count: str, cores: str, start: str = "") -> None:
         steps = steps_of(25)
         print(json.dumps(timed(packed, steps, max(1, 2_000_000 // n), int(cores))))
         return
-    packing = rb.Positions.from_file(start) if start else None
-    packed, _, _ = pack_dem(shaken(n, packing))
+    packed, _, _ = pack_dem(shaken(n))
+    if start:  # a bed in motion, whose contacts are pressed in
+        columns = np.loadtxt(start, delimiter=",", ndmin=2)
+        for name, part in zip(("position", "velocity", "spin"), np.split(columns, 3, axis=1), strict=True):
+            packed["cavities"][0][name] = np.ascontiguousarray(part)
     print(json.dumps(timed(packed, steps_of(warm), steps_of(window), int(cores))))
 
 
@@ -148,9 +149,9 @@ def _start(folder: Path, where: Path, count: int) -> Path:
         for part in text.split("Atoms")[1].split("Velocities")
     )
     edge = (count * np.pi * DIAMETER**3 / 6 / FILL) ** (1 / 3)
-    columns = np.hstack([atoms[:, 4:7] - edge / 2, np.full((count, 1), DIAMETER / 2), velocities[:, 1:7]])
+    columns = np.hstack([atoms[:, 4:7] - edge / 2, velocities[:, 1:7]])
     path = where / "start.csv"
-    np.savetxt(path, columns, delimiter=",", header="x,y,z,radius,vx,vy,vz,wx,wy,wz", comments="")
+    np.savetxt(path, columns, delimiter=",")
     return path
 
 

@@ -71,7 +71,7 @@ struct Bed {
 
     template <class Archive> void keep(Archive& a) {
         a(position, velocity, acceleration, spin, spin_rate, touched, name, kind, reach, skin, since_build,
-          since_scan);
+          since_scan, shown);
         for (Chunk& c : chunks) c.keep(a);
     }
 };

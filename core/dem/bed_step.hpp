@@ -99,8 +99,8 @@ class BedStep {
             const int s = list.take();
             at(list.slot, k) = at(slot_of, at(list.origin, k)) = s;
             const Touch t = touch(list, k, partner);
-            chunk.late.push_back({s, Row{}});
-            if (!begin(list, s, t, problem_.dt, chunk.late.back().force, tally, partner) &&
+            chunk.late.push_back({s});
+            if (!begin(list, s, t, problem_.dt, chunk.late.back(), tally, partner) &&
                 chunk.stopped.status == Status::finished)
                 chunk.stopped = {Status::law_domain, at(list.first, k), -1, t.speed};
         };
@@ -135,7 +135,12 @@ class BedStep {
             with_law(LinearStep{});
         else
             with_law(PlasticStep{});
-        for (const Late& l : chunk.late) at(list.force, l.slot) += l.force;
+        for (const Late& l : chunk.late) {
+            tally.sliding[partner] +=
+                first_lane(-l.share * problem_.dt * dot(at(list.force, l.slot), l.slip));
+            at(list.force, l.slot) *= row(1 + l.share);
+            at(list.couple, l.slot) *= row(1 + l.share);
+        }
     }
 
     void add(const Contacts& list, int s, int i, real sign) {

@@ -89,9 +89,10 @@ struct Contacts {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(first, second, origin, slot, tier_end, active, actives, friction, rolling, law, limit, dent, free);
+        a(first, second, origin, slot, tier_end, active, actives, force, friction, rolling, law, limit, dent,
+          free);
         if constexpr (Archive::reads) { // what each step computes anew
-            force.resize(friction.size()), couple.resize(friction.size());
+            couple.resize(friction.size());
             if (rolls) roll.resize(friction.size());
         }
     }

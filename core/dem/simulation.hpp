@@ -167,15 +167,16 @@ class Simulation {
     // ---- neighbours
 
     void choose_reach(Bed& bed) {
-        static const real NB = getenv("NB") ? atof(getenv("NB")) : 80,
-                          NS = getenv("NS") ? atof(getenv("NS")) : 10;
-        // A build costs about as much as some ten scans, a scan as some ten steps.
+        // A build costs as much as some ten scans, and a scan as some steps: measured, and flat about these
+        // numbers.
+        constexpr real steps_of_build = 80, steps_of_scan = 9;
         real smallest = infinity;
         for (int i = 0; i < bed.particles(); ++i) smallest = std::fmin(smallest, at(bed.position, i)[3]);
         const real rate = steps_since_ > 0 ? bed.since_build / static_cast<real>(steps_since_) : 0;
-        bed.reach = rate > 0 ? std::clamp(2 * rate * NB, 0.02 * smallest, 0.6 * smallest) : 0.2 * smallest;
-        bed.skin = std::fmin(0.4 * bed.reach,
-                             rate > 0 ? std::fmax(2 * rate * NS, 2e-3 * smallest) : 0.1 * bed.reach);
+        bed.reach = rate > 0 ? std::clamp(2 * rate * steps_of_build, 0.02 * smallest, 0.6 * smallest)
+                             : 0.2 * smallest;
+        bed.skin = std::fmin(0.4 * bed.reach, rate > 0 ? std::fmax(2 * rate * steps_of_scan, 2e-3 * smallest)
+                                                       : 0.1 * bed.reach);
     }
 
     // The next step may bring together what is on no list.
@@ -307,36 +308,41 @@ class Simulation {
         return false;
     }
 
+    // What all need to know of the step to come; the leader's.
+    void prepare() {
+        load_values();
+        reference_.clear();
+        for (const Bed& bed : beds_) reference_.push_back(bed.motion.velocity);
+        if (sampled()) records_.before(beds_);
+    }
+
+    // What follows from the forces of this step; the leader's.
+    void conclude(bool first, bool sample) {
+        find_modal_force();
+        if (!first) kick();
+        modes_shown_ = modes_;
+        for (Bed& bed : beds_) bed.shown = bed.motion.displacement;
+        base_work(0.5);
+        if (sample) records_.take(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
+        base_work(0.5);
+        check();
+        body_before_ = body();
+        move_on();
+    }
+
     template <class Team> void run(Team& team, long until, const std::atomic<bool>& stop) {
+        if (team.leads()) prepare();
+        team.sync();
         while (step_ <= until && status_ == Status::finished && !halted_) {
             if (must_renew()) renew(team);
             const bool first = step_ == 0, sample = sampled();
-            if (team.leads()) {
-                load_values();
-                reference_.clear();
-                for (const Bed& bed : beds_) reference_.push_back(bed.motion.velocity);
-                if (sample) records_.before(beds_);
-            }
-            team.sync();
             each_chunk(team, [&](std::size_t b, Chunk& chunk) { steps_[b].forces(chunk, sample); });
             team.sync();
             advance_all(team, body(), first, sample);
             team.sync();
             if (team.leads()) {
-                find_modal_force();
-                if (!first) kick();
-                modes_shown_ = modes_;
-                for (Bed& bed : beds_) bed.shown = bed.motion.displacement;
-                if (sample) {
-                    base_work(0.5);
-                    records_.take(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
-                    base_work(0.5);
-                } else {
-                    base_work(1);
-                }
-                check();
-                body_before_ = body();
-                move_on();
+                conclude(first, sample);
+                prepare();
                 halted_ = stop;
             }
             team.sync();
@@ -380,6 +386,9 @@ public:
     // Goes on until the sample of step `until` is taken, or something stops it.
     void run(long until, int threads, const std::atomic<bool>& stop) {
         until = std::min(until, problem_.steps);
+        int chunks = 0;
+        for (const Bed& bed : beds_) chunks += bed.chunk_count();
+        threads = std::min(threads, chunks);
         halted_ = false;
         incoming_.assign(static_cast<std::size_t>(threads),
                          {beds_.size(), std::vector<std::pair<int, int>>{}});

@@ -20,7 +20,8 @@ struct Stopped {
 // like roots of the time since, which the trapezoidal rule does not see.
 struct Late {
     int slot;
-    Row force; // on the first, in the first step
+    real share = 0; // of the force of the first step, missed on top of it
+    Row slip{};     // of the first along the second
 };
 
 struct alignas(64) Tally {

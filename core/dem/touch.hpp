@@ -65,7 +65,7 @@ inline real missed_root(real theta) {
 }
 
 // Writes what the contact in slot k remembers. False when the speed is beyond the restitution law.
-inline bool begin(Contacts& list, int k, const Touch& t, real dt, Row& late, Tally& tally, Partner partner) {
+inline bool begin(Contacts& list, int k, const Touch& t, real dt, Late& late, Tally& tally, Partner partner) {
     const Encounter& e = *t.encounter;
     const Rebound r = rebound(e, t);
     // Since the touch, at this speed; of what overlaps from the start nothing is known.
@@ -86,12 +86,13 @@ inline bool begin(Contacts& list, int k, const Touch& t, real dt, Row& late, Tal
             const Memory now = law.damped(std::isnan(e.constant_zeta) ? law.zeta(r.e) : e.constant_zeta);
             constexpr bool hertz = std::is_same_v<Law, HertzTsuji>;
             const real x = std::sqrt(std::sqrt(t.overlap)), theta = since / dt;
-            const real dashpot = law.force(now, x, t.speed) - law.force({}, x, 0);
-            const real lost =
-                dashpot * dt * (hertz ? missed_root(theta) / std::sqrt(std::sqrt(theta)) : theta - 0.5);
-            if (comes_late) {
-                late = t.normal * (-lost / dt);
-                tally.normal[partner] += first_lane(lost * t.speed);
+            const real force = law.force(now, x, t.speed), dashpot = force - law.force({}, x, 0);
+            if (comes_late && dashpot > 0) {
+                const real lost =
+                    dashpot * (hertz ? missed_root(theta) / std::sqrt(std::sqrt(theta)) : theta - 0.5);
+                late.share = lost / force;
+                late.slip = t.slip;
+                tally.normal[partner] += first_lane(lost * t.speed * dt);
             }
             const real share = hertz ? std::sqrt(5.0 / 6.0) : 1;
             const real drag = 2 * e.tangential_damping * share * now.zeta * std::sqrt(t.mass * tangential);
