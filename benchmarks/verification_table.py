@@ -46,10 +46,11 @@ def table() -> str:
         ]
         if item == "dem":
             parts.append(
-                "\nSteps are 1/2000 of a contact. Restitution, friction, plastic flow and one ball in one direction converge with"
-                " the square of the step; restitution of contacts that end at zero overlap with its power 5/4 (Hertz) or 1 (linear)."
-                " Balls that slip, roll or lie on a floor overlap with it, by some 0.03 % of the radius. The ball on a shaker keeps"
-                " a tenth of its speed, and so a hundredth of the energy, at each impact.\n"
+                "\nSteps are 1/2000 of a contact. Restitution, friction, plastic flow and one ball in one direction"
+                " converge with the square of the step; restitution of contacts that end at zero overlap with its power"
+                " 5/4 (Hertz) or 1 (linear). Balls that slip, roll or lie on a floor overlap with it, by some 0.03 % of"
+                " the radius. The ball on a shaker keeps a tenth of its speed, and so a hundredth of the energy, at each"
+                " impact.\n"
             )
         if item == "maps":
             parts.append(
