@@ -22,7 +22,6 @@ from rattlebox.results.snapshots import SnapshotFile, Snapshots
 
 from .long_run import bits, case
 
-SHOWN = pytest.mark.xfail(strict=True, reason="state() after restore")
 SCRIPT = Path(__file__).with_name("long_run.py")
 
 
@@ -62,7 +61,6 @@ def test_runs_that_are_stopped_again_and_again_have_the_same_bits(
     assert bits(run) == whole
 
 
-@SHOWN
 def test_snapshots_of_runs_that_were_stopped_are_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Snapshots before and after a stop are those of a run that nothing stopped."""
     files = {"checkpoint": tmp_path / "run.checkpoint", "snapshots": tmp_path / "run.vtkhdf"}
@@ -80,7 +78,6 @@ def same_snapshots(first: Path, second: Path) -> bool:
     return all(np.array_equal(vars(a)[name], vars(b)[name]) for a, b in pairs for name in vars(a))
 
 
-@SHOWN
 def test_a_run_that_is_over_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Run again, a run that has reached its end comes back at once and is the same."""
     run = rb.simulate(case(), checkpoint=tmp_path / "run.checkpoint", snapshots=tmp_path / "run.vtkhdf")
@@ -295,3 +292,22 @@ def test_runs_without_particles_take_no_files(tmp_path: Path) -> None:
         rb.Case(structure=rb.SDOF(mass=1, stiffness=1e4), duration="1 ms", output=rb.Output(snapshots=5))
     with pytest.raises(rb.CaseError, match=r'there is no file for them\n  try: snapshots="run\.vtkhdf"'):
         rb.simulate(case())
+
+
+def test_the_command_goes_on(tmp_path: Path) -> None:
+    """Stopped by Ctrl-C, the command says how to go on; given again it finishes, and leaves results but no checkpoint."""
+    case(duration="1 s").to_file(tmp_path / "case.toml")
+    command = [sys.executable, "-m", "rattlebox.cli", "run", "case.toml", "--no-figures"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    while not (tmp_path / "out/run.checkpoint").exists():
+        time.sleep(0.01)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate()[1]
+    assert process.returncode == 130
+    assert "Run again, it goes on from out/run.checkpoint." in said
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "going on from out/run.checkpoint" in done.stderr
+    assert "written to out: run.nc, run.vtkhdf" in done.stdout
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"run.nc", "run.vtkhdf"}
+    assert len(Snapshots(tmp_path / "out/run.vtkhdf")) == 11

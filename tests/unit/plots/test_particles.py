@@ -1,0 +1,223 @@
+"""Pictures and films of particles: what is seen, where, and without PyVista too."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import rattlebox as rb
+from rattlebox.cli.main import main
+from rattlebox.model.cavities import Cavity
+from rattlebox.plots.particles import VIEW, film_particles, outline, plot_particles
+from rattlebox.plots.spheres import draw_spheres
+
+EXTENT = (-2.0, 2.0, -1.0, 1.0)
+RED, BLUE = [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]
+
+
+@cache
+def renders() -> bool:
+    """Whether PyVista is here and can draw without a screen; where it cannot, it may end the process."""
+    script = "import pyvista as p; a = p.Plotter(off_screen=True); a.add_mesh(p.Sphere()); a.screenshot()"
+    return subprocess.run([sys.executable, "-c", script], capture_output=True, timeout=120, check=False).returncode == 0
+
+
+@pytest.fixture(params=["plain", "pyvista"])
+def renderer(request: pytest.FixtureRequest) -> Any:
+    """Both ways to draw."""
+    if request.param == "pyvista" and not renders():
+        pytest.skip("PyVista is not here or cannot draw: python -m pip install 'rattlebox[3d]', and a Mesa library")
+    return request.param
+
+
+def picture(places: Any, radii: Any, colours: Any, renderer: Any) -> Any:
+    """Draw spheres, 400 pixels wide."""
+    return draw_spheres(np.array(places, float), np.array(radii), np.array(colours), EXTENT, 400, renderer)
+
+
+def test_a_sphere_is_a_disc_of_its_size_and_place(renderer: Any) -> None:
+    """A sphere covers a disc of its radius at its place, lit from the upper left, on a transparent ground."""
+    drawn = picture([[1.0, 0.25, 0.0]], [0.5], [RED], renderer)
+    assert drawn.shape == (200, 400, 4)
+    cover = drawn[..., 3] / 255.0
+    assert cover.sum() == pytest.approx(np.pi * 50**2, rel=0.01)
+    rows, columns = np.indices(cover.shape)
+    assert (cover * columns).sum() / cover.sum() == pytest.approx(299.5, abs=0.5)
+    assert (cover * rows).sum() / cover.sum() == pytest.approx(74.5, abs=0.5)
+    assert drawn[50, 280, 0] > 1.5 * drawn[100, 320, 0]
+    assert drawn[75, 300, 1] < 30
+
+
+def test_the_nearer_sphere_is_seen(renderer: Any) -> None:
+    """Of two spheres in line the one that is nearer hides the other, in whatever order they are drawn."""
+    for order in ([0, 1], [1, 0]):
+        places, colours = np.array([[0, 0, 1.0], [0, 0, -1.0]])[order], np.array([RED, BLUE])[order]
+        middle = picture(places, [0.5, 0.5], colours, renderer)[100, 200]
+        assert middle[0] > 100 > middle[2]
+
+
+def test_both_ways_show_the_same() -> None:
+    """PyVista and the plain way cover the same pixels with nearly the same colours."""
+    if not renders():
+        pytest.skip("PyVista is not here or cannot draw: python -m pip install 'rattlebox[3d]', and a Mesa library")
+    generator = np.random.default_rng(1)
+    places = generator.uniform([-2, -1, -1], [2, 1, 1], (60, 3))
+    spheres = places, generator.uniform(0.05, 0.2, 60), generator.uniform(0.2, 0.8, (60, 3))
+    plain, pyvista = (picture(*spheres, way) / 255.0 for way in ("plain", "pyvista"))
+    assert np.abs(plain[..., 3] - pyvista[..., 3]).mean() < 0.01
+    both = (plain[..., 3] == 1) & (pyvista[..., 3] == 1)
+    assert np.median(np.abs(plain - pyvista)[both]) < 0.03
+
+
+@pytest.mark.parametrize(
+    ("cavity", "lines"),
+    [
+        (rb.Box(size=(1, 2, 3)), 12),
+        (rb.Cylinder(radius=1, length=2), 6),
+        (rb.Cylinder(radius=1, length=2, axis=tuple(VIEW[2])), 6),
+        (rb.SphericalCavity(radius=1), 1),
+    ],
+)
+def test_outlines_lie_on_the_walls(cavity: Cavity, lines: int) -> None:
+    """Every line of an outline lies on a wall, and what is shown is as large as the cavity."""
+    drawn = outline(cavity)
+    assert len(drawn) == lines
+    for line in drawn:
+        np.testing.assert_allclose(cavity.depth(line), 0, atol=1e-12)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Return a run with two cavities and the path of its snapshots."""
+    options: dict[str, Any] = {
+        "particles": rb.Particles(material="glass", diameter="4 mm", count=20),
+        "contact": rb.Tsuji(restitution=0.7),
+        "softening": 1000,
+    }
+    case = rb.Case(
+        structure=rb.SDOF(mass="0.1 kg", stiffness="10 kN/m", velocity="0.5 m/s"),
+        dampers=[
+            rb.ParticleDamper(name="box", cavity=rb.Box(size=("20 mm", "16 mm", "12 mm")), **options),
+            rb.ParticleDamper(name="can", cavity=rb.Cylinder(diameter="20 mm", length="20 mm"), **options),
+        ],
+        duration="20 ms",
+        output=rb.Output(rate="1 kHz", snapshots=5),
+    )
+    folder = tmp_path_factory.mktemp("run")
+    result = rb.simulate(case, snapshots=folder / "run.vtkhdf")
+    result.save(folder / "run.nc")
+    return result, folder / "run.vtkhdf"
+
+
+def test_a_figure_has_a_panel_for_each_cavity(run: Any) -> None:
+    """Panels tell the cavity and the time, one colour bar tells the speed, and balls are inside the outline."""
+    for of in (run[0], rb.Snapshots(run[1])):
+        figure = plot_particles(of, size="column", renderer="plain")
+        *panels, bar = figure.axes
+        assert [axes.get_title(loc="left") for axes in panels] == ["box, 20 ms", "can, 20 ms"]
+        assert bar.get_ylabel() == "Speed (mm/s)"
+        for axes in panels:
+            image = axes.get_images()[0]
+            rows, columns = np.nonzero(image.get_array()[..., 3])
+            left, right, bottom, top = image.get_extent()
+            height, width = image.get_array().shape[:2]
+            lines = np.concatenate([line.get_xydata() for line in axes.lines[:-1]])
+            across = left + (right - left) * np.array([columns.min(), columns.max() + 1]) / width
+            upwards = top - (top - bottom) * np.array([rows.max() + 1, rows.min()]) / height
+            for seen, shown in zip((across, upwards), lines.T, strict=True):
+                pixel = (right - left) / width
+                assert shown.min() - 2 * pixel < seen[0] < seen[1] < shown.max() + 2 * pixel
+
+
+def test_films_have_a_picture_for_each_snapshot(run: Any, tmp_path: Path) -> None:
+    """A GIF has as many pictures as there are snapshots, and they differ."""
+    path = film_particles(rb.Snapshots(run[1]), tmp_path / "film.gif", rate=10, renderer="plain")
+    with Image.open(path) as film:
+        assert film.n_frames == 5
+        assert film.info["duration"] == 100
+        frames = []
+        for number in range(5):
+            film.seek(number)
+            frames.append(film.convert("RGB").tobytes())
+    assert len(set(frames)) == 5
+    with pytest.raises(ValueError, match=r"a film is \.gif or \.mp4"):
+        film_particles(rb.Snapshots(run[1]), tmp_path / "film.avi")
+
+
+def test_films_for_talks(run: Any, tmp_path: Path) -> None:
+    """An MP4 is written where imageio-ffmpeg is installed."""
+    pytest.importorskip("imageio_ffmpeg", reason="no imageio-ffmpeg: python -m pip install 'rattlebox[3d]'")
+    path = film_particles(rb.Snapshots(run[1]), tmp_path / "film.mp4", renderer="plain")
+    assert path.read_bytes()[4:8] == b"ftyp"
+
+
+def answer(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: object
+) -> tuple[int | str | None, str, str]:
+    """Run the command plot; return its exit code, what it prints, and what it says."""
+    monkeypatch.setattr(sys, "argv", ["rattlebox", "plot", *map(str, arguments)])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    return stop.value.code or 0, *capsys.readouterr()
+
+
+def test_the_command_draws_and_films(
+    run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The command draws a run or a snapshot, films snapshots, and without PyVista says how to get it."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("rattlebox.plots.spheres.find_spec", lambda name: None)
+    get = "drawn without PyVista, which is faster: python -m pip install 'rattlebox[3d]'\n"
+    saved = run[1].with_suffix(".nc")
+    for arguments in ([saved, "--kind", "particles"], [run[1]], [run[1], "--number", 0]):
+        assert answer(monkeypatch, capsys, *arguments, "-o", "a.png", "--size", "column") == (
+            0,
+            f"{get}written: a.png\n",
+            "",
+        )
+    assert answer(monkeypatch, capsys, saved, "-o", "a.png") == (0, "written: a.png\n", "")
+    assert answer(monkeypatch, capsys, run[1], "-o", "a.gif") == (0, f"{get}written: a.gif\n", "")
+    assert Path("a.gif").read_bytes().startswith(b"GIF89a")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["run.nc", "-o", "a.gif"], "a film needs snapshots\n  try: run.vtkhdf"),
+        (["run.nc", "--number", "1"], "--number: a run has no snapshots\n  try: run.vtkhdf beside it"),
+        (
+            ["run.nc", "--kind", "impacts"],
+            "--kind impacts: there is no such kind here\n  known: energy, motion, particles",
+        ),
+        (["run.vtkhdf", "--number", "5"], "holds 5 snapshots, numbered from 0; there is no number 5"),
+        (["run.vtkhdf", "-o", "a.jpg"], "the ending must be one of .png, .svg, .pdf, .gif, .mp4"),
+        (["run.vtkhdf", "--size", "wide"], "--size wide: there is no such size"),
+    ],
+)
+def test_wrong_arguments_are_told(
+    options: list[str], said: str, run: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What does not fit is told with what does."""
+    monkeypatch.chdir(run[1].parent)
+    code, _, told = answer(monkeypatch, capsys, *options)
+    assert code == 2
+    assert said in told
+
+
+def test_films_without_the_extra_are_told(
+    run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without imageio-ffmpeg the command says how to get it, and what works without."""
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    code, _, told = answer(monkeypatch, capsys, run[1], "-o", tmp_path / "a.mp4")
+    assert (code, told) == (
+        2,
+        "error: MP4 needs imageio-ffmpeg\n  try: python -m pip install 'rattlebox[3d]', or -o film.gif\n",
+    )

@@ -1,0 +1,135 @@
+"""Snapshots of particles in VTKHDF files, as VTK itself reads them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.results.snapshots import Snapshots
+
+
+def case(**output: Any) -> rb.Case:
+    """Return balls in a kicked box, and in a can on the same structure that moves along z."""
+    beads = rb.Particles(material="glass", diameter="4 mm", count=9)
+    options: dict[str, Any] = {
+        "particles": beads,
+        "contact": rb.Tsuji(restitution=0.7),
+        "friction": 0.2,
+        "softening": 1000,
+    }
+    box = rb.ParticleDamper(name="box", cavity=rb.Box(size=("20 mm", "16 mm", "12 mm")), direction="x", **options)
+    can = rb.ParticleDamper(name="can", cavity=rb.Cylinder(diameter="20 mm", length="20 mm"), direction="z", **options)
+    return rb.Case(
+        structure=rb.SDOF(mass="0.1 kg", stiffness="10 kN/m", velocity="0.5 m/s"),
+        dampers=[box, can],
+        duration="20 ms",
+        output=rb.Output(rate="1 kHz", **output),
+    )
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """Return a run and the path of its snapshots, eleven of them."""
+    path = tmp_path_factory.mktemp("snapshots") / "run.vtkhdf"
+    return rb.simulate(case(snapshots=11), snapshots=path), path
+
+
+def test_snapshots_are_where_the_run_was(written: Any) -> None:
+    """Times, centres of mass, displacements and the last places and velocities are those of the run."""
+    run, path = written
+    found = Snapshots(path)
+    assert len(found) == 11
+    np.testing.assert_allclose(found.times, np.linspace(0, 0.02, 11), atol=run.arrays.figures["step"])
+    for frame, place in zip(found, np.searchsorted(run.arrays.time, found.times - 1e-9), strict=True):
+        np.testing.assert_allclose(frame.displacement, run.arrays.cavity_displacement[place], atol=1e-15)
+        for d in range(2):
+            here = frame.cavity == d
+            centre = frame.mass[here] @ frame.position[here] / frame.mass[here].sum() - frame.displacement[d]
+            np.testing.assert_allclose(centre, run.arrays.centre_of_mass[place, d], atol=1e-9)
+    last = found[-1]
+    np.testing.assert_array_equal(last.velocity, run.arrays.particle_velocity)
+    np.testing.assert_allclose(last.position - last.displacement[last.cavity], run.arrays.position, atol=1e-15)
+    assert found.case_toml == run.case_toml
+
+
+def test_vtk_reads_what_was_written(written: Any) -> None:
+    """VTK's own reader finds every time, point, field and the displacements of the cavities, which stand side by side."""
+    pytest.importorskip("vtkmodules", reason="VTK is not installed: python -m pip install 'rattlebox[3d]'")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+
+    _, path = written
+    found = Snapshots(path)
+    reader = vtkHDFReader()
+    assert reader.CanReadFile(str(path))
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    assert reader.GetNumberOfSteps() == 11
+    for step, frame in enumerate(found):
+        reader.SetStep(step)
+        reader.Update()
+        assert reader.GetTimeValue() == frame.time
+        cloud = reader.GetOutput()
+        assert cloud.GetNumberOfVerts() == 18
+        points = vtk_to_numpy(cloud.GetPoints().GetData())
+        aside = np.where(frame.cavity == 1, 1.25 * 0.02, 0.0)
+        np.testing.assert_allclose(points, frame.position + np.outer(aside, [1, 0, 0]), atol=1e-16)
+        for name in ("velocity", "spin", "radius", "mass", "cavity", "species"):
+            np.testing.assert_array_equal(vtk_to_numpy(cloud.GetPointData().GetArray(name)), getattr(frame, name))
+        moved = vtk_to_numpy(cloud.GetFieldData().GetArray("displacement"))
+        np.testing.assert_array_equal(moved, frame.displacement)
+        assert np.abs(moved[:, 1]).max() == 0
+
+
+def test_times_are_chosen(tmp_path: Path) -> None:
+    """Snapshots are taken at the steps nearest to the times that are given, each once; what is beyond the end is not."""
+    run = rb.simulate(case(snapshots=["0 s", "5 ms", "5.00001 ms", "1 s"]), snapshots=tmp_path / "run.vtkhdf")
+    found = Snapshots(tmp_path / "run.vtkhdf")
+    assert len(found) == 2
+    assert abs(found.times - [0, 0.005]).max() <= run.arrays.figures["step"] / 2
+
+
+def test_snapshots_do_not_change_the_run(written: Any) -> None:
+    """A run of which snapshots are taken has the bits of one of which none are."""
+    run, _ = written
+    plain = rb.simulate(case())
+    np.testing.assert_array_equal(plain.arrays.cavity_force, run.arrays.cavity_force)
+    np.testing.assert_array_equal(plain.arrays.position, run.arrays.position)
+
+
+@pytest.mark.parametrize(("content", "said"), [(None, "there is no file"), (b"notes", "is not an HDF5 file")])
+def test_other_files_are_refused(content: bytes | None, said: str, tmp_path: Path) -> None:
+    """A file that is missing or something else is told."""
+    path = tmp_path / "run.vtkhdf"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises((FileNotFoundError, ValueError), match=said):
+        Snapshots(path)
+
+
+def test_runs_are_no_snapshots(written: Any, tmp_path: Path) -> None:
+    """The netCDF file of a run, which is HDF5 too, holds no snapshots; and there are as many of them as there are."""
+    run, path = written
+    with pytest.raises(ValueError, match="holds no snapshots of particles"):
+        Snapshots(run.save(tmp_path / "run.nc"))
+    with pytest.raises(IndexError, match="holds 11 snapshots, numbered from 0; there is no number 11"):
+        Snapshots(path)[11]
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        (1, "two snapshots are the least"),
+        (True, "a number of snapshots"),
+        ("5 ms", "a list of times"),
+        ([-1.0], "negative"),
+    ],
+)
+def test_wrong_choices_are_told(value: Any, said: str) -> None:
+    """A choice of snapshots that makes no sense is refused."""
+    with pytest.raises(rb.CaseError, match=said):
+        rb.Output(snapshots=value)
