@@ -59,7 +59,10 @@ def plot_run(path: Path, out: Path, *, kind: str | None, number: int | None, siz
     except (ValueError, IndexError) as error:
         raise CaseError(str(error)) from None
     if (kind == "particles" or isinstance(of, Snapshots)) and usual_renderer() == "plain":
-        console.print("drawn without PyVista, which is faster: python -m pip install 'rattlebox\\[3d]'", soft_wrap=True)
+        console.print(
+            "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox\\[3d]'",
+            soft_wrap=True,
+        )
     console.print(f"written: {out}", soft_wrap=True)
 
 

@@ -121,7 +121,7 @@ def film_particles(
             from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped]
 
             mpl.rcParams["animation.ffmpeg_path"] = get_ffmpeg_exe()
-        scene = _Scene(list(snapshots), _cavities(snapshots.case_toml), size, renderer)
+        scene = _Scene(snapshots, _cavities(snapshots.case_toml), size, renderer)
         writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
         with writer.saving(scene.figure, os.fspath(path), dpi=scene.film_dpi):
             for number in range(len(snapshots)):
@@ -200,10 +200,16 @@ class _Scene:
     """A figure that shows one frame of several."""
 
     def __init__(
-        self, frames: Sequence[Frame], cavities: Sequence[tuple[str, Cavity]], size: Size, renderer: Renderer | None
+        self,
+        frames: Sequence[Frame] | Snapshots,
+        cavities: Sequence[tuple[str, Cavity]],
+        size: Size,
+        renderer: Renderer | None,
     ) -> None:
         self._frames, self._cavities, self._renderer = frames, cavities, renderer
-        speeds = np.concatenate([_speed(frame) for frame in frames])
+        told = [(_speed(frame), frame.displacement, frame.time) for frame in frames]
+        speeds = np.concatenate([speed for speed, _, _ in told])
+        self._moves, self._last = np.array([moves for _, moves, _ in told]), told[-1][2]
         self._scale = scaled(speeds, "m/s")
         top = float(np.quantile(speeds, 0.99)) if len(frames) > 1 else float(speeds.max())
         self._norm = Normalize(0.0, max(top, 1e-12) / self._scale.divisor)
@@ -222,7 +228,7 @@ class _Scene:
     def _extent(self, k: int) -> tuple[float, float, float, float]:
         """Edges of a panel that holds the cavity wherever it goes."""
         corners = np.concatenate(outline(self._cavities[k][1])) @ VIEW.T
-        moves = np.array([frame.displacement[k] for frame in self._frames]) @ VIEW.T
+        moves = self._moves[:, k] @ VIEW.T
         low, high = corners.min(axis=0) + moves.min(axis=0), corners.max(axis=0) + moves.max(axis=0)
         margin = 0.03 * float((high - low)[:2].max())
         return low[0] - margin, high[0] + margin, low[1] - 3 * margin, high[1] + margin
@@ -246,7 +252,7 @@ class _Scene:
         """Show a frame."""
         frame = self._frames[number]
         colours = _colours()(self._norm(_speed(frame) / self._scale.divisor))[:, :3]
-        time = scaled([self._frames[-1].time], "s")
+        time = scaled([self._last], "s")
         for k, panel in enumerate(self._panels):
             here = frame.cavity == k
             width = round(self.figure.get_figwidth() * min(self.figure.dpi, 300) * 0.85 / len(self._panels))

@@ -14,7 +14,7 @@ Renderer = Literal["pyvista", "plain"]
 LIGHT = np.array([-0.45, 0.65, 0.61])
 """Towards the light, in the picture: right, up, towards the viewer."""
 _AMBIENT, _DIFFUSE = 0.35, 0.7
-_MANY = 3000  # spheres, from which on each is small
+_FLAT = 0.3  # pixels that a sphere of triangles may miss at its rim
 _FINER = 2  # pixels are averaged over so many in each direction
 
 
@@ -106,8 +106,9 @@ def _pyvista(
     try:
         cloud = pyvista.PolyData(places)
         cloud["radius"], cloud["colour"] = radii, colours
-        fine = 2 if len(places) < _MANY else 1
-        ball = pyvista.Sphere(radius=1.0, theta_resolution=24 * fine, phi_resolution=16 * fine)
+        pixels = radii.max(initial=0.0) * width / (extent[1] - extent[0])
+        corners = int(np.clip(np.pi * np.sqrt(pixels / (2 * _FLAT)), 8, 64))
+        ball = pyvista.Sphere(radius=1.0, theta_resolution=corners, phi_resolution=corners)
         balls = cloud.glyph(geom=ball, scale="radius", orient=False, factor=1.0)
         plotter.add_mesh(
             balls, scalars="colour", rgb=True, smooth_shading=True, ambient=_AMBIENT, diffuse=_DIFFUSE, specular=0.25

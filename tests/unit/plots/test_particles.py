@@ -174,7 +174,7 @@ def test_the_command_draws_and_films(
     """The command draws a run or a snapshot, films snapshots, and without PyVista says how to get it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("rattlebox.plots.spheres.find_spec", lambda name: None)
-    get = "drawn without PyVista, which is faster: python -m pip install 'rattlebox[3d]'\n"
+    get = "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'\n"
     saved = run[1].with_suffix(".nc")
     for arguments in ([saved, "--kind", "particles"], [run[1]], [run[1], "--number", 0]):
         assert answer(monkeypatch, capsys, *arguments, "-o", "a.png", "--size", "column") == (
