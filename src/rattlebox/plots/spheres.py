@@ -14,7 +14,7 @@ Renderer = Literal["pyvista", "plain"]
 LIGHT = np.array([-0.45, 0.65, 0.61])
 """Towards the light, in the picture: right, up, towards the viewer."""
 _AMBIENT, _DIFFUSE = 0.35, 0.7
-_FLAT = 0.3  # pixels that a sphere of triangles may miss at its rim
+_FLAT = 0.1  # pixels that a sphere of triangles may miss at its rim
 _FINER = 2  # pixels are averaged over so many in each direction
 
 
