@@ -13,14 +13,15 @@ Renderer = Literal["pyvista", "plain"]
 
 LIGHT = np.array([-0.45, 0.65, 0.61])
 """Towards the light, in the picture: right, up, towards the viewer."""
+MOST_OF_TRIANGLES = 20_000
 _AMBIENT, _DIFFUSE = 0.35, 0.7
 _FLAT = 0.1  # pixels that a sphere of triangles may miss at its rim
 _FINER = 2  # pixels are averaged over so many in each direction
 
 
-def usual_renderer() -> Renderer:
-    """Return PyVista where it is installed."""
-    return "pyvista" if find_spec("pyvista") is not None else "plain"
+def usual_renderer(count: int = 0) -> Renderer:
+    """Return PyVista where it is installed and has not too many spheres to make of triangles."""
+    return "pyvista" if count <= MOST_OF_TRIANGLES and find_spec("pyvista") is not None else "plain"
 
 
 def draw_spheres(
@@ -46,7 +47,7 @@ def draw_spheres(
     width
         Of the picture in pixels.
     renderer
-        Default PyVista where it is installed.
+        Default PyVista where it is installed, up to some ten thousand spheres.
 
     Returns
     -------
@@ -59,7 +60,7 @@ def draw_spheres(
         When PyVista is asked for and not installed.
     """
     height = max(1, round(width * (extent[3] - extent[2]) / (extent[1] - extent[0])))
-    draw = _pyvista if (renderer or usual_renderer()) == "pyvista" else _plain
+    draw = _pyvista if (renderer or usual_renderer(len(places))) == "pyvista" else _plain
     return draw(places, radii, colours, extent, width, height)
 
 
