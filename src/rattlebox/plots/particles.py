@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import tomllib
 from collections.abc import Callable, Sequence
@@ -26,6 +27,7 @@ from .style import INK, PaperFigure, Size, paper, pen, scaled
 Array = NDArray[np.float64]
 
 FILMS = (".gif", ".mp4")
+_FILM_DPI: dict[Size, float] = {"column": 160.0, "page": 160.0, "slide": 110.0}
 
 _AZIMUTH, _HEIGHT = np.radians(-60.0), np.radians(18.0)
 _TOWARDS = np.array([np.cos(_HEIGHT) * np.cos(_AZIMUTH), np.cos(_HEIGHT) * np.sin(_AZIMUTH), np.sin(_HEIGHT)])
@@ -121,9 +123,12 @@ def film_particles(
             from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped]
 
             mpl.rcParams["animation.ffmpeg_path"] = get_ffmpeg_exe()
-        scene = _Scene(snapshots, _cavities(snapshots.case_toml), size, renderer)
+        dpi = _FILM_DPI[size]
+        scene = _Scene(snapshots, _cavities(snapshots.case_toml), size, renderer, dpi)
+        scene.figure.savefig(io.BytesIO(), dpi=dpi)
+        scene.figure.set_layout_engine("none")  # all pictures are laid out as the first
         writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
-        with writer.saving(scene.figure, os.fspath(path), dpi=scene.film_dpi):
+        with writer.saving(scene.figure, os.fspath(path), dpi=dpi):
             for number in range(len(snapshots)):
                 scene.show(number)
                 writer.grab_frame()
@@ -205,7 +210,9 @@ class _Scene:
         cavities: Sequence[tuple[str, Cavity]],
         size: Size,
         renderer: Renderer | None,
+        dpi: float = 300.0,
     ) -> None:
+        self._dpi = dpi
         self._frames, self._cavities, self._renderer = frames, cavities, renderer
         told = [(_speed(frame), frame.displacement, frame.time) for frame in frames]
         speeds = np.concatenate([speed for speed, _, _ in told])
@@ -217,7 +224,6 @@ class _Scene:
         sides = [(right - left, top - bottom) for left, right, bottom, top in extents]
         ratio = max(h for _, h in sides) / sum(w for w, _ in sides)
         self.figure = PaperFigure(size, min(0.86 * ratio + 0.1, 1.1))
-        self.film_dpi = 110 if size == "slide" else 160
         panels = self.figure.subplots(1, len(cavities), squeeze=False, width_ratios=[w for w, _ in sides])[0]
         self._panels = [self._panel(k, axes, extents[k]) for k, axes in enumerate(panels)]
         bar = self.figure.colorbar(ScalarMappable(self._norm, _colours()), ax=list(panels), aspect=28, pad=0.02)
@@ -255,7 +261,7 @@ class _Scene:
         time = scaled([self._last], "s")
         for k, panel in enumerate(self._panels):
             here = frame.cavity == k
-            width = round(self.figure.get_figwidth() * min(self.figure.dpi, 300) * 0.85 / len(self._panels))
+            width = round(self.figure.get_figwidth() * self._dpi * 0.85 / len(self._panels))
             panel.image.set_data(
                 draw_spheres(
                     frame.position[here] @ VIEW.T,
