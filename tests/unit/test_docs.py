@@ -16,6 +16,8 @@ PAGES = (
     "frequency_response",
     "loss_map",
     "lyapunov",
+    "particle_output",
+    "particle_dampers",
     "sensitivity",
     "sweep",
 )

@@ -215,7 +215,7 @@ def contact_limits(damper: ParticleDamper, table: ContactTable, speed: float, fr
             if lasts < duration:
                 duration, sizes = lasts, told
         at = "" if law == "linear" else f" at {speed:.3g} m/s"
-        rubs = ", with friction" if bound < 0.999 * BOUND * duration / damped else ""
+        rubs = ", with its friction" if bound < 0.5 * BOUND * duration / damped else ""
         what = f"contact of {' and '.join(entry.names)} ({sizes}){at}, {_time(duration)}{rubs}"
         yield Limit(duration, min(fraction * duration / damped, 0.5 * bound), bound, what, is_contact=True)
 
