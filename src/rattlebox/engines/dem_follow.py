@@ -66,8 +66,8 @@ class Journey:
             snapshots.create()
         elif snapshots.taken < before:
             raise CaseError(
-                f"{snapshots.path} lacks the {before} snapshots before the checkpoint\n"
-                "  try: put the file back, or remove the checkpoint to begin anew"
+                f"{snapshots.path} does not hold the {before} snapshots before the checkpoint\n"
+                "  try: put the file back and leave output.snapshots as it was, or remove the checkpoint to begin anew"
             )
 
     @property

@@ -207,7 +207,7 @@ def test_snapshots_that_are_gone_are_missed(tmp_path: Path, monkeypatch: pytest.
     rb.simulate(case(), **files)
     monkeypatch.undo()
     files["snapshots"].unlink()
-    with pytest.raises(rb.CaseError, match="lacks the 3 snapshots before the checkpoint\n  try: put the file back"):
+    with pytest.raises(rb.CaseError, match="does not hold the 3 snapshots before the checkpoint\n  try: put"):
         rb.simulate(case(), **files)
 
 
