@@ -21,18 +21,35 @@ ALIKE = rb.Normal(mean="4 mm", deviation="0.1 mm", smallest="3.9 mm", largest="4
 WIDE = rb.LogNormal(median="1.5 mm", spread=2.0, smallest="0.8 mm", largest="8 mm")
 
 
+SOFT = rb.Material(name="soft", density=2000, young=2e7, poisson=0.3)
+HARDER = rb.Material(name="harder", density=3000, young=2e8, poisson=0.2)
+
+
 def gas(
-    cavity: Any, sizes: Any, count: int, speed: float, *, structure: Any = None, gravity: float = 0.0, one: Any = None
+    cavity: Any,
+    sizes: Any,
+    count: int,
+    speed: float,
+    *,
+    structure: Any = None,
+    gravity: float = 0.0,
+    one: Any = None,
+    others: int = 0,
 ) -> Any:
-    """Return soft elastic spheres that fly about at random in a cavity; `one` of them with a velocity of its own."""
-    material = rb.Material(name="soft", density=2000, young=2e7, poisson=0.3)
+    """Return soft elastic spheres that fly about at random in a cavity.
+
+    `one` of them has a velocity of its own; `others` more are of a harder material.
+    """
+    kinds = [rb.Particles(material=SOFT, distribution=sizes, count=count)]
+    if others:
+        kinds.append(rb.Particles(material=HARDER, distribution=sizes, count=others))
     options: dict[str, Any] = {
-        "particles": rb.Particles(material=material, distribution=sizes, count=count),
+        "particles": kinds,
         "cavity": cavity,
         "contact": rb.Tsuji(restitution=1.0),
         "gravity": (0, 0, -gravity),
     }
-    velocities = speed * np.random.default_rng(1).standard_normal((count, 3))
+    velocities = speed * np.random.default_rng(1).standard_normal((count + others, 3))
     if one is not None:
         velocities[7] = one
     places = rb.ParticleDamper(**options).start.position
@@ -45,10 +62,10 @@ def follow(case: Any, checks: int = 40) -> dict[str, int]:
     damper = case.dampers[0]
     dem, last = cases.dem_of(case)
     contents, walls = damper.contents, damper.cavity.walls()
-    (species,) = damper.particles
-    pair = 2 / 3 * species.material.young / (1 - species.material.poisson**2)
+    soft = [(1 - each.material.poisson**2) / each.material.young for each in damper.particles]
+    compliance = np.array(soft)[contents.species]
+    inside, wall = 4 / 3 / (compliance[:, None] + compliance[None]), 4 / 3 / (compliance + soft[0])
     n = contents.radius.size
-    inside, wall = np.full((n, n), pair), np.full(n, pair)
     every = max(1, round(last / case.even_samples()))
     seen: set[tuple[int, int]] = set()
     for k in range(1, checks + 1):
@@ -101,6 +118,12 @@ def test_nothing_is_missed_among_many_sizes(name: str) -> None:
     """So it is where the largest sphere is ten times the smallest."""
     seen = follow(gas(CAVITIES[name], WIDE, 110, 1.0), checks=200)
     assert seen["pairs"] > 40 and seen["walls"] > 40
+
+
+def test_each_pair_has_its_own_stiffness() -> None:
+    """Spheres of two materials push each other with the modulus of both, and the wall, which is of the first one."""
+    seen = follow(gas(CAVITIES["box"], ALIKE, 80, 1.0, others=70), checks=150)
+    assert seen["pairs"] > 100 and seen["walls"] > 50
 
 
 def test_nothing_is_missed_by_the_fast() -> None:

@@ -88,6 +88,32 @@ def test_restitution_converges_at_the_stated_order(make: Callable[..., Any], end
         assert math.log2(coarse / fine) / 4 == pytest.approx(order, abs=0.25)
 
 
+@pytest.mark.parametrize("share", [0.2, 1.0, 5.0])
+@pytest.mark.parametrize("e", [0.3, 0.9])
+def test_wall_counts_with_the_mass_behind_it(e: float, share: float) -> None:
+    """A free cavity of a fifth to five times the ball's mass rebounds as asked for: a wall has the mass of its structure."""
+    ball, speed, per_contact = Ball(5e-3), 1.0, 160
+    together = ball.mass * share / (1 + share)
+    time = cases.HERTZ_TIME * (together / cases.stiffness(ball)) ** 0.4 * speed**-0.2
+    for contact in (hertz(e, "zero_force"), linear(e, "zero_force", time, together)):
+        case = cases.head_on(
+            ball,
+            None,
+            speed,
+            dt=time / per_contact,
+            phase=0.6,
+            lasts=4 * time,
+            contact=contact,
+            structure=rb.SDOF(mass=share * ball.mass, stiffness=0),
+        )
+        arrays = cases.run(case).arrays
+        after = arrays.velocity[-1, 0] - arrays.particle_velocity[0, 0]
+        assert after == pytest.approx(e * speed, abs=2.9 / per_contact**2)
+        assert ball.mass * (arrays.particle_velocity[0, 0] + share * arrays.velocity[-1, 0]) == pytest.approx(
+            ball.mass * speed, rel=1e-12
+        )
+
+
 STEEL = rb.materials()["steel"]
 
 
