@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -95,9 +94,9 @@ class Checkpoint:
                     g: {name: file[f"{g}.{name}"] for h, name in names if g == h} for g in ("records", "position")
                 }
                 state = file["state"]
-        except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
-            if isinstance(error, CaseError):
-                raise
+        except (CaseError, OSError, MemoryError):
+            raise
+        except Exception:
             raise CaseError(f"{self.path} is not a whole checkpoint\n  try: another file, or remove this one") from None
         positions = tuple(groups["position"][str(k)] for k in range(len(groups["position"])))
         self.time = about["time"]

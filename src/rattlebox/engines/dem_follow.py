@@ -110,7 +110,9 @@ class Journey:
             if not self._run(last if shot is None else shot, last, progress):
                 return False
             if shot is not None and self._snapshots is not None and not self._dem.status:
-                self._snapshots.take(self._shots.index(shot), self._dem.state())
+                state = self._dem.state()
+                contacts = [self._dem.contacts(k) for k in range(len(state["cavities"]))]
+                self._snapshots.take(self._shots.index(shot), state, contacts)
         return True
 
     def _run(self, until: int, last: int, progress: Callable[[int, int], object] | None) -> bool:

@@ -146,6 +146,7 @@ def _end(run: GranularRun) -> Frame:
         position=arrays.position + displacement[arrays.particle_damper],
         velocity=arrays.particle_velocity,
         spin=arrays.spin,
+        push=np.zeros_like(arrays.radius),
         radius=arrays.radius,
         mass=arrays.mass,
         cavity=arrays.particle_damper,

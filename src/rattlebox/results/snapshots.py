@@ -8,7 +8,7 @@ process, the snapshots before are there.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ FORMAT = 1
 """Number of what is said beside the VTKHDF; files with a higher one are refused."""
 
 _ROOT = "VTKHDF"
-_MOVING = ("velocity", "spin")
+_MOVING = {"velocity": (3,), "spin": (3,), "push": ()}
 _FIXED = ("radius", "mass", "cavity", "species")
 _LOST = "make room and give the same call again, with fewer snapshots or another folder"
 
@@ -38,6 +38,8 @@ class Frame:
         [s].
     position, velocity, spin : (N, 3) float
         From the rest place of the centre of the particle's own cavity [m], relative to the base [m/s], [rad/s].
+    push : (N,) float
+        Sum of the magnitudes of the forces that touch it [N]; where it is large, force chains are.
     radius, mass : (N,) float
         [m], [kg].
     cavity, species : (N,) int
@@ -50,6 +52,7 @@ class Frame:
     position: FloatArray
     velocity: FloatArray
     spin: FloatArray
+    push: FloatArray
     radius: FloatArray
     mass: FloatArray
     cavity: IntArray
@@ -124,8 +127,8 @@ class SnapshotFile:
             kept["PointOffsets"] = every * count
             kept["CellOffsets"] = np.zeros((steps, 4), np.int64)
             kept["ConnectivityIdOffsets"] = np.zeros((steps, 4), np.int64)
-            for field in _MOVING:
-                root.create_dataset(f"PointData/{field}", (steps * count, 3), "f8")
+            for field, shape in _MOVING.items():
+                root.create_dataset(f"PointData/{field}", (steps * count, *shape), "f8")
                 kept[f"PointDataOffsets/{field}"] = every * count
             for field in _FIXED:
                 root[f"PointData/{field}"] = self._fixed[field]
@@ -150,15 +153,15 @@ class SnapshotFile:
         same = found.numbers == self._numbers and np.array_equal(found.planned, self._times)
         return len(found) if same else 0
 
-    def take(self, number: int, state: Mapping[str, Any]) -> None:
+    def take(self, number: int, state: Mapping[str, Any], contacts: Sequence[Mapping[str, Any]]) -> None:
         """Add a snapshot.
 
         Parameters
         ----------
         number
             Which one, from 0; those before it are there.
-        state
-            As the core gives it.
+        state, contacts
+            As the core gives them, contacts for each cavity.
 
         Raises
         ------
@@ -167,7 +170,10 @@ class SnapshotFile:
         """
         import h5py
 
-        cavities = state["cavities"]
+        cavities = [
+            {**cavity, "push": _pushes(touching, len(cavity["position"]))}
+            for cavity, touching in zip(state["cavities"], contacts, strict=True)
+        ]
         displacement = np.array([each["displacement"] for each in cavities])
         placed = [each["position"] + place for each, place in zip(cavities, self._places, strict=True)]
         # Without a lock, so that others may look at the file during the run.
@@ -181,6 +187,13 @@ class SnapshotFile:
             root["FieldData/displacement"][number * len(cavities) : (number + 1) * len(cavities)] = displacement
             file.flush()
             root["Steps"].attrs.modify("NSteps", max(number + 1, int(root["Steps"].attrs["NSteps"])))
+
+
+def _pushes(touching: Mapping[str, Any], count: int) -> FloatArray:
+    """Sum of the forces on each particle, by magnitude, (count,); walls are numbered after the particles."""
+    force = np.linalg.norm(touching["force"], axis=1)
+    sides = np.concatenate([touching["first"], touching["second"]])
+    return np.asarray(np.bincount(sides, np.tile(force, 2), minlength=count)[:count])
 
 
 class Snapshots:

@@ -56,6 +56,21 @@ def test_snapshots_are_where_the_run_was(written: Any) -> None:
     assert found.case_toml == run.case_toml
 
 
+def test_pushes_are_the_forces_of_contacts(tmp_path: Path) -> None:
+    """Two balls at rest on each other: the upper one is pressed by its weight, the lower one from above and below."""
+    steel = rb.Particles(material="steel", diameter="10 mm")
+    pile = rb.ParticleDamper(
+        particles=steel,
+        cavity=rb.Cylinder(diameter="10.02 mm", length="30 mm"),
+        contact=rb.Linear(contact_time="1 ms", restitution=0.1),
+        packing=rb.Positions(positions=[(0.0, 0.0, -9.9e-3), (0.0, 0.0, 0.2e-3)]),
+    )
+    still = rb.Case(structure=rb.Fixed(), damper=pile, duration="0.3 s", output=rb.Output(snapshots=["0.3 s"]))
+    rb.simulate(still, snapshots=tmp_path / "run.vtkhdf")
+    frame = rb.Snapshots(tmp_path / "run.vtkhdf")[0]
+    assert frame.push / (9.81 * frame.mass[0]) == pytest.approx([3, 1], rel=1e-2)
+
+
 def test_vtk_reads_what_was_written(written: Any) -> None:
     """VTK's own reader finds every time, point, field and the displacements of the cavities, which stand side by side."""
     pytest.importorskip("vtkmodules", reason="VTK is not installed: python -m pip install 'rattlebox[3d]'")
@@ -78,7 +93,7 @@ def test_vtk_reads_what_was_written(written: Any) -> None:
         points = vtk_to_numpy(cloud.GetPoints().GetData())
         aside = np.where(frame.cavity == 1, 1.25 * 0.02, 0.0)
         np.testing.assert_allclose(points, frame.position + np.outer(aside, [1, 0, 0]), atol=1e-16)
-        for name in ("velocity", "spin", "radius", "mass", "cavity", "species"):
+        for name in ("velocity", "spin", "push", "radius", "mass", "cavity", "species"):
             np.testing.assert_array_equal(vtk_to_numpy(cloud.GetPointData().GetArray(name)), getattr(frame, name))
         moved = vtk_to_numpy(cloud.GetFieldData().GetArray("displacement"))
         np.testing.assert_array_equal(moved, frame.displacement)
