@@ -90,7 +90,7 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
             getattr(run.plot, name)().savefig(out / f"{name}.png")
             written.append(f"{name}.png")
     console.print(f"written to {out}: {', '.join(written)}")
-    if run.arrays.time[-1] == case.duration:
+    if run.status in ("finished", "ledger_open"):
         checkpoint.unlink(missing_ok=True)
     if not run.ok:
         console.print(f"[bold]{run.status}[/bold]: {run.message}")

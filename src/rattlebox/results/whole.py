@@ -57,5 +57,6 @@ def telling(path: Path, lost: str) -> Iterator[None]:
         if error.errno in (errno.ENOSPC, errno.EDQUOT):
             said = f"no space is left on the disk\n  try: {lost}"
         else:
-            said = f"it cannot be written: {error.strerror or error}\n  try: another folder"
+            why = error.strerror or str(error).removeprefix(f"cannot write {path}: ")
+            said = f"it cannot be written: {why}\n  try: another folder"
         raise OSError(error.errno or errno.EIO, said, str(path)) from error

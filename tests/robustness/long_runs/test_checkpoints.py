@@ -305,7 +305,7 @@ def test_runs_without_particles_take_no_files(tmp_path: Path) -> None:
 
 def test_the_command_goes_on(tmp_path: Path) -> None:
     """Stopped by Ctrl-C, the command says how to go on; given again it finishes, and leaves results but no checkpoint."""
-    case(duration="1 s").to_file(tmp_path / "case.toml")
+    case(duration="0.7 s").to_file(tmp_path / "case.toml")
     command = [sys.executable, "-m", "rattlebox.cli", "run", "case.toml", "--no-figures"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     while not (tmp_path / "out/run.checkpoint").exists():
@@ -320,3 +320,11 @@ def test_the_command_goes_on(tmp_path: Path) -> None:
     assert "written to out: run.nc, run.vtkhdf" in done.stdout
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"run.nc", "run.vtkhdf"}
     assert len(Snapshots(tmp_path / "out/run.vtkhdf")) == 11
+
+
+def test_folders_that_are_not_there_are_told(tmp_path: Path) -> None:
+    """A checkpoint or snapshots in a folder that does not exist are refused before anything is computed."""
+    for name in ("checkpoint", "snapshots"):
+        files = {"snapshots": tmp_path / "run.vtkhdf", name: tmp_path / "nowhere" / "file"}
+        with pytest.raises(OSError, match=r"cannot be written: there is no folder .*nowhere\n  try: another folder"):
+            rb.simulate(case(), **files)
