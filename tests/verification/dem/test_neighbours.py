@@ -143,3 +143,25 @@ def test_nothing_is_missed_in_a_moving_cavity() -> None:
     light = rb.SDOF(mass=0.02, stiffness=2000.0, velocity=2.0)
     seen = follow(gas(CAVITIES["box"], ALIKE, 150, 0.5, structure=light, gravity=9.81), checks=80)
     assert seen["pairs"] > 150 and seen["walls"] > 100
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20))
+def test_nothing_is_missed_in_random_cases(seed: int) -> None:
+    """Cavity, sizes, number, speed, gravity, structure and one fast sphere drawn at random: nothing is missed."""
+    rng = np.random.default_rng(seed)
+    sizes = WIDE if rng.random() < 0.3 else ALIKE
+    most = 110 if sizes is WIDE else 300
+    seen = follow(
+        gas(
+            CAVITIES[rng.choice(list(CAVITIES))],
+            sizes,
+            int(rng.integers(8, most)),
+            float(10 ** rng.uniform(-2, 1)),
+            structure=rb.SDOF(mass=rng.uniform(0.02, 1), stiffness=2000.0, velocity=rng.uniform(-2, 2)),
+            gravity=float(rng.choice([0.0, 9.81, 200.0])),
+            one=10 * rng.standard_normal(3) if rng.random() < 0.5 else None,
+        ),
+        checks=200,
+    )
+    assert seen["builds"] > 0
