@@ -136,8 +136,9 @@ class BedStep {
         else
             with_law(PlasticStep{});
         for (const Late& l : chunk.late) {
-            tally.sliding[partner] +=
-                first_lane(-l.share * problem_.dt * dot(at(list.force, l.slot), l.slip));
+            if (kind.rough)
+                tally.sliding[partner] +=
+                    first_lane(-l.share * problem_.dt * dot(at(list.force, l.slot), l.slip));
             at(list.force, l.slot) *= row(1 + l.share);
             at(list.couple, l.slot) *= row(1 + l.share);
         }
@@ -204,6 +205,11 @@ public:
         }
     }
 
+    real turning(int i) const { // twice the energy of spin
+        const Row w = at(bed_.spin, i);
+        return dot(w, w) * at(bed_.position, i)[3] / w[3];
+    }
+
     // Velocities at this step, and on to the next. `body` is what accelerates all alike, `body_before` in the
     // step before; displacements are counted from those that `reference` makes; the first step has no step
     // before.
@@ -244,11 +250,12 @@ public:
                     if constexpr (sampled) rotation += dot(w, w) * x[3] / w[3];
                     w += step * rate;
                     at(bed_.spin_rate, i) = rate;
+                } else if constexpr (sampled) {
+                    rotation += turning(i);
                 }
                 touched = now ? touched_before : 0;
             } else if constexpr (sampled) {
-                const Row w = at(bed_.spin, i);
-                rotation += dot(w, w) * x[3] / w[3];
+                rotation += turning(i);
             }
             const Row middle = v + half * a, weighed = v / u[3];
             momentum += weighed;

@@ -36,6 +36,7 @@ template <class T> struct Holding {
     Vector<T> force, spring; // at this step
     Vector<T> ahead;         // the spring half a step later
     T loss;                  // energy lost in this step
+    T stored;                // in the spring, mean of half a step before and after
 };
 
 // `before` is the spring's force half a step ago: half of the stretch of a step comes before its force is
@@ -58,9 +59,10 @@ RATTLEBOX_INLINE Holding<T> hold(const Vector<T>& before, const T& stiffness_bef
     const T slip = dot(velocity, velocity), drag = damping * root(slip);
     const T dashpot = damping * smaller(one, larger(limit - size, zero) / (drag + tiny));
     h.force = h.spring - dashpot * velocity;
-    // By the dashpot, by slipping, and by the spring's change of stiffness.
-    const T slid = part * (one - part) * size * size, held = half * eased * eased * was;
-    h.loss = dashpot * slip * dt + (slid - held) / stiffness + half * was / stiffness_before;
+    // What the spring took up in this step and does not hold: by slipping, and by its change of stiffness.
+    const T held = half * was / stiffness_before, holds = half * dot(h.ahead, h.ahead) / stiffness;
+    h.loss = dashpot * slip * dt + larger(held - holds - dot(h.spring, velocity) * dt, zero);
+    h.stored = half * (held + holds);
     return h;
 }
 

@@ -33,8 +33,8 @@ struct PairView {
         Meeting<Lanes> m;
         m.normal = (Lanes::all(1) / distance) * way;
         m.overlap = near - distance;
+        m.radius = smaller(a.w, b.w);
         m.velocity = first(bed.velocity, k).vector() - second(bed.velocity, k).vector();
-        m.radius = a.w;
         if constexpr (spins) {
             m.lever = distance / near;
             const auto u = first(bed.spin, k).vector(), v = second(bed.spin, k).vector();
@@ -192,8 +192,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, Partner pa
             force = force + h.force;
             const Vector<Lanes> couple = m.lever * cross(m.normal, h.force);
             store(Columns<8>{couple.x, couple.y, couple.z, zero}, rows(list.couple));
-            const Lanes half = Lanes::all(0.5);
-            if (how.sampled) tally.stored += weight * half * dot(h.spring, h.spring) / stiffness;
+            if (how.sampled) tally.stored += weight * h.stored;
             if constexpr (rolls) {
                 const auto past = columns(rows(list.rolling));
                 const Vector<Lanes> turning = m.spin - dot(m.spin, m.normal) * m.normal;
@@ -203,7 +202,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, Partner pa
                 store(Columns<8>{r.ahead.x, r.ahead.y, r.ahead.z, spring}, rows(list.rolling));
                 store(Columns<8>{r.force.x, r.force.y, r.force.z, zero}, rows(list.roll));
                 tally.rolling[partner] += weight * r.loss;
-                if (how.sampled) tally.stored += weight * half * dot(r.spring, r.spring) / spring;
+                if (how.sampled) tally.stored += weight * r.stored;
             }
         }
         store(Columns<8>{force.x, force.y, force.z, zero}, rows(list.force));

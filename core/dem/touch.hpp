@@ -92,7 +92,9 @@ inline bool begin(Contacts& list, int k, const Touch& t, real dt, Late& late, Ta
                     dashpot * (hertz ? missed_root(theta) / std::sqrt(std::sqrt(theta)) : theta - 0.5);
                 late.share = lost / force;
                 late.slip = t.slip;
-                tally.normal[partner] += first_lane(lost * t.speed * dt);
+                // The velocity of this step is already less than the one that the forces are computed from.
+                const real slowed = 0.5 * (force + lost) * dt / t.mass;
+                tally.normal[partner] += first_lane((lost * (t.speed - slowed) - dashpot * slowed) * dt);
             }
             const real share = hertz ? std::sqrt(5.0 / 6.0) : 1;
             const real drag = 2 * e.tangential_damping * share * now.zeta * std::sqrt(t.mass * tangential);

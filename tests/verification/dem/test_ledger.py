@@ -1,4 +1,4 @@
-"""The ledger of particles in space closes, and no channel ever gives back."""
+"""The ledger of particles in space closes at the second order of the step, and no channel ever gives back."""
 
 from typing import Any
 
@@ -39,14 +39,19 @@ def flown(law: str, dt: float, drive: str = "a start") -> Any:
     return cases.run(rb.Case(**parts, **DRIVES[drive]), closes=False)
 
 
-@pytest.mark.parametrize("law", [law for law in LAWS if law != "smooth"])
-@pytest.mark.parametrize("drive", DRIVES)
-def test_ledger_closes(law: str, drive: str) -> None:
-    """At all samples what was put in, lost and kept balances, whatever drives the particles and whatever they lose."""
-    assert flown(law, 1e-6, drive).closure < 2e-3
+@pytest.mark.parametrize(
+    ("law", "drive"), [*((law, "a start") for law in LAWS), *(("rough", drive) for drive in list(DRIVES)[1:])]
+)
+def test_ledger_closes_at_second_order(law: str, drive: str) -> None:
+    """At all samples what was put in, lost and kept balances, four times as well with half the step."""
+    coarse, fine = (flown(law, dt, drive).closure for dt in (4e-6, 5e-7))
+    assert coarse < 2e-3
+    # Without dashpots it is the order 5/2 to 3 of Verlet's energy.
+    order = np.log2(coarse / fine) / 3
+    assert order == pytest.approx(2.7 if law == "yielding" else 2, abs=0.35)
 
 
-@pytest.mark.parametrize("law", [law for law in LAWS if law != "smooth"])
+@pytest.mark.parametrize("law", LAWS)
 def test_no_channel_gives_back(law: str) -> None:
     """What is lost in each channel, among particles and at walls, is never negative and never falls."""
     arrays = flown(law, 4e-6).arrays
@@ -55,8 +60,8 @@ def test_no_channel_gives_back(law: str) -> None:
         assert lost.min() >= 0, name
         assert np.diff(lost, axis=0).min(initial=0) >= 0, name
     assert (arrays.normal_loss[-1].min() > 0) == (law != "yielding")
-    assert arrays.sliding_loss[-1].min() > 0
-    assert (arrays.rolling_loss[-1].min() > 0) == (law != "rough")
+    assert (arrays.sliding_loss[-1].min() > 0) == (law != "smooth")
+    assert (arrays.rolling_loss[-1].min() > 0) == (law not in ("smooth", "rough"))
 
 
 @pytest.mark.parametrize("law", ["Hertz", "linear"])
@@ -67,9 +72,9 @@ def test_ledger_of_one_impact_closes(law: str, e: float) -> None:
     contact = rb.Tsuji(restitution=e) if law == "Hertz" else rb.Linear(contact_time="10 us", restitution=e)
     for gap in np.linspace(1.00, 1.05, 7):
         damper = cases.damper(
-            [Ball(ball.radius, (0, 0, 0), (1, 0, 0))],
-            cavity=rb.Box(size=(6e-3 + 2e-3 * gap, 0.1, 0.1)),
-            contact=contact,
+            [Ball(ball.radius, (0, 0, 0), (1, 0, 0))], cavity=rb.Box(size=(6e-3 + 2e-3 * gap, 0.1, 0.1)), contact=contact
         )
-        run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration=4e-3, output=rb.Output(times=[4e-3])))
+        run = rb.simulate(
+            rb.Case(structure=rb.Fixed(), damper=damper, duration=4e-3, output=rb.Output(times=[4e-3]))
+        )
         assert run.ok and run.closure < 0.01
