@@ -5,7 +5,7 @@ rest      the same for beds that have settled, where contacts persist
 peers     one start, step and physics in this and other programs: `peers FOLDER [N ...]`, with FOLDER of their decks
           (make_initial.py, settle.py, in.lammps, in.lammps_legacy, in.liggghts); what is not installed is left out
 
-A cube of 3 mm spheres (E = 100 MPa, e = 0.75, mu = 0.3, fill 0.36), shaken along z with 10 g at 50 Hz, in steps of 14.549 us.
+A cube of 3 mm spheres (E = 100 MPa, e = 0.75, mu = 0.3, fill 0.36), shaken along z with 10 g at 50 Hz; steps of 14.549 us.
 Programs take turns; the median of three turns is told, and the ratio to it.
 """
 
@@ -103,7 +103,7 @@ def one(kind: str, count: str, cores: str, start: str = "") -> None:
 def scaling(kind: str = "shaken") -> Iterator[tuple[str, str]]:
     """Rate and memory over the number of particles."""
     for count in WINDOWS:
-        turns = [(apart("one", kind, str(count), "1", cores=1), apart("one", kind, str(count), "2", cores=2)) for _ in range(TURNS)]
+        turns = [tuple(apart("one", kind, str(count), str(n), cores=n) for n in (1, 2)) for _ in range(TURNS)]
         single = statistics.median(a["rate"] for a, _ in turns)
         ratio = statistics.median(b["rate"] / a["rate"] for a, b in turns)
         yield f"{count:,} particles, {kind}, one core", f"{single / 1e6:.1f} million particle-steps/s"
@@ -170,7 +170,10 @@ def _compared(where: Path, start: Path, count: int, cores: int) -> Iterator[tupl
     for name, each in rates.items():
         ratio = statistics.median(a / b for a, b in zip(own, each, strict=True))
         told = f"{statistics.median(each) / 1e6:.1f} million particle-steps/s"
-        yield f"{count:,} particles, {cores} core(s): {name}", told + ("" if name == "Rattlebox" else f", 1/{ratio:.2f}")
+        yield (
+            f"{count:,} particles, {cores} core(s): {name}",
+            told + ("" if name == "Rattlebox" else f", 1/{ratio:.2f}"),
+        )
 
 
 def _peer(where: Path, program: str, deck: str, count: int, cores: int) -> float:
@@ -189,7 +192,8 @@ def _peer(where: Path, program: str, deck: str, count: int, cores: int) -> float
 def main(arguments: list[str]) -> None:
     """Print a table of what was asked for."""
     if arguments and arguments[0] == "one":
-        return one(*arguments[1:])
+        one(*arguments[1:])
+        return
     jobs: dict[str, Callable[..., Iterator[tuple[str, str]]]] = {"scaling": scaling, "rest": rest, "peers": peers}
     names = arguments[:1] or ["scaling", "rest"]
     print("| what | measured |\n|---|---|")

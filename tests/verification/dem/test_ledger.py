@@ -72,9 +72,9 @@ def test_ledger_of_one_impact_closes(law: str, e: float) -> None:
     contact = rb.Tsuji(restitution=e) if law == "Hertz" else rb.Linear(contact_time="10 us", restitution=e)
     for gap in np.linspace(1.00, 1.05, 7):
         damper = cases.damper(
-            [Ball(ball.radius, (0, 0, 0), (1, 0, 0))], cavity=rb.Box(size=(6e-3 + 2e-3 * gap, 0.1, 0.1)), contact=contact
+            [Ball(ball.radius, (0, 0, 0), (1, 0, 0))],
+            cavity=rb.Box(size=(6e-3 + 2e-3 * gap, 0.1, 0.1)),
+            contact=contact,
         )
-        run = rb.simulate(
-            rb.Case(structure=rb.Fixed(), damper=damper, duration=4e-3, output=rb.Output(times=[4e-3]))
-        )
+        run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration=4e-3, output=rb.Output(times=[4e-3])))
         assert run.ok and run.closure < 0.01
