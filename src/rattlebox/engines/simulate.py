@@ -62,6 +62,7 @@ def simulate(
     OSError
         When a file cannot be written.
     """
+    _check_is_case(case)
     if case.particle_dampers:
         from rattlebox.engines.dem import simulate_dem
 
@@ -100,8 +101,7 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
     if isinstance(cases, Case):
         raise Hint("a list of cases is needed, not one case", "simulate(case)")
     for case in cases:
-        if not isinstance(case, Case):
-            raise Hint(f"a Case is needed, not {case!r:.60}", 'rb.Case.from_file("case.toml")')
+        _check_is_case(case)
     if any(case.particle_dampers for case in cases):
         return _in_space(cases, threads)
     packed = [pack(case) for case in cases]
@@ -112,6 +112,11 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
         if result["status"] == results[k]["status"]:
             results[k] = {**result, "seconds": results[k]["seconds"] + result["seconds"]}
     return [_run(case, result) for case, result in zip(cases, results, strict=True)]
+
+
+def _check_is_case(case: object) -> None:
+    if not isinstance(case, Case):
+        raise Hint(f"a Case is needed, not {case!r:.60}", 'rb.Case.from_file("case.toml")')
 
 
 def _in_space(cases: Sequence[Case], threads: int | None) -> list[Run]:
