@@ -53,6 +53,7 @@ struct Bed {
     std::vector<int> name, kind; // number in the case, material
     std::vector<Chunk> chunks;
 
+    real smallest = infinity;             // radius
     real reach = 0, skin = 0;             // neighbours closer than reach, candidates closer than skin
     real since_build = 0, since_scan = 0; // bound on how far a particle has moved since
     Motion motion;

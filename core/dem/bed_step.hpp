@@ -93,7 +93,7 @@ class BedStep {
 
     template <class View>
     void visit(Contacts& list, const View& view, int candidates, std::vector<int>& slot_of, const Kind& kind,
-               Partner partner, Chunk& chunk) {
+               Partner partner, bool sampled, Chunk& chunk) {
         Tally& tally = chunk.tally;
         const auto begun = [&](int k) {
             const int s = list.take();
@@ -123,11 +123,11 @@ class BedStep {
             using Law = decltype(law);
             const auto settled = [&](int k) { settle(list, k, partner, tally); };
             if (kind.rolls)
-                collide<Law, true, true>(list, view, kind.how, partner, tally, settled);
+                collide<Law, true, true>(list, view, kind.how, sampled, partner, tally, settled);
             else if (kind.rough)
-                collide<Law, true, false>(list, view, kind.how, partner, tally, settled);
+                collide<Law, true, false>(list, view, kind.how, sampled, partner, tally, settled);
             else
-                collide<Law, false, false>(list, view, kind.how, partner, tally, settled);
+                collide<Law, false, false>(list, view, kind.how, sampled, partner, tally, settled);
         };
         if (kind.normal == Kind::hertz)
             with_law(HertzStep{});
@@ -160,14 +160,13 @@ public:
 
     // Forces of all contacts that the chunk owns, and of its walls on its particles.
     void forces(Chunk& chunk, bool sampled) {
-        pair_.how.sampled = wall_.how.sampled = sampled;
         // Those of tier t were at least t / tiers of the skin apart.
         const real closed = 2 * bed_.since_scan / bed_.skin * Contacts::tiers * (1 + 1e-9);
         const int tier = std::min(static_cast<int>(closed), Contacts::tiers - 1);
         visit(chunk.pairs, PairView{bed_, chunk.pairs}, chunk.pairs.tier_end[tier], chunk.near_slot, pair_,
-              particle, chunk);
+              particle, sampled, chunk);
         visit(chunk.walls, WallView{bed_, chunk.walls, curved_}, chunk.walls.size(), chunk.wall_slot, wall_,
-              wall, chunk);
+              wall, sampled, chunk);
         Row total{}, moment{};
         const Contacts& list = chunk.walls;
         for (int a = 0; a < list.actives; ++a) {

@@ -135,12 +135,11 @@ struct Contacting {
     real dt = 0;
     bool mindlin = true;     // tangential stiffness grows with the contact
     bool never_pulls = true; // normal force
-    bool sampled = false;
 };
 
 template <class Law, bool rough, bool rolls, class View, class Settle>
-void collide(Contacts& list, const View& view, const Contacting& how, Partner partner, Tally& tally,
-             Settle&& settle) {
+void collide(Contacts& list, const View& view, const Contacting& how, bool sampled, Partner partner,
+             Tally& tally, Settle&& settle) {
     const int count = list.actives;
     const int* active = list.active.data();
     const Lanes zero = Lanes::all(0), one = Lanes::all(1), dt = Lanes::all(how.dt);
@@ -162,8 +161,8 @@ void collide(Contacts& list, const View& view, const Contacting& how, Partner pa
             lanes(overlap) = m.overlap;
             for (int l = 0; l < lane_count; ++l) {
                 Row& d = at(list.dent, s[l]);
-                if (how.sampled) d[0] = std::fmax(d[0], overlap[l]);
-                if (d[3] != d[0] && (overlap[l] < d[0] || how.sampled)) settle(k[l]);
+                if (sampled) d[0] = std::fmax(d[0], overlap[l]);
+                if (d[3] != d[0] && (overlap[l] < d[0] || sampled)) settle(k[l]);
             }
             dent = columns(rows(list.dent));
         }
@@ -173,7 +172,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, Partner pa
         tally.normal[partner] += weight * dt * (push.force - push.elastic) * rate;
         tally.deepest = larger(tally.deepest, m.overlap / m.radius);
         Vector<Lanes> force = (zero - push.force) * m.normal;
-        if (how.sampled) tally.stored += weight * Law::stored(law, dent, m.overlap);
+        if (sampled) tally.stored += weight * Law::stored(law, dent, m.overlap);
         if constexpr (Law::plastic) {
             dent.x = larger(dent.x, m.overlap);
             store(dent, rows(list.dent));
@@ -192,7 +191,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, Partner pa
             force = force + h.force;
             const Vector<Lanes> couple = m.lever * cross(m.normal, h.force);
             store(Columns<8>{couple.x, couple.y, couple.z, zero}, rows(list.couple));
-            if (how.sampled) tally.stored += weight * h.stored;
+            if (sampled) tally.stored += weight * h.stored;
             if constexpr (rolls) {
                 const auto past = columns(rows(list.rolling));
                 const Vector<Lanes> turning = m.spin - dot(m.spin, m.normal) * m.normal;
@@ -202,12 +201,12 @@ void collide(Contacts& list, const View& view, const Contacting& how, Partner pa
                 store(Columns<8>{r.ahead.x, r.ahead.y, r.ahead.z, spring}, rows(list.rolling));
                 store(Columns<8>{r.force.x, r.force.y, r.force.z, zero}, rows(list.roll));
                 tally.rolling[partner] += weight * r.loss;
-                if (how.sampled) tally.stored += weight * r.stored;
+                if (sampled) tally.stored += weight * r.stored;
             }
         }
         store(Columns<8>{force.x, force.y, force.z, zero}, rows(list.force));
     }
-    if (how.sampled) tally.contacts[partner] += count;
+    if (sampled) tally.contacts[partner] += count;
 }
 
 } // namespace rattlebox::dem

@@ -6,8 +6,7 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
-#include <thread>
+#include <stdexcept>
 
 #include "base/team.hpp"
 #include "dem/bed_step.hpp"
@@ -59,8 +58,13 @@ class Simulation {
         Kind k = entries.empty() ? Kind{} : kind_of(at(problem_.encounters, entries.front()));
         for (const int e : entries) {
             const Encounter& one = at(problem_.encounters, e);
-            k.rough |= one.friction > 0, k.rolls |= one.rolling > 0;
-            if (one.friction > 0) k.how.mindlin = one.shear > 0;
+            const Kind other = kind_of(one);
+            if (other.normal != k.normal || other.how.never_pulls != k.how.never_pulls)
+                throw std::invalid_argument("one list of contacts has one kind of normal law and one ending");
+            if (one.friction > 0 && k.rough && k.how.mindlin != (one.shear > 0))
+                throw std::invalid_argument("one list of contacts has one kind of tangential spring");
+            if (one.friction > 0) k.rough = true, k.how.mindlin = one.shear > 0;
+            k.rolls |= one.rolling > 0;
         }
         k.rough |= k.rolls;
         k.how.dt = problem_.dt;
@@ -76,6 +80,7 @@ class Simulation {
             Row u = at(cavity.velocity, i), w = at(cavity.spin, i);
             u[3] = 1 / m;
             w[3] = radius / at(cavity.inertia, i);
+            bed.smallest = smaller(bed.smallest, radius);
             bed.position.push_back(at(cavity.position, i));
             bed.velocity.push_back(u);
             bed.spin.push_back(w);
@@ -93,14 +98,12 @@ class Simulation {
 
     // ---- the structure
 
-    void place_cavities() {
-        for (Bed& bed : beds_) {
-            bed.motion = {};
-            for (std::size_t m = 0; m < modes_.size(); ++m) {
-                bed.motion.displacement += bed.cavity->shape[m] * modes_[m].q;
-                // As it will be after the last force has acted for half a step more.
-                bed.motion.velocity += bed.cavity->shape[m] * (modes_[m].p + h() * modal_force_[m]);
-            }
+    void place(Bed& bed) const {
+        bed.motion = {};
+        for (std::size_t m = 0; m < modes_.size(); ++m) {
+            bed.motion.displacement += bed.cavity->shape[m] * modes_[m].q;
+            // As it will be after the last force has acted for half a step more.
+            bed.motion.velocity += bed.cavity->shape[m] * (modes_[m].p + h() * modal_force_[m]);
         }
     }
 
@@ -123,13 +126,15 @@ class Simulation {
     }
 
     void find_modal_force() {
-        for (std::size_t m = 0; m < modes_.size(); ++m) {
-            real f = 0;
-            for (const Bed& bed : beds_) f += dot(bed.cavity->shape[m], force_on(bed));
-            for (std::size_t l = 0; l < load_value_.size(); ++l)
-                f += problem_.loads[l].shape[m] * load_value_[l];
-            modal_force_[m] = f;
+        std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
+        for (const Bed& bed : beds_) {
+            const Row force = force_on(bed);
+            for (std::size_t m = 0; m < modes_.size(); ++m)
+                modal_force_[m] += dot(bed.cavity->shape[m], force);
         }
+        for (std::size_t l = 0; l < load_value_.size(); ++l)
+            for (std::size_t m = 0; m < modes_.size(); ++m)
+                modal_force_[m] += problem_.loads[l].shape[m] * load_value_[l];
     }
 
     void kick() {
@@ -153,15 +158,11 @@ class Simulation {
         }
     }
 
-    // Work of the base on the particles of this step; half of it comes before the instant of the step.
-    void base_work(real part) {
-        Row momentum{};
-        for (const Bed& bed : beds_)
-            for (const Chunk& c : bed.chunks) momentum += c.tally.momentum;
+    // Half of the work of the base on the particles in this step.
+    void base_work(Row momentum) {
         for (std::size_t l = 0; l < load_value_.size(); ++l)
             if (problem_.loads[l].base)
-                base_work_[l] -=
-                    part * problem_.dt * load_value_[l] * dot(problem_.load_direction[l], momentum);
+                base_work_[l] -= h() * load_value_[l] * dot(problem_.load_direction[l], momentum);
     }
 
     // ---- neighbours
@@ -170,8 +171,7 @@ class Simulation {
         // A build costs as much as some ten scans, and a scan as some steps: measured, and flat about these
         // numbers.
         constexpr real steps_of_build = 80, steps_of_scan = 9;
-        real smallest = infinity;
-        for (int i = 0; i < bed.particles(); ++i) smallest = std::fmin(smallest, at(bed.position, i)[3]);
+        const real smallest = bed.smallest;
         const real rate = steps_since_ > 0 ? bed.since_build / static_cast<real>(steps_since_) : 0;
         bed.reach = rate > 0 ? std::clamp(2 * rate * steps_of_build, 0.02 * smallest, 0.6 * smallest)
                              : 0.2 * smallest;
@@ -270,36 +270,24 @@ class Simulation {
             }
     }
 
+    // On to the next step; particles may have moved as far from their neighbours as the fastest of them.
     void move_on() {
-        const std::vector<Row> before = displacements();
         kick();
         drift();
-        place_cavities();
-        for (std::size_t b = 0; b < beds_.size(); ++b) {
-            Bed& bed = beds_[b];
+        for (Bed& bed : beds_) {
+            const Motion before = bed.motion;
+            place(bed);
             real fastest = 0;
-            Row momentum{};
-            for (const Chunk& c : bed.chunks) {
-                fastest = larger(fastest, c.tally.drift);
-                momentum += c.tally.momentum;
-            }
-            if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity) || !(fastest < infinity))
-                status_ = Status::not_finite;
-            const Row apart = bed.motion.displacement - before[b] - reference_[b] * problem_.dt;
+            for (const Chunk& c : bed.chunks) fastest = larger(fastest, c.tally.drift);
+            // Displacements of particles are counted from that which the cavity's velocity makes.
+            const Row apart = bed.motion.displacement - before.displacement - before.velocity * problem_.dt;
             const real moved = problem_.dt * std::sqrt(fastest) + std::sqrt(dot(apart, apart));
             bed.since_build += moved;
             bed.since_scan += moved;
+            if (!(moved < infinity)) status_ = Status::not_finite;
         }
         ++step_;
         ++steps_since_;
-    }
-
-    std::vector<Row> reference_;
-
-    std::vector<Row> displacements() const {
-        std::vector<Row> all;
-        for (const Bed& bed : beds_) all.push_back(bed.motion.displacement);
-        return all;
     }
 
     bool must_renew() const {
@@ -311,8 +299,6 @@ class Simulation {
     // What all need to know of the step to come; the leader's.
     void prepare() {
         load_values();
-        reference_.clear();
-        for (const Bed& bed : beds_) reference_.push_back(bed.motion.velocity);
         if (sampled()) records_.before(beds_);
     }
 
@@ -321,10 +307,15 @@ class Simulation {
         find_modal_force();
         if (!first) kick();
         modes_shown_ = modes_;
-        for (Bed& bed : beds_) bed.shown = bed.motion.displacement;
-        base_work(0.5);
+        Row momentum{};
+        for (Bed& bed : beds_) {
+            bed.shown = bed.motion.displacement;
+            for (const Chunk& c : bed.chunks) momentum += c.tally.momentum;
+        }
+        if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity)) status_ = Status::not_finite;
+        base_work(momentum);
         if (sample) records_.take(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
-        base_work(0.5);
+        base_work(momentum);
         check();
         body_before_ = body();
         move_on();
@@ -378,10 +369,16 @@ public:
             neighbours_[b].start(bed);
             steps_.emplace_back(bed, problem_, pair, wall);
         }
-        place_cavities();
         modes_shown_ = modes_;
-        for (Bed& bed : beds_) bed.shown = bed.motion.displacement;
+        for (Bed& bed : beds_) {
+            place(bed);
+            bed.shown = bed.motion.displacement;
+        }
     }
+
+    // Beds point into the problem, and steps at beds.
+    Simulation(const Simulation&) = delete;
+    Simulation& operator=(const Simulation&) = delete;
 
     // Goes on until the sample of step `until` is taken, or something stops it.
     void run(long until, int threads, const std::atomic<bool>& stop) {
@@ -402,18 +399,17 @@ public:
     template <class Archive> void keep(Archive& archive) {
         archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, scans_, steps_since_,
                 modes_, modes_shown_, modal_force_, load_work_, base_work_, viscous_);
-        for (std::size_t b = 0; b < beds_.size(); ++b) {
-            beds_[b].keep(archive);
-        }
+        for (Bed& bed : beds_) bed.keep(archive);
     }
 
     // After the state has been read back.
-    void resume() { place_cavities(); }
+    void resume() {
+        for (Bed& bed : beds_) place(bed);
+    }
 
     const Problem& problem() const { return problem_; }
     const std::vector<ModeState>& modes() const { return modes_shown_; }
     Row body_shown() const { return body_before_; }
-    const std::vector<real>& modal_force() const { return modal_force_; }
     int stopped_cavity() const { return stopped_cavity_; }
     std::size_t memory() const {
         std::size_t bytes = 0;
