@@ -107,10 +107,10 @@ class BedStep {
         const auto ended = [&](int k) {
             const int s = at(list.slot, k);
             if (list.dents && at(list.dent, s)[3] != at(list.dent, s)[0]) settle(list, k, partner, tally);
-            const Row spring = at(list.friction, s); // what the springs still hold is lost
+            const Row spring = at(list.kept, s).friction; // what the springs still hold is lost
             if (kind.rough) tally.sliding[partner] += first_lane(0.5 * dot(spring, spring) / spring[3]);
             if (kind.rolls) {
-                const Row roll = at(list.rolling, s);
+                const Row roll = at(list.rolling, s).spring;
                 tally.rolling[partner] += first_lane(0.5 * dot(roll, roll) / roll[3]);
             }
             list.free.push_back(s);
@@ -136,20 +136,20 @@ class BedStep {
         else
             with_law(PlasticStep{});
         for (const Late& l : chunk.late) {
+            Kept& kept = at(list.kept, l.slot);
             if (kind.rough)
-                tally.sliding[partner] +=
-                    first_lane(-l.share * problem_.dt * dot(at(list.force, l.slot), l.slip));
-            at(list.force, l.slot) *= row(1 + l.share);
-            at(list.couple, l.slot) *= row(1 + l.share);
+                tally.sliding[partner] += first_lane(-l.share * problem_.dt * dot(kept.force, l.slip));
+            kept.force *= row(1 + l.share);
+            kept.couple *= row(1 + l.share);
         }
     }
 
     void add(const Contacts& list, int s, int i, real sign) {
         const Row both = row(sign);
         at(bed_.touched, i) |= touched_now;
-        at(bed_.force, i) += both * at(list.force, s);
-        if (pair_.rough) at(bed_.couple, i) += at(list.couple, s);
-        if (pair_.rolls) at(bed_.roll, i) += both * at(list.roll, s);
+        at(bed_.force, i) += both * at(list.kept, s).force;
+        if (pair_.rough) at(bed_.couple, i) += at(list.kept, s).couple;
+        if (pair_.rolls) at(bed_.roll, i) += both * at(list.rolling, s).torque;
     }
 
 public:
@@ -171,17 +171,17 @@ public:
         const Contacts& list = chunk.walls;
         for (int a = 0; a < list.actives; ++a) {
             const int k = at(list.active, a), s = at(list.slot, k), i = at(list.first, k);
-            const Row f = at(list.force, s);
+            const Row f = at(list.kept, s).force;
             at(bed_.touched, i) |= touched_now;
             at(bed_.force, i) += f;
-            if (wall_.rough) at(bed_.couple, i) += at(list.couple, s);
-            if (wall_.rolls) at(bed_.roll, i) += at(list.roll, s);
+            if (wall_.rough) at(bed_.couple, i) += at(list.kept, s).couple;
+            if (wall_.rolls) at(bed_.roll, i) += at(list.rolling, s).torque;
             total -= f;
             if (sampled) {
                 const Row place = at(bed_.position, i) - bed_.motion.displacement;
                 const Near near = nearest(at(bed_.cavity->walls, at(list.second, k)), place);
                 moment -= cross(place + near.normal * near.distance, f);
-                if (wall_.rolls) moment -= at(list.roll, s);
+                if (wall_.rolls) moment -= at(list.rolling, s).torque;
             }
         }
         chunk.tally.wall_force = total;

@@ -11,6 +11,20 @@ namespace rattlebox::dem {
 template <class T> T& at(std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
 template <class T> const T& at(const std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
 
+// What a contact remembers while it lasts: all of it together in memory.
+struct Kept {
+    Row force;    // on the first
+    Row couple;   // torque on the first over its radius; of a pair also that on the second over its own
+    Row friction; // force of the tangential spring on the first, and its stiffness
+    Row law;      // A, c, B, c_t: see contact_step.hpp
+    Row limit;    // mu, mu_r R*, k_r / k_t, c_r
+};
+
+struct KeptRolling {
+    Row torque; // on the first
+    Row spring; // torque of the rolling spring on the first, and its stiffness
+};
+
 struct Contacts {
     static constexpr int tiers = 4; // candidates by distance at the last scan
     static constexpr int none = -1;
@@ -24,16 +38,10 @@ struct Contacts {
     int actives = 0;
 
     // Memory of those that touch, by slot.
-    std::vector<Row> force; // on the first
-    std::vector<Row>
-        couple; // torque on the first over its radius; of a pair also that on the second over its own
-    std::vector<Row> roll;     // rolling torque on the first; with rolling resistance only
-    std::vector<Row> friction; // force of the tangential spring on the first, and its stiffness
-    std::vector<Row> rolling;  // torque of the rolling spring on the first, and its stiffness
-    std::vector<Row> law;      // A, c, B, c_t: see contact_step.hpp
-    std::vector<Row> limit;    // mu, mu_r R*, k_r / k_t, c_r
-    std::vector<Row> dent;     // of a plastic law: deepest overlap, stiffness and origin of the curve that
-                               // unloads, and the deepest overlap that this curve is for
+    std::vector<Kept> kept;
+    std::vector<KeptRolling> rolling; // with rolling resistance only
+    std::vector<Row> dent; // of a plastic law: deepest overlap, stiffness and origin of the curve that
+                           // unloads, and the deepest overlap that this curve is for
     std::vector<int> free;
     bool rolls = false, dents = false;
 
@@ -52,16 +60,14 @@ struct Contacts {
             free.pop_back();
             return s;
         }
-        for (auto* rows : {&force, &couple, &friction, &law, &limit}) rows->push_back(Row{});
-        if (rolls)
-            for (auto* rows : {&roll, &rolling}) rows->push_back(Row{});
-        if (dents) dent.push_back(Row{});
-        return static_cast<int>(force.size()) - 1;
+        kept.emplace_back();
+        if (rolls) rolling.emplace_back();
+        if (dents) dent.emplace_back();
+        return static_cast<int>(kept.size()) - 1;
     }
 
     void forget_all() {
-        for (auto* rows : {&force, &couple, &roll, &friction, &rolling, &law, &limit, &dent}) rows->clear();
-        free.clear();
+        kept.clear(), rolling.clear(), dent.clear(), free.clear();
         actives = 0;
         resize(0);
         for (int& end : tier_end) end = 0;
@@ -71,30 +77,23 @@ struct Contacts {
     int remember(const Contacts& old, int from, real sign) {
         const int s = take();
         const Row turn = row(sign, sign, sign, 1);
-        at(friction, s) = turn * at(old.friction, from);
-        at(law, s) = at(old.law, from);
-        at(limit, s) = at(old.limit, from);
-        if (rolls) at(rolling, s) = turn * at(old.rolling, from);
+        at(kept, s) = at(old.kept, from);
+        at(kept, s).friction *= turn;
+        if (rolls) at(rolling, s).spring = turn * at(old.rolling, from).spring;
         if (dents) at(dent, s) = at(old.dent, from);
         return s;
     }
 
     std::size_t memory() const {
-        std::size_t bytes = 0;
+        std::size_t bytes = kept.capacity() * sizeof(Kept) + rolling.capacity() * sizeof(KeptRolling) +
+                            dent.capacity() * sizeof(Row);
         for (const auto* v : {&first, &second, &origin, &slot, &active, &free})
             bytes += v->capacity() * sizeof(int);
-        for (const auto* v : {&force, &couple, &roll, &friction, &rolling, &law, &limit, &dent})
-            bytes += v->capacity() * sizeof(Row);
         return bytes;
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(first, second, origin, slot, tier_end, active, actives, force, friction, rolling, law, limit, dent,
-          free);
-        if constexpr (Archive::reads) { // what each step computes anew
-            couple.resize(friction.size());
-            if (rolls) roll.resize(friction.size());
-        }
+        a(first, second, origin, slot, tier_end, active, actives, kept, rolling, dent, free);
     }
 };
 

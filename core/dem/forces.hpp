@@ -151,10 +151,16 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             s[l] = at(list.slot, k[l]);
             used[l] = base + l < count;
         }
-        const auto rows = [&](std::vector<Row>& v) { return [&](int l) { return &at(v, s[l]); }; };
+        const auto kept = [&](Row Kept::* part) {
+            return [&, part](int l) { return &(at(list.kept, s[l]).*part); };
+        };
+        const auto rolling = [&](Row KeptRolling::* part) {
+            return [&, part](int l) { return &(at(list.rolling, s[l]).*part); };
+        };
+        const auto dents = [&](int l) { return &at(list.dent, s[l]); };
         const Lanes weight = lanes(used);
         const auto m = view.template meeting<rough>(k);
-        const auto law = columns(rows(list.law));
+        const auto law = columns(kept(&Kept::law));
         Columns<8> dent{};
         if constexpr (Law::plastic) {
             alignas(64) real overlap[lane_count];
@@ -164,7 +170,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
                 if (sampled) d[0] = std::fmax(d[0], overlap[l]);
                 if (d[3] != d[0] && (overlap[l] < d[0] || sampled)) settle(k[l]);
             }
-            dent = columns(rows(list.dent));
+            dent = columns(dents);
         }
         const Lanes rate = dot(m.velocity, m.normal);
         Push push = Law::push(law, dent, m.overlap, rate);
@@ -175,36 +181,36 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
         if (sampled) tally.stored += weight * Law::stored(law, dent, m.overlap);
         if constexpr (Law::plastic) {
             dent.x = larger(dent.x, m.overlap);
-            store(dent, rows(list.dent));
+            store(dent, dents);
         }
         if constexpr (rough) {
             const Lanes firm = how.mindlin ? push.root : one, drag = how.mindlin ? root(push.root) : one;
-            const auto limit = columns(rows(list.limit));
-            const auto history = columns(rows(list.friction));
+            const auto limit = columns(kept(&Kept::limit));
+            const auto history = columns(kept(&Kept::friction));
             const Lanes pressed = larger(push.force, zero), stiffness = law.z * firm;
             const Vector<Lanes> slip = m.velocity - rate * m.normal + cross(m.swirl, m.normal);
             const Lanes dashpot = Law::plastic ? zero : law.w * drag;
             const auto h =
                 hold(history.vector(), history.w, m.normal, stiffness, dashpot, slip, limit.x * pressed, dt);
-            store(Columns<8>{h.ahead.x, h.ahead.y, h.ahead.z, stiffness}, rows(list.friction));
+            store(Columns<8>{h.ahead.x, h.ahead.y, h.ahead.z, stiffness}, kept(&Kept::friction));
             tally.sliding[partner] += weight * h.loss;
             force = force + h.force;
             const Vector<Lanes> couple = m.lever * cross(m.normal, h.force);
-            store(Columns<8>{couple.x, couple.y, couple.z, zero}, rows(list.couple));
+            store(Columns<8>{couple.x, couple.y, couple.z, zero}, kept(&Kept::couple));
             if (sampled) tally.stored += weight * h.stored;
             if constexpr (rolls) {
-                const auto past = columns(rows(list.rolling));
+                const auto past = columns(rolling(&KeptRolling::spring));
                 const Vector<Lanes> turning = m.spin - dot(m.spin, m.normal) * m.normal;
                 const Lanes spring = limit.z * stiffness;
                 const auto r = hold(past.vector(), past.w, m.normal, spring, limit.w * drag, turning,
                                     limit.y * pressed, dt);
-                store(Columns<8>{r.ahead.x, r.ahead.y, r.ahead.z, spring}, rows(list.rolling));
-                store(Columns<8>{r.force.x, r.force.y, r.force.z, zero}, rows(list.roll));
+                store(Columns<8>{r.ahead.x, r.ahead.y, r.ahead.z, spring}, rolling(&KeptRolling::spring));
+                store(Columns<8>{r.force.x, r.force.y, r.force.z, zero}, rolling(&KeptRolling::torque));
                 tally.rolling[partner] += weight * r.loss;
                 if (sampled) tally.stored += weight * r.stored;
             }
         }
-        store(Columns<8>{force.x, force.y, force.z, zero}, rows(list.force));
+        store(Columns<8>{force.x, force.y, force.z, zero}, kept(&Kept::force));
     }
     if (sampled) tally.contacts[partner] += count;
 }

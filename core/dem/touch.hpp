@@ -67,6 +67,7 @@ inline real missed_root(real theta) {
 // Writes what the contact in slot k remembers. False when the speed is beyond the restitution law.
 inline bool begin(Contacts& list, int k, const Touch& t, real dt, Late& late, Tally& tally, Partner partner) {
     const Encounter& e = *t.encounter;
+    Kept& kept = at(list.kept, k);
     const Rebound r = rebound(e, t);
     // Since the touch, at this speed; of what overlaps from the start nothing is known.
     const bool comes_late = t.speed > 0 && t.overlap < 1.01 * t.speed * dt;
@@ -80,7 +81,7 @@ inline bool begin(Contacts& list, int k, const Touch& t, real dt, Late& late, Ta
         const real own = e.shear > 0 ? e.shear * std::sqrt(t.radius) : e.tangential_stiffness;
         const real tangential = own > 0 ? own : 1;
         if constexpr (std::is_same_v<Law, Thornton>) {
-            at(list.law, k) = row(law.stiffness, law.plastic_slope(), tangential, law.yield_overlap());
+            kept.law = row(law.stiffness, law.plastic_slope(), tangential, law.yield_overlap());
             at(list.dent, k) = row(0, law.stiffness, 0, 0);
         } else {
             const Memory now = law.damped(std::isnan(e.constant_zeta) ? law.zeta(r.e) : e.constant_zeta);
@@ -98,17 +99,17 @@ inline bool begin(Contacts& list, int k, const Touch& t, real dt, Late& late, Ta
             }
             const real share = hertz ? std::sqrt(5.0 / 6.0) : 1;
             const real drag = 2 * e.tangential_damping * share * now.zeta * std::sqrt(t.mass * tangential);
-            at(list.law, k) = row(law.stiffness, now.damping, tangential, drag);
+            kept.law = row(law.stiffness, now.damping, tangential, drag);
         }
         const real roll = e.rolling_stiffness > 0 ? e.rolling_stiffness * square(t.radius) : 1;
-        at(list.limit, k) = row(e.friction, e.rolling * t.radius, roll,
-                                2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential));
+        kept.limit = row(e.friction, e.rolling * t.radius, roll,
+                         2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential));
     });
     // The spring as if it had been stretched since half a step ago, which makes it stretched since the touch.
-    const real stiffness = at(list.law, k)[2] * (e.shear > 0 ? std::sqrt(t.overlap) : 1);
-    at(list.friction, k) = t.slip * (-stiffness * (since - 0.5 * dt));
-    at(list.friction, k)[3] = stiffness;
-    if (list.rolls) at(list.rolling, k) = row(0, 0, 0, 1e290);
+    const real stiffness = kept.law[2] * (e.shear > 0 ? std::sqrt(t.overlap) : 1);
+    kept.friction = t.slip * (-stiffness * (since - 0.5 * dt));
+    kept.friction[3] = stiffness;
+    if (list.rolls) at(list.rolling, k).spring = row(0, 0, 0, 1e290);
     return !r.outside;
 }
 

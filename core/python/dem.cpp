@@ -225,7 +225,7 @@ public:
                     if (s == Contacts::none) continue;
                     first.push_back(at(b.name, at(list->first, k)));
                     second.push_back(list == &chunk.pairs ? at(b.name, j) : b.particles() + j);
-                    for (int a = 0; a < 3; ++a) force.push_back(at(list->force, s)[a]);
+                    for (int a = 0; a < 3; ++a) force.push_back(at(list->kept, s).force[a]);
                 }
         nb::dict d;
         const std::size_t n = first.size();
