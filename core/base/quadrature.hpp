@@ -1,6 +1,7 @@
 // Gauss-Legendre quadrature on [0, 1].
 #pragma once
 
+#include "base/constant.hpp"
 #include "base/real.hpp"
 
 namespace rattlebox {
@@ -33,14 +34,9 @@ struct GaussRule {
     }
 };
 
-inline const GaussRule& gauss_rule() {
-    static const GaussRule rule;
-    return rule;
-}
-
 // Integral of f over [0, length].
 template <class F> real integrate(real length, F&& f) {
-    const GaussRule& rule = gauss_rule();
+    const GaussRule& rule = constant<GaussRule>();
     real sum = 0;
     for (int i = 0; i < gauss_count; ++i) sum += rule.weight[i] * f(length * rule.node[i]);
     return length * sum;

@@ -11,7 +11,23 @@ namespace rattlebox {
 // Lanes live in registers only where functions of them are inlined, which compilers decide by size.
 #define RATTLEBOX_INLINE __attribute__((always_inline)) inline
 
+#ifdef RATTLEBOX_GPU
+struct alignas(4 * sizeof(real)) Row {
+    real at[4];
+    real& operator[](int i) { return at[i]; }
+    real operator[](int i) const { return at[i]; }
+    friend Row operator+(Row a, Row b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}; }
+    friend Row operator-(Row a, Row b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]}; }
+    friend Row operator*(Row a, Row b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]}; }
+    friend Row operator+(Row a, real b) { return a + Row{b, b, b, b}; }
+    friend Row operator-(Row a, real b) { return a - Row{b, b, b, b}; }
+    friend Row operator*(real a, Row b) { return Row{a, a, a, a} * b; }
+    friend Row& operator+=(Row& a, Row b) { return a = a + b; }
+    friend Row& operator-=(Row& a, Row b) { return a = a - b; }
+};
+#else
 typedef real Row __attribute__((vector_size(4 * sizeof(real))));
+#endif
 
 inline Row row(real x, real y, real z, real w = 0) { return Row{x, y, z, w}; }
 inline Row row(real all) { return Row{} + all; }
@@ -36,6 +52,8 @@ template <int n> RATTLEBOX_INLINE Pack<n> all(const Pack<n>&, real v) { return P
 template <int n> RATTLEBOX_INLINE Pack<n> root(const Pack<n>& a) {
     if constexpr (n > register_width) {
         return {root(a.low), root(a.high)};
+    } else if constexpr (n == 1) {
+        return {std::sqrt(a.v)};
     } else {
         Pack<n> r;
         for (int i = 0; i < n; ++i) r.v[i] = std::sqrt(a.v[i]);
@@ -92,6 +110,12 @@ template <int n = lane_count, class At> RATTLEBOX_INLINE Columns<n> columns(At&&
         const auto low = columns<n / 2>(at);
         const auto high = columns<n / 2>([&](int l) { return at(l + n / 2); });
         return {{low.x, high.x}, {low.y, high.y}, {low.z, high.z}, {low.w, high.w}};
+#ifdef RATTLEBOX_GPU
+    } else {
+        const Row a = *at(0);
+        return {{a[0]}, {a[1]}, {a[2]}, {a[3]}};
+    }
+#else
 #if defined(__AVX512F__)
     } else if constexpr (n == 8) {
         const auto two = [&](int l) {
@@ -123,6 +147,7 @@ template <int n = lane_count, class At> RATTLEBOX_INLINE Columns<n> columns(At&&
         const auto both = [&](int k) { return Pack<n>{typename Pack<n>::Register{a[k], b[k]}}; };
         return {both(0), both(1), both(2), both(3)};
     }
+#endif
 }
 
 // The other way: lane l becomes the row that at(l) points to. Where lanes share a row, one of them stays.
@@ -130,6 +155,11 @@ template <int n, class At> RATTLEBOX_INLINE void store(const Columns<n>& c, At&&
     if constexpr (n > register_width) {
         store(Columns<n / 2>{c.x.low, c.y.low, c.z.low, c.w.low}, at);
         store(Columns<n / 2>{c.x.high, c.y.high, c.z.high, c.w.high}, [&](int l) { return at(l + n / 2); });
+#ifdef RATTLEBOX_GPU
+    } else {
+        *at(0) = Row{c.x.v, c.y.v, c.z.v, c.w.v};
+    }
+#else
 #if defined(__AVX512F__)
     } else if constexpr (n == 8) {
         const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 8, 9, 4, 5, 12, 13);
@@ -148,6 +178,7 @@ template <int n, class At> RATTLEBOX_INLINE void store(const Columns<n>& c, At&&
     } else {
         for (int l = 0; l < n; ++l) *at(l) = Row{c.x.v[l], c.y.v[l], c.z.v[l], c.w.v[l]};
     }
+#endif
 }
 
 } // namespace rattlebox

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "base/collocation.hpp"
+#include "base/constant.hpp"
 #include "impact/state.hpp"
 
 namespace rattlebox {
@@ -34,10 +35,7 @@ struct PhaseGrid {
     real end = 0;
     Rule::Row psi, slope, sine, cosine, root; // slope = dpsi/dx, root = sin(psi)^(1/5)
 
-    static const Rule& rule() {
-        static const Rule rule;
-        return rule;
-    }
+    static const Rule& rule() { return constant<Rule>(); }
 
     static real beta(real x) { // I_x(5, 5) for x <= 1/2
         return cube(x) * x * x * (126 + x * (-420 + x * (540 + x * (-315 + x * 70))));

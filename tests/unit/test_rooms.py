@@ -21,6 +21,7 @@ ARROWS = {
     "results": set(),
     "model": set(),
     "core/python": {"core/impact", "core/dem"},
+    "core/gpu": {"core/impact", "core/dem"},
     "core/dem": {"core/contact", "core/structure"},
     "core/impact": {"core/contact", "core/structure"},
     "core/contact": {"core/base"},

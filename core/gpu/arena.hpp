@@ -1,0 +1,76 @@
+// Memory of one thread, which its vectors share: taken from one end, given back from there too.
+//
+// A kernel puts a block of its own local memory here, which the hardware lays out so that neighbouring
+// threads read neighbouring addresses, and a share of the card's memory for what does not fit into it.
+#pragma once
+
+#include <cstddef>
+
+#ifndef __CUDACC__
+extern "C" void abort();
+#endif
+
+namespace rattlebox::gpu {
+
+struct Stretch {
+    char *first = nullptr, *next = nullptr, *end = nullptr;
+
+    void* take(std::size_t bytes) {
+        if (static_cast<std::size_t>(end - next) < bytes) return nullptr;
+        char* taken = next;
+        next += bytes;
+        return taken;
+    }
+    bool give_back(char* p, std::size_t bytes) {
+        if (p < first || p >= end) return false;
+        if (p + bytes == next) next = p; // what lies below others stays until these are given back
+        return true;
+    }
+};
+
+struct Arena {
+    static constexpr std::size_t grain = 64; // all begin at a multiple of it
+    Stretch near, far;
+    std::size_t most_near = 0, most_far = 0; // so far
+
+    static std::size_t rounded(std::size_t bytes) { return (bytes + grain - 1) / grain * grain; }
+
+    void* take(std::size_t bytes) {
+        bytes = rounded(bytes);
+        void* p = near.take(bytes);
+        if (!p) p = far.take(bytes);
+        if (!p) exhausted();
+        most_near = larger(most_near, near.next - near.first);
+        most_far = larger(most_far, far.next - far.first);
+        return p;
+    }
+    void give_back(void* p, std::size_t bytes) {
+        char* from = static_cast<char*>(p);
+        if (!near.give_back(from, rounded(bytes))) far.give_back(from, rounded(bytes));
+    }
+
+private:
+    static std::size_t larger(std::size_t most, std::ptrdiff_t now) {
+        return static_cast<std::size_t>(now) > most ? static_cast<std::size_t>(now) : most;
+    }
+    // The need was reckoned before: an error of ours, and no trajectory may go on with it.
+    static void exhausted() {
+#ifdef __CUDACC__
+        __trap();
+#else
+        abort();
+#endif
+    }
+};
+
+#ifdef __CUDACC__
+inline __shared__ Arena* arenas[RATTLEBOX_THREADS]; // of the threads of a block
+inline Arena& arena() { return *arenas[threadIdx.x]; }
+inline void use(Arena& mine) { arenas[threadIdx.x] = &mine; }
+#else
+inline Arena* current = nullptr;
+inline Arena& arena() { return *current; }
+inline void use(Arena& mine) { current = &mine; }
+#endif
+
+} // namespace rattlebox::gpu
