@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from .base import AlsoTakes, Part
 from .cavities import AnyCavity
-from .contacts import AnyContact, Linear
+from .contacts import AnyContact, Linear, Thornton
 from .elementwise import Vector
 from .errors import Hint, at
 from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
@@ -89,8 +89,8 @@ class Entry:
         The laws.
     names
         Of the two sides.
-    place
-        Where the contact law is given, for messages.
+    place, friction_place
+        Where the laws of contact and friction are given, for messages.
     """
 
     pair: Pair
@@ -99,6 +99,7 @@ class Entry:
     rolling: Rolling | None
     names: tuple[str, str]
     place: tuple[str | int, ...]
+    friction_place: tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
@@ -121,6 +122,17 @@ class ContactTable:
     particle_entry: Any
     wall_entry: Any
     wall_kind: Any
+
+
+def _check_alike(what: str, given: Sequence[tuple[str, tuple[str | int, ...]]]) -> None:
+    """Refuse what is not computed side by side: words, with the places where they are given."""
+    for word, place in given:
+        if word != given[0][0]:
+            raise Hint(
+                f"{word} beside {given[0][0]}: one {what} is needed among particles, and one at walls",
+                f"{given[0][0]} in both",
+                place,
+            )
 
 
 class ParticleDamper(Part):
@@ -218,14 +230,13 @@ class ParticleDamper(Part):
                 seen.add(both)
         for walls in (False, True):
             entries = [entry for entry in self._laws() if (WALL in entry.names) == walls]
+            contacts = [(entry.contact, entry.place) for entry in entries]
+            _check_alike("kind of law", [(law.kind, place) for law, place in contacts])
+            _check_alike("ending", [(law.ending, place) for law, place in contacts if not isinstance(law, Thornton)])
             for entry in entries:
-                if entry.contact.kind != entries[0].contact.kind:
-                    raise Hint(
-                        f"{entry.contact.kind} beside {entries[0].contact.kind}: one kind of law is needed among particles, "
-                        "and one at walls",
-                        place=entry.place,
-                    )
                 self._check_friction(entry)
+            frictions = [(entry.friction, entry.friction_place) for entry in entries]
+            _check_alike("kind of friction", [(law.kind, place) for law, place in frictions if law and law.coefficient])
 
     def _check_friction(self, entry: Entry) -> None:
         between = " and ".join(entry.names)
@@ -243,13 +254,13 @@ class ParticleDamper(Part):
             raise Hint(
                 f"Mindlin's stiffness belongs to Hertz contacts, but that of {between} is linear",
                 f'friction = {{ kind = "spring", coefficient = {entry.friction.coefficient:g}, ratio = 0.286 }}',
-                ["friction"],
+                entry.friction_place,
             )
         if isinstance(entry.friction, LinearSpring) and entry.friction.ratio and not isinstance(entry.contact, Linear):
             raise Hint(
                 f"a ratio of stiffnesses belongs to linear contacts, but that of {between} is not",
                 "friction = 0.3, for Mindlin's stiffness, or stiffness",
-                ["friction"],
+                entry.friction_place,
             )
 
     def _check_filling(self) -> None:
@@ -356,9 +367,9 @@ class ParticleDamper(Part):
 
     def _entry(self, first: str, second: str, pair: Pair) -> Entry:
         contact, place = self._law("contact", first, second)
-        friction, _ = self._law("friction", first, second)
+        friction, friction_place = self._law("friction", first, second)
         rolling, _ = self._law("rolling", first, second)
-        return Entry(pair, contact, friction, rolling, (first, second), place)
+        return Entry(pair, contact, friction, rolling, (first, second), place, friction_place)
 
     def _body(self, index: int) -> Body:
         contents, material = self.contents, self.particles[index].material

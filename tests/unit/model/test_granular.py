@@ -148,6 +148,7 @@ def test_walls_are_the_cavity(name: str) -> None:
         damper(
             particles=[balls(10), rb.Particles(name="fine", material="steel", distribution=SIZES["sieve"], mass="3 g")],
             pairs=[rb.PairLaws(between=("fine", "wall"), friction=rb.LinearSpring(0.5, stiffness=1e5))],
+            wall_friction=rb.LinearSpring(0.3, stiffness=1e5),
             cavity=CAVITIES["can askew"],
             gravity=(0, "-1 g_0", 0),
             direction=(1, 0, 1),
@@ -237,6 +238,21 @@ def test_pair_table_goes_before_the_laws_of_all() -> None:
     assert table.wall_entry.tolist() == [[3], [4]]
 
 
+def two_kinds(other: str, **laws: Any) -> rb.ParticleDamper:
+    """Return a damper of steel and glass, in which glass and something else have laws of their own."""
+    glass = rb.Particles(material="glass", radius="1 mm", count=1)
+    return damper(particles=[balls(), glass], pairs=[rb.PairLaws(between=("glass", other), **laws)])
+
+
+def test_walls_may_have_laws_of_another_kind() -> None:
+    """Friction and endings at walls may differ from those among particles, and pairs without friction do not matter."""
+    made = damper(
+        wall_contact=rb.Tsuji(restitution=0.5, ending="zero_overlap"), wall_friction=rb.LinearSpring(0.2, stiffness=1e5)
+    )
+    assert len(made.contact_table.entries) == 2
+    two_kinds("steel", friction=rb.LinearSpring(0.0, stiffness=1e5))
+
+
 AT = rb.Positions(positions=[[0, 0, 0], [0, 0, 0.003]])
 REFUSED = {
     "an empty damper": lambda: damper(particles=[]),
@@ -254,9 +270,17 @@ REFUSED = {
     "3 particles, but 2 positions": lambda: damper(particles=balls(3), packing=AT),
     "rolling resistance needs friction": lambda: damper(friction=0, rolling=0.1),
     "Mindlin's stiffness belongs to Hertz contacts": lambda: damper(contact=rb.Linear(stiffness=1e6, restitution=0.9)),
-    "one kind of law is needed": lambda: damper(
-        particles=[balls(), rb.Particles(material="glass", radius="1 mm", count=1)],
-        pairs=[rb.PairLaws(between=("glass", "wall"), contact=rb.Thornton(yield_pressure="1 GPa"))],
+    "thornton beside tsuji: one kind of law is needed": lambda: two_kinds(
+        "wall", contact=rb.Thornton(yield_pressure="1 GPa")
+    ),
+    "zero_overlap beside zero_force: one ending is needed": lambda: two_kinds(
+        "steel", contact=rb.Tsuji(restitution=0.9, ending="zero_overlap")
+    ),
+    "spring beside mindlin: one kind of friction is needed": lambda: two_kinds(
+        "steel", friction=rb.LinearSpring(0.2, stiffness=1e5)
+    ),
+    "spring beside mindlin: one kind of friction .* at walls": lambda: two_kinds(
+        "wall", friction=rb.LinearSpring(0.2, stiffness=1e5)
     ),
     "nothing settles without gravity": lambda: damper(packing=rb.Settled(), gravity=(0, 0, 0)),
     "there are no particles 'wood' here": lambda: damper(pairs=[rb.PairLaws(between=("wood", "wall"))]),
