@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..results import GranularArrays, GranularRun
+from .motion import MOST_SERIES, draw_structure, name_aside
 from .style import (
-    FAINT,
     SERIES_COLOURS,
     SERIES_STYLES,
     PaperFigure,
@@ -19,12 +19,8 @@ from .style import (
     paper,
     pen,
     scaled,
-    shorten,
     time_axis,
 )
-
-MOST_SERIES = len(SERIES_COLOURS)
-LETTERS_ASIDE = 14
 
 
 def plot_granular_motion(run: GranularRun, *, size: Size = "column") -> Figure:
@@ -56,28 +52,16 @@ def plot_granular_motion(run: GranularRun, *, size: Size = "column") -> Figure:
         time = scaled(arrays.time, "s")
         left = iter(axes)
         if moving:
-            _draw_structure(next(left), arrays, time)
+            draw_structure(next(left), arrays, slice(None), time, scaled(arrays.displacement, "m"))
         for d, name in enumerate(arrays.dampers):
             panel = next(left)
             _draw_centre(panel, arrays, d, time)
             if len(arrays.dampers) > 1:
-                aside = {"rotation": 270, "ha": "left", "va": "center", "transform": panel.transAxes}
-                panel.text(1.03, 0.5, shorten(name, LETTERS_ASIDE), **aside)
+                name_aside(panel, name)
         _draw_contacts(next(left), run, time)
         time_axis(axes[-1], arrays.time, time)
         figure.align_ylabels(axes)
     return figure
-
-
-def _draw_structure(axes: Axes, arrays: GranularArrays, time: Scale) -> None:
-    x = arrays.displacement[:, :MOST_SERIES]
-    length = scaled(x, "m")
-    axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
-    for k in range(x.shape[1]):
-        name = arrays.points[k] if x.shape[1] > 1 else None
-        _line(axes, arrays, time, x[:, k] / length.divisor, k, name)
-    label(axes, "y", "Displacement", length.unit)
-    legend_above(axes)
 
 
 def _draw_centre(axes: Axes, arrays: GranularArrays, damper: int, time: Scale) -> None:

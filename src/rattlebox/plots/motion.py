@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..results import Run, RunArrays
+from ..results import GranularArrays, Run, RunArrays
 from .style import (
     FAINT,
     INK,
@@ -71,8 +71,7 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
                 panel = next(left)
                 draw_cavity(panel, arrays, d, shown, time, scaled(row_places(arrays, d), "m"))
                 if len(arrays.dampers) > 1:
-                    aside = {"rotation": 270, "ha": "left", "va": "center", "transform": panel.transAxes}
-                    panel.text(1.03, 0.5, shorten(name, LETTERS_ASIDE), **aside)
+                    name_aside(panel, name)
         time_axis(axes[-1], arrays.time[shown], time)
         figure.align_ylabels(axes)
     return figure
@@ -85,6 +84,20 @@ def _window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
     if first >= last:
         raise ValueError(f"no output time lies between {between[0]} s and {between[1]} s")
     return slice(int(first), int(last))
+
+
+def name_aside(axes: Axes, name: str) -> None:
+    """Write the name of a damper beside its panel.
+
+    Parameters
+    ----------
+    axes
+        Panel.
+    name
+        Of the damper.
+    """
+    aside: dict[str, Any] = {"rotation": 270, "ha": "left", "va": "center", "transform": axes.transAxes}
+    axes.text(1.03, 0.5, shorten(name, LETTERS_ASIDE), **aside)
 
 
 def row_places(arrays: RunArrays, damper: int) -> Any:
@@ -101,7 +114,7 @@ def row_places(arrays: RunArrays, damper: int) -> Any:
     return np.append((arrays.relative_position - arrays.ball_centre)[:, own], arrays.clearance[damper] / 2)
 
 
-def draw_structure(axes: Axes, arrays: RunArrays, shown: slice, time: Scale, length: Scale) -> None:
+def draw_structure(axes: Axes, arrays: RunArrays | GranularArrays, shown: slice, time: Scale, length: Scale) -> None:
     """Draw the displacement of the structure's points.
 
     Parameters

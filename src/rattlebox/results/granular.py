@@ -22,7 +22,7 @@ from .arrays import (
 )
 from .ledger import Ledger
 from .provenance import Provenance
-from .run import Run
+from .run import Run, RunPlots
 from .schema import GRANULAR, GRANULAR_CHANNELS, PARTNERS, Form
 
 if TYPE_CHECKING:
@@ -288,21 +288,6 @@ class GranularRun(Run):
         """Figures of this run: `motion`, `energy`, `particles`."""
         return GranularPlots(self)
 
-    def to_csv(self, folder: Any) -> Any:
-        """Write motion.csv, energy.csv and particles.csv, units in the header, every digit kept.
-
-        Parameters
-        ----------
-        folder
-            Folder to write to, made when missing.
-
-        Returns
-        -------
-        tuple of Path
-            The files.
-        """
-        return super().to_csv(folder)
-
     def __repr__(self) -> str:
         arrays = self.arrays
         return (
@@ -311,17 +296,10 @@ class GranularRun(Run):
         )
 
 
-class GranularPlots:
-    """Figures of one run with particles; each method returns a matplotlib figure.
+class GranularPlots(RunPlots):
+    """Figures of one run with particles in space."""
 
-    Parameters
-    ----------
-    run
-        Run to draw.
-    """
-
-    def __init__(self, run: GranularRun) -> None:
-        self._run = run
+    _run: GranularRun
 
     def motion(self, **options: Any) -> Figure:
         """Displacement of the structure, centre of mass of the particles in each cavity, and contacts, against time.
@@ -334,18 +312,6 @@ class GranularPlots:
         from ..plots import plot_granular_motion
 
         return plot_granular_motion(self._run, **options)
-
-    def energy(self, **options: Any) -> Figure:
-        """Energies against time, and the ledger stacked up to the energy supplied.
-
-        Parameters
-        ----------
-        **options
-            Passed on to `rattlebox.plots.plot_energy`.
-        """
-        from ..plots import plot_energy
-
-        return plot_energy(self._run, **options)
 
     def particles(self, **options: Any) -> Figure:
         """The particles in their cavities at the end of the run.

@@ -161,7 +161,7 @@ class Run:
         return to_mat(self, Path(path))
 
     def to_csv(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
-        """Write motion.csv, energy.csv and impacts.csv, units in the header, every digit kept.
+        """Write motion.csv, energy.csv and impacts.csv (in space particles.csv), units in the header, every digit kept.
 
         Parameters
         ----------
@@ -201,8 +201,8 @@ class Run:
         )
 
 
-class Plots:
-    """Figures of one run; each method returns a matplotlib figure.
+class RunPlots:
+    """Figures that every run has; each method returns a matplotlib figure.
 
     Parameters
     ----------
@@ -212,18 +212,6 @@ class Plots:
 
     def __init__(self, run: Run) -> None:
         self._run = run
-
-    def motion(self, **options: Any) -> Figure:
-        """Displacement of the structure and ball positions in the cavity against time.
-
-        Parameters
-        ----------
-        **options
-            Passed on to `rattlebox.plots.plot_motion`.
-        """
-        from ..plots import plot_motion
-
-        return plot_motion(self._run, **options)
 
     def energy(self, **options: Any) -> Figure:
         """Energies against time, and the ledger stacked up to the energy supplied.
@@ -236,6 +224,22 @@ class Plots:
         from ..plots import plot_energy
 
         return plot_energy(self._run, **options)
+
+
+class Plots(RunPlots):
+    """Figures of one run with balls."""
+
+    def motion(self, **options: Any) -> Figure:
+        """Displacement of the structure and ball positions in the cavity against time.
+
+        Parameters
+        ----------
+        **options
+            Passed on to `rattlebox.plots.plot_motion`.
+        """
+        from ..plots import plot_motion
+
+        return plot_motion(self._run, **options)
 
     def impacts(self, **options: Any) -> Figure:
         """Approach speed, peak force and restitution of all impacts against time.
