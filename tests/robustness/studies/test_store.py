@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ import rattlebox as rb
 from rattlebox.studies.runner import run_task
 from rattlebox.studies.store import open_study, progress_of
 
+from ..mounts import needs_mounts, with_own_mounts
 from .fake import Grid, Logistic
 
 FAKE = Path(__file__).with_name("fake.py")
@@ -176,16 +176,7 @@ def test_a_full_disk_is_told_and_what_is_there_goes_on(tmp_path: Path, monkeypat
     assert bits(study(tmp_path / "study.zarr")) == bits(study())
 
 
-def with_own_mounts(script: str) -> subprocess.CompletedProcess[str]:
-    """Run a shell script that may mount."""
-    command = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-ec", script]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-
-
-MOUNTS = shutil.which("unshare") is not None and with_own_mounts("mount -t tmpfs none /mnt").returncode == 0
-
-
-@pytest.mark.skipif(not MOUNTS, reason="this machine does not let users mount")
+@needs_mounts
 @pytest.mark.parametrize(
     ("mount", "said"),
     [
