@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -9,6 +10,8 @@ from typing import Annotated
 import typer
 
 from rattlebox.model.errors import CaseError
+
+STOPPED = 128 + signal.SIGINT
 
 app = typer.Typer(
     help="Simulate and design particle and impact dampers.",
@@ -167,9 +170,28 @@ def doctor() -> None:
 
 
 def main() -> None:
-    """Run the command; bad input is told on one screen, with exit code 2."""
+    """Run the command; bad input is told on one screen, with exit code 2.
+
+    A command that is stopped keeps what it has; the exit code is then 130 after Ctrl-C and 143 after SIGTERM.
+    """
+    heard: list[int] = []
+
+    def stop(number: int, _: object) -> None:
+        heard.append(number)
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
     try:
-        sys.exit(app(standalone_mode=False))  # 130 after Ctrl-C
+        _main()
+    except SystemExit as end:
+        sys.exit(128 + heard[0] if heard and end.code == STOPPED else end.code)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _main() -> None:
+    try:
+        sys.exit(app(standalone_mode=False))
     except CaseError as error:
         typer.echo(f"error: {error}", err=True)
         sys.exit(2)
@@ -181,7 +203,7 @@ def main() -> None:
         sys.exit(2)
     except typer.Abort:
         typer.echo("stopped", err=True)
-        sys.exit(130)
+        sys.exit(STOPPED)
     except typer.Exit as stop:
         sys.exit(stop.exit_code)
     except Exception as error:

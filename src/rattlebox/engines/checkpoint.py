@@ -5,19 +5,22 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping, Sequence
+import socket
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
 from rattlebox.engines.core import instructions
 from rattlebox.model.differences import differences
 from rattlebox.model.errors import CaseError
 from rattlebox.results.provenance import Provenance
-from rattlebox.results.whole import telling, whole
+from rattlebox.results.whole import needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -25,8 +28,10 @@ if TYPE_CHECKING:
 FORMAT = 1
 """Number of the layout; files with a higher one are refused."""
 
-_FREE: dict[str, tuple[str, ...]] = {"method": ("threads", "checkpoint"), "output": ("snapshots",)}
+_FREE: dict[str, tuple[str, ...]] = {"method": ("threads", "checkpoint", "checkpoint_every"), "output": ("snapshots",)}
 """Fields of the case that may change: the bits do not depend on them."""
+
+_LOST = "make room and give the same command again, which goes on from the last checkpoint"
 
 
 @dataclass(frozen=True)
@@ -72,6 +77,35 @@ class Checkpoint:
         self.path = Path(path)
         self.time: float | None = None  # of what is in the file
         self._about = {"case": _bare(case), "version": Provenance.now().version, "core": instructions()}
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Be the only run that keeps its state in this file.
+
+        Raises
+        ------
+        CaseError
+            When another run does. Its hold ends with its process, however that ends.
+        OSError
+            When the folder is missing or cannot be written.
+        """
+        with telling(self.path, _LOST):
+            needs_folder(self.path)
+            name = self.path.with_name(f".{self.path.name}.lock")
+            lock = FileLock(name)
+            try:
+                lock.acquire(blocking=False)
+            except Timeout:
+                holder = name.read_text() or "another process"
+                raise CaseError(
+                    f"{self.path} is in use by {holder}\n  try: another file, or wait until that run is over"
+                ) from None
+        try:
+            name.write_text(f"process {os.getpid()} on {socket.gethostname()}")
+            yield
+        finally:
+            name.unlink(missing_ok=True)
+            lock.release()
 
     def read(self) -> Kept | None:
         """Return what is in the file, None where there is no file.
@@ -123,8 +157,7 @@ class Checkpoint:
         arrays = {f"records.{name}": values for name, values in records.items()}
         arrays |= {f"position.{k}": cavity["position"] for k, cavity in enumerate(packed["cavities"])}
         about = np.frombuffer(json.dumps(told).encode(), np.uint8)
-        lost = "make room and give the same command again, which goes on from the last checkpoint"
-        with telling(self.path, lost), whole(self.path) as name, name.open("wb") as file:
+        with telling(self.path, _LOST), whole(self.path) as name, name.open("wb") as file:
             np.savez(file, allow_pickle=False, about=about, state=dem.save(), **arrays)
         self.time = time
 

@@ -76,17 +76,26 @@ def simulate_dem(
     Raises
     ------
     CaseError
-        When the step that is given is too long, particles do not settle, or the checkpoint is of another run.
+        When the step that is given is too long, particles do not settle, or the checkpoint is of another run, or in use.
     OSError
         When a file cannot be written.
     """
+    if checkpoint is None:
+        return _simulated(case, threads, progress, None, snapshots)
+    file = Checkpoint(checkpoint, case)
+    with file.held():
+        return _simulated(case, threads, progress, file, snapshots)
+
+
+def _simulated(
+    case: Case, threads: int | None, progress: Progress | None, file: Checkpoint | None, snapshots: Path | None
+) -> GranularRun:
     assert isinstance(case.method, Dem)
-    file = None if checkpoint is None else Checkpoint(checkpoint, case)
     kept = None if file is None else file.read()
     packed, step, tables = pack_dem(case, None if kept is None else kept.positions)
     dem = core().Dem(packed)
     dem.threads = threads or case.method.threads or useful_threads(packed)
-    journey = Journey(dem, packed, file, case.method.checkpoint)
+    journey = Journey(dem, packed, file, case.method)
     if file is not None and kept is not None:
         file.check(kept, packed)
         journey.resume(kept)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from rattlebox.engines.checkpoint import Checkpoint, Kept, joined
 from rattlebox.engines.status import INTERRUPTED
 from rattlebox.model.errors import CaseError
+from rattlebox.model.methods import Dem
 from rattlebox.results.snapshots import SnapshotFile
 
 Records = dict[str, NDArray[Any]]
@@ -30,16 +32,16 @@ class Journey:
         What the core was given.
     checkpoint
         Where the state is kept, if anywhere.
-    interval
-        Time between checkpoints [s]; default USUAL.
+    method
+        Tells how often.
     """
 
-    def __init__(
-        self, dem: Any, packed: Mapping[str, Any], checkpoint: Checkpoint | None = None, interval: float | None = None
-    ) -> None:
+    def __init__(self, dem: Any, packed: Mapping[str, Any], checkpoint: Checkpoint | None, method: Dem) -> None:
         self.checkpoint = checkpoint
         self._dem, self._packed = dem, packed
-        self._interval = USUAL if interval is None else interval
+        every = method.checkpoint_every
+        self._steps = None if every is None else max(1, round(every / packed["dt"]))  # between checkpoints
+        self._interval = math.inf if every else method.checkpoint or USUAL
         self._due = time.monotonic() + self._interval
         self._pieces: list[Records] = []
         self._earlier = 0.0
@@ -100,8 +102,7 @@ class Journey:
             finished = self._through([k for k in self._shots if k + 1 >= self._dem.step], last, progress)
         except KeyboardInterrupt:
             finished = False
-        if not self._dem.status:  # what went wrong would go wrong again: the state before is the one to look at
-            self._keep()
+        self._keep()
         return int(self._dem.status) if finished or self._dem.status else INTERRUPTED
 
     def _through(self, shots: Sequence[int], last: int, progress: Callable[[int, int], object] | None) -> bool:
@@ -117,21 +118,32 @@ class Journey:
 
     def _run(self, until: int, last: int, progress: Callable[[int, int], object] | None) -> bool:
         """Run until a step is done, with checkpoints on the way."""
+        stopped = False
+
+        def go_on(done: int) -> bool:
+            nonlocal stopped
+            stopped = progress is not None and progress(done, last) is False
+            return not stopped and (self.checkpoint is None or time.monotonic() < self._due)
+
         while True:
-            stopped = False
-
-            def go_on(done: int) -> bool:
-                nonlocal stopped
-                stopped = progress is not None and progress(done, last) is False
-                return not stopped and (self.checkpoint is None or time.monotonic() < self._due)
-
-            if self._dem.run(until, go_on):
-                return not stopped
+            goal = until if self._steps is None else min(until, self._next(self._steps))
+            reached = self._dem.run(goal, go_on)
+            if reached and (goal == last or self._dem.status):
+                return True
+            in_time = reached and go_on(self._dem.step)  # a piece may be too short for the core to ask
             if stopped:
                 return False
-            self._keep()
+            if goal < until or not in_time:
+                self._keep()
+            if reached and goal == until:
+                return True
+
+    def _next(self, steps: int) -> int:
+        """Step after which the next checkpoint is due, one every so many steps."""
+        return int(self._dem.step // steps + 1) * steps - 1
 
     def _keep(self) -> None:
-        if self.checkpoint is not None:
+        """Keep the state; but what went wrong would go wrong again: the state before is then the one to look at."""
+        if self.checkpoint is not None and not self._dem.status:
             self.checkpoint.write(self._dem, self._packed, self.records(), self.seconds)
             self._due = time.monotonic() + self._interval

@@ -40,8 +40,9 @@ def simulate(
     case
         What to run. The method is part of it.
     checkpoint
-        Of particles in space: file in which the state is kept every ten minutes (`Dem(checkpoint=...)`), on Ctrl-C and at
-        the end. Where it is there, the run goes on from it; the results are the same to the last bit.
+        Of particles in space: file in which the state is kept every ten minutes (`Dem(checkpoint=...)`, or
+        `checkpoint_every=...` in simulated time), on Ctrl-C and at the end. Where it is there, the run goes on from it; the
+        results are the same to the last bit.
     snapshots
         Of particles in space: file (.vtkhdf) that takes the particles at the times of `Output(snapshots=...)`, for ParaView.
     progress
@@ -57,8 +58,8 @@ def simulate(
     Raises
     ------
     CaseError
-        When the checkpoint is of another case, version or core, with what differs; or when files are given that the run
-        has no use for.
+        When the checkpoint is of another case, version or core, with what differs, or in use by another process; or when
+        files are given that the run has no use for.
     OSError
         When a file cannot be written.
     """

@@ -91,10 +91,14 @@ class Dem(Part):
         How many at once; default as many as there are cores and enough particles for. The results do not depend on it, to
         the last bit.
     checkpoint
-        How often the state is kept from which the run can go on, where a file for it is given [s]; default ten minutes.
+        How often the state is kept from which the run can go on, where a file for it is given: by the clock [s]; default ten
+        minutes.
+    checkpoint_every
+        Instead: in simulated time [s].
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("method",)
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("checkpoint", "checkpoint_every"),)
     kind: Literal["dem"] = "dem"
     dt: Annotated[
         Literal["auto"] | float,
@@ -104,6 +108,7 @@ class Dem(Part):
     fraction: Annotated[float, Field(gt=0, le=0.2)] = 0.025
     threads: Annotated[int, Field(ge=1)] | None = None
     checkpoint: PositiveTime | None = None
+    checkpoint_every: PositiveTime | None = None
 
     @field_validator("dt")
     @classmethod
@@ -111,6 +116,12 @@ class Dem(Part):
         if isinstance(dt, float) and not dt > 0:
             raise Hint("must be greater than zero")
         return dt
+
+    @model_validator(mode="after")
+    def _one_clock(self) -> Dem:
+        if self.checkpoint is not None and self.checkpoint_every is not None:
+            raise Hint("give checkpoint or checkpoint_every, not both")
+        return self
 
 
 AnyMethod = Annotated[EventDriven | TwoStep | Newton | Dem, Field(discriminator="kind")]

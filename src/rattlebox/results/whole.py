@@ -10,6 +10,23 @@ from contextlib import contextmanager
 from pathlib import Path
 
 
+def needs_folder(path: Path) -> None:
+    """Refuse a file in a folder that is not there.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Raises
+    ------
+    FileNotFoundError
+        When there is no such folder.
+    """
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"cannot write {path}: there is no folder {path.parent}")
+
+
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
     """Give a name to write to, and put that file in the place of another one once it is complete.
@@ -24,8 +41,7 @@ def whole(path: Path) -> Iterator[Path]:
     OSError
         When the file cannot be written; an earlier one is then as it was.
     """
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"cannot write {path}: there is no folder {path.parent}")
+    needs_folder(path)
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
     os.close(handle)
     temporary = Path(name)

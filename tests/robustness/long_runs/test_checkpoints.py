@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -18,8 +17,10 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.results.snapshots import SnapshotFile, Snapshots
 
+from ..mounts import needs_mounts, with_own_mounts
 from .long_run import bits, case
 
 SCRIPT = Path(__file__).with_name("long_run.py")
@@ -114,21 +115,89 @@ def test_ctrl_c_stops_within_a_fifth_of_a_second(tmp_path: Path) -> None:
     """Ctrl-C in the middle of hours of work ends it within 0.2 s, state and samples kept."""
     took = []
     hours = case(duration="1000 s", output=rb.Output(rate="100 Hz"))
-    for attempt in range(5):  # something else may need the processor
+    for _ in range(5):  # something else may need the processor
         pressed: list[float] = []
 
         def press(pressed: list[float] = pressed) -> None:
             pressed.append(time.perf_counter())
             os.kill(os.getpid(), signal.SIGINT)
 
-        threading.Timer(1.0 + 0.5 * attempt, press).start()
-        run = rb.simulate(hours, checkpoint=tmp_path / "run.checkpoint")
+        waiting = threading.Timer(0.3, press)
+
+        def begun(done: int, total: int, waiting: threading.Timer = waiting) -> None:
+            if waiting.ident is None:
+                waiting.start()
+
+        run = rb.simulate(hours, checkpoint=tmp_path / "run.checkpoint", progress=begun)
         took.append(time.perf_counter() - pressed[0])
         assert run.status == "interrupted"
         assert "it goes on from" in run.message
         if took[-1] < 0.2:
             return
     pytest.fail(f"Ctrl-C took {took}")
+
+
+def test_states_are_kept_by_the_clock_of_the_run(
+    whole: Mapping[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Asked for one every so much simulated time, checkpoints are of those times, and the bits stay the same."""
+    times: list[float | None] = []
+    write = Checkpoint.write
+
+    def writing(self: Checkpoint, *state: Any) -> None:
+        write(self, *state)
+        times.append(self.time)
+
+    monkeypatch.setattr(Checkpoint, "write", writing)
+    run = rb.simulate(
+        case(method=rb.Dem(checkpoint_every="8 ms")),
+        checkpoint=tmp_path / "run.checkpoint",
+        snapshots=tmp_path / "run.vtkhdf",
+    )
+    step = run.arrays.figures["step"]
+    assert times == pytest.approx([*np.arange(7) * 8e-3, 0.05], abs=1.5 * step)
+    assert bits(run) == whole
+
+
+def test_runs_in_short_pieces_still_hear(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many snapshots are asked for, progress is told at each and can stop the run; checkpoints come by the clock."""
+    many = case(output=rb.Output(rate="2 kHz", snapshots=500), method=rb.Dem(checkpoint="1 ms"))
+    told: list[int] = []
+    kept: list[float] = []
+    write = Checkpoint.write
+
+    def writing(self: Checkpoint, *state: Any) -> None:
+        write(self, *state)
+        kept.append(self.time or 0.0)
+
+    def progress(done: int, total: int) -> bool:
+        told.append(done)
+        return done < total / 2
+
+    monkeypatch.setattr(Checkpoint, "write", writing)
+    run = rb.simulate(
+        many, checkpoint=tmp_path / "run.checkpoint", snapshots=tmp_path / "run.vtkhdf", progress=progress
+    )
+    assert run.status == "interrupted"
+    assert run.arrays.time[-1] == pytest.approx(0.025, abs=1e-3)
+    assert len(told) >= 250
+    assert len(kept) > 3
+
+
+def test_two_processes_cannot_share_a_checkpoint(tmp_path: Path) -> None:
+    """While one process keeps its state in a file another is refused and told which; the hold ends with the process."""
+    files = {"checkpoint": tmp_path / "run.checkpoint", "snapshots": tmp_path / "run.vtkhdf"}
+    with subprocess.Popen([sys.executable, SCRIPT, tmp_path, "50 s"]) as process:
+        while not files["checkpoint"].exists():
+            assert process.poll() is None
+            time.sleep(0.005)
+        here = rf"run.checkpoint is in use by process {process.pid} on .*\n  try: another file"
+        with pytest.raises(rb.CaseError, match=here):
+            rb.simulate(case(duration="50 s"), **files)
+        process.kill()
+    stopped = rb.simulate(case(duration="50 s"), **files, progress=lambda done, total: False)
+    assert stopped.status == "interrupted"
+    assert {path.name for path in tmp_path.iterdir()} == {"run.checkpoint", "run.vtkhdf"}
 
 
 def test_other_runs_are_refused_with_the_differences(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,16 +313,7 @@ def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
     assert bits(rb.simulate(case(), **files)) == whole
 
 
-def with_own_mounts(script: str) -> subprocess.CompletedProcess[str]:
-    """Run a shell script that may mount."""
-    command = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-ec", script]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-
-
-MOUNTS = shutil.which("unshare") is not None and with_own_mounts("mount -t tmpfs none /mnt").returncode == 0
-
-
-@pytest.mark.skipif(not MOUNTS, reason="this machine does not let users mount")
+@needs_mounts
 @pytest.mark.parametrize(
     ("mount", "said"),
     [
@@ -303,16 +363,17 @@ def test_runs_without_particles_take_no_files(tmp_path: Path) -> None:
         rb.simulate(case())
 
 
-def test_the_command_goes_on(tmp_path: Path) -> None:
-    """Stopped by Ctrl-C, the command says how to go on; given again it finishes, and leaves results but no checkpoint."""
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_command_goes_on(number: int, tmp_path: Path) -> None:
+    """Stopped by Ctrl-C or a cluster, the command says how to go on; given again it finishes and leaves no checkpoint."""
     case(duration="0.7 s").to_file(tmp_path / "case.toml")
     command = [sys.executable, "-m", "rattlebox.cli", "run", "case.toml", "--no-figures"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     while not (tmp_path / "out/run.checkpoint").exists():
         time.sleep(0.01)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(number)
     said = process.communicate()[1]
-    assert process.returncode == 130
+    assert process.returncode == 128 + number
     assert "Run again, it goes on from out/run.checkpoint." in said
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
