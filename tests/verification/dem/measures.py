@@ -119,8 +119,10 @@ def oblique_impact(angle: float, per_contact: int, **options: Any) -> tuple[floa
     return float(velocity[0]), float(velocity[2]), float(turning[1]), result
 
 
-def oblique_law(angle: float, e: float, damping: float, steps: int = 4000) -> tuple[float, float, float]:
-    """Return tangential and normal velocity and spin from a fine integration of the law."""
+def oblique_law(
+    angle: float, e: float, damping: float, steps: int = 4000, keeps: str = "eased"
+) -> tuple[float, float, float]:
+    """Return tangential and normal velocity and spin from a fine integration of the law, or of one like it."""
     down = OBLIQUE_SPEED * math.cos(angle)
     law = oblique.Impact(
         alpha=float(alpha_of_restitution(e)),
@@ -128,6 +130,7 @@ def oblique_law(angle: float, e: float, damping: float, steps: int = 4000) -> tu
         friction=OBLIQUE_FRICTION,
         damping=damping,
         stiffness=cases.stiffness(ALUMINA) * ALUMINA.radius**2.5 / (ALUMINA.mass * down**2),
+        keeps=keeps,
     )
     along, spin, up = law.follow(math.tan(angle), steps)
     return along * down, up * down, -spin * down / ALUMINA.radius

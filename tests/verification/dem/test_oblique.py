@@ -73,6 +73,23 @@ def test_oblique_impacts_are_near_the_printed_ones(degrees: int) -> None:
     assert spin == pytest.approx(turning, rel=0.015 if slides else 0.09)
 
 
+def test_what_a_tangential_spring_keeps_matters_where_contacts_stick() -> None:
+    """Springs that keep force or stretch, damped or not, spread tangential restitution at 10 and 20 degrees, not at 30."""
+
+    def spread(degrees: float) -> tuple[float, float]:
+        angle = math.radians(degrees)
+        laws = [
+            oblique_law(angle, E, damping, 4000, keeps)[0]
+            for damping in (0, 1)
+            for keeps in ("force", "stretch", "eased")
+        ]
+        return min(laws) / (SPEED * math.sin(angle)), max(laws) / (SPEED * math.sin(angle))
+
+    assert spread(10) == pytest.approx((0.694, 0.713), abs=5e-4)
+    assert spread(20) == pytest.approx((0.607, 0.620), abs=5e-4)
+    assert spread(30) == pytest.approx((0.6845, 0.6845), abs=5e-5)
+
+
 @pytest.mark.parametrize("degrees", printed.OBLIQUE_MEASURED)
 def test_oblique_impacts_are_near_measured_ones(degrees: float) -> None:
     """Alumina spheres rebound as measured to 1 % where they slide, and to 4 % at 20 degrees where they stick."""

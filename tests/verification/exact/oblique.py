@@ -32,8 +32,9 @@ def mindlin_ratio(poisson: float) -> float:
 class Impact:
     """A Hertz contact with Tsuji's dashpot, Mindlin's stiffness and Coulomb's limit.
 
-    `alpha` damps along the normal, and tangentially `damping` times as much; `stiffness` is A. In unloading the tangential
-    spring loses force as it loses stiffness.
+    `alpha` damps along the normal, and tangentially `damping` times as much; `stiffness` is A. As the contact changes, the
+    tangential spring loses force with its stiffness but never gains any ("eased"), keeps its force ("force"), or keeps its
+    stretch ("stretch").
     """
 
     alpha: float
@@ -41,6 +42,7 @@ class Impact:
     friction: float
     damping: float
     stiffness: float
+    keeps: str = "eased"
 
     def follow(self, slip: float, steps: int = 4000) -> tuple[float, float, float]:
         """Return tangential velocity, spin and normal velocity after an impact with this tangential velocity before.
@@ -65,7 +67,8 @@ class Impact:
             firm = soft * math.sqrt(middle)
             lever = 1 - middle
             slipping = u + lever * w
-            spring *= min(1.0, firm / before) if before else 1.0
+            change = firm / before if before else 1.0
+            spring *= {"eased": min(1.0, change), "force": 1.0, "stretch": change}[self.keeps]
             spring -= firm * slipping * dt
             limit = self.friction * force
             spring = max(-limit, min(limit, spring))
