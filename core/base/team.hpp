@@ -10,36 +10,56 @@
 
 namespace rattlebox {
 
-// Where the share of a member begins; that of the next one is its end.
-inline int share(int items, int rank, int size) {
-    return static_cast<int>(static_cast<long long>(items) * rank / size);
-}
-
 struct Alone {
     static constexpr int rank() { return 0; }
     static constexpr int size() { return 1; }
-    static constexpr bool leads() { return true; }
     static void sync() {}
+    template <class Last> static void sync(Last&& last) { last(); }
+    static void report() {}
+    static void await_lower() {}
 };
 
+// Where the members of a team wait for each other.
 class Meetingpoint {
-    std::atomic<int> waiting_{0};
-    std::atomic<unsigned> round_{0};
-    const int size_;
+    struct alignas(64) Mark {
+        std::atomic<unsigned> reports{0};
+    };
+    alignas(64) std::atomic<int> waiting_{0};
+    alignas(64) std::atomic<unsigned> round_{0};
+    alignas(64) std::vector<Mark> marks_;
+
+    static constexpr int patience = 100'000; // a phase lasts microseconds, worth spinning for
 
 public:
-    explicit Meetingpoint(int size) : size_(size) {}
+    explicit Meetingpoint(int size) : marks_(static_cast<std::size_t>(size)) {}
 
-    void wait() {
+    template <class Last> void sync(Last&& last) {
         const unsigned round = round_.load(std::memory_order_relaxed);
-        if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == size_) {
+        if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == static_cast<int>(marks_.size())) {
+            last();
             waiting_.store(0, std::memory_order_relaxed);
             round_.store(round + 1, std::memory_order_release);
+            round_.notify_all();
             return;
         }
-        // A phase lasts microseconds: worth spinning for, but not where others want the core.
+        // Who waits longer sleeps: others get the core, and the sleeper is woken where one is free.
         for (int spins = 0; round_.load(std::memory_order_acquire) == round; ++spins)
-            if (spins > 4000) std::this_thread::yield();
+            if (spins > patience) round_.wait(round, std::memory_order_acquire);
+    }
+
+    void report(int rank) {
+        std::atomic<unsigned>& own = marks_[static_cast<std::size_t>(rank)].reports;
+        own.store(own.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+    }
+
+    // All lower members have reported as often as this one.
+    void await_lower(int rank) {
+        const unsigned own = marks_[static_cast<std::size_t>(rank)].reports.load(std::memory_order_relaxed);
+        for (int r = 0; r < rank; ++r) {
+            const std::atomic<unsigned>& theirs = marks_[static_cast<std::size_t>(r)].reports;
+            for (int spins = 0; static_cast<int>(theirs.load(std::memory_order_acquire) - own) < 0; ++spins)
+                if (spins > patience) std::this_thread::yield();
+        }
     }
 };
 
@@ -51,8 +71,14 @@ public:
     Member(Meetingpoint& point, int rank, int size) : point_(&point), rank_(rank), size_(size) {}
     int rank() const { return rank_; }
     int size() const { return size_; }
-    bool leads() const { return rank_ == 0; }
-    void sync() const { point_->wait(); }
+    // All have come so far; the last to come does what is to be done before any goes on.
+    void sync() const {
+        point_->sync([] {});
+    }
+    template <class Last> void sync(Last&& last) const { point_->sync(last); }
+    // Tells those of higher rank, in each round, that they may use what this member has done.
+    void report() const { point_->report(rank_); }
+    void await_lower() const { point_->await_lower(rank_); }
 };
 
 // Calls work(member) on `threads` threads, this one among them.

@@ -17,6 +17,7 @@ struct Motion {
 // Some hundred particles that follow each other, and the contacts whose first partners they are.
 struct Chunk {
     int begin = 0, end = 0;
+    int highest = -1; // particle among the candidates
     std::vector<int> near_first, near_second,
         near_slot;              // neighbours within reach, and memory of those that touch
     std::vector<int> wall_slot; // of each particle at each wall
@@ -33,7 +34,7 @@ struct Chunk {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(near_first, near_second, near_slot, wall_slot, tally, stopped);
+        a(highest, near_first, near_second, near_slot, wall_slot, tally, stopped);
         pairs.keep(a);
         walls.keep(a);
     }

@@ -140,7 +140,7 @@ class BedStep {
             if (kind.rough)
                 tally.sliding[partner] += first_lane(-l.share * problem_.dt * dot(kept.force, l.slip));
             kept.force *= row(1 + l.share);
-            kept.couple *= row(1 + l.share);
+            kept.couple *= row(1 + l.share, 1 + l.share, 1 + l.share, 1);
         }
     }
 

@@ -11,18 +11,24 @@ namespace rattlebox::dem {
 template <class T> T& at(std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
 template <class T> const T& at(const std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
 
-// What a contact remembers while it lasts: all of it together in memory.
-struct Kept {
+// What a contact remembers while it lasts: two lines of memory.
+struct alignas(64) Kept {
     Row force;    // on the first
-    Row couple;   // torque on the first over its radius; of a pair also that on the second over its own
+    Row couple;   // torque on the first over its radius; of a pair also that on the second over its own; mu
     Row friction; // force of the tangential spring on the first, and its stiffness
     Row law;      // A, c, B, c_t: see contact_step.hpp
-    Row limit;    // mu, mu_r R*, k_r / k_t, c_r
 };
 
 struct KeptRolling {
     Row torque; // on the first
     Row spring; // torque of the rolling spring on the first, and its stiffness
+    Row law;    // mu_r R*, k_r / k_t, c_r
+};
+
+// What of it must be carried along when particles change their order.
+struct Carried {
+    Row friction, law, rolling, rolling_law, dent;
+    real mu;
 };
 
 struct Contacts {
@@ -60,9 +66,13 @@ struct Contacts {
             free.pop_back();
             return s;
         }
-        kept.emplace_back();
-        if (rolls) rolling.emplace_back();
-        if (dents) dent.emplace_back();
+        const auto one_more = [](auto& memory) {
+            if (memory.size() == memory.capacity()) memory.reserve(memory.size() + memory.size() / 8 + 4);
+            memory.emplace_back();
+        };
+        one_more(kept);
+        if (rolls) one_more(rolling);
+        if (dents) one_more(dent);
         return static_cast<int>(kept.size()) - 1;
     }
 
@@ -73,14 +83,19 @@ struct Contacts {
         for (int& end : tier_end) end = 0;
     }
 
-    // Takes over what another remembers at `from`; `sign` is -1 where the partners have changed places.
-    int remember(const Contacts& old, int from, real sign) {
+    Carried carried(int s) const {
+        const Kept& k = at(kept, s);
+        const KeptRolling r = rolls ? at(rolling, s) : KeptRolling{};
+        return {k.friction, k.law, r.spring, r.law, dents ? at(dent, s) : Row{}, k.couple[3]};
+    }
+
+    // `sign` is -1 where the partners have changed places.
+    int remember(const Carried& old, real sign) {
         const int s = take();
         const Row turn = row(sign, sign, sign, 1);
-        at(kept, s) = at(old.kept, from);
-        at(kept, s).friction *= turn;
-        if (rolls) at(rolling, s).spring = turn * at(old.rolling, from).spring;
-        if (dents) at(dent, s) = at(old.dent, from);
+        at(kept, s) = Kept{Row{}, row(0, 0, 0, old.mu), turn * old.friction, old.law};
+        if (rolls) at(rolling, s) = KeptRolling{Row{}, turn * old.rolling, old.rolling_law};
+        if (dents) at(dent, s) = old.dent;
         return s;
     }
 

@@ -185,25 +185,26 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
         }
         if constexpr (rough) {
             const Lanes firm = how.mindlin ? push.root : one, drag = how.mindlin ? root(push.root) : one;
-            const auto limit = columns(kept(&Kept::limit));
+            const Lanes mu = columns(kept(&Kept::couple)).w;
             const auto history = columns(kept(&Kept::friction));
             const Lanes pressed = larger(push.force, zero), stiffness = law.z * firm;
             const Vector<Lanes> slip = m.velocity - rate * m.normal + cross(m.swirl, m.normal);
             const Lanes dashpot = Law::plastic ? zero : law.w * drag;
             const auto h =
-                hold(history.vector(), history.w, m.normal, stiffness, dashpot, slip, limit.x * pressed, dt);
+                hold(history.vector(), history.w, m.normal, stiffness, dashpot, slip, mu * pressed, dt);
             store(Columns<8>{h.ahead.x, h.ahead.y, h.ahead.z, stiffness}, kept(&Kept::friction));
             tally.sliding[partner] += weight * h.loss;
             force = force + h.force;
             const Vector<Lanes> couple = m.lever * cross(m.normal, h.force);
-            store(Columns<8>{couple.x, couple.y, couple.z, zero}, kept(&Kept::couple));
+            store(Columns<8>{couple.x, couple.y, couple.z, mu}, kept(&Kept::couple));
             if (sampled) tally.stored += weight * h.stored;
             if constexpr (rolls) {
                 const auto past = columns(rolling(&KeptRolling::spring));
                 const Vector<Lanes> turning = m.spin - dot(m.spin, m.normal) * m.normal;
-                const Lanes spring = limit.z * stiffness;
-                const auto r = hold(past.vector(), past.w, m.normal, spring, limit.w * drag, turning,
-                                    limit.y * pressed, dt);
+                const auto own = columns(rolling(&KeptRolling::law));
+                const Lanes spring = own.y * stiffness;
+                const auto r =
+                    hold(past.vector(), past.w, m.normal, spring, own.z * drag, turning, own.x * pressed, dt);
                 store(Columns<8>{r.ahead.x, r.ahead.y, r.ahead.z, spring}, rolling(&KeptRolling::spring));
                 store(Columns<8>{r.force.x, r.force.y, r.force.z, zero}, rolling(&KeptRolling::torque));
                 tally.rolling[partner] += weight * r.loss;

@@ -20,23 +20,14 @@ class Neighbours {
 
     // A contact on its way from the order before a sort to that after it.
     struct Moving {
-        int first, second, wall, slot, chunk;
+        int first, second, wall;
+        Carried memory;
     };
 
-    std::vector<int> order_, place_, cell_, cell_start_, moved_numbers_;
-    std::vector<Row> moved_;
-    std::vector<char> moved_marks_;
-    std::vector<Contacts> old_pairs_, old_walls_;
-    std::vector<Moving> moving_;
+    std::vector<int> order_, place_, cell_, cell_start_;
+    std::vector<std::vector<Moving>> moving_; // by chunk before the sort
     real largest_ = 0, low_[3] = {}, size_ = 0;
     int cells_[3] = {};
-
-    template <class T>
-    static void permute(std::vector<T>& values, std::vector<T>& spare, const std::vector<int>& order) {
-        spare.resize(values.size());
-        for (std::size_t i = 0; i < order.size(); ++i) spare[i] = at(values, order[i]);
-        values.swap(spare);
-    }
 
     int cell_along(real x, int axis) const {
         const int c = static_cast<int>((x - low_[axis]) / size_);
@@ -61,54 +52,39 @@ class Neighbours {
         for (int a = 0; a < 3; ++a) cells_[a] = static_cast<int>((high[a] - low_[a]) / size_) + 1;
     }
 
-    // Contacts leave their chunks before the particles are sorted ...
-    void pack_up(Bed& bed) {
-        moving_.clear();
-        old_pairs_.resize(bed.chunks.size()), old_walls_.resize(bed.chunks.size());
-        const int walls = static_cast<int>(bed.cavity->walls.size());
-        for (int c = 0; c < bed.chunk_count(); ++c) {
-            Chunk& chunk = at(bed.chunks, c);
-            for (std::size_t p = 0; p < chunk.near_slot.size(); ++p)
-                if (chunk.near_slot[p] != none)
-                    moving_.push_back(
-                        {chunk.near_first[p], chunk.near_second[p], none, chunk.near_slot[p], c});
-            for (std::size_t p = 0; p < chunk.wall_slot.size(); ++p)
-                if (chunk.wall_slot[p] != none) {
-                    const int which = static_cast<int>(p);
-                    moving_.push_back(
-                        {chunk.begin + which / walls, none, which % walls, chunk.wall_slot[p], c});
-                }
-            std::swap(chunk.pairs, at(old_pairs_, c));
-            std::swap(chunk.walls, at(old_walls_, c));
-            const auto renew = [](Contacts& fresh, const Contacts& old) {
-                fresh.rolls = old.rolls, fresh.dents = old.dents;
-                fresh.forget_all();
-            };
-            renew(chunk.pairs, at(old_pairs_, c));
-            renew(chunk.walls, at(old_walls_, c));
-        }
-    }
-
 public:
     void start(const Bed& bed) {
         largest_ = 0;
+        moving_.resize(bed.chunks.size());
         for (const Row& p : bed.position) largest_ = larger(largest_, p[3]);
     }
 
     std::size_t memory() const {
-        std::size_t bytes =
-            moved_.capacity() * sizeof(Row) + moved_marks_.capacity() + moving_.capacity() * sizeof(Moving);
-        for (const auto* v : {&order_, &place_, &cell_, &cell_start_, &moved_numbers_})
-            bytes += v->capacity() * sizeof(int);
-        for (const auto* contacts : {&old_pairs_, &old_walls_})
-            for (const Contacts& c : *contacts) bytes += c.memory();
+        std::size_t bytes = 0;
+        for (const auto* v : {&order_, &place_, &cell_, &cell_start_}) bytes += v->capacity() * sizeof(int);
+        for (const auto& m : moving_) bytes += m.capacity() * sizeof(Moving);
         return bytes;
     }
 
-    // ---- a build: sort, search each chunk, bring the contacts back
+    // ---- a build: contacts leave their chunks, particles are sorted, each chunk is searched, contacts
+    // arrive
 
-    void sort(Bed& bed) {
-        pack_up(bed);
+    void pack_up(const Bed& bed, Chunk& chunk) {
+        std::vector<Moving>& moving = at(moving_, chunk.begin / Bed::chunk_size);
+        const int walls = static_cast<int>(bed.cavity->walls.size());
+        for (std::size_t p = 0; p < chunk.near_slot.size(); ++p)
+            if (chunk.near_slot[p] != none)
+                moving.push_back({chunk.near_first[p], chunk.near_second[p], none,
+                                  chunk.pairs.carried(chunk.near_slot[p])});
+        for (int p = 0; p < static_cast<int>(chunk.wall_slot.size()); ++p)
+            if (at(chunk.wall_slot, p) != none)
+                moving.push_back(
+                    {chunk.begin + p / walls, none, p % walls, chunk.walls.carried(at(chunk.wall_slot, p))});
+        chunk.pairs.forget_all(), chunk.walls.forget_all();
+    }
+
+    // The order of the particles by cell.
+    void find_order(const Bed& bed) {
         lay_cells(bed);
         const int n = bed.particles();
         cell_.resize(static_cast<std::size_t>(n)), order_.resize(cell_.size()), place_.resize(cell_.size());
@@ -124,12 +100,21 @@ public:
         for (std::size_t c = cell_start_.size() - 1; c > 0; --c) cell_start_[c] = cell_start_[c - 1];
         cell_start_[0] = 0;
         for (int i = 0; i < n; ++i) at(order_, at(place_, i)) = i;
+    }
+
+    // Each array is one job.
+    template <class Team> void sort(Bed& bed, const Team& team) const {
+        int job = 0;
+        const auto permute = [&]<class T>(std::vector<T>& values) {
+            if (job++ % team.size() != team.rank()) return;
+            std::vector<T> sorted;
+            sorted.reserve(values.size());
+            for (const int i : order_) sorted.push_back(at(values, i));
+            values.swap(sorted);
+        };
         for (auto* rows : {&bed.position, &bed.velocity, &bed.acceleration, &bed.spin, &bed.spin_rate})
-            permute(*rows, moved_, order_);
-        permute(bed.touched, moved_marks_, order_);
-        permute(bed.name, moved_numbers_, order_);
-        permute(bed.kind, moved_numbers_, order_);
-        bed.since_build = 0;
+            permute(*rows);
+        permute(bed.touched), permute(bed.name), permute(bed.kind);
     }
 
     void search(const Bed& bed, Chunk& chunk) const {
@@ -163,29 +148,32 @@ public:
                                none);
     }
 
-    // ... and arrive where their first partner is now.
-    void unpack(Bed& bed) {
+    // Contacts arrive where their first partner is now, if that is from `first` to `until`.
+    void unpack(Bed& bed, int first, int until) const {
         const int walls = static_cast<int>(bed.cavity->walls.size());
-        for (const Moving& m : moving_) {
-            int i = at(place_, m.first);
-            if (m.wall != none) {
+        for (const auto& from_chunk : moving_)
+            for (const Moving& m : from_chunk) {
+                int i = at(place_, m.first), j = m.wall == none ? at(place_, m.second) : i;
+                const bool turned = i > j;
+                if (turned) std::swap(i, j);
+                if (i < first || i >= until) continue;
                 Chunk& chunk = at(bed.chunks, i / Bed::chunk_size);
-                at(chunk.wall_slot, (i - chunk.begin) * walls + m.wall) =
-                    chunk.walls.remember(at(old_walls_, m.chunk), m.slot, 1);
-                continue;
+                if (m.wall != none) {
+                    at(chunk.wall_slot, (i - chunk.begin) * walls + m.wall) =
+                        chunk.walls.remember(m.memory, 1);
+                    continue;
+                }
+                auto p = std::lower_bound(chunk.near_first.begin(), chunk.near_first.end(), i) -
+                         chunk.near_first.begin();
+                while (chunk.near_second[static_cast<std::size_t>(p)] != j)
+                    ++p; // touching, so among the neighbours
+                chunk.near_slot[static_cast<std::size_t>(p)] =
+                    chunk.pairs.remember(m.memory, turned ? -1 : 1);
             }
-            int j = at(place_, m.second);
-            const bool turned = i > j;
-            if (turned) std::swap(i, j);
-            Chunk& chunk = at(bed.chunks, i / Bed::chunk_size);
-            auto p = std::lower_bound(chunk.near_first.begin(), chunk.near_first.end(), i) -
-                     chunk.near_first.begin();
-            while (chunk.near_second[static_cast<std::size_t>(p)] != j)
-                ++p; // touching, so among the neighbours
-            chunk.near_slot[static_cast<std::size_t>(p)] =
-                chunk.pairs.remember(at(old_pairs_, m.chunk), m.slot, turned ? -1 : 1);
-        }
-        for (auto* contacts : {&old_pairs_, &old_walls_}) contacts->clear();
+    }
+
+    void forget_moves() {
+        for (auto& moving : moving_) std::vector<Moving>().swap(moving);
     }
 
     // ---- a scan of a chunk: candidates among the neighbours, and walls
@@ -232,13 +220,17 @@ private:
             pairs.tier_end[t] = sum += numbers[t];
         }
         pairs.resize(sum);
+        chunk.highest = -1;
         for (int n = 0; n < found; ++n) {
             const int p = at(kept, n), k = next[static_cast<int>(at(kept_tier, n))]++;
             at(pairs.first, k) = at(chunk.near_first, p);
             at(pairs.second, k) = at(chunk.near_second, p);
             at(pairs.origin, k) = p;
             at(pairs.slot, k) = at(chunk.near_slot, p);
+            chunk.highest = std::max(chunk.highest, at(pairs.second, k));
         }
+        // Lanes past the end look at a particle of their own.
+        std::fill(pairs.second.begin() + sum, pairs.second.end(), chunk.begin);
     }
 
     static void scan_walls(const Bed& bed, Chunk& chunk) {

@@ -10,6 +10,7 @@
 
 #include "base/team.hpp"
 #include "dem/bed_step.hpp"
+#include "dem/division.hpp"
 #include "dem/records.hpp"
 
 namespace rattlebox::dem {
@@ -33,9 +34,7 @@ class Simulation {
     bool halted_ = false;
     Row body_before_{};
     long steps_since_ = 0;
-    // Candidates, by chunk and number, that lower chunks own and that act on the share of a thread, of each
-    // bed.
-    std::vector<std::vector<std::vector<std::pair<int, int>>>> incoming_;
+    Division division_;
     Records records_;
 
     real h() const { return 0.5 * problem_.dt; }
@@ -71,7 +70,7 @@ class Simulation {
         return k;
     }
 
-    void fill_bed(Bed& bed, const Cavity& cavity) {
+    void fill_bed(Bed& bed, const Cavity& cavity, bool rolls) {
         bed.cavity = &cavity;
         const int n = cavity.particles();
         const auto size = static_cast<std::size_t>(n);
@@ -88,8 +87,9 @@ class Simulation {
         }
         bed.kind = cavity.kind;
         bed.touched.assign(size, 0);
-        for (auto* rows : {&bed.acceleration, &bed.spin_rate, &bed.force, &bed.couple, &bed.roll})
+        for (auto* rows : {&bed.acceleration, &bed.spin_rate, &bed.force, &bed.couple})
             rows->assign(size, Row{});
+        if (rolls) bed.roll.assign(size, Row{});
         for (int from = 0; from < n; from += Bed::chunk_size) {
             Chunk& chunk = bed.chunks.emplace_back();
             chunk.begin = from, chunk.end = std::min(from + Bed::chunk_size, n);
@@ -182,78 +182,56 @@ class Simulation {
     // The next step may bring together what is on no list.
     static bool is_stale(real since, real reach) { return !(2 * since < reach); }
 
-    void find_incoming(int thread, int threads) {
-        for (std::size_t b = 0; b < beds_.size(); ++b) {
-            auto& list = incoming_[static_cast<std::size_t>(thread)][b];
-            list.clear();
-            const auto& chunks = beds_[b].chunks;
-            const int from = share(beds_[b].chunk_count(), thread, threads);
-            const int to = share(beds_[b].chunk_count(), thread + 1, threads);
-            if (from == to) continue;
-            const int first = at(chunks, from).begin, end = at(chunks, to - 1).end;
-            for (int c = 0; c < from; ++c) {
-                const Contacts& pairs = at(chunks, c).pairs;
-                for (int k = 0; k < pairs.size(); ++k)
-                    if (at(pairs.second, k) >= first && at(pairs.second, k) < end) list.push_back({c, k});
-            }
-        }
-    }
-
-    template <class Team, class F> void each_chunk(Team& team, F&& f) {
-        for (std::size_t b = 0; b < beds_.size(); ++b) {
-            const int chunks = beds_[b].chunk_count(), to = share(chunks, team.rank() + 1, team.size());
-            for (int k = share(chunks, team.rank(), team.size()); k < to; ++k) f(b, at(beds_[b].chunks, k));
-        }
-    }
-
     template <class Team> void renew(Team& team) {
         bool build = false;
         for (const Bed& bed : beds_) build |= is_stale(bed.since_build, bed.reach - bed.skin);
-        team.sync();
+        const auto each_chunk = [&](auto&& f) {
+            division_.each_chunk(team.rank(),
+                                 [&](Place p) { f(at(neighbours_, p.bed), at(beds_, p.bed), p.chunk); });
+        };
         if (build) {
-            if (team.leads()) {
+            each_chunk([](Neighbours& n, Bed& bed, int c) { n.pack_up(bed, at(bed.chunks, c)); });
+            team.sync([&] {
                 for (std::size_t b = 0; b < beds_.size(); ++b)
-                    choose_reach(beds_[b]), neighbours_[b].sort(beds_[b]);
+                    choose_reach(beds_[b]), neighbours_[b].find_order(beds_[b]);
+            });
+            for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].sort(beds_[b], team);
+            team.sync([&] {
+                for (Bed& bed : beds_) bed.since_build = 0;
                 ++builds_;
                 steps_since_ = 0;
-            }
-            team.sync();
-            each_chunk(team, [&](std::size_t b, Chunk& chunk) { neighbours_[b].search(beds_[b], chunk); });
-            team.sync();
-            if (team.leads())
-                for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].unpack(beds_[b]);
-            team.sync();
+            });
+            each_chunk([](const Neighbours& n, Bed& bed, int c) { n.search(bed, at(bed.chunks, c)); });
+            const Part& part = division_.part(team.rank());
+            for (int b = 0; b < static_cast<int>(beds_.size()); ++b)
+                at(neighbours_, b).unpack(at(beds_, b), at(part.first, b), at(part.until, b));
         }
-        each_chunk(team, [&](std::size_t b, Chunk& chunk) { neighbours_[b].scan(beds_[b], chunk); });
-        team.sync();
-        find_incoming(team.rank(), team.size());
-        if (team.leads()) {
+        each_chunk([](const Neighbours& n, Bed& bed, int c) { n.scan(bed, at(bed.chunks, c)); });
+        team.sync([&] {
+            for (Neighbours& n : neighbours_) n.forget_moves();
             for (Bed& bed : beds_) bed.since_scan = 0;
             ++scans_;
-        }
-        team.sync();
+            division_.divide(team.size());
+        });
+        division_.look_around(team.rank());
     }
 
     // ---- steps
 
-    template <class Team> void advance_all(Team& team, Row acceleration, bool first, bool sample) {
-        for (std::size_t b = 0; b < beds_.size(); ++b) {
-            auto& chunks = beds_[b].chunks;
-            const int count = beds_[b].chunk_count();
-            const int from = share(count, team.rank(), team.size()),
-                      to = share(count, team.rank() + 1, team.size());
-            if (from == to) continue;
-            for (const auto& [c, k] : incoming_[static_cast<std::size_t>(team.rank())][b])
-                steps_[b].incoming(at(chunks, c).pairs, k);
-            const Row reference = beds_[b].motion.velocity;
-            for (int c = from; c < to; ++c) {
-                Chunk& chunk = at(chunks, c);
-                steps_[b].outgoing(chunk, at(chunks, to - 1).end);
-                if (sample)
-                    steps_[b].advance<true>(chunk, acceleration, body_before_, reference, first);
-                else
-                    steps_[b].advance<false>(chunk, acceleration, body_before_, reference, first);
-            }
+    void advance(const Part& part, bool first, bool sample) {
+        for (const Incoming& in : part.incoming)
+            at(steps_, in.bed).incoming(at(at(beds_, in.bed).chunks, in.chunk).pairs, in.candidate);
+        const Row all = body();
+        for (int k = part.begin; k < part.end; ++k) {
+            const Place p = division_.place(k);
+            Bed& bed = at(beds_, p.bed);
+            Chunk& chunk = at(bed.chunks, p.chunk);
+            BedStep& step = at(steps_, p.bed);
+            step.outgoing(chunk, at(part.until, p.bed));
+            if (sample)
+                step.advance<true>(chunk, all, body_before_, bed.motion.velocity, first);
+            else
+                step.advance<false>(chunk, all, body_before_, bed.motion.velocity, first);
         }
     }
 
@@ -296,13 +274,13 @@ class Simulation {
         return false;
     }
 
-    // What all need to know of the step to come; the leader's.
+    // What all need to know of the step to come; done by one.
     void prepare() {
         load_values();
         if (sampled()) records_.before(beds_);
     }
 
-    // What follows from the forces of this step; the leader's.
+    // What follows from the forces of this step; done by one.
     void conclude(bool first, bool sample) {
         find_modal_force();
         if (!first) kick();
@@ -322,21 +300,25 @@ class Simulation {
     }
 
     template <class Team> void run(Team& team, long until, const std::atomic<bool>& stop) {
-        if (team.leads()) prepare();
-        team.sync();
+        division_.look_around(team.rank());
+        team.sync([&] { prepare(); });
         while (step_ <= until && status_ == Status::finished && !halted_) {
             if (must_renew()) renew(team);
             const bool first = step_ == 0, sample = sampled();
-            each_chunk(team, [&](std::size_t b, Chunk& chunk) { steps_[b].forces(chunk, sample); });
-            team.sync();
-            advance_all(team, body(), first, sample);
-            team.sync();
-            if (team.leads()) {
+            const Part& part = division_.part(team.rank());
+            const auto forces = [&](Place p) {
+                at(steps_, p.bed).forces(at(at(beds_, p.bed).chunks, p.chunk), sample);
+            };
+            for (const Place p : part.reaching) forces(p);
+            team.report();
+            for (const Place p : part.inside) forces(p);
+            team.await_lower();
+            advance(part, first, sample);
+            team.sync([&] {
                 conclude(first, sample);
                 prepare();
                 halted_ = stop;
-            }
-            team.sync();
+            });
         }
     }
 
@@ -360,7 +342,7 @@ public:
             const Cavity& cavity = problem_.cavities[b];
             const Kind pair = kind_of(cavity.particle_entry), wall = kind_of(cavity.wall_entry);
             Bed& bed = beds_[b];
-            fill_bed(bed, cavity);
+            fill_bed(bed, cavity, pair.rolls || wall.rolls);
             const auto prepare = [](Contacts& list, const Kind& kind) {
                 list.rolls = kind.rolls, list.dents = kind.normal == Kind::plastic;
                 list.forget_all();
@@ -369,6 +351,7 @@ public:
             neighbours_[b].start(bed);
             steps_.emplace_back(bed, problem_, pair, wall);
         }
+        division_.start(beds_);
         modes_shown_ = modes_;
         for (Bed& bed : beds_) {
             place(bed);
@@ -383,16 +366,10 @@ public:
     // Goes on until the sample of step `until` is taken, or something stops it.
     void run(long until, int threads, const std::atomic<bool>& stop) {
         until = std::min(until, problem_.steps);
-        int chunks = 0;
-        for (const Bed& bed : beds_) chunks += bed.chunk_count();
-        threads = std::min(threads, chunks);
+        threads = std::min(threads, division_.chunks());
         halted_ = false;
-        incoming_.assign(static_cast<std::size_t>(threads),
-                         {beds_.size(), std::vector<std::pair<int, int>>{}});
-        together(threads, [&](auto team) {
-            find_incoming(team.rank(), team.size());
-            run(team, until, stop);
-        });
+        division_.divide(threads);
+        together(threads, [&](auto team) { run(team, until, stop); });
     }
 
     // All that the next step needs, in a fixed order: to write it down and to read it back.

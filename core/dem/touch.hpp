@@ -102,14 +102,17 @@ inline bool begin(Contacts& list, int k, const Touch& t, real dt, Late& late, Ta
             kept.law = row(law.stiffness, now.damping, tangential, drag);
         }
         const real roll = e.rolling_stiffness > 0 ? e.rolling_stiffness * square(t.radius) : 1;
-        kept.limit = row(e.friction, e.rolling * t.radius, roll,
-                         2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential));
+        if (list.rolls)
+            at(list.rolling, k) =
+                KeptRolling{Row{}, row(0, 0, 0, 1e290),
+                            row(e.rolling * t.radius, roll,
+                                2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential))};
     });
+    kept.couple = row(0, 0, 0, e.friction);
     // The spring as if it had been stretched since half a step ago, which makes it stretched since the touch.
     const real stiffness = kept.law[2] * (e.shear > 0 ? std::sqrt(t.overlap) : 1);
     kept.friction = t.slip * (-stiffness * (since - 0.5 * dt));
     kept.friction[3] = stiffness;
-    if (list.rolls) at(list.rolling, k).spring = row(0, 0, 0, 1e290);
     return !r.outside;
 }
 
