@@ -15,7 +15,7 @@ ARROWS = {
     "cli": {"paper"},
     "paper": {"plots", "studies"},
     "plots": {"analysis", "model"},
-    "studies": {"engines"},
+    "studies": {"engines", "analysis"},
     "analysis": {"results"},
     "engines": {"results", "model"},
     "results": set(),

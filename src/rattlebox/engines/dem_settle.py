@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -31,15 +31,24 @@ RESTITUTION = 0.1
 STEPS = 20  # in a contact
 FALLS = 200  # times that a fall through the cavity takes, after which a bed should rest
 QUIET = 5  # times twenty contact times
+REMEMBERED = 8  # beds
 
 
-def settle(damper: ParticleDamper) -> Array:
+@overload
+def settle(damper: ParticleDamper) -> Array: ...
+@overload
+def settle(damper: ParticleDamper, go_on: Callable[[], bool]) -> Array | None: ...
+def settle(damper: ParticleDamper, go_on: Callable[[], bool] = lambda: True) -> Array | None:
     """Return positions of a bed at rest, (n, 3) [m] from the centre of the cavity.
+
+    The last few beds are remembered: cases that differ in motion or contacts only start from the same one.
 
     Parameters
     ----------
     damper
         What to fill in; its packing is Settled.
+    go_on
+        Asked now and then; False stops, and nothing is returned.
 
     Raises
     ------
@@ -48,12 +57,28 @@ def settle(damper: ParticleDamper) -> Array:
     """
     packing = damper.packing
     assert isinstance(packing, Settled)
+    about = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
+    if about in _beds:
+        return _beds[about].copy()
     radii = damper.contents.radius
     inserted = insert(damper.cavity, radii, packing.seed)
-    bed = _Bed(damper)
-    settled = bed.expand(bed.fall(inserted, packing.at_rest), damper.cavity)
+    bed = _Bed(damper, go_on)
+    try:
+        settled = bed.expand(bed.fall(inserted, packing.at_rest), damper.cavity)
+    except _Stopped:
+        return None
     check_packing(damper.cavity, settled, radii)
+    for oldest in list(_beds)[: 1 - REMEMBERED]:
+        _beds.pop(oldest, None)
+    _beds[about] = settled.copy()
     return settled
+
+
+_beds: dict[str, Array] = {}
+
+
+class _Stopped(Exception):
+    pass
 
 
 def insert(cavity: Cavity, radii: Array, seed: int) -> Array:
@@ -160,7 +185,8 @@ def _off_walls(walls: Any, places: Array, depth: Array) -> Array:
 class _Bed:
     """Particles, a little larger than they are, in a cavity that stands still, with soft and sticky contacts."""
 
-    def __init__(self, damper: ParticleDamper) -> None:
+    def __init__(self, damper: ParticleDamper, go_on: Callable[[], bool]) -> None:
+        self._go_on = go_on
         self._contents, self._walls = damper.contents, damper.cavity.walls()
         self._gravity = np.array(damper.gravity)
         self._pull = float(np.linalg.norm(self._gravity))
@@ -237,6 +263,8 @@ class _Bed:
         dem.threads = max(1, min(os.cpu_count() or 1, count // 4000))
         for sample in range(1, rounds + 1):
             dem.run(sample * every, None)
+            if not self._go_on():
+                raise _Stopped
             if dem.status:
                 raise Hint(f"particles do not settle: the run ended with status {dem.status}")
             yield np.asarray(dem.state()["cavities"][0]["position"]), float(dem.records()["kinetic"][-1].sum())

@@ -222,7 +222,10 @@ def _with_points(case: Case, axes: int = 0) -> Packed:
 def _numbers(case: Case, axes: int = 0) -> Packed:
     """All but the sample times; of a batch over some axes, which vectors have after their own."""
     if case.particle_dampers:
-        raise Hint("studies compute impact dampers", "a loop over rattlebox.simulate for particle dampers")
+        raise Hint(
+            "this study computes impact dampers, not particles in space",
+            "rb.sweep, rb.loss_map or rb.sensitivity, or a loop over rb.simulate",
+        )
     modes = case.modes
     return {
         "settings": {"duration": case.duration, **_method(case)},

@@ -22,9 +22,12 @@ STATUSES: tuple[tuple[str, str], ...] = (
         "{contact} was struck at {value:.6g} m/s, where its restitution law gives no rebound, which no contact with a "
         "dashpot can do, at t = {time:.9g} s.",
     ),
+    ("refused", "The case cannot be run as it is."),
 )
 _NAMES = [name for name, _ in STATUSES]
-INTERRUPTED, NOT_FINITE, LEDGER_OPEN = map(_NAMES.index, ("interrupted", "not_finite", "ledger_open"))
+INTERRUPTED, NOT_FINITE, LEDGER_OPEN, REFUSED = map(
+    _NAMES.index, ("interrupted", "not_finite", "ledger_open", "refused")
+)
 
 _SIZES = "Check that stiffnesses, masses and speeds are of the sizes you meant."
 _ADVICE: dict[str, dict[str, str]] = {
@@ -53,6 +56,7 @@ _ADVICE: dict[str, dict[str, str]] = {
         "event_driven": "Lower the tolerance, and compare with another method.",
         "dem": "Shorten dt, or the fraction of the shortest contact that it is.",
     },
+    "refused": {"": "Run it alone, which says why."},
     "escaped": {"": "Shorten dt, or soften the contacts less."},
 }
 """What to try, by status and kind of method; "" for every other method."""

@@ -60,7 +60,8 @@ def loss_map(
     -------
     xarray.Dataset
         Over amplitude and frequency: loss_factor (m'' over the size of m'), effective_mass m' [kg], damping_mass m'' [kg],
-        reduced_loss (loss a cycle over m V^2), loss_per_cycle [J], impacts_per_cycle, status; and particle_mass m [kg].
+        reduced_loss (loss a cycle over m V^2), loss_per_cycle [J], impacts_per_cycle (but not in space), status; and
+        particle_mass m [kg].
 
     Raises
     ------
@@ -93,7 +94,7 @@ def loss_map(
     found = sweep(
         case,
         {"structure.motion.amplitude": amplitudes, "structure.motion.frequency": frequencies},
-        MEASURES,
+        [name for name in MEASURES if name != "impacts_per_cycle" or not case.particle_dampers],
         cycles=cycles,
         samples=samples,
         threads=threads,
@@ -102,5 +103,6 @@ def loss_map(
         progress=progress,
     )
     mass = sum(ball.weight for damper in case.impact_dampers for ball in damper.balls)
+    mass += sum(float(damper.contents.mass.sum()) for damper in case.particle_dampers)
     found = found.assign(particle_mass=((), mass, {"units": "kg", "long_name": "mass of the particles"}))
     return keep_map(found, "loss_map", store)

@@ -231,7 +231,7 @@ def _chains(task: Task, kept: Memory | Store, dims: Sequence[str]) -> list[_Chai
     for numbers in task.chains(blocks):
         done = int(np.argmin([*kept.finished[numbers], False]))
         before = None
-        if done:
+        if 0 < done < len(numbers):
             last = np.unravel_index(task.order(*blocks.range(numbers[done - 1]))[-1], blocks.shape)
             there = kept.result().isel(dict(zip(dims, map(int, last), strict=True)))
             before = {str(name): values.values[None] for name, values in there.data_vars.items()}

@@ -10,6 +10,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.units import parse
 
 from .axes import Design
+from .granular import GranularTask
 from .measures import MEASURES
 from .runner import run_task
 from .task import SweepTask
@@ -44,20 +45,22 @@ def sweep(
     Parameters
     ----------
     case
-        The case, with the values that do not vary. Its output is not used.
+        The case, with the values that do not vary. Its output is not used, but for particles in space: they are run as by
+        `rb.simulate`, as many variants at once as there are threads.
     axes
         Values by path, {"damper.gap": rb.linspace("0.1 mm", "2 mm", 200), "load.amplitude": ["1 kN", "5 kN"]}: a grid;
         a tuple of paths as a key links them; or `rb.random_design`, `rb.replicas`.
     measure
         Names of measures (rb.MEASURES), computed in the core without keeping trajectories, and functions of a Run,
-        for which each variant is run as by `rb.simulate`.
+        for which each variant is run as by `rb.simulate`. Of particles in space those that look at single impacts are not
+        known.
     skip
         Time before what is looked at, with a unit or in seconds: measures leave it out.
     cycles
         Instead of the case's duration and `skip`, with a harmonic load: how many cycles to skip and to look at.
     samples
         Equally spaced samples of the motion, both ends included, for measures that need them and for `motion`;
-        default 2001, or 64 a cycle with `cycles`.
+        default 2001 (of particles in space those of the case's output), or 64 a cycle with `cycles`.
     point
         Of the structure, that is watched; default the first damper's.
     motion
@@ -76,7 +79,8 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        Over the axes: `status` and each measure with its unit; NaN where a run did not finish.
+        Over the axes: `status` and each measure with its unit; NaN where a run did not finish. A variant with particles in
+        space whose particles do not fit or settle, or whose step is too long, has the status "refused".
 
     Raises
     ------
@@ -93,7 +97,8 @@ def sweep(
     ('damper.gap',)
     """
     design = Design.of(case, axes)
-    task = SweepTask(
+    kind = GranularTask if case.particle_dampers else SweepTask
+    task = kind(
         case,
         design,
         measures=known(measure),
@@ -105,7 +110,16 @@ def sweep(
         last=last,
     )
     assert task.look  # what does not fit is told before anything runs
-    return run_task(task, design=design, coords=task.coords(), store=store, on=on, threads=threads, progress=progress)
+    return run_task(
+        task,
+        design=design,
+        coords=task.coords(),
+        store=store,
+        on=on,
+        threads=threads,
+        progress=progress,
+        block=task.block,
+    )
 
 
 def known(measure: Any) -> list[Any]:

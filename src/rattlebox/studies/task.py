@@ -74,6 +74,11 @@ class SweepTask:
         return self.design.size
 
     @property
+    def block(self) -> int | None:
+        """Largest number of variants in a block; None for what takes about a second."""
+        return None
+
+    @property
     def named(self) -> list[str]:
         """Measures that the core computes."""
         return [measure for measure in self.measures if isinstance(measure, str)]

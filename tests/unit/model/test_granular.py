@@ -332,9 +332,3 @@ def test_a_file_needs_no_kind_of_damper() -> None:
         "'gravity'",
     ):
         assert said in str(caught.value)
-
-
-def test_studies_say_that_they_are_for_impact_dampers() -> None:
-    """A sweep over a case with particles is refused before anything runs."""
-    with pytest.raises(rb.CaseError, match="a loop over"):
-        rb.sweep(case(), {"duration": [0.1, 0.2]}, measure=["impact_share"])

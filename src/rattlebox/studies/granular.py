@@ -1,0 +1,277 @@
+"""Variants of cases with particles in space: whole runs, each on a thread of its own, summed up by measures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import trapezoid
+
+from rattlebox.analysis import settling_time, shaken_cavity
+from rattlebox.engines.batch import Look
+from rattlebox.engines.dem import simulate_dem
+from rattlebox.engines.dem_settle import settle
+from rattlebox.engines.status import REFUSED, STATUSES
+from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.methods import Output
+from rattlebox.model.packing import Settled
+from rattlebox.model.signals import Harmonic
+from rattlebox.model.space import unit_vector
+from rattlebox.results import GranularRun
+from rattlebox.results.schema import GRANULAR_CHANNELS
+
+from .blocks import Blocks
+from .measures import MEASURES
+from .task import SweepTask, Values
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
+_BLOCKS = 2000
+_SUMS = ("load_work", "base_work", "viscous_loss", "normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
+_NUMBERS = {name: number for number, (name, _) in enumerate(STATUSES)}
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What measures look at.
+
+    Attributes
+    ----------
+    run
+        From the begin of the window on; work and losses count from there.
+    motion, speed : (T,) float
+        Of the point that is watched [m], [m/s].
+    frequency
+        Of the first harmonic load or motion [Hz], NaN without one.
+    """
+
+    run: GranularRun
+    motion: NDArray[np.float64]
+    speed: NDArray[np.float64]
+    frequency: float
+
+    @property
+    def length(self) -> float:
+        """Of the window [s]."""
+        times = self.run.arrays.time
+        return float(times[-1] - times[0])
+
+    @property
+    def loss(self) -> float:
+        """In all contacts [J]."""
+        return float(self.run.ledger.impact_loss[-1])
+
+    def rms(self, values: NDArray[np.float64]) -> float:
+        """Return the root of the mean square over the window."""
+        return math.sqrt(float(trapezoid(values**2, self.run.arrays.time)) / self.length)
+
+    @property
+    def settled(self) -> float:
+        """Time after which the point stays within a twentieth of its peak [s]."""
+        times = self.run.arrays.time
+        return settling_time(times, self.motion) if self.motion.any() else float(times[0])
+
+    @property
+    def speed_of_cavity(self) -> float:
+        """Amplitude of the velocity of the first cavity [m/s]."""
+        first = self.run.arrays.dampers[0]
+        return float(shaken_cavity(self.run, frequency=self.frequency, damper=first).attrs["velocity_amplitude"])
+
+    @cached_property
+    def apparent_mass(self) -> complex:
+        """Force of all cavities on their particles over the acceleration of the first one, m' - i m'' [kg]."""
+        total = 0j
+        for name in self.run.arrays.dampers:
+            one = shaken_cavity(self.run, frequency=self.frequency, damper=name).sel(way="complex power")
+            lost = float(one.active_power) / (math.pi * self.frequency)
+            total += float(one.effective_mass) * one.attrs["velocity_amplitude"] ** 2 - 1j * lost
+        return total / self.speed_of_cavity**2
+
+
+_FOUND: dict[str, Callable[[Seen], float]] = {
+    "work": lambda s: s.run.ledger.work[-1],
+    "viscous_loss": lambda s: s.run.arrays.viscous_loss[-1],
+    "impact_loss": lambda s: s.loss,
+    "viscous_share": lambda s: s.run.ledger.shares["viscous"],
+    "impact_share": lambda s: sum(s.run.ledger.shares[channel] for channel in GRANULAR_CHANNELS[1:-1]),
+    "motion_share": lambda s: s.run.ledger.shares["motion"],
+    "closure": lambda s: s.run.closure,
+    "peak": lambda s: np.abs(s.motion).max(),
+    "rms": lambda s: s.rms(s.motion),
+    "peak_velocity": lambda s: np.abs(s.speed).max(),
+    "rms_velocity": lambda s: s.rms(s.speed),
+    "settling_time": lambda s: s.settled,
+    "loss_per_cycle": lambda s: s.loss / (s.length * s.frequency),
+    "reduced_loss": lambda s: (
+        s.loss / (s.length * s.frequency * s.run.arrays.particle_mass.sum() * s.speed_of_cavity**2)
+    ),
+    "effective_mass": lambda s: s.apparent_mass.real,
+    "damping_mass": lambda s: -s.apparent_mass.imag,
+    "loss_factor": lambda s: -s.apparent_mass.imag / abs(s.apparent_mass.real),
+}
+"""Those of rattlebox.MEASURES that do not look at single impacts; they mean the same."""
+
+
+@dataclass
+class GranularTask(SweepTask):
+    """A case with particles in space, its variants, and what is kept of each; attributes as those of SweepTask.
+
+    Functions of a run are given the run that the measures are found from, whose samples are those of the case's output, or
+    what `samples` or `cycles` ask for. Motions, impacts and states are not kept.
+    """
+
+    @property
+    def look(self) -> Look:
+        """Nothing for the core.
+
+        Raises
+        ------
+        CaseError
+            When what is asked for does not fit the case.
+        """
+        for name in self.named:
+            if name not in _FOUND:
+                raise Hint(f"{name} looks at single impacts, of which particles in space keep none", ", ".join(_FOUND))
+            if MEASURES[name].cyclic and math.isnan(_frequency(self.case)):
+                raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "rb.Harmonic")
+        if self.motion or self.last or self.state:
+            raise Hint(
+                "of particles in space neither motion nor last impacts are kept", "a function of a Run as measure"
+            )
+        if self.cycles is not None and math.isnan(_frequency(self.case)):
+            raise Hint("cycles need a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
+        if self.cycles is None and self.skip >= self.case.duration:
+            raise Hint(f"skip = {self.skip:.6g} s leaves nothing of the run to look at", "a longer duration")
+        points = self.case.modes.lines()
+        if self.point is not None and self.point not in points:
+            raise Hint(f"there is no point {self.point!r}", " or ".join(points) or "leave it out", ["point"])
+        return Look()
+
+    @property
+    def block(self) -> int:
+        """Largest number of variants in a block: one, unless there are very many."""
+        return math.ceil(self.size / _BLOCKS)
+
+    def coords(self) -> dict[str, Any]:
+        """Return the coordinates of the further dimensions, of which there are none."""
+        return {}
+
+    def chains(self, blocks: Blocks) -> list[list[int]]:
+        """Return the numbers of blocks, each by itself: they need nothing of each other, and take very different times."""
+        return [[number] for number in range(len(blocks))]
+
+    def order(self, start: int, stop: int) -> range:
+        """Return variants of a block in the order in which they are run."""
+        return range(start, stop)
+
+    def run(
+        self,
+        start: int,
+        stop: int,
+        *,
+        threads: int = 1,
+        cancelled: Callable[[], bool] | None = None,
+        before: Values | None = None,
+    ) -> Values | None:
+        """Run variants start to stop.
+
+        Parameters
+        ----------
+        start, stop
+            Variants, counted along the grid with its last axis fastest.
+        threads
+            Of each run.
+        cancelled
+            Asked some twenty times a second; True stops.
+        before
+            Not needed.
+
+        Returns
+        -------
+        dict of str to array, or None
+            Each output, (stop - start,); None when it was stopped.
+        """
+
+        def go_on(*_: int) -> bool:
+            return not (cancelled and cancelled())
+
+        columns = {name: np.full(stop - start, np.nan) for name in (*self.named, *self.own)}
+        status = np.full(stop - start, REFUSED, np.int8)
+        for index in range(start, stop):
+            try:
+                case = self._case(index)
+                run = _simulated(case, threads, go_on)
+            except CaseError:  # one corner of many; run alone it says why
+                continue
+            if run is None:
+                return None
+            status[index - start] = _NUMBERS[run.status]
+            if run.ok:
+                seen = self._seen_in(run, case)
+                for name in self.named:
+                    columns[name][index - start] = _FOUND[name](seen)
+                for name, measure in self.own.items():
+                    columns[name][index - start] = measure(run)
+        return {"status": status, **columns}
+
+    def _case(self, index: int) -> Case:
+        """A variant as it is run."""
+        case = self.design.case_at(self.case, index)
+        if not case.particle_dampers:
+            raise Hint("a variant without particles in space", "one sweep for each kind of damper")
+        duration, skip, samples = case.duration, self.skip, self.samples
+        if self.cycles is not None:
+            period = 1 / _frequency(case)
+            duration, skip = sum(self.cycles) * period, self.cycles[0] * period
+            samples = samples or 1 + math.ceil(64 * self.cycles[1])
+        if samples is None:
+            return case
+        output = Output(rate=max(1, samples - 1) / (duration - skip))
+        return case.model_copy(update={"duration": duration, "output": output})
+
+    def _seen_in(self, run: GranularRun, case: Case) -> Seen:
+        frequency = _frequency(case)
+        window = since(run, self.skip if self.cycles is None else self.cycles[0] / frequency)
+        arrays = window.arrays
+        if self.point is None:
+            along = unit_vector(case.particle_dampers[0].direction)
+            return Seen(
+                window, arrays.cavity_displacement[:, 0] @ along, arrays.cavity_velocity[:, 0] @ along, frequency
+            )
+        column = arrays.points.index(self.point)
+        return Seen(window, arrays.displacement[:, column], arrays.velocity[:, column], frequency)
+
+
+def since(run: GranularRun, start: float) -> GranularRun:
+    """Return a run from a time on [s]; work and losses count from its first sample."""
+    arrays = run.arrays
+    first = int(np.searchsorted(arrays.time, start * (1 - 1e-9)))
+    cut: dict[str, Any] = {"time": arrays.time[first:]}
+    for variable in arrays.form.stored:
+        if variable.dims[0] == "time":
+            values = getattr(arrays, variable.name)[first:]
+            cut[variable.name] = values - values[0] if variable.name in _SUMS else values
+    return GranularRun(replace(arrays, **cut), run.case_toml, run.provenance) if first else run
+
+
+def _simulated(case: Case, threads: int, go_on: Callable[..., bool]) -> GranularRun | None:
+    """The run; None when it was stopped."""
+    for damper in case.particle_dampers:
+        if isinstance(damper.packing, Settled) and settle(damper, go_on) is None:
+            return None
+    run = simulate_dem(case, threads=threads, progress=go_on)
+    return None if run.status == "interrupted" else run
+
+
+def _frequency(case: Case) -> float:
+    """Of the first harmonic load or motion [Hz], NaN without one."""
+    for signal in (*case.loads, *case.base, *case.shaker_motion):
+        if isinstance(signal, Harmonic):
+            return signal.frequency
+    return math.nan

@@ -1,0 +1,219 @@
+"""Sweeps over cases with particles in space: each variant is the run that simulate gives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.engines import dem_settle
+from rattlebox.results import GranularRun
+from rattlebox.studies import granular
+from rattlebox.studies.axes import Design
+from rattlebox.studies.runner import Stopped
+
+AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
+
+
+def box(**changes: Any) -> rb.ParticleDamper:
+    """Return a box with a dozen balls."""
+    usual: dict[str, Any] = {
+        "particles": rb.Particles(material="steel", diameter="5 mm", count=12),
+        "cavity": rb.Box(size=("15 mm", "15 mm", "20 mm")),
+        "contact": rb.Tsuji(restitution=0.7),
+        "friction": 0.2,
+        "packing": rb.Settled(seed=1),
+        "softening": 1000,
+    }
+    return rb.ParticleDamper(**{**usual, **changes})
+
+
+def shaken(**changes: Any) -> rb.Case:
+    """Return the box on a shaker along z."""
+    motion = rb.Harmonic(amplitude=(60, "m/s^2"), frequency=50, direction="z")
+    usual: dict[str, Any] = {"structure": rb.Shaker(motion=motion), "dampers": [box()], "duration": "0.06 s"}
+    return rb.Case(**{**usual, **changes})
+
+
+def struck(**changes: Any) -> rb.Case:
+    """Return the box on a structure that swings."""
+    usual: dict[str, Any] = {
+        "structure": rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping="100 N s/m", velocity="0.5 m/s"),
+        "damper": box(direction="z"),
+        "duration": "0.08 s",
+    }
+    return rb.Case(**{**usual, **changes})
+
+
+def turned(run: rb.Run) -> float:
+    """Return the energy of all spins at the end."""
+    assert isinstance(run, GranularRun)
+    return float(run.arrays.rotation_energy[-1].sum())
+
+
+def test_variants_are_runs() -> None:
+    """Measures and functions of a run are those of each variant run alone, for any number of threads, to the last bit."""
+    axes = {"damper.contact.restitution": [0.5, 0.9], "structure.velocity": ["0.2 m/s", "0.5 m/s"]}
+    names = [
+        "viscous_share",
+        "impact_share",
+        "motion_share",
+        "work",
+        "closure",
+        "peak",
+        "peak_velocity",
+        "settling_time",
+    ]
+    found = rb.sweep(struck(), axes, [*names, turned], threads=2, progress=False)
+    assert (found.status == 0).all()
+    assert found.peak.attrs["units"] == "m"
+    for i, restitution in enumerate([0.5, 0.9]):
+        alone = rb.simulate(struck(damper=box(direction="z", contact=rb.Tsuji(restitution=restitution))))
+        one = found.isel({"damper.contact.restitution": i, "structure.velocity": 1})
+        assert float(one.turned) == turned(alone)
+        assert float(one.motion_share) == alone.ledger.shares["motion"]
+        assert float(one.impact_share) == pytest.approx(sum(alone.ledger.partner_share), rel=1e-12)
+        assert float(one.closure) == alone.closure
+        assert float(one.peak) == np.abs(alone.arrays.displacement).max()
+        assert float(one.peak_velocity) == np.abs(alone.arrays.velocity).max()
+        settled = rb.analysis.settling_time(alone.arrays.time, alone.arrays.displacement[:, 0])
+        assert float(one.settling_time) == settled < 0.08
+    again = rb.sweep(struck(), axes, [*names, turned], threads=1, progress=False)
+    assert again.equals(found)
+
+
+def test_windows_leave_out_what_is_before() -> None:
+    """Work, losses and shares count from the begin of the window, whose ledger closes by itself."""
+    found = rb.sweep(
+        struck(),
+        {"structure.damping": [0.0, 100.0]},
+        ["viscous_loss", "impact_loss", "motion_share", "closure", "peak"],
+        skip="30 ms",
+        samples=101,
+        progress=False,
+    ).isel({"structure.damping": 1})
+    case = struck(output=rb.Output(rate=100 / 0.05))
+    arrays, ledger = (run := rb.simulate(case)).arrays, run.ledger
+    first = np.searchsorted(arrays.time, 0.03 - 1e-12)
+    assert float(found.viscous_loss) == pytest.approx(arrays.viscous_loss[-1] - arrays.viscous_loss[first], rel=1e-12)
+    lost = ledger.impact_loss[-1] - ledger.impact_loss[first]
+    assert float(found.impact_loss) == pytest.approx(lost, rel=1e-12)
+    fallen = ledger.gravity[first] - ledger.gravity[-1]
+    share = ledger.motion[-1] / (ledger.motion[first] + ledger.work[-1] - ledger.work[first] + fallen)
+    assert float(found.motion_share) == pytest.approx(share, rel=1e-12)
+    assert float(found.closure) < 1e-3
+    assert float(found.peak) == np.abs(arrays.displacement[first:]).max()
+
+
+def test_loss_maps_hold_what_the_analysis_finds() -> None:
+    """A loss map of particles has masses, loss factor and loss of the analysis of each run."""
+    found = rb.loss_map(
+        shaken(), [(20, "m/s^2"), (90, "m/s^2")], [40.0, 60.0], cycles=(2, 4), samples=401, progress=False
+    )
+    assert found.loss_factor.dims == (AMPLITUDE, FREQUENCY)
+    assert (found.status == 0).all()
+    assert "impacts_per_cycle" not in found
+    mass = 12 * 7850 * np.pi / 6 * 0.005**3
+    assert float(found.particle_mass) == pytest.approx(mass)
+    motion = rb.Harmonic(amplitude=(90, "m/s^2"), frequency=60, direction="z")
+    case = shaken(structure=rb.Shaker(motion=motion), duration=6 / 60, output=rb.Output(rate=100 * 60))
+    alone = rb.analysis.shaken_cavity(rb.simulate(case), frequency=60, after=2 / 60)
+    one = found.isel({AMPLITUDE: 1, FREQUENCY: 1})
+    by_force, by_energy = alone.sel(way="complex power"), alone.sel(way="energy")
+    assert float(one.effective_mass) == pytest.approx(float(by_force.effective_mass), rel=1e-9)
+    assert float(one.loss_factor) == pytest.approx(abs(float(by_force.loss_factor)), rel=1e-9)
+    assert float(one.loss_per_cycle) == pytest.approx(float(by_energy.loss_per_cycle), rel=1e-6)
+    assert float(one.reduced_loss) == pytest.approx(float(by_energy.reduced_loss), rel=1e-6)
+
+
+def test_two_cavities_weigh_together() -> None:
+    """Two like cavities on one shaker have twice the apparent mass of one, and the same loss factor."""
+    names = ["effective_mass", "damping_mass", "loss_factor", "reduced_loss"]
+    options: dict[str, Any] = {"cycles": (2, 3), "progress": False}
+    one = rb.sweep(shaken(), {AMPLITUDE: [60.0]}, names, **options)
+    both = rb.sweep(shaken(dampers=[box(), box(name="b")]), {AMPLITUDE: [60.0]}, names, **options)
+    for name, factor in (("effective_mass", 2), ("damping_mass", 2), ("loss_factor", 1), ("reduced_loss", 1)):
+        assert both[name].item() == pytest.approx(factor * one[name].item(), rel=1e-9)
+
+
+def test_a_stop_loses_no_finished_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is finished is in the store; the same call runs only what is missing, to the same bits."""
+    store, axes = tmp_path / "study.zarr", {"damper.packing.seed": [1, 2, 3, 4]}
+
+    def stopping(done: int, total: int) -> None:
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Stopped, match="2 of 4 variants are in"):
+        rb.sweep(struck(), axes, "impact_share", store=store, threads=1, progress=stopping)
+    ran = []
+    simulate = granular.simulate_dem
+    monkeypatch.setattr(
+        granular, "simulate_dem", lambda case, **options: (ran.append(case), simulate(case, **options))[1]
+    )
+    found = rb.sweep(struck(), axes, "impact_share", store=store, threads=1, progress=False)
+    assert len(ran) == 2
+    whole = rb.sweep(struck(), axes, "impact_share", progress=False)
+    assert found.impact_share.values.tobytes() == whole.impact_share.values.tobytes()
+    assert len(set(whole.impact_share.values)) == 4
+
+
+def test_corners_that_cannot_be_run_have_a_status() -> None:
+    """A variant whose given step is too long is refused by itself; the others are run."""
+    case = struck(method=rb.Dem(dt="40 us"))
+    found = rb.sweep(case, {"damper.softening": [1e5, 1.0]}, "impact_share", progress=False)
+    assert found.status.values.tolist() == [0, found.status.attrs["flag_meanings"].split().index("refused")]
+    assert np.isfinite(found.impact_share.values).tolist() == [True, False]
+
+
+REFUSED = {
+    "impacts looks at single impacts": {"measure": "impacts"},
+    "loss_factor needs a harmonic load or motion": {"measure": "loss_factor"},
+    "neither motion nor last impacts are kept": {"motion": True},
+    "cycles need a harmonic load or motion": {"cycles": (1, 1)},
+    "leaves nothing of the run to look at": {"skip": "1 s"},
+    "there is no point 'tip'": {"point": "tip"},
+}
+
+
+@pytest.mark.parametrize("complaint", REFUSED)
+def test_what_does_not_fit_is_refused(complaint: str) -> None:
+    """What particles in space do not have is refused before anything runs, with its reason."""
+    with pytest.raises(rb.CaseError, match=complaint):
+        rb.sweep(struck(), {"structure.mass": [1.0, 2.0]}, **REFUSED[complaint])
+
+
+def test_other_studies_say_that_they_are_for_impact_dampers() -> None:
+    """Maps that follow a motion refuse particles in space, and say which studies do not."""
+    with pytest.raises(rb.CaseError, match=r"not particles in space\n  try: rb.sweep, rb.loss_map"):
+        rb.bifurcation(shaken(), AMPLITUDE, [10.0, 20.0], progress=False)
+
+
+def test_stops_are_heard(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A task that is told to stop ends within a run, and within the settling before it."""
+    case = shaken(duration="1000 s", dampers=[box(packing=rb.Settled(seed=9))])
+    task = granular.GranularTask(case, Design.of(case, {AMPLITUDE: [60.0]}), ["work"])
+    assert task.run(0, 1, cancelled=lambda: True) is None
+    asked: list[bool] = []
+    monkeypatch.setattr(granular, "settle", lambda damper, go_on: damper)
+    assert task.run(0, 1, cancelled=lambda: (asked.append(True), len(asked) > 3)[1]) is None
+
+
+def test_beds_are_settled_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What does not touch the fall starts from the same bed; another seed, size or friction has a bed of its own."""
+    dem_settle._beds.clear()
+    falls = []
+    fall = dem_settle._Bed.fall
+    monkeypatch.setattr(dem_settle._Bed, "fall", lambda self, *args: (falls.append(1), fall(self, *args))[1])
+    first = dem_settle.settle(box())
+    for same in (box(contact=rb.Thornton()), box(direction="z", velocity=(0, 0, 1), softening=3)):
+        assert np.array_equal(dem_settle.settle(same), first)
+    assert len(falls) == 1
+    first[:] = 0
+    assert dem_settle.settle(box()).any()
+    for other in (box(friction=0.3), box(packing=rb.Settled(seed=2)), box(gravity=(0, 0, -5))):
+        dem_settle.settle(other)
+    assert len(falls) == 4
