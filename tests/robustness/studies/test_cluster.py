@@ -135,6 +135,22 @@ def test_a_measure_of_ones_own(local: Client) -> None:
     assert float(here.last_speed[1]) == last_speed(rb.simulate(case.model_copy(update={"dampers": (damper,)})))
 
 
+def test_particles_in_space(local: Client) -> None:
+    """Runs of particles on workers are those at home, functions of a run included."""
+    case = rb.Case.from_file(EXAMPLE.with_name("steel_balls_in_a_box.toml"))
+    short = case.model_copy(update={"duration": 0.01, "output": rb.Output()})
+    axes = {"damper.contact.restitution": [0.5, 0.7, 0.9]}
+    here = rb.sweep(short, axes, ["impact_share", spins], progress=False)
+    there = rb.sweep(short, axes, ["impact_share", spins], on=local, progress=False)
+    assert bits(here) == bits(there)
+    assert (here.status == 0).all()
+
+
+def spins(run: rb.Run) -> float:
+    """Return the energy of all spins at the end."""
+    return float(run.arrays.rotation_energy[-1].sum())  # type: ignore[attr-defined]
+
+
 def test_ready_maps(local: Client) -> None:
     """Maps that are made of independent runs, and trials of a design, have the bits of this process on a cluster."""
     case = rb.Case(
