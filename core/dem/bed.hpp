@@ -6,13 +6,11 @@
 
 #include "dem/contacts.hpp"
 #include "dem/problem.hpp"
+#include "dem/structure.hpp"
 #include "dem/tally.hpp"
+#include "dem/touch.hpp"
 
 namespace rattlebox::dem {
-
-struct Motion {
-    Row displacement{}, velocity{}; // of a cavity
-};
 
 // Some hundred particles that follow each other, and the contacts whose first partners they are.
 struct Chunk {
@@ -24,7 +22,7 @@ struct Chunk {
     Contacts pairs, walls;
     Tally tally;
     Stopped stopped;
-    std::vector<Late> late; // in this step
+    std::vector<std::pair<int, Late>> late; // of contacts that begin in this step, by slot
 
     std::size_t memory() const {
         std::size_t bytes = pairs.memory() + walls.memory() + sizeof(Chunk);
@@ -57,7 +55,7 @@ struct Bed {
     real smallest = infinity;             // radius
     real reach = 0, skin = 0;             // neighbours closer than reach, candidates closer than skin
     real since_build = 0, since_scan = 0; // bound on how far a particle has moved since
-    Motion motion;
+    CavityMotion motion;
     Row shown{}; // displacement of the cavity at the last step whose forces are known
 
     int particles() const { return static_cast<int>(position.size()); }

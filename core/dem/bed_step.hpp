@@ -10,13 +10,6 @@
 
 namespace rattlebox::dem {
 
-// How the laws of one list of contacts are computed.
-struct Kind {
-    enum Normal : int { hertz, linear, plastic } normal = hertz;
-    bool rough = false, rolls = false;
-    Contacting how;
-};
-
 class BedStep {
     static constexpr char touched_before = 1, touched_now = 2;
 
@@ -34,61 +27,20 @@ class BedStep {
         return at(problem_.encounters,
                   at(c.wall_entry, at(bed_.kind, i) * c.wall_kinds + at(c.walls, w).kind));
     }
-    static real moment_at_edge(Row position, Row velocity, Row spin) {
-        return position[3] / spin[3] + square(position[3]) / velocity[3];
-    }
+    Body body(int i) const { return {at(bed_.position, i), at(bed_.velocity, i), at(bed_.spin, i)}; }
 
     Touch touch(const Contacts& list, int k, Partner partner) const {
         const int i = at(list.first, k), j = at(list.second, k);
-        const Row a = at(bed_.position, i);
-        const real edge = moment_at_edge(a, at(bed_.velocity, i), at(bed_.spin, i));
-        if (partner == particle) {
-            const Row b = at(bed_.position, j), way = b - a;
-            const real radius = 1 / (1 / a[3] + 1 / b[3]);
-            const real mass = 1 / (at(bed_.velocity, i)[3] + at(bed_.velocity, j)[3]);
-            const real other = moment_at_edge(b, at(bed_.velocity, j), at(bed_.spin, j));
-            const real distance = std::sqrt(dot(way, way)), lever = distance / (a[3] + b[3]);
-            const Row normal = way * row(1, 1, 1) / distance,
-                      velocity = at(bed_.velocity, i) - at(bed_.velocity, j);
-            const Row swirl = (at(bed_.spin, i) * a[3] + at(bed_.spin, j) * b[3]) * lever;
-            const real speed = dot(velocity, normal);
-            return {&between(i, j), radius,
-                    mass,           1 / (1 / edge + 1 / other),
-                    speed,          a[3] + b[3] - distance,
-                    normal,         velocity * row(1, 1, 1) - normal * speed + cross(swirl, normal)};
-        }
-        const Near near = nearest(at(bed_.cavity->walls, j), a - bed_.motion.displacement);
-        real mobility = at(bed_.velocity, i)[3];
+        const Body a = body(i);
+        if (partner == particle) return dem::touch(between(i, j), a, body(j));
+        const Near near = nearest(at(bed_.cavity->walls, j), a.place - bed_.motion.displacement);
+        real mobility = a.velocity[3];
         for (const Row& shape : bed_.cavity->shape) mobility += square(dot(shape, near.normal));
-        const Row velocity = at(bed_.velocity, i) - bed_.motion.velocity;
-        const real speed = dot(velocity, near.normal);
-        return {&with_wall(i, j),
-                a[3],
-                1 / mobility,
-                edge,
-                speed,
-                a[3] - near.distance,
-                near.normal,
-                velocity * row(1, 1, 1) - near.normal * speed +
-                    cross(at(bed_.spin, i) * near.distance, near.normal)};
+        return dem::touch(with_wall(i, j), a, near, bed_.motion.velocity, mobility);
     }
 
-    // The curve that unloads from the deepest overlap so far, and the energy that reaching it has cost.
     void settle(Contacts& list, int k, Partner partner, Tally& tally) const {
-        Row& dent = at(list.dent, at(list.slot, k));
-        const Touch t = touch(list, k, partner);
-        scaled(*t.encounter, t).visit([&](const auto& law) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(law)>, Thornton>) {
-                if (dent[0] > law.yield_overlap()) {
-                    Memory now, before;
-                    now.phase = before.phase = Thornton::unloading;
-                    now.deepest = dent[0], before.deepest = dent[3];
-                    tally.plastic[partner] += law.plastic(now, 0) - law.plastic(before, 0);
-                    law.unloading_curve(dent[0], dent[1], dent[2]);
-                }
-            }
-        });
-        dent[3] = dent[0];
+        tally.plastic[partner] += dem::settle(at(list.dent, at(list.slot, k)), touch(list, k, partner));
     }
 
     template <class View>
@@ -99,20 +51,22 @@ class BedStep {
             const int s = list.take();
             at(list.slot, k) = at(slot_of, at(list.origin, k)) = s;
             const Touch t = touch(list, k, partner);
-            chunk.late.push_back({s});
-            if (!begin(list, s, t, problem_.dt, chunk.late.back(), tally, partner) &&
-                chunk.stopped.status == Status::finished)
+            const Begun b = begin(t, problem_.dt);
+            list.begin(s, b);
+            if (b.late.share != 0) chunk.late.push_back({s, b.late});
+            if (b.lost != 0) tally.normal[partner] += first_lane(b.lost);
+            ++tally.first_touches[partner];
+            tally.extrapolated += b.extrapolated;
+            tally.fastest = std::fmax(tally.fastest, t.speed);
+            if (b.outside && chunk.stopped.status == Status::finished)
                 chunk.stopped = {Status::law_domain, at(list.first, k), -1, t.speed};
         };
         const auto ended = [&](int k) {
             const int s = at(list.slot, k);
             if (list.dents && at(list.dent, s)[3] != at(list.dent, s)[0]) settle(list, k, partner, tally);
-            const Row spring = at(list.kept, s).friction; // what the springs still hold is lost
-            if (kind.rough) tally.sliding[partner] += first_lane(0.5 * dot(spring, spring) / spring[3]);
-            if (kind.rolls) {
-                const Row roll = at(list.rolling, s).spring;
-                tally.rolling[partner] += first_lane(0.5 * dot(roll, roll) / roll[3]);
-            }
+            // What the springs still hold is lost.
+            if (kind.rough) tally.sliding[partner] += first_lane(held(at(list.kept, s).friction));
+            if (kind.rolls) tally.rolling[partner] += first_lane(held(at(list.rolling, s).spring));
             list.free.push_back(s);
             at(list.slot, k) = at(slot_of, at(list.origin, k)) = Contacts::none;
         };
@@ -135,12 +89,12 @@ class BedStep {
             with_law(LinearStep{});
         else
             with_law(PlasticStep{});
-        for (const Late& l : chunk.late) {
-            Kept& kept = at(list.kept, l.slot);
+        for (const auto& [slot, late] : chunk.late) {
+            Kept& kept = at(list.kept, slot);
             if (kind.rough)
-                tally.sliding[partner] += first_lane(-l.share * problem_.dt * dot(kept.force, l.slip));
-            kept.force *= row(1 + l.share);
-            kept.couple *= row(1 + l.share, 1 + l.share, 1 + l.share, 1);
+                tally.sliding[partner] += first_lane(-late.share * problem_.dt * dot(kept.force, late.slip));
+            kept.force *= row(1 + late.share);
+            kept.couple *= row(1 + late.share, 1 + late.share, 1 + late.share, 1);
         }
     }
 

@@ -1,4 +1,4 @@
-// The forces of contacts that touch, eight at a time.
+// What two bodies that touch do to each other: of a number, or of eight in lanes.
 //
 //     normal       the laws of core/contact, with x = d^(1/4)
 //     tangential   spring and dashpot, |F_t| <= mu N:  dF = -k_t v_t dt, k_t = B sqrt(d) (Mindlin: B = 8 G*
@@ -16,7 +16,7 @@
 #include "contact/hertz_tsuji.hpp"
 #include "contact/linear.hpp"
 #include "contact/thornton.hpp"
-#include "dem/contacts.hpp"
+#include "dem/encounter.hpp"
 
 namespace rattlebox::dem {
 
@@ -30,6 +30,45 @@ template <class T> struct Meeting {
     T lever;            // of the first over its radius, and of the second over its own
     T radius;           // of the first
 };
+
+// A sphere: where its centre is, and how it moves and turns.
+template <class T> struct Ball {
+    Vector<T> place, velocity, spin;
+    T radius;
+};
+
+template <bool spins, class T> RATTLEBOX_INLINE Meeting<T> meet(const Ball<T>& a, const Ball<T>& b) {
+    const auto way = b.place - a.place;
+    const T distance = root(dot(way, way)), near = a.radius + b.radius;
+    Meeting<T> m;
+    m.normal = (all(near, 1) / distance) * way;
+    m.overlap = near - distance;
+    m.radius = smaller(a.radius, b.radius);
+    m.velocity = a.velocity - b.velocity;
+    if constexpr (spins) {
+        m.lever = distance / near;
+        m.swirl = (m.lever * a.radius) * a.spin + (m.lever * b.radius) * b.spin;
+        m.spin = a.spin - b.spin;
+    }
+    return m;
+}
+
+// A sphere and a wall in the direction `normal`.
+template <bool spins, class T>
+RATTLEBOX_INLINE Meeting<T> meet(const Ball<T>& a, const Vector<T>& normal, const T& distance,
+                                 const Vector<T>& velocity) {
+    Meeting<T> m;
+    m.normal = normal;
+    m.overlap = a.radius - distance;
+    m.velocity = a.velocity - velocity;
+    m.radius = a.radius;
+    if constexpr (spins) {
+        m.lever = distance / a.radius;
+        m.spin = a.spin;
+        m.swirl = distance * m.spin;
+    }
+    return m;
+}
 
 // A spring with a dashpot beside it in the plane of contact, together never above a limit.
 template <class T> struct Holding {
@@ -66,33 +105,41 @@ RATTLEBOX_INLINE Holding<T> hold(const Vector<T>& before, const T& stiffness_bef
     return h;
 }
 
-// ---- normal laws in lanes: the rows `law` hold A, c, B, c_t of each contact
+// ---- normal laws: the four numbers of `law` are A, c, B, c_t of each contact
 
-struct Push {
-    Lanes force, elastic; // total, and without the dashpot
-    Lanes root;           // sqrt(d)
+template <class T> struct Four {
+    T x, y, z, w;
+    RATTLEBOX_INLINE Vector<T> vector() const { return {x, y, z}; }
+};
+inline Four<real> four(Row r) { return {r[0], r[1], r[2], r[3]}; }
+
+template <class T> struct Push {
+    T force, elastic; // total, and without the dashpot
+    T root;           // sqrt(d)
 };
 
 struct HertzStep {
     static constexpr bool plastic = false;
-    RATTLEBOX_INLINE static Push push(const Columns<8>& law, const Columns<8>&, const Lanes& overlap,
-                                      const Lanes& rate) {
-        const Lanes s = root(overlap), elastic = law.x * overlap * s;
+    template <class T, class Row>
+    RATTLEBOX_INLINE static Push<T> push(const Row& law, const Row&, const T& overlap, const T& rate) {
+        const T s = root(overlap), elastic = law.x * overlap * s;
         return {elastic + law.y * root(s) * rate, elastic, s};
     }
-    RATTLEBOX_INLINE static Lanes stored(const Columns<8>& law, const Columns<8>&, const Lanes& overlap) {
+    template <class T, class Row>
+    RATTLEBOX_INLINE static T stored(const Row& law, const Row&, const T& overlap) {
         return 0.4 * law.x * overlap * overlap * root(overlap);
     }
 };
 
 struct LinearStep {
     static constexpr bool plastic = false;
-    RATTLEBOX_INLINE static Push push(const Columns<8>& law, const Columns<8>&, const Lanes& overlap,
-                                      const Lanes& rate) {
-        const Lanes elastic = law.x * overlap;
+    template <class T, class Row>
+    RATTLEBOX_INLINE static Push<T> push(const Row& law, const Row&, const T& overlap, const T& rate) {
+        const T elastic = law.x * overlap;
         return {elastic + law.y * rate, elastic, root(overlap)};
     }
-    RATTLEBOX_INLINE static Lanes stored(const Columns<8>& law, const Columns<8>&, const Lanes& overlap) {
+    template <class T, class Row>
+    RATTLEBOX_INLINE static T stored(const Row& law, const Row&, const T& overlap) {
         return 0.5 * law.x * overlap * overlap;
     }
 };
@@ -101,22 +148,67 @@ struct LinearStep {
 // overlap so far, stiffness and origin of the curve that unloads from there.
 struct PlasticStep {
     static constexpr bool plastic = true;
-    RATTLEBOX_INLINE static Lanes curve(const Lanes& stiffness, const Lanes& overlap) {
-        const Lanes above = larger(overlap, Lanes::all(0));
+    template <class T> RATTLEBOX_INLINE static T curve(const T& stiffness, const T& overlap) {
+        const T above = larger(overlap, all(overlap, 0));
         return stiffness * above * root(above);
     }
-    RATTLEBOX_INLINE static Push push(const Columns<8>& law, const Columns<8>& dent, const Lanes& overlap,
-                                      const Lanes&) {
-        const Lanes yielding = curve(law.x, law.w) + law.y * (overlap - law.w);
-        const Lanes first = choose(overlap - law.w, yielding, curve(law.x, overlap));
-        const Lanes again = curve(dent.y, overlap - dent.z);
-        const Lanes force = choose(dent.x - overlap, again, first);
+    template <class T, class Row>
+    RATTLEBOX_INLINE static Push<T> push(const Row& law, const Row& dent, const T& overlap, const T&) {
+        const T yielding = curve(law.x, law.w) + law.y * (overlap - law.w);
+        const T first = choose(overlap - law.w, yielding, curve(law.x, overlap));
+        const T again = curve(dent.y, overlap - dent.z);
+        const T force = choose(dent.x - overlap, again, first);
         return {force, force, root(overlap)};
     }
-    RATTLEBOX_INLINE static Lanes stored(const Columns<8>&, const Columns<8>& dent, const Lanes& overlap) {
-        const Lanes above = larger(overlap - dent.z, Lanes::all(0));
+    template <class T, class Row>
+    RATTLEBOX_INLINE static T stored(const Row&, const Row& dent, const T& overlap) {
+        const T above = larger(overlap - dent.z, all(overlap, 0));
         return 0.4 * dent.y * above * above * root(above);
     }
 };
+
+// ---- all of a contact
+
+template <class T> struct Tangential {
+    Vector<T> force, couple; // on the first; the couple over its radius
+    Four<T> friction;        // what the spring remembers
+    T lost, stored;
+};
+
+template <class T, class Row>
+RATTLEBOX_INLINE Tangential<T> rub(const Meeting<T>& m, const Push<T>& push, const T& rate, const Row& law,
+                                   const T& friction, const Row& history, bool dashpots, bool mindlin,
+                                   const T& dt) {
+    const T zero = all(rate, 0), one = all(rate, 1);
+    const T firm = mindlin ? push.root : one, drag = mindlin ? root(push.root) : one;
+    const T pressed = larger(push.force, zero), stiffness = law.z * firm;
+    const Vector<T> slip = m.velocity - rate * m.normal + cross(m.swirl, m.normal);
+    const T dashpot = dashpots ? law.w * drag : zero;
+    const auto h =
+        hold(history.vector(), history.w, m.normal, stiffness, dashpot, slip, friction * pressed, dt);
+    return {h.force,
+            m.lever * cross(m.normal, h.force),
+            {h.ahead.x, h.ahead.y, h.ahead.z, stiffness},
+            h.loss,
+            h.stored};
+}
+
+template <class T> struct Rolling {
+    Vector<T> torque; // on the first
+    Four<T> rolling;  // what the spring remembers
+    T lost, stored;
+};
+
+// `law` holds mu_r R*, k_r / k_t, c_r.
+template <class T, class Row>
+RATTLEBOX_INLINE Rolling<T> roll(const Meeting<T>& m, const Push<T>& push, const T& stiffness, const Row& law,
+                                 const Row& past, bool mindlin, const T& dt) {
+    const T zero = all(stiffness, 0), one = all(stiffness, 1);
+    const T drag = mindlin ? root(push.root) : one, pressed = larger(push.force, zero);
+    const Vector<T> turning = m.spin - dot(m.spin, m.normal) * m.normal;
+    const T spring = law.y * stiffness;
+    const auto r = hold(past.vector(), past.w, m.normal, spring, law.z * drag, turning, law.x * pressed, dt);
+    return {r.force, {r.ahead.x, r.ahead.y, r.ahead.z, spring}, r.loss, r.stored};
+}
 
 } // namespace rattlebox::dem

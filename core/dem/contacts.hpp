@@ -4,26 +4,12 @@
 
 #include <vector>
 
-#include "base/rows.hpp"
+#include "dem/touch.hpp"
 
 namespace rattlebox::dem {
 
 template <class T> T& at(std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
 template <class T> const T& at(const std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
-
-// What a contact remembers while it lasts: two lines of memory.
-struct alignas(64) Kept {
-    Row force;    // on the first
-    Row couple;   // torque on the first over its radius; of a pair also that on the second over its own; mu
-    Row friction; // force of the tangential spring on the first, and its stiffness
-    Row law;      // A, c, B, c_t: see contact_step.hpp
-};
-
-struct KeptRolling {
-    Row torque; // on the first
-    Row spring; // torque of the rolling spring on the first, and its stiffness
-    Row law;    // mu_r R*, k_r / k_t, c_r
-};
 
 // What of it must be carried along when particles change their order.
 struct Carried {
@@ -74,6 +60,12 @@ struct Contacts {
         if (rolls) one_more(rolling);
         if (dents) one_more(dent);
         return static_cast<int>(kept.size()) - 1;
+    }
+
+    void begin(int s, const Begun& b) {
+        at(kept, s) = b.kept;
+        if (rolls) at(rolling, s) = b.rolling;
+        if (dents) at(dent, s) = b.dent;
     }
 
     void forget_all() {

@@ -1,8 +1,8 @@
 // Which candidates of a chunk touch, and what those do to each other.
 #pragma once
 
+#include "dem/bed.hpp"
 #include "dem/contact_step.hpp"
-#include "dem/touch.hpp"
 
 namespace rattlebox::dem {
 
@@ -28,20 +28,13 @@ struct PairView {
 
     template <bool spins> RATTLEBOX_INLINE Meeting<Lanes> meeting(const int* k) const {
         const auto a = first(bed.position, k), b = second(bed.position, k);
-        const auto way = b.vector() - a.vector();
-        const Lanes distance = root(dot(way, way)), near = a.w + b.w;
-        Meeting<Lanes> m;
-        m.normal = (Lanes::all(1) / distance) * way;
-        m.overlap = near - distance;
-        m.radius = smaller(a.w, b.w);
-        m.velocity = first(bed.velocity, k).vector() - second(bed.velocity, k).vector();
+        Ball<Lanes> one{a.vector(), first(bed.velocity, k).vector(), {}, a.w};
+        Ball<Lanes> other{b.vector(), second(bed.velocity, k).vector(), {}, b.w};
         if constexpr (spins) {
-            m.lever = distance / near;
-            const auto u = first(bed.spin, k).vector(), v = second(bed.spin, k).vector();
-            m.swirl = (m.lever * a.w) * u + (m.lever * b.w) * v;
-            m.spin = u - v;
+            one.spin = first(bed.spin, k).vector();
+            other.spin = second(bed.spin, k).vector();
         }
-        return m;
+        return meet<spins>(one, other);
     }
 };
 
@@ -86,21 +79,17 @@ struct WallView {
     }
 
     template <bool spins> RATTLEBOX_INLINE Meeting<Lanes> meeting(const int* k) const {
-        Meeting<Lanes> m;
+        Vector<Lanes> normal;
         Lanes distance;
         const auto a = first(bed.position, k);
-        near(k, a, m.normal, distance);
-        m.overlap = a.w - distance;
-        m.velocity = first(bed.velocity, k).vector() - same(bed.motion.velocity);
-        m.radius = a.w;
-        if constexpr (spins) {
-            m.lever = distance / a.w;
-            m.spin = first(bed.spin, k).vector();
-            m.swirl = distance * m.spin;
-        }
-        return m;
+        near(k, a, normal, distance);
+        Ball<Lanes> ball{a.vector(), first(bed.velocity, k).vector(), {}, a.w};
+        if constexpr (spins) ball.spin = first(bed.spin, k).vector();
+        return meet<spins>(ball, normal, distance, same(bed.motion.velocity));
     }
 };
+
+RATTLEBOX_INLINE Columns<8> lay(const Four<Lanes>& f) { return {f.x, f.y, f.z, f.w}; }
 
 // Lists the candidates up to `to` that touch; calls begun(k) and ended(k) for those that have just begun or
 // ended to.
@@ -131,18 +120,12 @@ void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ende
     list.actives = count;
 }
 
-struct Contacting {
-    real dt = 0;
-    bool mindlin = true;     // tangential stiffness grows with the contact
-    bool never_pulls = true; // normal force
-};
-
 template <class Law, bool rough, bool rolls, class View, class Settle>
 void collide(Contacts& list, const View& view, const Contacting& how, bool sampled, Partner partner,
              Tally& tally, Settle&& settle) {
     const int count = list.actives;
     const int* active = list.active.data();
-    const Lanes zero = Lanes::all(0), one = Lanes::all(1), dt = Lanes::all(how.dt);
+    const Lanes zero = Lanes::all(0), dt = Lanes::all(how.dt);
     alignas(64) real used[lane_count];
     for (int base = 0; base < count; base += lane_count) {
         int k[lane_count], s[lane_count];
@@ -173,7 +156,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             dent = columns(dents);
         }
         const Lanes rate = dot(m.velocity, m.normal);
-        Push push = Law::push(law, dent, m.overlap, rate);
+        auto push = Law::push(law, dent, m.overlap, rate);
         if (how.never_pulls) push.force = larger(push.force, zero);
         tally.normal[partner] += weight * dt * (push.force - push.elastic) * rate;
         tally.deepest = larger(tally.deepest, m.overlap / m.radius);
@@ -184,30 +167,20 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             store(dent, dents);
         }
         if constexpr (rough) {
-            const Lanes firm = how.mindlin ? push.root : one, drag = how.mindlin ? root(push.root) : one;
             const Lanes mu = columns(kept(&Kept::couple)).w;
-            const auto history = columns(kept(&Kept::friction));
-            const Lanes pressed = larger(push.force, zero), stiffness = law.z * firm;
-            const Vector<Lanes> slip = m.velocity - rate * m.normal + cross(m.swirl, m.normal);
-            const Lanes dashpot = Law::plastic ? zero : law.w * drag;
             const auto h =
-                hold(history.vector(), history.w, m.normal, stiffness, dashpot, slip, mu * pressed, dt);
-            store(Columns<8>{h.ahead.x, h.ahead.y, h.ahead.z, stiffness}, kept(&Kept::friction));
-            tally.sliding[partner] += weight * h.loss;
+                rub(m, push, rate, law, mu, columns(kept(&Kept::friction)), !Law::plastic, how.mindlin, dt);
+            store(lay(h.friction), kept(&Kept::friction));
+            tally.sliding[partner] += weight * h.lost;
             force = force + h.force;
-            const Vector<Lanes> couple = m.lever * cross(m.normal, h.force);
-            store(Columns<8>{couple.x, couple.y, couple.z, mu}, kept(&Kept::couple));
+            store(Columns<8>{h.couple.x, h.couple.y, h.couple.z, mu}, kept(&Kept::couple));
             if (sampled) tally.stored += weight * h.stored;
             if constexpr (rolls) {
-                const auto past = columns(rolling(&KeptRolling::spring));
-                const Vector<Lanes> turning = m.spin - dot(m.spin, m.normal) * m.normal;
-                const auto own = columns(rolling(&KeptRolling::law));
-                const Lanes spring = own.y * stiffness;
-                const auto r =
-                    hold(past.vector(), past.w, m.normal, spring, own.z * drag, turning, own.x * pressed, dt);
-                store(Columns<8>{r.ahead.x, r.ahead.y, r.ahead.z, spring}, rolling(&KeptRolling::spring));
-                store(Columns<8>{r.force.x, r.force.y, r.force.z, zero}, rolling(&KeptRolling::torque));
-                tally.rolling[partner] += weight * r.loss;
+                const auto r = roll(m, push, h.friction.w, columns(rolling(&KeptRolling::law)),
+                                    columns(rolling(&KeptRolling::spring)), how.mindlin, dt);
+                store(lay(r.rolling), rolling(&KeptRolling::spring));
+                store(Columns<8>{r.torque.x, r.torque.y, r.torque.z, zero}, rolling(&KeptRolling::torque));
+                tally.rolling[partner] += weight * r.lost;
                 if (sampled) tally.stored += weight * r.stored;
             }
         }

@@ -4,39 +4,14 @@
 // numbers each. Positions count from the place of the centre at rest. A base acceleration b'' acts as -m b''.
 #pragma once
 
+#include <stdexcept>
 #include <vector>
 
-#include "base/rows.hpp"
-#include "contact/laws.hpp"
+#include "dem/encounter.hpp"
 #include "structure/loads.hpp"
 #include "structure/mode.hpp"
 
 namespace rattlebox::dem {
-
-// A wall, seen from the centre of its cavity.
-struct Wall {
-    enum Form : int { plane = 0, cylinder = 1, sphere = 2 };
-    Row axis{}; // outward normal of a plane, axis of a cylinder; the last number is the distance or the
-                // radius
-    Form form = plane;
-    int kind = 0; // of its material
-};
-
-// What two materials do to each other; laws hold for a reference pair and are scaled to the sizes that meet.
-struct Encounter {
-    NormalLaw normal;
-    RestitutionLaw restitution;
-    real radius = 1, mass = 1;         // R* [m] and m* [kg] of the reference pair
-    bool by_time = false;              // linear spring of given contact time: stiffness grows with m*
-    real friction = 0;                 // mu
-    real shear = 0;                    // 8 G* [Pa]: Mindlin's stiffness is 8 G* a, a = sqrt(R* d)
-    real tangential_stiffness = 0;     // [N/m] of a linear spring
-    real tangential_damping = 1;       // damping ratio of the tangential dashpot over that of the normal one
-    real rolling = 0;                  // mu_r
-    real rolling_stiffness = 0;        // over k_t R*^2
-    real rolling_damping = 0;          // damping ratio
-    real constant_zeta = not_a_number; // where neither speed nor size changes it
-};
 
 struct Cavity {
     std::vector<Row> shape; // displacement of the centre per unit of each mode
@@ -63,5 +38,36 @@ struct Problem {
     std::vector<Encounter> encounters;
     std::vector<std::vector<real>> tables; // storage of Table views
 };
+
+inline Kind kind_of(const Encounter& e) {
+    Kind k;
+    e.normal.visit([&](const auto& law) {
+        using Law = std::decay_t<decltype(law)>;
+        k.normal = std::is_same_v<Law, HertzTsuji>      ? Kind::hertz
+                   : std::is_same_v<Law, LinearDashpot> ? Kind::linear
+                                                        : Kind::plastic;
+        if constexpr (!std::is_same_v<Law, Thornton>) k.how.never_pulls = law.zero_overlap == 0;
+    });
+    return k;
+}
+
+// How contacts of these entries are computed.
+inline Kind kind_of(const Problem& problem, const std::vector<int>& entries) {
+    const auto encounter = [&](int e) { return problem.encounters.at(static_cast<std::size_t>(e)); };
+    Kind k = entries.empty() ? Kind{} : kind_of(encounter(entries.front()));
+    for (const int e : entries) {
+        const Encounter one = encounter(e);
+        const Kind other = kind_of(one);
+        if (other.normal != k.normal || other.how.never_pulls != k.how.never_pulls)
+            throw std::invalid_argument("one list of contacts has one kind of normal law and one ending");
+        if (one.friction > 0 && k.rough && k.how.mindlin != (one.shear > 0))
+            throw std::invalid_argument("one list of contacts has one kind of tangential spring");
+        if (one.friction > 0) k.rough = true, k.how.mindlin = one.shear > 0;
+        k.rolls |= one.rolling > 0;
+    }
+    k.rough |= k.rolls;
+    k.how.dt = problem.dt;
+    return k;
+}
 
 } // namespace rattlebox::dem

@@ -2,12 +2,9 @@
 #pragma once
 
 #include "dem/bed.hpp"
+#include "dem/losses.hpp"
 
 namespace rattlebox::dem {
-
-struct Losses {
-    real normal[2] = {}, plastic[2] = {}, sliding[2] = {}, rolling[2] = {};
-};
 
 inline Losses losses(const Bed& bed) {
     Losses sum;
@@ -21,6 +18,14 @@ inline Losses losses(const Bed& bed) {
         }
     return sum;
 }
+
+// Of a cavity at the instant of a sample.
+struct Totals {
+    Losses before, now; // of the step
+    real kinetic = 0, rotation = 0, stored = 0, mass = 0;
+    Row place{}, momentum{}, push{}, twist{}; // mass times position; on the cavity
+    std::int64_t contacts[2] = {};
+};
 
 struct Records {
     std::vector<real> time, q, p, load_work, base_work, viscous;
@@ -49,32 +54,34 @@ struct Records {
         viscous.insert(viscous.end(), lost.begin(), lost.end());
         for (std::size_t b = 0; b < beds.size(); ++b) {
             const Bed& bed = beds[b];
-            real moving = 0, turning = 0, held = 0, mass = 0;
-            Row place{}, going{}, push{}, twist{};
-            std::int64_t touching[2] = {};
+            Totals sum{.before = before_[b], .now = losses(bed)};
             for (const Chunk& c : bed.chunks) {
                 const Tally& one = c.tally;
-                moving += one.kinetic, turning += one.rotation, held += total(one.stored);
-                place += one.mass_moment, going += one.momentum, push += one.wall_force,
-                    twist += one.wall_moment;
-                for (int k = 0; k < 2; ++k) touching[k] += one.contacts[k];
+                sum.kinetic += one.kinetic, sum.rotation += one.rotation, sum.stored += total(one.stored);
+                sum.place += one.mass_moment, sum.momentum += one.momentum, sum.push += one.wall_force,
+                    sum.twist += one.wall_moment;
+                for (int k = 0; k < 2; ++k) sum.contacts[k] += one.contacts[k];
             }
-            for (const real m : bed.cavity->mass) mass += m;
-            kinetic.push_back(moving), rotation.push_back(turning), stored.push_back(held);
-            potential.push_back(-dot(gravity, place));
-            for (int a = 0; a < 3; ++a) {
-                centre.push_back(place[a] / mass), momentum.push_back(going[a]);
-                force.push_back(push[a]), moment.push_back(twist[a]);
-            }
-            // What a step loses is half lost at its instant.
-            const Losses now = losses(bed), &then = before_[b];
-            for (int k = 0; k < 2; ++k) {
-                contacts.push_back(touching[k]);
-                normal.push_back(0.5 * (then.normal[k] + now.normal[k]));
-                plastic.push_back(now.plastic[k]);
-                sliding.push_back(0.5 * (then.sliding[k] + now.sliding[k]));
-                rolling.push_back(0.5 * (then.rolling[k] + now.rolling[k]));
-            }
+            for (const real m : bed.cavity->mass) sum.mass += m;
+            take(sum, gravity);
+        }
+    }
+
+    void take(const Totals& sum, Row gravity) {
+        kinetic.push_back(sum.kinetic), rotation.push_back(sum.rotation), stored.push_back(sum.stored);
+        potential.push_back(-dot(gravity, sum.place));
+        for (int a = 0; a < 3; ++a) {
+            centre.push_back(sum.place[a] / sum.mass), momentum.push_back(sum.momentum[a]);
+            force.push_back(sum.push[a]), moment.push_back(sum.twist[a]);
+        }
+        // What a step loses is half lost at its instant.
+        const Losses &then = sum.before, &now = sum.now;
+        for (int k = 0; k < 2; ++k) {
+            contacts.push_back(sum.contacts[k]);
+            normal.push_back(0.5 * (then.normal[k] + now.normal[k]));
+            plastic.push_back(now.plastic[k]);
+            sliding.push_back(0.5 * (then.sliding[k] + now.sliding[k]));
+            rolling.push_back(0.5 * (then.rolling[k] + now.rolling[k]));
         }
     }
 };

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <atomic>
-#include <stdexcept>
 
 #include "base/team.hpp"
 #include "dem/bed_step.hpp"
@@ -22,10 +21,12 @@ class Simulation {
     std::vector<BedStep> steps_;
     std::vector<ModeState> modes_,
         modes_shown_; // at the next step, and at the last one whose forces are known
-    std::vector<std::pair<ModeState, ModeState>> turns_; // where a step takes displacement 1 and velocity 1
+    std::vector<Turn> turns_;
     std::vector<real> modal_force_, load_value_;
     std::vector<real> load_work_, base_work_, viscous_;
-    Loads loads_;
+    std::vector<Signal> signals_;
+    std::vector<real> load_shape_;
+    std::vector<int> load_base_;
     long step_ = 0;
     Status status_ = Status::finished;
     int stopped_cavity_ = 0;
@@ -37,38 +38,8 @@ class Simulation {
     Division division_;
     Records records_;
 
-    real h() const { return 0.5 * problem_.dt; }
     real now() const { return static_cast<real>(step_) * problem_.dt; }
     bool sampled() const { return step_ % problem_.every == 0 || step_ == problem_.steps; }
-
-    static Kind kind_of(const Encounter& e) {
-        Kind k;
-        e.normal.visit([&](const auto& law) {
-            using Law = std::decay_t<decltype(law)>;
-            k.normal = std::is_same_v<Law, HertzTsuji>      ? Kind::hertz
-                       : std::is_same_v<Law, LinearDashpot> ? Kind::linear
-                                                            : Kind::plastic;
-            if constexpr (!std::is_same_v<Law, Thornton>) k.how.never_pulls = law.zero_overlap == 0;
-        });
-        return k;
-    }
-
-    Kind kind_of(const std::vector<int>& entries) const {
-        Kind k = entries.empty() ? Kind{} : kind_of(at(problem_.encounters, entries.front()));
-        for (const int e : entries) {
-            const Encounter& one = at(problem_.encounters, e);
-            const Kind other = kind_of(one);
-            if (other.normal != k.normal || other.how.never_pulls != k.how.never_pulls)
-                throw std::invalid_argument("one list of contacts has one kind of normal law and one ending");
-            if (one.friction > 0 && k.rough && k.how.mindlin != (one.shear > 0))
-                throw std::invalid_argument("one list of contacts has one kind of tangential spring");
-            if (one.friction > 0) k.rough = true, k.how.mindlin = one.shear > 0;
-            k.rolls |= one.rolling > 0;
-        }
-        k.rough |= k.rolls;
-        k.how.dt = problem_.dt;
-        return k;
-    }
 
     void fill_bed(Bed& bed, const Cavity& cavity, bool rolls) {
         bed.cavity = &cavity;
@@ -98,26 +69,41 @@ class Simulation {
 
     // ---- the structure
 
-    void place(Bed& bed) const {
-        bed.motion = {};
-        for (std::size_t m = 0; m < modes_.size(); ++m) {
-            bed.motion.displacement += bed.cavity->shape[m] * modes_[m].q;
-            // As it will be after the last force has acted for half a step more.
-            bed.motion.velocity += bed.cavity->shape[m] * (modes_[m].p + h() * modal_force_[m]);
+    // Views of what this owns.
+    Structure structure() {
+        return {static_cast<int>(modes_.size()),
+                static_cast<int>(signals_.size()),
+                problem_.dt,
+                problem_.gravity,
+                problem_.modes.data(),
+                turns_.data(),
+                modes_.data(),
+                modes_shown_.data(),
+                modal_force_.data(),
+                viscous_.data(),
+                signals_.data(),
+                load_shape_.data(),
+                load_base_.data(),
+                problem_.load_direction.data(),
+                load_value_.data(),
+                load_work_.data(),
+                base_work_.data()};
+    }
+
+    void prepare_structure() {
+        modes_ = modes_shown_ = problem_.start;
+        for (const Mode& mode : problem_.modes) turns_.push_back(turn(mode, problem_.dt));
+        for (const Load& load : problem_.loads) {
+            signals_.push_back(load.signal);
+            load_shape_.insert(load_shape_.end(), load.shape.begin(), load.shape.end());
+            load_base_.push_back(load.base);
         }
+        modal_force_.assign(modes_.size(), 0);
+        viscous_.assign(modes_.size(), 0);
+        for (auto* numbers : {&load_value_, &load_work_, &base_work_}) numbers->assign(signals_.size(), 0);
     }
 
-    void load_values() {
-        loads_.advance(now());
-        for (std::size_t l = 0; l < load_value_.size(); ++l) load_value_[l] = loads_.piece(l).value(now());
-    }
-
-    Row body() const {
-        Row b = problem_.gravity;
-        for (std::size_t l = 0; l < load_value_.size(); ++l)
-            if (problem_.loads[l].base) b -= problem_.load_direction[l] * load_value_[l];
-        return b;
-    }
+    void place(Bed& bed) { bed.motion = structure().place(bed.cavity->shape.data()); }
 
     Row force_on(const Bed& bed) const {
         Row total{};
@@ -126,43 +112,10 @@ class Simulation {
     }
 
     void find_modal_force() {
-        std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
-        for (const Bed& bed : beds_) {
-            const Row force = force_on(bed);
-            for (std::size_t m = 0; m < modes_.size(); ++m)
-                modal_force_[m] += dot(bed.cavity->shape[m], force);
-        }
-        for (std::size_t l = 0; l < load_value_.size(); ++l)
-            for (std::size_t m = 0; m < modes_.size(); ++m)
-                modal_force_[m] += problem_.loads[l].shape[m] * load_value_[l];
-    }
-
-    void kick() {
-        for (std::size_t m = 0; m < modes_.size(); ++m) {
-            const real mean = modes_[m].p + 0.5 * h() * modal_force_[m];
-            for (std::size_t l = 0; l < load_value_.size(); ++l) {
-                const real work = problem_.loads[l].shape[m] * load_value_[l] * h() * mean;
-                (problem_.loads[l].base ? base_work_ : load_work_)[l] += work;
-            }
-            modes_[m].p += h() * modal_force_[m];
-        }
-    }
-
-    void drift() {
-        for (std::size_t m = 0; m < modes_.size(); ++m) {
-            const Mode& mode = problem_.modes[m];
-            const ModeState from = modes_[m];
-            const auto& [of_q, of_p] = turns_[m];
-            modes_[m] = {of_q.q * from.q + of_p.q * from.p, of_q.p * from.q + of_p.p * from.p};
-            if (mode.decay > 0) viscous_[m] += from.energy(mode) - modes_[m].energy(mode);
-        }
-    }
-
-    // Half of the work of the base on the particles in this step.
-    void base_work(Row momentum) {
-        for (std::size_t l = 0; l < load_value_.size(); ++l)
-            if (problem_.loads[l].base)
-                base_work_[l] -= h() * load_value_[l] * dot(problem_.load_direction[l], momentum);
+        Structure s = structure();
+        s.no_force();
+        for (const Bed& bed : beds_) s.add_force(bed.cavity->shape.data(), force_on(bed));
+        s.add_loads();
     }
 
     // ---- neighbours
@@ -221,7 +174,7 @@ class Simulation {
     void advance(const Part& part, bool first, bool sample) {
         for (const Incoming& in : part.incoming)
             at(steps_, in.bed).incoming(at(at(beds_, in.bed).chunks, in.chunk).pairs, in.candidate);
-        const Row all = body();
+        const Row all = structure().body();
         for (int k = part.begin; k < part.end; ++k) {
             const Place p = division_.place(k);
             Bed& bed = at(beds_, p.bed);
@@ -250,10 +203,10 @@ class Simulation {
 
     // On to the next step; particles may have moved as far from their neighbours as the fastest of them.
     void move_on() {
-        kick();
-        drift();
+        structure().kick();
+        structure().drift();
         for (Bed& bed : beds_) {
-            const Motion before = bed.motion;
+            const CavityMotion before = bed.motion;
             place(bed);
             real fastest = 0;
             for (const Chunk& c : bed.chunks) fastest = larger(fastest, c.tally.drift);
@@ -276,26 +229,26 @@ class Simulation {
 
     // What all need to know of the step to come; done by one.
     void prepare() {
-        load_values();
+        structure().load_values(now());
         if (sampled()) records_.before(beds_);
     }
 
     // What follows from the forces of this step; done by one.
     void conclude(bool first, bool sample) {
         find_modal_force();
-        if (!first) kick();
-        modes_shown_ = modes_;
+        if (!first) structure().kick();
+        structure().show();
         Row momentum{};
         for (Bed& bed : beds_) {
             bed.shown = bed.motion.displacement;
             for (const Chunk& c : bed.chunks) momentum += c.tally.momentum;
         }
         if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity)) status_ = Status::not_finite;
-        base_work(momentum);
+        structure().work_on_particles(momentum);
         if (sample) records_.take(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
-        base_work(momentum);
+        structure().work_on_particles(momentum);
         check();
-        body_before_ = body();
+        body_before_ = structure().body();
         move_on();
     }
 
@@ -323,24 +276,15 @@ class Simulation {
     }
 
 public:
-    explicit Simulation(Problem&& problem) : problem_(std::move(problem)), loads_(problem_.loads) {
+    explicit Simulation(Problem&& problem) : problem_(std::move(problem)) {
         for (Encounter& e : problem_.encounters) e.constant_zeta = constant_zeta(e);
-        modes_ = problem_.start;
-        for (const Mode& mode : problem_.modes) {
-            FreeMode of_q(mode), of_p(mode);
-            of_q.begin({1, 0});
-            of_p.begin({0, 1});
-            turns_.push_back({of_q.at(problem_.dt), of_p.at(problem_.dt)});
-        }
-        modal_force_.assign(modes_.size(), 0);
-        viscous_.assign(modes_.size(), 0);
-        for (auto* numbers : {&load_value_, &load_work_, &base_work_})
-            numbers->assign(problem_.loads.size(), 0);
+        prepare_structure();
         const std::size_t count = problem_.cavities.size();
         beds_.resize(count), neighbours_.resize(count);
         for (std::size_t b = 0; b < count; ++b) {
             const Cavity& cavity = problem_.cavities[b];
-            const Kind pair = kind_of(cavity.particle_entry), wall = kind_of(cavity.wall_entry);
+            const Kind pair = kind_of(problem_, cavity.particle_entry),
+                       wall = kind_of(problem_, cavity.wall_entry);
             Bed& bed = beds_[b];
             fill_bed(bed, cavity, pair.rolls || wall.rolls);
             const auto prepare = [](Contacts& list, const Kind& kind) {
@@ -352,7 +296,6 @@ public:
             steps_.emplace_back(bed, problem_, pair, wall);
         }
         division_.start(beds_);
-        modes_shown_ = modes_;
         for (Bed& bed : beds_) {
             place(bed);
             bed.shown = bed.motion.displacement;

@@ -2,12 +2,10 @@
 // the same bits for any number of threads.
 #pragma once
 
-#include "base/rows.hpp"
 #include "base/status.hpp"
+#include "dem/encounter.hpp"
 
 namespace rattlebox::dem {
-
-enum Partner : int { particle = 0, wall = 1 };
 
 // Why a run cannot go on.
 struct Stopped {
@@ -16,13 +14,11 @@ struct Stopped {
     real value = 0;               // speed
 };
 
-// What the first step within a contact would miss: the touch lies between two steps, and forces grow from it
-// like roots of the time since, which the trapezoidal rule does not see.
-struct Late {
-    int slot;
-    real share = 0; // of the force of the first step, missed on top of it
-    Row slip{};     // of the first along the second
-};
+// As lanes, the others zero.
+inline Lanes first_lane(real v) {
+    alignas(64) real x[lane_count] = {v};
+    return lanes(x);
+}
 
 struct alignas(64) Tally {
     // over the run

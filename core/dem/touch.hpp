@@ -2,8 +2,6 @@
 // part.
 #pragma once
 
-#include "base/status.hpp"
-#include "dem/bed.hpp"
 #include "dem/walls.hpp"
 
 namespace rattlebox::dem {
@@ -16,6 +14,43 @@ struct Touch {
     real overlap;      // at the first step within
     Row normal, slip;  // towards the second; velocity of the first along the second
 };
+
+// A body, in rows: place and radius, velocity and 1 / mass, spin and radius / inertia.
+struct Body {
+    Row place, velocity, spin;
+};
+
+inline real moment_at_edge(const Body& b) {
+    return b.place[3] / b.spin[3] + square(b.place[3]) / b.velocity[3];
+}
+
+inline Touch touch(const Encounter& e, const Body& a, const Body& b) {
+    const Row way = b.place - a.place;
+    const real radius = 1 / (1 / a.place[3] + 1 / b.place[3]);
+    const real mass = 1 / (a.velocity[3] + b.velocity[3]);
+    const real distance = std::sqrt(dot(way, way)), lever = distance / (a.place[3] + b.place[3]);
+    const Row normal = way * row(1, 1, 1) / distance, velocity = a.velocity - b.velocity;
+    const Row swirl = (a.spin * a.place[3] + b.spin * b.place[3]) * lever;
+    const real speed = dot(velocity, normal);
+    return {&e,     radius,
+            mass,   1 / (1 / moment_at_edge(a) + 1 / moment_at_edge(b)),
+            speed,  a.place[3] + b.place[3] - distance,
+            normal, velocity * row(1, 1, 1) - normal * speed + cross(swirl, normal)};
+}
+
+// At a wall of a cavity that is displaced and moves; `mobility` is 1 / mass of the particle and of the wall.
+inline Touch touch(const Encounter& e, const Body& a, const Near& near, Row cavity_velocity, real mobility) {
+    const Row velocity = a.velocity - cavity_velocity;
+    const real speed = dot(velocity, near.normal);
+    return {&e,
+            a.place[3],
+            1 / mobility,
+            moment_at_edge(a),
+            speed,
+            a.place[3] - near.distance,
+            near.normal,
+            velocity * row(1, 1, 1) - near.normal * speed + cross(a.spin * near.distance, near.normal)};
+}
 
 // A law for the pair at hand, from that of the reference pair.
 inline NormalLaw scaled(const Encounter& e, const Touch& t) {
@@ -43,11 +78,6 @@ inline Rebound rebound(const Encounter& e, const Touch& t) {
     return rattlebox::rebound(e.restitution, std::fmax(t.speed, 0.0) * scale);
 }
 
-inline Lanes first_lane(real v) {
-    alignas(64) real x[lane_count] = {v};
-    return lanes(x);
-}
-
 // The damping ratio of all impacts, where there is one.
 inline real constant_zeta(const Encounter& e) {
     return e.normal.visit([&](const auto& law) {
@@ -64,25 +94,53 @@ inline real missed_root(real theta) {
     return last * (0.8 * end - 0.5 + 1 / (48 * end)) - fourth_root(theta) - fourth_root(theta + 1);
 }
 
-// Writes what the contact in slot k remembers. False when the speed is beyond the restitution law.
-inline bool begin(Contacts& list, int k, const Touch& t, real dt, Late& late, Tally& tally, Partner partner) {
+// What the first step within a contact would miss: the touch lies between two steps, and forces grow from it
+// like roots of the time since, which the trapezoidal rule does not see.
+struct Late {
+    real share = 0; // of the force of the first step, missed on top of it
+    Row slip{};     // of the first along the second
+};
+
+// What a contact remembers while it lasts: two lines of memory.
+struct alignas(64) Kept {
+    Row force;    // on the first
+    Row couple;   // torque on the first over its radius; of a pair also that on the second over its own; mu
+    Row friction; // force of the tangential spring on the first, and its stiffness
+    Row law;      // A, c, B, c_t: see contact_step.hpp
+};
+
+struct KeptRolling {
+    Row torque; // on the first
+    Row spring; // torque of the rolling spring on the first, and its stiffness
+    Row law;    // mu_r R*, k_r / k_t, c_r
+};
+
+// What it knows from its first touch on.
+struct Begun {
+    Kept kept{};
+    KeptRolling rolling{};
+    Row dent{};
+    Late late;
+    real lost = 0; // in the dashpot, on top of what the first step counts
+    bool extrapolated = false, outside = false;
+};
+
+inline Begun begin(const Touch& t, real dt) {
     const Encounter& e = *t.encounter;
-    Kept& kept = at(list.kept, k);
     const Rebound r = rebound(e, t);
+    Begun b;
+    b.extrapolated = r.extrapolated, b.outside = r.outside;
     // Since the touch, at this speed; of what overlaps from the start nothing is known.
     const bool comes_late = t.speed > 0 && t.overlap < 1.01 * t.speed * dt;
     const real since = comes_late ? t.overlap / t.speed : 0.5 * dt;
-    ++tally.first_touches[partner];
-    tally.extrapolated += r.extrapolated;
-    tally.fastest = std::fmax(tally.fastest, t.speed);
     scaled(e, t).visit([&](const auto& law) {
         using Law = std::decay_t<decltype(law)>;
         // Without friction any stiffness will do.
         const real own = e.shear > 0 ? e.shear * std::sqrt(t.radius) : e.tangential_stiffness;
         const real tangential = own > 0 ? own : 1;
         if constexpr (std::is_same_v<Law, Thornton>) {
-            kept.law = row(law.stiffness, law.plastic_slope(), tangential, law.yield_overlap());
-            at(list.dent, k) = row(0, law.stiffness, 0, 0);
+            b.kept.law = row(law.stiffness, law.plastic_slope(), tangential, law.yield_overlap());
+            b.dent = row(0, law.stiffness, 0, 0);
         } else {
             const Memory now = law.damped(std::isnan(e.constant_zeta) ? law.zeta(r.e) : e.constant_zeta);
             constexpr bool hertz = std::is_same_v<Law, HertzTsuji>;
@@ -91,29 +149,47 @@ inline bool begin(Contacts& list, int k, const Touch& t, real dt, Late& late, Ta
             if (comes_late && dashpot > 0) {
                 const real lost =
                     dashpot * (hertz ? missed_root(theta) / std::sqrt(std::sqrt(theta)) : theta - 0.5);
-                late.share = lost / force;
-                late.slip = t.slip;
+                b.late = {lost / force, t.slip};
                 // The velocity of this step is already less than the one that the forces are computed from.
                 const real slowed = 0.5 * (force + lost) * dt / t.mass;
-                tally.normal[partner] += first_lane((lost * (t.speed - slowed) - dashpot * slowed) * dt);
+                b.lost = (lost * (t.speed - slowed) - dashpot * slowed) * dt;
             }
             const real share = hertz ? std::sqrt(5.0 / 6.0) : 1;
             const real drag = 2 * e.tangential_damping * share * now.zeta * std::sqrt(t.mass * tangential);
-            kept.law = row(law.stiffness, now.damping, tangential, drag);
+            b.kept.law = row(law.stiffness, now.damping, tangential, drag);
         }
         const real roll = e.rolling_stiffness > 0 ? e.rolling_stiffness * square(t.radius) : 1;
-        if (list.rolls)
-            at(list.rolling, k) =
-                KeptRolling{Row{}, row(0, 0, 0, 1e290),
-                            row(e.rolling * t.radius, roll,
-                                2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential))};
+        b.rolling = {Row{}, row(0, 0, 0, 1e290), // nothing stretched yet
+                     row(e.rolling * t.radius, roll,
+                         2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential))};
     });
-    kept.couple = row(0, 0, 0, e.friction);
+    b.kept.couple = row(0, 0, 0, e.friction);
     // The spring as if it had been stretched since half a step ago, which makes it stretched since the touch.
-    const real stiffness = kept.law[2] * (e.shear > 0 ? std::sqrt(t.overlap) : 1);
-    kept.friction = t.slip * (-stiffness * (since - 0.5 * dt));
-    kept.friction[3] = stiffness;
-    return !r.outside;
+    const real stiffness = b.kept.law[2] * (e.shear > 0 ? std::sqrt(t.overlap) : 1);
+    b.kept.friction = t.slip * (-stiffness * (since - 0.5 * dt));
+    b.kept.friction[3] = stiffness;
+    return b;
+}
+
+// Energy that a spring of these rows holds.
+inline real held(Row spring) { return 0.5 * dot(spring, spring) / spring[3]; }
+
+// The curve that unloads from the deepest overlap so far; returns the energy that reaching it has cost.
+inline real settle(Row& dent, const Touch& t) {
+    real cost = 0;
+    scaled(*t.encounter, t).visit([&](const auto& law) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(law)>, Thornton>) {
+            if (dent[0] > law.yield_overlap()) {
+                Memory now, before;
+                now.phase = before.phase = Thornton::unloading;
+                now.deepest = dent[0], before.deepest = dent[3];
+                cost = law.plastic(now, 0) - law.plastic(before, 0);
+                law.unloading_curve(dent[0], dent[1], dent[2]);
+            }
+        }
+    });
+    dent[3] = dent[0];
+    return cost;
 }
 
 } // namespace rattlebox::dem

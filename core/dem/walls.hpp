@@ -1,7 +1,7 @@
 // Exact distances to the walls of a cavity.
 #pragma once
 
-#include "dem/problem.hpp"
+#include "dem/encounter.hpp"
 
 namespace rattlebox::dem {
 

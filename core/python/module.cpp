@@ -78,4 +78,5 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
         "Names of the measures, and whether each needs samples of the motion.");
     module.def("restitution", &restitution, nb::arg("law"), nb::arg("speeds"));
     door::add_dem(module);
+    door::add_dem_wide(module);
 }

@@ -1,0 +1,77 @@
+// Work in phases over single items, for teams as wide as there are items.
+//
+// Within a phase no item reads what another one writes, so that any order of items and any number of members
+// give the same bits. Sums are trees of 32, of 32 such trees, and so on, whoever adds them up; what members
+// count together are whole numbers, whose sum and smallest do not depend on the order either.
+//
+// A team has
+//     each(n, f)            calls f(i) for all i below n, each once
+//     reduce(n, part, f)    likewise, and part[g] becomes the tree of f(32 g) ... f(32 g + 31)
+//     total(n, part)        of a reduce, after a sync; the leaders call it, all of them
+//     sync()                all that was written is there to be read
+//     leads(), first()      one of the leaders; that one of them which does what is done once
+//     count(x), least(x, v) adds 1 to x and returns what it was; makes x at most v
+#pragma once
+
+#include "base/real.hpp"
+
+namespace rattlebox {
+
+inline constexpr int tree_width = 32;
+
+inline int trees(int items) { return (items + tree_width - 1) / tree_width; }
+
+// Room for the trees of so many items, of these trees, and so on.
+inline int tree_room(int items) {
+    int room = 0;
+    do room += items = trees(items);
+    while (items > 1);
+    return room;
+}
+
+template <class T> const T& tree(T* leaves) {
+    for (int half = tree_width / 2; half > 0; half /= 2)
+        for (int l = 0; l < half; ++l) leaves[l].add(leaves[l + half]);
+    return leaves[0];
+}
+
+// The number of integers that one member adds up in a scan, and of members that do.
+inline int scan_length(int items) {
+    int length = 16;
+    while (length < items / length) length *= 2;
+    return length;
+}
+inline int scan_parts(int items) { return (items + scan_length(items) - 1) / scan_length(items); }
+
+// numbers[i] becomes the sum of those before it, and numbers[n] that of all. `part` has room for scan_parts.
+template <class Team> void scan(Team& team, int n, int* numbers, int* part) {
+    const int length = scan_length(n), parts = scan_parts(n);
+    const auto end = [&](int p) { return (p + 1) * length < n ? (p + 1) * length : n; };
+    team.each(parts, [&](int p) {
+        int sum = 0;
+        for (int i = p * length; i < end(p); ++i) sum += numbers[i];
+        part[p] = sum;
+    });
+    team.sync();
+    if (team.leads() && team.first()) {
+        int sum = 0;
+        for (int p = 0; p < parts; ++p) {
+            const int own = part[p];
+            part[p] = sum;
+            sum += own;
+        }
+        numbers[n] = sum;
+    }
+    team.sync();
+    team.each(parts, [&](int p) {
+        int sum = part[p];
+        for (int i = p * length; i < end(p); ++i) {
+            const int own = numbers[i];
+            numbers[i] = sum;
+            sum += own;
+        }
+    });
+    team.sync();
+}
+
+} // namespace rattlebox
