@@ -17,6 +17,13 @@
 
 namespace rattlebox {
 
+// Of what happens now and then: it keeps its registers to itself.
+#ifdef __CUDACC__
+#define RATTLEBOX_COLD __noinline__
+#else
+#define RATTLEBOX_COLD
+#endif
+
 inline constexpr int tree_width = 32;
 
 inline int trees(int items) { return (items + tree_width - 1) / tree_width; }
@@ -33,6 +40,14 @@ template <class T> const T& tree(T* leaves) {
     for (int half = tree_width / 2; half > 0; half /= 2)
         for (int l = 0; l < half; ++l) leaves[l].add(leaves[l + half]);
     return leaves[0];
+}
+
+inline int lowest_bit(unsigned bits) {
+#ifdef __CUDACC__
+    return __ffs(static_cast<int>(bits)) - 1;
+#else
+    return __builtin_ctz(bits);
+#endif
 }
 
 // The number of integers that one member adds up in a scan, and of members that do.

@@ -22,6 +22,8 @@ struct alignas(4 * sizeof(real)) Row {
     friend Row operator+(Row a, real b) { return a + Row{b, b, b, b}; }
     friend Row operator-(Row a, real b) { return a - Row{b, b, b, b}; }
     friend Row operator*(real a, Row b) { return Row{a, a, a, a} * b; }
+    friend Row operator*(Row a, real b) { return a * Row{b, b, b, b}; }
+    friend Row operator/(Row a, real b) { return {a[0] / b, a[1] / b, a[2] / b, a[3] / b}; }
     friend Row& operator+=(Row& a, Row b) { return a = a + b; }
     friend Row& operator-=(Row& a, Row b) { return a = a - b; }
 };

@@ -10,6 +10,11 @@
 
 namespace rattlebox {
 
+// Where the share of a member begins; that of the next one is its end.
+inline int share(int items, int rank, int size) {
+    return static_cast<int>(static_cast<long long>(items) * rank / size);
+}
+
 enum class Order : int { forward, reverse, interleaved, shuffled };
 
 template <class Member> class Phased {

@@ -7,12 +7,6 @@
 
 namespace rattlebox::dem::wide {
 
-inline int lowest_bit(unsigned bits) {
-    int k = 0;
-    while (!(bits >> k & 1u)) ++k;
-    return k;
-}
-
 inline Vector<real> vector(Row r) { return {r[0], r[1], r[2]}; }
 inline Row row(const Vector<real>& v, real w = 0) { return rattlebox::row(v.x, v.y, v.z, w); }
 inline Row row(const Four<real>& f) { return rattlebox::row(f.x, f.y, f.z, f.w); }
@@ -27,7 +21,7 @@ template <bool sampled> class OwnContacts {
 
     int slot(int k) const { return k * bed_.particles + i_; }
     static Partner with(int partner) { return partner < 0 ? wall : particle; }
-    const Kind& kind(int partner) const { return partner < 0 ? bed_.at_wall : bed_.pair; }
+    Kind kind(int partner) const { return known(partner < 0 ? bed_.at_wall : bed_.pair); }
     Body body(int i) const { return {bed_.position[i], bed_.velocity[i], bed_.spin[i]}; }
     Near near(int w) const { return nearest(bed_.wall[w], place_ - bed_.motion.displacement); }
 
@@ -57,13 +51,13 @@ template <bool sampled> class OwnContacts {
         return square(place_[3] + other[3]) - dot(apart, apart);
     }
 
-    template <class Team> void stop(Team& team, Status status, int wall, real speed) {
+    template <class Team> RATTLEBOX_COLD void stop(Team& team, Status status, int wall, real speed) {
         if (account_.status != Status::finished) return;
         account_.status = status, account_.wall = wall, account_.speed = speed;
         team.least(bed_.stopped, bed_.name[i_]);
     }
 
-    template <class Team> Late begin(Team& team, int s, int partner) {
+    template <class Team> RATTLEBOX_COLD Late begin(Team& team, int s, int partner) {
         const Touch t = touch(partner);
         const Begun b = dem::begin(t, world_.structure.dt);
         bed_.kept[s] = b.kept;
@@ -77,12 +71,12 @@ template <bool sampled> class OwnContacts {
         return b.late;
     }
 
-    void settle(int s, int partner) {
+    RATTLEBOX_COLD void settle(int s, int partner) {
         account_.sum.lost.plastic[with(partner)] += dem::settle(bed_.dent[s], touch(partner));
     }
 
-    void end(int s, int partner) {
-        const Kind& k = kind(partner);
+    RATTLEBOX_COLD void end(int s, int partner) {
+        const Kind k = kind(partner);
         Losses& lost = account_.sum.lost;
         if (k.normal == Kind::plastic && bed_.dent[s][3] != bed_.dent[s][0]) settle(s, partner);
         if (k.rough) lost.sliding[with(partner)] += held(bed_.kept[s].friction);
@@ -100,7 +94,7 @@ template <bool sampled> class OwnContacts {
     }
 
     template <class Law> void collide(int s, int partner, const Late& late) {
-        const Kind& k = kind(partner);
+        const Kind k = kind(partner);
         const Partner p = with(partner);
         const real dt = world_.structure.dt;
         SampleSum& sum = account_.sum;

@@ -145,7 +145,7 @@ template <class Team, class F> void each_incoming(Team& team, Bed& bed, F&& f) {
     });
 }
 
-template <class Team> void build(Team& team, World& world, Bed& bed) {
+template <class Team> RATTLEBOX_COLD void build(Team& team, World& world, Bed& bed) {
     const int n = bed.particles, cells = cells_at_most(n);
     team.reduce(n, bed.extent_part, [&](int i) {
         Extent e;

@@ -15,11 +15,11 @@ inline bool sampled(const Control& c) { return c.step % c.every == 0 || c.step =
 
 // Adds up what acts on it, its own contacts first, then those of others by their names.
 inline bool gather(const Bed& bed, int i, Row& force, Row& turning, StepSum& sum) {
-    const bool rough = bed.pair.rough || bed.at_wall.rough, rolls = bed.pair.rolls || bed.at_wall.rolls;
+    const Kind pair = known(bed.pair), at_wall = known(bed.at_wall);
     const int n = bed.particles;
     bool touches = false;
     const auto add = [&](int s, real sign) {
-        const Kind& kind = bed.partner[s] < 0 ? bed.at_wall : bed.pair;
+        const Kind& kind = bed.partner[s] < 0 ? at_wall : pair;
         const Row f = bed.kept[s].force;
         touches = true;
         force += f * rattlebox::row(sign);
@@ -33,14 +33,13 @@ inline bool gather(const Bed& bed, int i, Row& force, Row& turning, StepSum& sum
         const int s = bed.incoming[m];
         if (bed.touching[s % n] >> (s / n) & 1u) add(s, -1);
     }
-    if (!rough && !rolls) turning = Row{};
     return touches;
 }
 
 template <bool sampled> StepSum advance(Bed& bed, int i, const Verlet& step) {
     StepSum sum;
     Row force{}, turning{};
-    const bool spins = bed.pair.rough || bed.at_wall.rough;
+    const bool spins = known(bed.pair).rough || known(bed.at_wall).rough;
     const bool before = bed.touched[i], touches = gather(bed, i, force, turning, sum);
     Row x = bed.position[i], u = bed.velocity[i];
     const Row a = touches ? force * u[3] + step.body : step.body;
@@ -86,7 +85,7 @@ inline void show(World& w) {
 }
 
 // What all need to know of the step to come.
-inline void prepare(World& w) {
+RATTLEBOX_COLD inline void prepare(World& w) {
     Control& c = w.control;
     w.structure.load_values(now(w));
     for (int b = 0; b < w.beds; ++b)
@@ -146,7 +145,7 @@ inline void move_on(World& w) {
 }
 
 // What follows from the forces of this step.
-inline void conclude(World& w) {
+RATTLEBOX_COLD inline void conclude(World& w) {
     Control& c = w.control;
     Structure& s = w.structure;
     const bool sample = sampled(c);
@@ -172,7 +171,7 @@ template <class Team, class F> void each_bed(Team& team, World& w, F&& f) {
     team.sync();
 }
 
-template <bool sampled, class Team> void one_step(Team& team, World& w) {
+template <bool sampled, class Team> RATTLEBOX_COLD void one_step(Team& team, World& w) {
     const auto samples = [&](SampleSum Bed::* sum) {
         each_bed(team, w, [&](Bed& bed) {
             team.reduce(bed.particles, bed.sample_part, [&](int i) { return bed.account[i].sum; });

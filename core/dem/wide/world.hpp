@@ -24,6 +24,18 @@ inline constexpr int nowhere = 2147483647;
 
 inline int cells_at_most(int particles) { return 4 * particles + 64; }
 
+// Kernels are compiled for the laws of a case: what both of its lists of contacts have in common is not
+// asked.
+inline Kind known(Kind k) {
+#ifdef RATTLEBOX_NORMAL
+    k.normal = static_cast<Kind::Normal>(RATTLEBOX_NORMAL);
+#endif
+#ifdef RATTLEBOX_RUBS // 0 smooth, 1 rough, 2 rolls too
+    k.rough = RATTLEBOX_RUBS > 0, k.rolls = RATTLEBOX_RUBS > 1;
+#endif
+    return k;
+}
+
 // ---- sums
 
 struct StepSum {

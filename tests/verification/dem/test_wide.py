@@ -1,0 +1,223 @@
+"""The step of wide teams, which GPUs run, on the processor: the same bits for any team and order, the same physics."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.engines.core import core
+from rattlebox.engines.dem import pack_dem
+
+from . import cases
+from .test_bits import LAWS, shaken
+
+TEAMS = [(1, "reverse"), (1, "shuffled"), (2, "forward"), (7, "interleaved"), (32, "shuffled")]
+
+
+def wide(packed: Any, until: int, *, threads: int = 1, order: str = "forward", **room: int) -> Any:
+    """Run a packed case by a wide team."""
+    dem = core().DemWide(packed, **room)
+    assert dem.run(until, threads, order)
+    return dem
+
+
+def told(dem: Any) -> dict[str, Any]:
+    """Return all that a simulation of either engine tells."""
+    state = dem.state()
+    ends = {f"{key} {k}": part[key] for k, part in enumerate(state["cavities"]) for key in part}
+    counters = dem.counters()
+    counts = {name: counters[name] for name in ("first_touches", "largest_overlap", "largest_approach_speed")}
+    return {**dem.records(), **ends, **counts, "end of q": state["q"], "status": dem.status}
+
+
+def differing(one: dict[str, Any], other: dict[str, Any]) -> list[str]:
+    """Names of what is not equal, bit by bit."""
+    return [key for key in one if not np.array_equal(one[key], other[key])]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_any_team_gives_the_same_bits(law: str) -> None:
+    """Teams of 1 to 32 members, who take particles in any order, agree in every number that a run tells."""
+    packed, _, _ = pack_dem(shaken(law, duration=0.005, count=150))
+    until = packed["steps"] // 3
+    alone = told(wide(packed, until))
+    for threads, order in TEAMS[: 3 if law != "Hertz" else None]:
+        assert differing(alone, told(wide(packed, until, threads=threads, order=order))) == [], (threads, order)
+
+
+def test_room_grows_and_changes_nothing() -> None:
+    """A run that begins with too few slots and little room for samples is that which had enough from the start."""
+    packed, _, _ = pack_dem(shaken("Hertz", duration=0.004))
+    until = packed["steps"]
+    small, large = (wide(packed, until, slots=slots, samples=samples) for slots, samples in ((1, 2), (32, 1000)))
+    assert 1 < max(small.counters()["slots"]) < 32
+    assert differing(told(small), told(large)) == []
+
+
+def test_an_image_goes_on_elsewhere() -> None:
+    """The memory of a run, moved to another address and taken back, goes on as if it had stayed."""
+    packed, _, _ = pack_dem(shaken("yielding", duration=0.004, count=60))
+    half = packed["steps"] // 2
+    stayed, moved = wide(packed, packed["steps"]), wide(packed, half)
+    image = moved.image(1 << 40)
+    heir = core().DemWide(packed)
+    heir.absorb(image)
+    assert heir.step == half + 1
+    first = moved.records()
+    heir.run(packed["steps"])
+    second, whole = heir.records(), stayed.records()
+    assert all(np.array_equal(np.concatenate([first[key], second[key]]), whole[key]) for key in whole)
+    with pytest.raises(ValueError, match="another case"):
+        core().DemWide(
+            pack_dem(shaken("Hertz", duration=0.004, count=60))[0] | {"contacts": []} | {"cavities": []}
+        ).absorb(image)
+
+
+# ---- against the engine of lists and lanes
+
+BALL = cases.Ball(2e-3, velocity=(2.0, -0.7, 0.9), spin=(200, -80, 50))
+OTHER = cases.Ball(
+    3e-3, position=(0.0055, 1e-3, -5e-4), velocity=(-3.0, 0.1, 0.4), spin=(-90, 120, 30), material="brass"
+)
+
+VARIETIES: dict[str, dict[str, Any]] = {
+    "Hertz, fixed restitution": {},
+    "Jackson and Green": {"contact": rb.Tsuji(restitution=rb.JacksonGreen())},
+    "Johnson": {"contact": rb.Tsuji(restitution=rb.Johnson())},
+    "Thornton's restitution": {"contact": rb.Tsuji(restitution=rb.ThorntonRestitution())},
+    "table": {"contact": rb.Tsuji(restitution=rb.Tabulated(speeds=[0.1, 1.0, 5.0], values=[0.95, 0.8, 0.6]))},
+    "given damping": {"contact": rb.Tsuji(alpha=0.3)},
+    "ends at zero overlap": {"contact": rb.Tsuji(restitution=0.7, ending="zero_overlap")},
+    "linear": {
+        "contact": rb.Linear(stiffness="200 kN/m", restitution=0.7),
+        "friction": rb.LinearSpring(0.3, ratio=0.4),
+    },
+    "linear, by contact time": {
+        "contact": rb.Linear(contact_time="0.1 ms", restitution=0.7),
+        "friction": rb.LinearSpring(0.3, ratio=0.4),
+    },
+    "yielding": {"contact": rb.Thornton(yield_pressure="900 MPa")},
+    "smooth": {"friction": None},
+    "rolling": {"rolling": 0.05},
+    "upright cylinder": {"cavity": rb.Cylinder(diameter="18 mm", length="12 mm")},
+    "lying cylinder": {"cavity": rb.Cylinder(diameter="16 mm", length="20 mm", axis="x")},
+    "sphere": {"cavity": rb.SphericalCavity(radius="9 mm")},
+    "gravity": {"gravity": (0, 0, -9.81)},
+    "two modes": {
+        "structure": rb.Modal(
+            frequencies=[40.0, 170.0],
+            damping_ratios=[0.02, 0.05],
+            shapes={"tip": [[0.0, 0.3, 1.0], [1.0, 0.0, -0.4]]},
+        ),
+        "point": "tip",
+        "load": rb.HalfSine(amplitude=20.0, duration="4 ms", point="tip", direction="z"),
+    },
+    "base": {
+        "structure": rb.SDOF(mass=0.2, stiffness=2e4, damping_ratio=0.02),
+        "base": rb.Harmonic(amplitude=30.0, frequency=70.0),
+    },
+    "shaker": {"structure": rb.Shaker(motion=rb.Harmonic(amplitude=30.0, frequency=70.0, direction="z"))},
+}
+
+
+def pair(options: dict[str, Any]) -> Any:
+    """Return two balls that meet obliquely and then hit walls."""
+    usual: dict[str, Any] = {
+        "cavity": rb.Box(size=("22 mm", "14 mm", "12 mm")),
+        "contact": rb.Tsuji(restitution=0.8),
+        "friction": rb.Mindlin(0.3),
+        "softening": 100.0,
+    }
+    return cases.case([BALL, OTHER], dt=2e-7, steps=60_000, samples=60, **{**usual, **options})
+
+
+@pytest.mark.parametrize("variety", VARIETIES)
+def test_first_impacts_are_those_of_the_other_engine(variety: str) -> None:
+    """Every law, wall and structure: after several oblique impacts both engines agree to rounding."""
+    packed, _, _ = pack_dem(pair(VARIETIES[variety]))
+    other, own = core().Dem(packed), core().DemWide(packed)
+    for dem in (other, own):
+        dem.run(packed["steps"])
+    theirs, ours = told(other), told(own)
+    assert np.sum(ours["first_touches"]) >= 5
+    np.testing.assert_array_equal(ours["first_touches"], theirs["first_touches"])
+    for key in theirs:
+        scale = np.max(np.abs(theirs[key]), initial=0.0)
+        np.testing.assert_allclose(ours[key], theirs[key], rtol=1e-7, atol=1e-7 * scale, err_msg=key)
+
+
+def test_many_balls_agree_at_first() -> None:
+    """Before chaos has its say, a bed of 190 rough balls in two cavities moves alike in both engines."""
+    packed, _, _ = pack_dem(shaken("Hertz", duration=0.02, count=150))
+    other, own = core().Dem(packed), core().DemWide(packed)
+    for until in range(0, packed["steps"], packed["steps"] // 200):
+        for dem in (other, own):
+            dem.run(until)
+        if other.counters()["first_touches"].sum() >= 20:
+            break
+    theirs, ours = told(other), told(own)
+    np.testing.assert_array_equal(ours["first_touches"], theirs["first_touches"])
+    for key in theirs:
+        scale = np.max(np.abs(theirs[key]), initial=0.0)
+        np.testing.assert_allclose(ours[key], theirs[key], rtol=1e-10, atol=1e-10 * scale, err_msg=key)
+
+
+def test_many_balls_agree_on_the_whole() -> None:
+    """Over a thousand impacts both engines lose the same energy in the same ways, and both ledgers close alike."""
+    packed, _, _ = pack_dem(shaken("Hertz", count=150))
+    shares = []
+    for dem in (core().Dem(packed), core().DemWide(packed)):
+        dem.run(packed["steps"])
+        r = dem.records()
+        lost = [r[f"{name}_loss"][-1].sum() for name in ("normal", "sliding", "rolling")]
+        held = sum(r[name].sum(axis=1) for name in ("kinetic", "rotation", "potential", "elastic"))
+        held += 0.5 * (r["p"] ** 2 + packed["mode_stiffness"] * r["q"] ** 2).sum(axis=1)
+        put_in = r["load_work"][-1].sum() + r["base_work"][-1].sum()
+        closure = (put_in - sum(lost) - r["viscous_loss"][-1].sum() - (held[-1] - held[0])) / held[0]
+        shares.append([*(each / sum(lost) for each in lost), sum(lost) / held[0]])
+        assert abs(closure) < 2e-3
+        assert dem.counters()["first_touches"].sum() > 1000
+    np.testing.assert_allclose(shares[1], shares[0], rtol=0.1)
+
+
+# ---- what goes wrong
+
+
+def test_a_particle_that_escapes_is_told() -> None:
+    """A ball that is shot through a wall stops the run, with its number, the wall and its speed, for any team."""
+    fast = cases.Ball(2e-3, position=(2e-3, 0, 0), velocity=(5e4, 0, 0))
+    slow = cases.Ball(2e-3, position=(-4e-3, 0, 0))
+    packed, _, _ = pack_dem(
+        cases.case(
+            [slow, fast], dt=2e-7, steps=100, cavity=rb.Box(size=("20 mm",) * 3), contact=rb.Tsuji(restitution=0.8)
+        )
+    )
+    stops = []
+    for threads, order in [(1, "forward"), *TEAMS[:3]]:
+        dem = core().DemWide(packed)
+        dem.run(packed["steps"], threads, order)
+        assert dem.status == 7
+        stops.append(dem.stopped())
+    assert stops[0]["particle"] == 1
+    assert stops[0]["speed"] == pytest.approx(5e4, rel=0.5)
+    assert all(stop == stops[0] for stop in stops)
+
+
+def test_a_speed_beyond_the_law_is_told() -> None:
+    """A restitution law that ends below the speed of an impact stops the run."""
+    ball = cases.Ball(2e-3, velocity=(150.0, 0, 0), material="aluminium")
+    law = rb.Tsuji(restitution=rb.JacksonGreen())
+    packed, _, _ = pack_dem(cases.case([ball], dt=1e-8, steps=6000, cavity=rb.Box(size=("6 mm",) * 3), contact=law))
+    other, own = core().Dem(packed), core().DemWide(packed)
+    for dem in (other, own):
+        dem.run(packed["steps"])
+    assert own.status == other.status == 1
+    assert own.stopped() == pytest.approx(other.stopped())
+
+
+def test_orders_have_names() -> None:
+    """An order that does not exist is refused with those that do."""
+    packed, _, _ = pack_dem(pair({}))
+    with pytest.raises(ValueError, match="forward, reverse, interleaved or shuffled"):
+        core().DemWide(packed).run(10, 1, "sideways")
