@@ -24,7 +24,7 @@ from .methods import AnyMethod, Dem, EventDriven, Newton, Output
 from .modes import ModalModel
 from .pairs import contact_pairs
 from .signals import AnySignal, HalfSine, Harmonic, Record, Signal, Unit, as_several, signals_in
-from .structures import AnyStructure, Shaker
+from .structures import AnyStructure, Matrices, Shaker
 from .units import PositiveTime
 
 _MEMORY = 16e9  # bytes
@@ -141,6 +141,12 @@ class Case(Part):
             with at("loads", index):
                 modes.shape(signal.point, signal.direction)
         if self.base and modes.participation is None:
+            if isinstance(self.structure, Matrices):
+                raise Hint(
+                    "how do the degrees of freedom move with the base along x, y and z?",
+                    "three rows of numbers, 1 where one moves with it",
+                    ["structure", "influence"],
+                )
             raise Hint(
                 "base motion needs the participation of each mode", "one number each", ["structure", "participation"]
             )

@@ -43,9 +43,16 @@ def _shape(value: Any) -> Any:
     return _of_shape(array, 1, "a list of numbers, one for each mode, or of three for each mode,")
 
 
+def _weights(value: Any) -> Any:
+    array = numbers(value)
+    if array.ndim == 2 and len(array) == 3:
+        return array.tolist()
+    return _of_shape(array, 1, "a list of numbers, or three of them, along x, y and z,")
+
+
 def _point(value: Any) -> Any:
     if isinstance(value, (list, tuple, np.ndarray)):
-        return _numbers(value)
+        return _weights(value)
     try:
         return operator.index(value)
     except TypeError:
@@ -55,7 +62,8 @@ def _point(value: Any) -> Any:
 Numbers = Annotated[list[float], BeforeValidator(_numbers)]
 Matrix = Annotated[list[list[float]], BeforeValidator(_matrix)]
 Shape = Annotated[list[float] | list[list[float]], BeforeValidator(_shape)]
-Point = Annotated[int | list[float], BeforeValidator(_point)]
+Weights = Annotated[list[float] | list[list[float]], BeforeValidator(_weights)]
+Point = Annotated[int | list[float] | list[list[float]], BeforeValidator(_point)]
 _ratio_schema = WithJsonSchema({"type": "number", "minimum": 0, "description": "damping ratio"})
 Ratio = Annotated[float, Field(ge=0, le=LARGEST), _ratio_schema]
 
@@ -190,13 +198,15 @@ class Matrices(Part):
     M, C, K
         Mass, damping and stiffness, (n, n), SI units; C is left out for a structure without damping.
     points
-        Named points: number of the degree of freedom, counted from 0, or a vector of n weights.
+        Named points: number of the degree of freedom, counted from 0, or a vector of n weights; or three of them, along x, y
+        and z, for a point that moves in space.
     file
         Instead of M, C, K: a NPZ or MAT file that holds them under these names, full or sparse, and, if it likes, points as
-        vectors of n weights: `point_tip` for a point "tip", or the fields of a struct `points`. Points given beside
-        the file come before those in it.
+        vectors of n weights, or three of them: `point_tip` for a point "tip", or the fields of a struct `points`. Points
+        given beside the file come before those in it.
     influence
-        Motion of each degree of freedom with the base; default 1 for all.
+        Motion of each degree of freedom with the base; default 1 for all. Where points move in space three rows, for motion
+        of the base along x, y and z, without which there is none.
     displacement, velocity
         Of each degree of freedom at the start [m], [m/s]; default 0.
     """
@@ -209,7 +219,7 @@ class Matrices(Part):
     K: Annotated[Matrix, SI("N/m")]
     points: dict[str, Point]
     file: str | None = None
-    influence: Numbers | None = None
+    influence: Weights | None = None
     displacement: Annotated[Numbers | None, SI("m")] = None
     velocity: Annotated[Numbers | None, SI("m/s")] = None
 
@@ -253,14 +263,22 @@ class Matrices(Part):
         for name, point in self.points.items():
             if isinstance(point, int) and not 0 <= point < n:
                 raise Hint("there is no such degree of freedom", f"0 to {n - 1}", ["points", name])
-            if not isinstance(point, int) and len(point) != n:
-                raise Hint(f"{len(point)} weights, but there are {n} degrees of freedom", place=["points", name])
+            if not isinstance(point, int) and np.shape(point)[-1] != n:
+                raise Hint(
+                    f"{np.shape(point)[-1]} weights, but there are {n} degrees of freedom", place=["points", name]
+                )
         for name in ("influence", "displacement", "velocity"):
             row = getattr(self, name)
-            if row is not None and len(row) != n:
-                raise Hint(f"{len(row)} numbers, but there are {n} degrees of freedom", place=[name])
+            if row is not None and np.shape(row)[-1] != n:
+                raise Hint(f"{np.shape(row)[-1]} numbers, but there are {n} degrees of freedom", place=[name])
+        if self.influence is not None and (np.ndim(self.influence) == 2) != bool(self._spatial()):
+            raise Hint("influence has three rows if points move in space, else one", place=["influence"])
         self.modes()
         return self
+
+    def _spatial(self) -> frozenset[str]:
+        """Points that move in space."""
+        return frozenset(name for name, point in self.points.items() if np.ndim(point) == 2)
 
     def _where(self, name: str) -> list[str]:
         """The field that gives a matrix, for messages."""
@@ -322,14 +340,16 @@ class Matrices(Part):
         n = len(values)
         weights = {name: np.eye(n)[p] if isinstance(p, int) else np.array(p) for name, p in self.points.items()}
         projection = vectors.T @ mass
-        zero = np.zeros(n)
+        spatial, zero = self._spatial(), np.zeros(n)
+        influence = self.influence if self.influence is not None or spatial else np.ones(n)
         return ModalModel(
             decay=diagonal / 2,
             stiffness=values,
-            shapes={name: weight @ vectors for name, weight in weights.items()},
-            participation=projection @ (np.ones(n) if self.influence is None else np.array(self.influence)),
+            shapes={name: (weight @ vectors).T for name, weight in weights.items()},
+            participation=None if influence is None else projection @ np.transpose(influence),
             q0=zero if self.displacement is None else projection @ np.array(self.displacement),
             p0=zero if self.velocity is None else projection @ np.array(self.velocity),
+            spatial=spatial,
         )
 
 
@@ -347,12 +367,13 @@ def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
     for name, array in arrays.items():
         mark = next((mark for mark in ("point_", "points.") if name.startswith(mark)), None)
         if mark is not None:
-            if array.size != len(matrices["M"]):
+            n = len(matrices["M"])
+            if array.size != n and array.shape != (3, n):
                 raise Hint(
-                    f"{path}: {name} has {array.size} numbers, but there are {len(matrices['M'])} degrees of freedom",
+                    f"{path}: {name} has {array.size} numbers, but there are {n} degrees of freedom",
                     f"a vector of weights, or points = {{ {name.removeprefix(mark)} = 0 }} beside the file",
                 )
-            points[name.removeprefix(mark)] = array.ravel()
+            points[name.removeprefix(mark)] = array.ravel() if array.size == n else array
     for name, array in (matrices | points).items():
         check_finite(array, f"{path}: {name}")
     return matrices, points

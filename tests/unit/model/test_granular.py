@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 import rattlebox as rb
 from rattlebox.model.packing import check_packing
@@ -332,3 +333,46 @@ def test_a_file_needs_no_kind_of_damper() -> None:
         "'gravity'",
     ):
         assert said in str(caught.value)
+
+
+BEAM = {
+    "M": np.diag([2.0, 1.0, 0.5, 1.5]).tolist(),
+    "K": (1e4 * (np.diag([4.0, 3, 6, 5]) + 0.5 * np.eye(4, k=1) + 0.5 * np.eye(4, k=-1))).tolist(),
+    "C": (0.1 * np.diag([2.0, 1.0, 0.5, 1.5])).tolist(),
+}
+TIP = [[0.0, 1, 0, 0], [0, 0, 1, 0.5], [0.2, 0, 0, 1]]
+
+
+def test_points_of_matrices_move_in_space(tmp_path: Path) -> None:
+    """Three rows of weights make a point that moves along x, y and z, in TOML and in files, as do the modes themselves."""
+    matrices = rb.Matrices(**BEAM, points={"tip": TIP}, influence=[[1, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    values, vectors = scipy.linalg.eigh(BEAM["K"], BEAM["M"])
+    frequencies = np.sqrt(values) / (2 * np.pi)
+    modal = rb.Modal(
+        frequencies=frequencies,
+        damping_ratios=0.05 / np.sqrt(values),
+        shapes={"tip": (np.array(TIP) @ vectors).T},
+        participation=vectors.T @ BEAM["M"] @ np.transpose(matrices.influence),
+    )
+    ours, theirs = matrices.modes(), modal.modes()
+    for one, other in ((ours.shapes["tip"], theirs.shapes["tip"]), (ours.participation, theirs.participation)):
+        assert one == pytest.approx(other, rel=1e-9, abs=1e-12)
+    sweeping = rb.Harmonic(amplitude=(30, "m/s^2"), frequency=15, direction="y")
+    runs = [
+        rb.simulate(case(damper(), structure=one, base=[sweeping], duration=0.01)).arrays for one in (matrices, modal)
+    ]
+    assert runs[0].points == ("tip x", "tip y", "tip z")
+    assert runs[0].displacement == pytest.approx(runs[1].displacement, rel=1e-6, abs=1e-12)
+    assert np.abs(runs[0].cavity_displacement[:, 0]).max(axis=0).min() > 0
+    whole = case(structure=matrices)
+    whole.to_file(tmp_path / "case.toml")
+    assert rb.Case.from_file(tmp_path / "case.toml") == whole
+    np.savez(tmp_path / "beam.npz", **BEAM, point_tip=TIP)
+    read = rb.Matrices.from_file(tmp_path / "beam.npz")
+    assert read.points == {"tip": TIP}
+    with pytest.raises(rb.CaseError, match="how do the degrees of freedom move with the base"):
+        case(structure=read, base=[sweeping])
+    with pytest.raises(rb.CaseError, match="influence has three rows"):
+        rb.Matrices(**BEAM, points={"tip": TIP}, influence=[1, 1, 1, 1])
+    with pytest.raises(rb.CaseError, match="3 weights, but there are 4 degrees of freedom"):
+        rb.Matrices(**BEAM, points={"tip": np.eye(3)})
