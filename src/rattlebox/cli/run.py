@@ -41,10 +41,10 @@ def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
     snapshots = out / "run.vtkhdf" if case.output.snapshots is not None else None
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        line = bar.add_task("steps", total=None)
+        line = bar.add_task("filling in", total=None)
 
         def progress(done: int, total: int) -> None:
-            bar.update(line, completed=done, total=total)
+            bar.update(line, description="steps", completed=done, total=total)
 
         return simulate(case, checkpoint=checkpoint, snapshots=snapshots, progress=progress)
 

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from ..results import GranularArrays, GranularRun
 from .motion import MOST_SERIES, draw_structure, name_aside
 from .style import (
+    FAINT,
     SERIES_COLOURS,
     SERIES_STYLES,
     PaperFigure,
@@ -24,7 +25,7 @@ from .style import (
 
 
 def plot_granular_motion(run: GranularRun, *, size: Size = "column") -> Figure:
-    """Draw the displacement of the structure, the centre of mass of the particles in each cavity, and their contacts.
+    """Draw the displacement of the structure, how far the particles' centre of mass has moved in each cavity, and contacts.
 
     Parameters
     ----------
@@ -65,11 +66,12 @@ def plot_granular_motion(run: GranularRun, *, size: Size = "column") -> Figure:
 
 
 def _draw_centre(axes: Axes, arrays: GranularArrays, damper: int, time: Scale) -> None:
-    x = arrays.centre_of_mass[:, damper]
+    x = arrays.centre_of_mass[:, damper] - arrays.centre_of_mass[0, damper]
+    axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
     length = scaled(x, "m")
     for k, name in enumerate(arrays.axes):
         _line(axes, arrays, time, x[:, k] / length.divisor, k, f"along {name}")
-    label(axes, "y", "Centre of mass", length.unit)
+    label(axes, "y", "Shift of particles", length.unit)
     legend_above(axes)
 
 

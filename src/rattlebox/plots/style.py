@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Literal, NamedTuple, cast
@@ -248,7 +249,8 @@ def legend_above(axes: Axes, **options: Any) -> None:
     handles, names = axes.get_legend_handles_labels()
     if handles:
         room = letters(axes)
-        columns = _fitting_columns(names, room)
+        rows = math.ceil(len(names) / _fitting_columns(names, room))
+        columns = math.ceil(len(names) / rows)  # no more than that many rows need
         shown = [shorten(name, room - _MARK) for name in names]
         axes.legend(handles, shown, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, **options)
 

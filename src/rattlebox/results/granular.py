@@ -302,7 +302,7 @@ class GranularPlots(RunPlots):
     _run: GranularRun
 
     def motion(self, **options: Any) -> Figure:
-        """Displacement of the structure, centre of mass of the particles in each cavity, and contacts, against time.
+        """Displacement of the structure, shift of the centre of mass in each cavity, and contacts, against time.
 
         Parameters
         ----------

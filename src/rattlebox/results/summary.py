@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TextIO
@@ -9,10 +10,10 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 
 from .granular import GranularRun
-from .quantities import MISSING, quantity
+from .quantities import MISSING, digits, quantity
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from rich.console import Group
 
     from .run import Run
 
@@ -50,6 +51,8 @@ class _Row:
         if isinstance(value, float):
             if self.unit == "order":
                 return f"{value:.1e}" if value else "0"
+            if self.unit == "million":
+                return MISSING if math.isnan(value) else f"{digits(1e-6 * value, 3)} million"
             return quantity(value, self.unit)
         return f"{value:,}".replace(",", " ") if isinstance(value, int) else value
 
@@ -155,7 +158,7 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         rows.append(_Row(f"peak_displacement[{point}]", f"peak displacement{where}", "m"))
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
     rows.append(_Row("computing_time", "computing time", "s"))
-    rows.append(_Row("particle_steps_per_second", "particle-steps a second", "1"))
+    rows.append(_Row("particle_steps_per_second", "particle-steps a second", "million"))
     return [row for row in rows if any(row.key in values for values in all_values)]
 
 
@@ -184,25 +187,27 @@ class _Report:
 
     __repr__ = __str__
 
-    def __rich__(self) -> Table:
+    def __rich__(self) -> Group:
         from rich import box
+        from rich.console import Group
         from rich.markup import escape
+        from rich.padding import Padding
         from rich.table import Table
+        from rich.text import Text
 
         table = Table(
             title=escape(self._title) or None,
-            caption=escape("\n".join(self._notes)) or None,
             box=box.SIMPLE_HEAD,
             show_header=any(self._columns),
             title_justify="left",
-            caption_justify="left",
         )
         table.add_column("")
         for column in self._columns:
             table.add_column(escape(column), justify="right", no_wrap=True)
         for label, *texts in self._cells():
             table.add_row(escape(label), *(escape(text) for text in texts))
-        return table
+        notes = (Padding(Text(note, "italic dim"), (0, 2)) for note in self._notes)
+        return Group(table, *notes)
 
     def show(self, file: TextIO | None = None) -> None:
         """Print a table with lines in a terminal, and plain text anywhere else.
