@@ -47,6 +47,13 @@ public:
 
     template <class F> decltype(auto) visit(F&& f) const { return visit_from<Types...>(f); }
 
+    // The same for a law that is changed in place.
+    template <class F> void change(F&& f) {
+        visit([&](const auto& law) {
+            f(const_cast<std::remove_const_t<std::remove_reference_t<decltype(law)>>&>(law));
+        });
+    }
+
     template <class T> const T* get_if() const { return index_ == index_of<T>() ? &as<T>() : nullptr; }
 
     // Calls f with a null pointer of each type in turn: how the doors build a law from its name.

@@ -6,7 +6,10 @@
 
 #include <cstddef>
 
-#ifndef __CUDACC__
+#ifdef __CUDACC__
+#define RATTLEBOX_CALLED __noinline__ // not copied to each place that uses it
+#else
+#define RATTLEBOX_CALLED
 extern "C" void abort();
 #endif
 
@@ -35,16 +38,18 @@ struct Arena {
 
     static std::size_t rounded(std::size_t bytes) { return (bytes + grain - 1) / grain * grain; }
 
-    void* take(std::size_t bytes) {
+    RATTLEBOX_CALLED void* take(std::size_t bytes) {
         bytes = rounded(bytes);
-        void* p = near.take(bytes);
-        if (!p) p = far.take(bytes);
+        // The near part is for what is often looked at, not for samples.
+        const bool large = bytes > static_cast<std::size_t>(near.end - near.first) / 4;
+        void* p = large ? far.take(bytes) : near.take(bytes);
+        if (!p) p = large ? near.take(bytes) : far.take(bytes);
         if (!p) exhausted();
         most_near = larger(most_near, near.next - near.first);
         most_far = larger(most_far, far.next - far.first);
         return p;
     }
-    void give_back(void* p, std::size_t bytes) {
+    RATTLEBOX_CALLED void give_back(void* p, std::size_t bytes) {
         char* from = static_cast<char*>(p);
         if (!near.give_back(from, rounded(bytes))) far.give_back(from, rounded(bytes));
     }

@@ -23,14 +23,16 @@ struct Batch {
         return product;
     }
 
+    // Where the number of a member stands in a column.
+    std::size_t offset(const Column& c, std::size_t member) const {
+        std::size_t rest = member, offset = 0;
+        for (std::size_t k = shape.size(); k-- > 0; rest /= shape[k]) offset += rest % shape[k] * c.stride[k];
+        return offset;
+    }
+
     // Makes the problem that the columns point into this member.
     void apply(std::size_t member) const {
-        for (const Column& c : columns) {
-            std::size_t rest = member, offset = 0;
-            for (std::size_t k = shape.size(); k-- > 0; rest /= shape[k])
-                offset += rest % shape[k] * c.stride[k];
-            *c.target = c.data[offset];
-        }
+        for (const Column& c : columns) *c.target = c.data[offset(c, member)];
     }
 };
 

@@ -16,12 +16,6 @@ class Observer {
     const Samples& samples() const { return run_.samples; }
     std::size_t balls() const { return problem_.ball_mass.size(); }
 
-    template <class F> real over_impacts(real value, F&& f) const {
-        for (const Impact& i : run_.impacts)
-            if (i.time >= window_.from) value = f(value, i);
-        return value;
-    }
-
     real sum(const std::vector<real>& by_damper, std::size_t i) const {
         real total = 0;
         const std::size_t d = problem_.dampers.size();
@@ -148,25 +142,11 @@ public:
 
     // ---- impacts
 
-    real impacts() const {
-        return over_impacts(0, [](real n, const Impact&) { return n + 1; });
-    }
-    real peak_force() const {
-        return over_impacts(0, [](real most, const Impact& i) { return std::fmax(most, i.peak_force); });
-    }
-    real peak_overlap() const {
-        return over_impacts(0, [](real most, const Impact& i) { return std::fmax(most, i.peak_overlap); });
-    }
-    real largest_approach_speed() const {
-        return over_impacts(0, [](real most, const Impact& i) { return std::fmax(most, i.approach_speed); });
-    }
-    real mean_approach_speed() const {
-        const real n = impacts();
-        return n > 0 ? over_impacts(0, [](real s, const Impact& i) { return s + i.approach_speed; }) / n
-                     : not_a_number;
-    }
-    real longest_contact() const {
-        return over_impacts(0, [](real most, const Impact& i) { return std::fmax(most, i.duration); });
+    ImpactSums impacts() const {
+        ImpactSums found = run_.dropped;
+        for (const Impact& i : run_.impacts)
+            if (i.time >= window_.from) found.add(i);
+        return found;
     }
 
     // ---- the damper as a mass: force on the balls over acceleration of their cavity, at the frequency of
@@ -232,13 +212,18 @@ struct Measure {
 };
 
 inline constexpr Measure measures[] = {
-    {"impacts", false, false, [](const Observer& o) { return o.impacts(); }},
-    {"impacts_per_cycle", false, false, [](const Observer& o) { return o.impacts() / o.cycles(); }},
-    {"peak_contact_force", false, true, [](const Observer& o) { return o.peak_force(); }},
-    {"peak_overlap", false, true, [](const Observer& o) { return o.peak_overlap(); }},
-    {"largest_approach_speed", false, false, [](const Observer& o) { return o.largest_approach_speed(); }},
-    {"mean_approach_speed", false, false, [](const Observer& o) { return o.mean_approach_speed(); }},
-    {"longest_contact", false, false, [](const Observer& o) { return o.longest_contact(); }},
+    {"impacts", false, false, [](const Observer& o) { return o.impacts().impacts; }},
+    {"impacts_per_cycle", false, false, [](const Observer& o) { return o.impacts().impacts / o.cycles(); }},
+    {"peak_contact_force", false, true, [](const Observer& o) { return o.impacts().peak_force; }},
+    {"peak_overlap", false, true, [](const Observer& o) { return o.impacts().peak_overlap; }},
+    {"largest_approach_speed", false, false,
+     [](const Observer& o) { return o.impacts().largest_approach_speed; }},
+    {"mean_approach_speed", false, false,
+     [](const Observer& o) {
+         const ImpactSums all = o.impacts();
+         return all.impacts > 0 ? all.approach_speeds / all.impacts : not_a_number;
+     }},
+    {"longest_contact", false, false, [](const Observer& o) { return o.impacts().longest_contact; }},
     {"work", false, false, [](const Observer& o) { return o.load_work(o.last()) + o.base_work(o.last()); }},
     {"viscous_loss", false, false, [](const Observer& o) { return o.viscous(o.last()); }},
     {"impact_loss", false, false, [](const Observer& o) { return o.impact(o.last()); }},

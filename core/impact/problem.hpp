@@ -43,6 +43,9 @@ struct Settings {
     bool adaptive_inner = false;              // two_step: dopri5 instead of rk4
     bool collocation = true;                  // event_driven: lone contacts by collocation in phase
 
+    std::size_t log_lines = 0; // impacts in the log before the older half is dropped; 0: all are kept
+    real log_from = 0;         // dropped ones from here on are tallied
+
     bool peaks = true; // of force and overlap are found for the impact log
 
     // What the ledger may miss of the energy put in; none for fixed steps, whose error it measures.

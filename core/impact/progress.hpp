@@ -42,6 +42,13 @@ protected:
 
     // ---- recording
 
+    int enter(const Impact& line) {
+        return result_.enter(line, problem_.settings, [&](auto&& use) {
+            for (Active& a : system_.active) use(a.impact);
+            for (Released& r : released_) use(r.impact);
+        });
+    }
+
     // Stored energy of a released contact that still overlaps in state y.
     real recovering(const Released& r, const real* y) const {
         const real overlap = -gap(problem_, contact(r.contact), y).value - r.memory.offset;
@@ -96,7 +103,7 @@ public:
     Progress(const Problem& problem, const std::atomic<bool>* stop)
         : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem),
           ledger_(problem), sampled_(problem), flight_(problem), system_(problem),
-          phase_(problem.contacts.size(), Phase::open), stored_(problem.dampers.size()),
+          phase_(problem.contacts.size(), Phase::open), result_(problem), stored_(problem.dampers.size()),
           force_(problem.dampers.size()) {}
 };
 

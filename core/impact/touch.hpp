@@ -113,7 +113,7 @@ protected:
         }
         line.energy_lost = end.lost + stored;
         line.complete = true;
-        result_.impacts.push_back(line);
+        const int number = enter(line);
         ++result_.counts.collocated;
         while (sample_due(state_.t + end.time)) sample_lone(c, *law, speed, zeta);
         std::swap(state_.y, scratch_.y);
@@ -121,7 +121,7 @@ protected:
         ledger_.add(spent_);
         if (stored > 0) {
             Memory memory = law->begin(e);
-            released_.push_back({c, memory, static_cast<int>(result_.impacts.size()) - 1, stored});
+            released_.push_back({c, memory, number, stored});
             phase(c) = Phase::released;
         }
         return true;
@@ -135,17 +135,16 @@ protected:
             a.memory = law.begin(e);
             asked = law.needs_restitution();
         });
-        a.impact = static_cast<int>(result_.impacts.size());
-        a.x = x;
-        a.speed = speed;
-        system_.active.push_back(a);
-        phase(c) = Phase::closed;
         Impact line;
         line.contact = c;
         line.time = state_.t;
         line.approach_speed = speed;
         if (asked) line.restitution = e;
-        result_.impacts.push_back(line);
+        a.impact = enter(line);
+        a.x = x;
+        a.speed = speed;
+        system_.active.push_back(a);
+        phase(c) = Phase::closed;
     }
 
     // Length of a flight in which the contacts that close from rest go on to close, with a negligible force.
@@ -309,13 +308,13 @@ protected:
         line.energy_lost = 0.5 * push * (1 - e) * speed;
         line.complete = true;
         ledger_.normal[damper_of(c)] += line.energy_lost;
-        result_.impacts.push_back(line);
+        const auto number = static_cast<std::size_t>(enter(line));
         wake_stuck();
         const real rebound_speed = std::fmax(-system_.approach(state_.y.data(), c), 0.0);
         const real acceleration = gap_acceleration(c);
         if (acceleration < 0 &&
             2 * rebound_speed < -acceleration * problem_.settings.stick * shortest_period()) {
-            result_.impacts.back().energy_lost += stick(c);
+            result_.impacts[number].energy_lost += stick(c);
         } else if (e == 0) {
             phase(c) = Phase::touching;
         }

@@ -187,14 +187,16 @@ class TwoStep {
                 if (g.value >= 0) continue;
                 result_.counts.extrapolated += r.extrapolated;
                 slot.closed = true;
-                slot.impact = static_cast<int>(result_.impacts.size());
                 Impact line;
                 line.contact = static_cast<int>(c);
                 line.time = t;
                 line.approach_speed = rate;
                 if (asked) line.restitution = r.e;
                 line.energy_lost = -y_[extra() + 3 + c];
-                result_.impacts.push_back(line);
+                slot.impact = -1;
+                slot.impact = result_.enter(line, problem_.settings, [&](auto&& use) {
+                    for (Slot& s : slots_) use(s.impact);
+                });
             }
             Impact& line = result_.impacts[static_cast<std::size_t>(slot.impact)];
             const real overlap = -g.value;
@@ -267,7 +269,8 @@ public:
     TwoStep(const Problem& problem, const std::atomic<bool>* stop = nullptr)
         : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), ledger_(problem),
           slots_(problem.contacts.size()), push_ball_(problem.ball_mass.size()),
-          push_cavity_(problem.dampers.size()), n_(state_.y.size() + 3 + problem.contacts.size()) {
+          push_cavity_(problem.dampers.size()), n_(state_.y.size() + 3 + problem.contacts.size()),
+          result_(problem) {
         y_.assign(n_, 0);
         std::copy(state_.y.begin(), state_.y.end(), y_.begin());
         next_ = dy_ = dnext_ = work_ = y_;

@@ -68,6 +68,10 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
                nb::arg("measures"), nb::arg("window"), nb::arg("motion") = false, nb::arg("state") = false,
                nb::arg("last") = 0, nb::arg("threads") = 1, nb::arg("progress") = nb::none(),
                "Run members start to stop of a batch and keep measures of them, not their trajectories.");
+    module.def("gpu_image", &door::gpu_image, nb::arg("problem"), nb::arg("shape"), nb::arg("start"),
+               nb::arg("stop"), nb::arg("measures"), nb::arg("window"), nb::arg("motion") = false,
+               nb::arg("state") = false, nb::arg("last") = 0,
+               "The same members as an image for a GPU (core/gpu/impact.cpp), and what they need there.");
     module.def(
         "measures",
         [] {

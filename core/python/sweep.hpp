@@ -5,8 +5,7 @@
 #include <atomic>
 #include <memory>
 
-#include "impact/measures.hpp"
-#include "impact/run.hpp"
+#include "impact/image_writer.hpp"
 #include "python/crew.hpp"
 #include "python/read.hpp"
 #include "python/write.hpp"
@@ -18,136 +17,115 @@ struct Worker {
     Problem problem;
     Batch batch;
     Window window;
+
+    Worker(const nb::dict& packed, const std::vector<std::size_t>& shape, const nb::dict& look,
+           const Wanted& wanted) {
+        batch.shape = shape;
+        Reader reader(problem, &batch);
+        reader.problem(packed);
+        reader.number(window.from, look, "from");
+        reader.number(window.period, look, "period");
+        reader.vector(window.shape, look["shape"]);
+        window.samples = nb::cast<int>(look["samples"]);
+        problem.settings.peaks = std::any_of(wanted.measures.begin(), wanted.measures.end(),
+                                             [](int m) { return measures[m].peaks; });
+    }
+    Worker(const Worker&) = delete; // columns point into it
 };
 
-struct Wanted {
-    std::vector<const Measure*> measures;
-    bool motion = false, state = false;
-    std::size_t last = 0; // impacts at the end
+// One array of the block of numbers that is kept.
+struct Named {
+    const char* name;
+    std::size_t at;
+    std::vector<std::size_t> shape;
 };
 
-class Sweep {
-    Wanted wanted_;
-    std::size_t first_, count_, samples_ = 0, balls_ = 0, states_ = 0;
-    std::vector<std::unique_ptr<Worker>> workers_;
-    std::vector<std::vector<real>> values_;
-    std::vector<real> displacement_, velocity_, place_, speed_, state_;
-    std::vector<real> last_time_, last_speed_, last_contact_;
-    std::vector<std::int8_t> status_;
-
-    void keep(const Worker& worker, const Result& result, std::size_t i) {
-        status_[i] = static_cast<std::int8_t>(result.status);
-        if (result.status != Status::finished) return;
-        const Observer seen(worker.problem, result, worker.window);
-        if (!seen.closes(worker.problem.settings.closure_bound()))
-            status_[i] = static_cast<std::int8_t>(Status::ledger_open);
-        for (std::size_t m = 0; m < values_.size(); ++m) values_[m][i] = wanted_.measures[m]->value(seen);
-        for (std::size_t s = 0; wanted_.motion && s < samples_; ++s) {
-            const ModeState z = seen.point(s);
-            displacement_[i * samples_ + s] = z.q;
-            velocity_[i * samples_ + s] = z.p;
-            for (std::size_t b = 0; b < balls_; ++b) {
-                const std::size_t at = (i * samples_ + s) * balls_ + b;
-                const auto damper = static_cast<std::size_t>(worker.problem.ball_damper[b]);
-                const ModeState c = seen.along(worker.problem.dampers[damper].shape, s);
-                place_[at] = positions(worker.problem, seen.state(s))[b] - c.q;
-                speed_[at] = velocities(worker.problem, seen.state(s))[b] - c.p;
-            }
-        }
-        if (wanted_.state) std::copy_n(seen.state(seen.last()), states_, state_.data() + i * states_);
-        const std::size_t known = std::min(wanted_.last, result.impacts.size());
-        for (std::size_t k = 0; k < known; ++k) {
-            const Impact& impact = result.impacts[result.impacts.size() - known + k];
-            const std::size_t at = (i + 1) * wanted_.last - known + k;
-            last_time_[at] = impact.time;
-            last_speed_[at] = impact.approach_speed;
-            last_contact_[at] = impact.contact;
-        }
+inline std::vector<Named> arrays(const Kept& kept, const Worker& worker, const Wanted& wanted) {
+    const std::size_t n = kept.members, samples = static_cast<std::size_t>(worker.window.samples),
+                      balls = worker.problem.ball_mass.size();
+    std::vector<Named> found;
+    for (std::size_t m = 0; m < wanted.measures.size(); ++m)
+        found.push_back({measures[wanted.measures[m]].name, kept.measures + m * n, {n}});
+    if (wanted.motion) {
+        found.push_back({"displacement", kept.displacement, {n, samples}});
+        found.push_back({"velocity", kept.velocity, {n, samples}});
+        found.push_back({"ball_place", kept.place, {n, samples, balls}});
+        found.push_back({"ball_speed", kept.speed, {n, samples, balls}});
     }
-
-public:
-    Sweep(const nb::dict& packed, const std::vector<std::size_t>& shape, std::size_t first, std::size_t count,
-          const nb::dict& window, Wanted wanted, int threads)
-        : wanted_(std::move(wanted)), first_(first), count_(count) {
-        for (int t = 0; t < threads; ++t) {
-            auto worker = std::make_unique<Worker>();
-            worker->batch.shape = shape;
-            Reader reader(worker->problem, &worker->batch);
-            reader.problem(packed);
-            reader.number(worker->window.from, window, "from");
-            reader.number(worker->window.period, window, "period");
-            reader.vector(worker->window.shape, window["shape"]);
-            worker->window.samples = nb::cast<int>(window["samples"]);
-            worker->problem.settings.peaks = std::any_of(wanted_.measures.begin(), wanted_.measures.end(),
-                                                         [](const Measure* m) { return m->peaks; });
-            workers_.push_back(std::move(worker));
-        }
-        const Problem& problem = workers_.at(0)->problem;
-        samples_ = static_cast<std::size_t>(workers_[0]->window.samples);
-        balls_ = problem.ball_mass.size();
-        states_ = 2 * (problem.modes.size() + balls_);
-        values_.assign(wanted_.measures.size(), std::vector<real>(count, not_a_number));
-        status_.assign(count, static_cast<std::int8_t>(Status::interrupted));
-        if (wanted_.motion) {
-            displacement_.assign(count * samples_, not_a_number);
-            velocity_ = displacement_;
-            place_.assign(count * samples_ * balls_, not_a_number);
-            speed_ = place_;
-        }
-        if (wanted_.state) state_.assign(count * states_, not_a_number);
-        last_time_.assign(count * wanted_.last, not_a_number);
-        last_speed_ = last_contact_ = last_time_;
+    if (wanted.state) found.push_back({"state", kept.state, {n, 2 * (worker.problem.modes.size() + balls)}});
+    if (wanted.last > 0) {
+        found.push_back({"last_time", kept.last_time, {n, wanted.last}});
+        found.push_back({"last_approach_speed", kept.last_speed, {n, wanted.last}});
+        found.push_back({"last_contact", kept.last_contact, {n, wanted.last}});
     }
+    return found;
+}
 
-    std::size_t size() const { return count_; }
-
-    void run(std::size_t i, int thread, const std::atomic<bool>& stop) {
-        Worker& worker = *workers_[static_cast<std::size_t>(thread)];
-        worker.batch.apply(first_ + i);
-        worker.window.place(worker.problem);
-        keep(worker, rattlebox::run(worker.problem, &stop), i);
+inline Wanted wanted(const std::vector<std::string>& names, bool motion, bool state, std::size_t last) {
+    Wanted found{{}, motion, state, last};
+    for (const std::string& name : names) {
+        int number = -1;
+        for (int m = 0; m < static_cast<int>(std::size(measures)); ++m)
+            if (name == measures[m].name) number = m;
+        if (number < 0) throw std::invalid_argument("the core has no measure named '" + name + "'");
+        found.measures.push_back(number);
     }
-
-    nb::dict results() {
-        nb::dict d;
-        d["status"] = array(std::move(status_));
-        for (std::size_t m = 0; m < values_.size(); ++m)
-            d[wanted_.measures[m]->name] = array(std::move(values_[m]));
-        if (wanted_.motion) {
-            d["displacement"] = array(std::move(displacement_), {count_, samples_});
-            d["velocity"] = array(std::move(velocity_), {count_, samples_});
-            d["ball_place"] = array(std::move(place_), {count_, samples_, balls_});
-            d["ball_speed"] = array(std::move(speed_), {count_, samples_, balls_});
-        }
-        if (wanted_.state) d["state"] = array(std::move(state_), {count_, states_});
-        if (wanted_.last > 0) {
-            d["last_time"] = array(std::move(last_time_), {count_, wanted_.last});
-            d["last_approach_speed"] = array(std::move(last_speed_), {count_, wanted_.last});
-            d["last_contact"] = array(std::move(last_contact_), {count_, wanted_.last});
-        }
-        return d;
-    }
-};
+    return found;
+}
 
 // Members start to stop of a batch; None when `progress` has answered False.
 inline nb::object sweep(const nb::dict& packed, const std::vector<std::size_t>& shape, std::size_t start,
                         std::size_t stop, const std::vector<std::string>& names, const nb::dict& window,
                         bool motion, bool state, std::size_t last, int threads, const nb::object& progress) {
-    Wanted wanted{{}, motion, state, last};
-    for (const std::string& name : names) {
-        const Measure* found = nullptr;
-        for (const Measure& m : measures)
-            if (name == m.name) found = &m;
-        if (!found) throw std::invalid_argument("the core has no measure named '" + name + "'");
-        wanted.measures.push_back(found);
-    }
-    Sweep sweep(packed, shape, start, stop - start, window, std::move(wanted), threads);
+    const Wanted keep = wanted(names, motion, state, last);
+    std::vector<std::unique_ptr<Worker>> workers;
+    for (int t = 0; t < threads; ++t)
+        workers.push_back(std::make_unique<Worker>(packed, shape, window, keep));
+    Kept kept;
+    kept.members = stop - start;
+    std::vector<real> numbers(kept.lay(workers.at(0)->problem, workers[0]->window, keep), not_a_number);
+    std::vector<std::int8_t> status(kept.members, static_cast<std::int8_t>(Status::interrupted));
+    kept.numbers = numbers.data();
+    kept.status = status.data();
     const bool whole = work_off(
-        sweep.size(), threads, 4,
-        [&](std::size_t i, int thread, const std::atomic<bool>& stopped) { sweep.run(i, thread, stopped); },
+        stop - start, threads, 4,
+        [&](std::size_t i, int thread, const std::atomic<bool>& stopped) {
+            Worker& worker = *workers[static_cast<std::size_t>(thread)];
+            worker.batch.apply(start + i);
+            worker.window.place(worker.problem);
+            kept.keep(i, worker.problem, worker.window, keep, run(worker.problem, &stopped));
+        },
         [&](std::size_t done) { return progress.is_none() || !progress(done).is(nb::bool_(false)); });
     if (!whole) return nb::none();
-    return sweep.results();
+    nb::dict d;
+    d["status"] = array(std::move(status));
+    for (const Named& a : arrays(kept, *workers[0], keep)) {
+        const auto* from = numbers.data() + a.at;
+        std::size_t size = 1;
+        for (std::size_t length : a.shape) size *= length;
+        d[a.name] = array(std::vector<real>(from, from + size), a.shape);
+    }
+    return d;
+}
+
+// The same members as an image for a GPU, what they need there, and where the results will be put.
+inline nb::dict gpu_image(const nb::dict& packed, const std::vector<std::size_t>& shape, std::size_t start,
+                          std::size_t stop, const std::vector<std::string>& names, const nb::dict& window,
+                          bool motion, bool state, std::size_t last) {
+    Wanted keep = wanted(names, motion, state, last);
+    Worker worker(packed, shape, window, keep);
+    Kept kept;
+    kept.members = stop - start;
+    nb::dict d;
+    d["numbers"] = kept.lay(worker.problem, worker.window, keep);
+    d["memory"] = image::memory(worker.problem, worker.window, keep);
+    const std::vector<char> bytes =
+        image::write(worker.problem, worker.batch, worker.window, keep, start, stop - start);
+    nb::list layout;
+    for (const Named& a : arrays(kept, worker, keep)) layout.append(nb::make_tuple(a.name, a.at, a.shape));
+    d["arrays"] = layout;
+    d["image"] = nb::bytes(bytes.data(), bytes.size());
+    return d;
 }
 
 } // namespace rattlebox::door

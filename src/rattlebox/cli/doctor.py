@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import os
 import platform
+from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
 
 from rich.console import Console
 from rich.table import Table
 
 from rattlebox import __version__
+from rattlebox.engines.card import Card
 from rattlebox.engines.core import built, choice, core, supported
+from rattlebox.engines.gpu import nvrtc
+from rattlebox.model.errors import CaseError
 
 _PACKAGES = ("numpy", "scipy", "xarray", "h5netcdf", "h5py", "pydantic", "pint", "matplotlib")
 
@@ -25,9 +29,21 @@ def examine() -> None:
     table.add_row("core", f"{level}: {why}")
     table.add_row("", f"built: {', '.join(built())}; runnable here: {', '.join(supported())}; RATTLEBOX_SIMD overrides")
     table.add_row("", f"loaded from {core().__name__}")
+    for line in _card():
+        table.add_row(*line)
     for name in _PACKAGES:
         try:
             table.add_row(name, version(name))
         except PackageNotFoundError:
             table.add_row(name, "[bold]missing[/bold]: python -m pip install " + name)
     Console().print(table)
+
+
+def _card() -> Iterator[tuple[str, str]]:
+    """What a study on a graphics card would find here."""
+    try:
+        yield "nvrtc", ".".join(map(str, nvrtc()))
+        yield "gpu", Card().describe()
+        yield "", 'studies of impact dampers run there (on="gpu")'
+    except CaseError as error:
+        yield "gpu", f"none to be used: {error}"

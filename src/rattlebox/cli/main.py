@@ -65,11 +65,12 @@ def sweep(
     dask: Annotated[
         str | None, typer.Option(help="Address or file of a Dask scheduler, to run on its workers.")
     ] = None,
+    gpu: Annotated[bool, typer.Option("--gpu", help="Run on the graphics card.")] = False,
 ) -> None:
     """Run a study file: variants of a case over axes, or a ready map. The same command goes on after a stop."""
     from rattlebox.cli.sweep import run_sweep
 
-    run_sweep(study, out, workers, dask)
+    run_sweep(study, out, workers, dask, gpu=gpu)
 
 
 @app.command()

@@ -17,7 +17,7 @@ from rattlebox.studies.runner import Stopped
 from rattlebox.studies.studyfile import read_study
 
 
-def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None) -> None:
+def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None, *, gpu: bool = False) -> None:
     """Run a study file into a store, or go on with one.
 
     Parameters
@@ -30,15 +30,19 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
         Threads of this process; default what the study file says, or one for each core.
     dask
         Address of a Dask scheduler, or the file that it wrote, to run there instead.
+    gpu
+        Run on the graphics card instead.
     """
     if dask and workers:
         raise typer.BadParameter("counts threads of this machine; with --dask, the cluster's workers run the study")
+    if gpu and (dask or workers):
+        raise typer.BadParameter("runs on the graphics card of this machine; leave --workers and --dask out")
     study = read_study(path)
     out = out or path.with_suffix(".zarr")
     try:
         with _cluster(dask) as client:
             where = {"threads": None if client else workers} if client or workers else {}
-            result = study.run(store=out, on=client, **where)
+            result = study.run(store=out, on="gpu" if gpu else client, **where)
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)
         sys.exit(130)

@@ -54,6 +54,7 @@ def run_block(
     *,
     threads: int = 1,
     progress: Callable[[int], bool | None] | None = None,
+    gpu: bool = False,
 ) -> Mapping[str, NDArray[Any]] | None:
     """Run some members of a batch.
 
@@ -71,6 +72,8 @@ def run_block(
         How many work at once. The results do not depend on it, to the last bit.
     progress
         Called some twenty times a second with the number of members done; False stops.
+    gpu
+        On the graphics card, and not on `threads`.
 
     Returns
     -------
@@ -78,6 +81,11 @@ def run_block(
         By name, members first: `status`, the measures; `displacement` and `velocity` (n, samples), `ball_place` and
         `ball_speed` (n, samples, balls) of the motion; `last_time`, `last_approach_speed`, `last_contact` (n, last);
         `state` (n, 2 (modes + balls)). All but the status is NaN where a run did not finish. None when it was stopped.
+
+    Raises
+    ------
+    CaseError
+        When there is no card that can be used, or its memory is too small.
     """
     grid = list(shape) or [1]
     window = {
@@ -86,18 +94,19 @@ def run_block(
         "shape": np.ascontiguousarray(look.shape, dtype=float),
         "samples": look.samples,
     }
+    kept: dict[str, Any] = {
+        "measures": list(look.measures),
+        "window": window,
+        "motion": look.motion,
+        "state": look.state,
+        "last": look.last,
+    }
+    if gpu:
+        from .gpu_impact import run_members
+
+        return run_members(packed, grid, start, stop, progress, **kept)
     result: Mapping[str, NDArray[Any]] | None = core().sweep(
-        packed,
-        grid,
-        start,
-        stop,
-        list(look.measures),
-        window,
-        motion=look.motion,
-        state=look.state,
-        last=look.last,
-        threads=max(1, min(threads, stop - start)),
-        progress=progress,
+        packed, grid, start, stop, **kept, threads=max(1, min(threads, stop - start)), progress=progress
     )
     return result
 

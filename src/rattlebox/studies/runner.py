@@ -1,4 +1,4 @@
-"""Where a study runs, block by block: threads of this process, or the workers of a Dask cluster."""
+"""Where a study runs, block by block: threads of this process, a graphics card, or the workers of a Dask cluster."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.model.errors import CaseError
+from rattlebox.model.errors import CaseError, Hint
 
 from .bar import telling
 from .blocks import Blocks
@@ -36,6 +36,7 @@ _BLOCKS = 2000  # at most, so that a store of weeks has no millions of files; a 
 _BLOCK_BYTES = 2**27
 _HERE_SECONDS = 1.0
 _DASK_SECONDS = 5.0
+_CARD_BLOCK = 2**18  # variants: some seconds of a card
 _SHARE = 16  # blocks for each worker of a cluster, at least, unless they would take less than the next
 _DASK_LEAST_SECONDS = 0.5
 
@@ -56,6 +57,14 @@ class Task(Protocol):
 
     def run(self, start: int, stop: int, *, threads: int, cancelled: Callable[[], bool] | None) -> Values | None:
         """Return each output of variants start to stop, variants first; anything soon after `cancelled`."""
+
+
+@runtime_checkable
+class OnCard(Task, Protocol):
+    """Work that a graphics card can do."""
+
+    def on_card(self) -> Task:
+        """Return the same work for the card of this machine."""
 
 
 @runtime_checkable
@@ -107,7 +116,7 @@ def run_task(
     *,
     design: Grid,
     store: str | os.PathLike[str] | None = None,
-    on: Client | None = None,
+    on: Client | Literal["gpu"] | None = None,
     threads: int | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
     block: int | None = None,
@@ -125,14 +134,15 @@ def run_task(
         Folder on disk for the result, which need not exist. What is finished is there whatever happens, and the same
         call goes on from it.
     on
-        Client of a Dask cluster; default this process.
+        Client of a Dask cluster, or "gpu" for the graphics card of this machine; default this process.
     threads
         Threads that share a block; default as many as this process may use cores, or one on a cluster.
     progress
         True or False for a bar, default a bar on a terminal; or a function of the number of variants that are there and
         of all.
     block
-        Largest number of variants in a block; default so many as take about a second, or five on a cluster.
+        Largest number of variants in a block; default so many as take about a second, or five on a cluster, or as keep
+        a card busy.
     coords
         Further coordinates.
 
@@ -145,7 +155,8 @@ def run_task(
     Raises
     ------
     CaseError
-        When the store holds something else or is being written to, or when the cluster fails.
+        When the store holds something else or is being written to, when the cluster fails, or when there is no card
+        that can be used or the card cannot do this.
     OSError
         When the store cannot be written.
     Stopped
@@ -153,17 +164,23 @@ def run_task(
     """
     from rattlebox import __version__
 
+    where = _core()
+    if isinstance(on, str):
+        task, where, block, on = *_on_card(task, on, block), None
+        threads = 1
     threads = threads or (1 if on else cores())
     plan = Plan(
         dims=tuple(design.dims),
         shape=tuple(design.shape),
         outputs=task.outputs,
         coords={**design.coords(), **(coords or {})},
-        about={**task.describe(), "design": dict(design.describe()), "version": __version__, "core": _core()},
+        about={**task.describe(), "design": dict(design.describe()), "version": __version__, "core": where},
     )
 
     def cut() -> Blocks:
-        size = block or _block_size(task, plan, on, 1 if isinstance(task, Chained) else threads)
+        size = (block and _held(block, plan)) or _block_size(
+            task, plan, on, 1 if isinstance(task, Chained) else threads
+        )
         return Blocks.of(plan.shape, min(size, plan.shape[-1]) if isinstance(task, Chained) else size)
 
     opened: list[Memory | Store] = []
@@ -199,6 +216,20 @@ def _core() -> str:
     from rattlebox.engines.core import instructions
 
     return instructions()
+
+
+def _on_card(task: Task, on: str, block: int | None) -> tuple[Task, str, int]:
+    """The work for a card, what decides the last bits there, and how many variants keep it busy."""
+    from rattlebox.engines.card import Card
+    from rattlebox.engines.gpu import nvrtc
+
+    if on != "gpu":
+        raise Hint(f"on = {on!r}", '"gpu", or a dask.distributed.Client')
+    if not isinstance(task, OnCard):
+        raise Hint('on = "gpu": a card cannot do this study, whose runs go on from each other', "threads, or a cluster")
+    task = task.on_card()
+    major, minor = nvrtc()
+    return task, f"{Card().arch}, NVRTC {major}.{minor}", block or _CARD_BLOCK
 
 
 def _bits() -> str:
@@ -266,7 +297,12 @@ def _block_size(task: Task, plan: Plan, on: Any, threads: int) -> int:
         seconds = _HERE_SECONDS
     least = 4 * threads if threads > 1 else 1  # so that no thread waits long for the others
     size = max(seconds * threads / each, least, task.size / _BLOCKS)
-    return max(1, math.ceil(min(size, _BLOCK_BYTES / max(1, plan.bytes_each))))
+    return _held(math.ceil(size), plan)
+
+
+def _held(size: int, plan: Plan) -> int:
+    """So many variants, or what a block's bytes allow."""
+    return max(1, min(size, math.ceil(_BLOCK_BYTES / max(1, plan.bytes_each))))
 
 
 def _seconds_each(task: Task, cancelled: Callable[[], bool]) -> float:

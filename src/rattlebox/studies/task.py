@@ -52,6 +52,8 @@ class SweepTask:
         Of the structure, that is watched; default the first damper's.
     motion, last, state
         Keep samples of the motion, the last impacts, the state at the end.
+    gpu
+        Run on the graphics card.
     """
 
     case: Case
@@ -64,6 +66,22 @@ class SweepTask:
     motion: bool = False
     last: int = 0
     state: bool = False
+    gpu: bool = False
+
+    def on_card(self) -> SweepTask:
+        """Return the same work for the card of this machine.
+
+        Raises
+        ------
+        CaseError
+            When a measure is a function of a Run.
+        """
+        if self.own:
+            raise Hint(
+                f'on = "gpu": {next(iter(self.own))} is a function of a Run, which a card does not make',
+                "measures by name (rb.MEASURES), or the processor",
+            )
+        return replace(self, gpu=True)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
@@ -212,7 +230,9 @@ class SweepTask:
             first, last = (start, stop) if numbers is None else np.searchsorted(numbers, (start, stop)).tolist()
             if first == last:
                 continue
-            values = run_block(part.packed, part.shape, first, last, look, threads=threads, progress=go_on)
+            values = run_block(
+                part.packed, part.shape, first, last, look, threads=threads, progress=go_on, gpu=self.gpu
+            )
             if values is None or numbers is None:
                 return values
             for name, array in values.items():

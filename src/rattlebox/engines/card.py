@@ -1,0 +1,150 @@
+"""The graphics card of this machine: what is missing to use it, its memory, its kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.model.errors import CaseError
+
+from .gpu import Compiled, compile_kernels, cuda, nvrtc
+
+_DRIVER = (13, 0), "580"  # the CUDA that machine code of this compiler needs, and NVIDIA's driver that has it
+_LEAST = 7, 5  # compute capability
+
+
+class Card:
+    """The first graphics card, ready for the thread that made this.
+
+    Raises
+    ------
+    CaseError
+        When a package, the driver or a card is missing or too old, with how to get it.
+
+    Attributes
+    ----------
+    name
+        As its maker calls it.
+    arch
+        Architecture that kernels are compiled for, such as "sm_90".
+    driver
+        Version of CUDA that the driver has.
+    """
+
+    def __init__(self) -> None:
+        nvrtc()
+        core, self._driver = cuda("cuda.core"), cuda("cuda.bindings.driver")
+        try:
+            (found,) = self._driver.cuInit(0)
+        except cuda("cuda.pathfinder").DynamicLibNotFoundError:
+            raise CaseError(
+                "a GPU needs NVIDIA's driver, which is not installed (libcuda was not found)\n"
+                f"  try: the driver {_DRIVER[1]} or newer; in a container, pass the card through (--gpus all)"
+            ) from None
+        if found.name in ("CUDA_ERROR_NO_DEVICE", "CUDA_ERROR_SYSTEM_NOT_READY"):
+            raise CaseError(
+                "NVIDIA's driver is installed, but it finds no card\n"
+                "  try: nvidia-smi; a card hidden by CUDA_VISIBLE_DEVICES, or not passed through to a container"
+            )
+        self._check(found)
+        version = self._answer(self._driver.cuDriverGetVersion())
+        self.driver = version // 1000, version % 1000 // 10
+        if self.driver < _DRIVER[0]:
+            raise CaseError(
+                f"NVIDIA's driver has CUDA {self.driver[0]}.{self.driver[1]}, {_DRIVER[0][0]}.{_DRIVER[0][1]} is needed\n"
+                f"  try: the driver {_DRIVER[1]} or newer"
+            )
+        self._core, self._device = core, core.Device(0)
+        self._device.set_current()
+        self.name = str(self._device.name)
+        capability = tuple(self._device.compute_capability)
+        if capability < _LEAST:
+            raise CaseError(
+                f"{self.name} has compute capability {capability[0]}.{capability[1]}, "
+                f"{_LEAST[0]}.{_LEAST[1]} or newer is needed\n  try: a card since 2018 (Turing)"
+            )
+        self.arch = f"sm_{capability[0]}{capability[1]}"
+        self._stream = self._device.create_stream()
+
+    def describe(self) -> str:
+        """Return its name, memory, architecture and driver."""
+        _, total = self.memory()
+        version = f"{self.driver[0]}.{self.driver[1]}"
+        return f"{self.name}, {total / 2**30:.0f} GiB, {self.arch}, driver with CUDA {version}"
+
+    def memory(self) -> tuple[int, int]:
+        """Return the bytes of its memory that are free, and all of them."""
+        free, total = self._answer(self._driver.cuMemGetInfo())
+        return int(free), int(total)
+
+    @property
+    def multiprocessors(self) -> int:
+        """Number of its multiprocessors."""
+        return int(self._device.properties.multiprocessor_count)
+
+    @property
+    def resident(self) -> int:
+        """Most threads that a multiprocessor holds: for so many local memory is set aside."""
+        return int(self._device.properties.max_threads_per_multiprocessor)
+
+    def kernels(self, source: str, **macros: int) -> tuple[Compiled, Any]:
+        """Compile the kernels of a source file, or take them from the cache, and load them.
+
+        Parameters
+        ----------
+        source, **macros
+            As for `rattlebox.engines.gpu.compile_kernels`.
+
+        Returns
+        -------
+        tuple
+            Machine code, and a function that returns the kernel of a name.
+        """
+        compiled = compile_kernels(source, self.arch, keep=True, **macros)
+        return compiled, self._core.ObjectCode.from_cubin(compiled.code, name=source).get_kernel
+
+    @contextmanager
+    def room(self, size: int) -> Iterator[Any]:
+        """Hold a block of its memory, of `size` bytes."""
+        buffer = self._device.allocate(max(size, 1), stream=self._stream)
+        try:
+            yield buffer
+        finally:
+            buffer.close(self._stream)
+
+    def fill(self, buffer: Any, byte: int) -> None:
+        """Write the same byte all over a block."""
+        buffer.fill(byte, stream=self._stream)
+
+    def upload(self, buffer: Any, data: bytes | NDArray[Any]) -> None:
+        """Copy bytes to the card."""
+        host = np.frombuffer(data, np.uint8)
+        self._stream.sync()
+        self._check(*self._driver.cuMemcpyHtoD(int(buffer.handle), host.ctypes.data, host.nbytes))
+
+    def download(self, buffer: Any, array: NDArray[Any]) -> None:
+        """Copy from the card into an array, once all that was asked of the card is done."""
+        self._stream.sync()
+        self._check(*self._driver.cuMemcpyDtoH(array.ctypes.data, int(buffer.handle), array.nbytes))
+
+    def launch(self, kernel: Any, blocks: int, threads: int, *arguments: Any) -> None:
+        """Start a kernel; whole numbers among its arguments are of 64 bits."""
+        config = self._core.LaunchConfig(grid=blocks, block=threads)
+        given = [np.uint64(value) if isinstance(value, int) else value for value in arguments]
+        self._core.launch(self._stream, config, kernel, *given)
+
+    def wait(self) -> None:
+        """Wait until all that was asked of the card is done."""
+        self._stream.sync()
+
+    def _check(self, found: Any, *_: Any) -> None:
+        if found != self._driver.CUresult.CUDA_SUCCESS:
+            raise CaseError(f"the graphics card says {found.name}\n  try: nvidia-smi, whether other programs use it up")
+
+    def _answer(self, answered: tuple[Any, ...]) -> Any:
+        self._check(answered[0])
+        return answered[1] if len(answered) == 2 else answered[1:]

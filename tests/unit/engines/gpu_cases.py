@@ -1,0 +1,126 @@
+"""Cases that hold, between them, everything that a trajectory on a graphics card may be made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import rattlebox as rb
+from rattlebox.model.case import Case
+
+BALL = rb.Sphere(radius="10 mm", material="steel")
+MASS = rb.SDOF(mass="1 kg", stiffness="4 kN/m", damping_ratio=0.01)
+SHAKE = rb.Harmonic(amplitude="20 N", frequency="10 Hz")
+CYCLES = (2.0, 6.0)
+
+
+class Variants(NamedTuple):
+    """A case with an axis, and how it is looked at."""
+
+    case: Case
+    axes: dict[str, Any]
+    look: Mapping[str, Any] = MappingProxyType({"cycles": CYCLES})
+
+
+def _case(contact: Any = None, **parts: Any) -> Case:
+    damper = rb.ImpactDamper(ball=BALL, gap="1 mm", start=0.3, contact=contact or rb.Tsuji(restitution=0.6))
+    given = {"structure": MASS, "damper": damper, "load": SHAKE, "duration": "0.6 s"} | parts
+    return rb.Case(**{name: part for name, part in given.items() if part is not None})
+
+
+def _of(contact: Any = None, **parts: Any) -> Variants:
+    return Variants(_case(contact, **parts), {"damper.gap": ["0.5 mm", "1 mm", "1.7 mm"]})
+
+
+def _asked(restitution: Any) -> Variants:
+    return _of(rb.Tsuji(restitution=restitution))
+
+
+ROW = rb.ImpactDamper(
+    balls=[rb.Sphere(radius=radius, material="steel") for radius in ("4 mm", "5 mm", "6 mm")],
+    gap="1 mm",
+    start=[-0.5, 0.0, 0.3],
+    velocity=[0.1, 0.2, -0.3],
+    wall="aluminium",
+    contact=rb.Tsuji(restitution=0.8),
+    ball_contact=rb.Linear(stiffness="1 MN/m", restitution=0.8),
+)
+BEAM = rb.Modal(
+    frequencies=[5.0, 17.0, 31.0],
+    damping_ratios=[0.01] * 3,
+    shapes={"tip": [0.6, -0.5, 0.4], "middle": [0.3, 0.4, -0.2]},
+)
+CURVE = rb.Record(times=[0.0, 0.01, 0.04, 0.6], values=[0.0, 300.0, -300.0, 0.0])
+STEEL = rb.JacksonGreen(extrapolate=True)
+
+CASES: dict[str, dict[str, Variants]] = {
+    "contact": {
+        "Tsuji": _of(rb.Tsuji(restitution=0.6)),
+        "Tsuji with a fixed dashpot": _of(rb.Tsuji(alpha=0.3, ending="zero_overlap")),
+        "Linear": _of(rb.Linear(contact_time="0.5 ms", restitution=0.6)),
+        "Thornton": _of(rb.Thornton(yield_pressure="1 GPa")),
+    },
+    "restitution": {
+        "Constant": _asked(rb.Constant(0.5)),
+        "Tabulated": _asked(rb.Tabulated(speeds=[0.01, 0.1, 1.0], values=[0.9, 0.7, 0.4])),
+        "JacksonGreen": _asked(STEEL),
+        "ThorntonRestitution": _asked(rb.ThorntonRestitution()),
+        "Johnson": _asked(rb.Johnson()),
+    },
+    "structure": {
+        "SDOF": _of(),
+        "Modal": Variants(
+            _case(
+                structure=BEAM,
+                damper=None,
+                dampers=[
+                    rb.ImpactDamper(
+                        ball=BALL, gap="0.4 mm", contact=rb.Tsuji(restitution=0.6), point="tip", name="end"
+                    ),
+                    ROW.model_copy(update={"point": "middle"}),
+                ],
+                load=rb.Harmonic(amplitude="20 N", frequency="10 Hz", point="tip"),
+            ),
+            {"dampers[0].gap": ["0.3 mm", "0.4 mm"]},
+        ),
+        "Matrices": _of(
+            structure=rb.Matrices(M=[[2.0, 0.3], [0.3, 1.0]], K=[[4e4, -1e4], [-1e4, 3e4]], points={"top": [0.2, 1.0]})
+        ),
+        "Fixed": Variants(
+            _case(structure=rb.Fixed(), load=None, damper=ROW.model_copy(update={"gravity": -9.81})),
+            {"damper.gap": ["1 mm", "2 mm"]},
+            {"last": 4},
+        ),
+        "Shaker": Variants(
+            _case(structure=rb.Shaker(motion=rb.Harmonic(amplitude="3 mm", frequency="12 Hz")), load=None),
+            {"structure.motion.amplitude": ["2 mm", "3 mm"]},
+        ),
+    },
+    "load": {
+        "HalfSine": Variants(
+            _case(load=rb.HalfSine(amplitude="200 N", duration="5 ms")), {"load.amplitude": ["50 N", "200 N"]}, {}
+        ),
+        "Harmonic": Variants(_case(), {"load.frequency": ["9 Hz", "11 Hz"]}),
+        "Record": Variants(_case(load=CURVE), {"damper.gap": ["0.5 mm", "1 mm"]}, {}),
+        "motion of the base": Variants(
+            _case(load=None, base=rb.Harmonic(amplitude="5 m/s^2", frequency="10 Hz")),
+            {"base.amplitude": ["3 m/s^2", "5 m/s^2"]},
+        ),
+    },
+    "method": {
+        "EventDriven": _of(),
+        "EventDriven without collocation": _of(method=rb.EventDriven(collocation=False)),
+        "Newton": _of(method=rb.Newton(restitution=0.7)),
+        "TwoStep": Variants(_case(method=rb.TwoStep(), duration="0.1 s"), {"damper.gap": ["0.1 mm", "0.2 mm"]}, {}),
+    },
+    "cavity": {
+        "one ball": _of(),
+        "a row of balls": Variants(_case(damper=ROW), {"damper.gap": ["1 mm", "1.5 mm"]}),
+    },
+    "output": {
+        "motion": Variants(_case(), {"damper.gap": ["0.5 mm", "1 mm"]}, {"cycles": CYCLES, "motion": True}),
+        "last impacts": Variants(_case(), {"damper.gap": ["0.5 mm", "1 mm"]}, {"cycles": CYCLES, "last": 7}),
+        "state at the end": Variants(_case(), {"damper.gap": ["0.5 mm", "1 mm"]}, {"cycles": CYCLES, "state": True}),
+    },
+}
