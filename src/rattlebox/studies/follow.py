@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -182,6 +182,7 @@ class FollowTask(SweepTask):
 
     ways: tuple[str, ...] = ("up",)
     turning: bool = False
+    no_card: ClassVar[str] = "variants that go on from each other"
 
     @property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,6 +125,8 @@ class GranularTask(SweepTask):
     Functions of a run are given the run that the measures are found from, whose samples are those of the case's output, or
     what `samples` or `cycles` ask for. Motions, impacts and states are not kept.
     """
+
+    no_card: ClassVar[str] = "particles in space"
 
     @property
     def look(self) -> Look:

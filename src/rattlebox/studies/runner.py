@@ -226,7 +226,7 @@ def _on_card(task: Task, on: str, block: int | None) -> tuple[Task, str, int]:
     if on != "gpu":
         raise Hint(f"on = {on!r}", '"gpu", or a dask.distributed.Client')
     if not isinstance(task, OnCard):
-        raise Hint('on = "gpu": a card cannot do this study, whose runs go on from each other', "threads, or a cluster")
+        raise Hint('on = "gpu": a card cannot run this study', "threads of the processor, or a cluster")
     task = task.on_card()
     major, minor = nvrtc()
     return task, f"{Card().arch}, NVRTC {major}.{minor}", block or _CARD_BLOCK

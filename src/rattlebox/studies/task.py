@@ -8,7 +8,7 @@ from functools import cached_property
 from hashlib import sha256
 from inspect import getsource
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,15 +67,18 @@ class SweepTask:
     last: int = 0
     state: bool = False
     gpu: bool = False
+    no_card: ClassVar[str] = ""  # what it is that only a processor can run
 
-    def on_card(self) -> SweepTask:
+    def on_card(self) -> Self:
         """Return the same work for the card of this machine.
 
         Raises
         ------
         CaseError
-            When a measure is a function of a Run.
+            When a card cannot do it.
         """
+        if self.no_card:
+            raise Hint(f'on = "gpu": a card cannot run {self.no_card}', "threads of the processor, or a cluster")
         if self.own:
             raise Hint(
                 f'on = "gpu": {next(iter(self.own))} is a function of a Run, which a card does not make',
