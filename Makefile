@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*.hpp' -o -name '*.cpp')
 
-.PHONY: setup demo test verify lint docs bench format clean
+.PHONY: setup demo test verify lint docs bench gpu-test gpu-bench format clean
 
 setup: $(VENV)/.installed
 
@@ -26,6 +26,12 @@ verify: setup
 
 bench: setup
 	$(BIN)/python benchmarks/bench.py
+
+gpu-test: setup
+	$(BIN)/python -m pytest tests/gpu
+
+gpu-bench: setup
+	$(BIN)/python benchmarks/gpu.py
 
 lint: setup
 	$(BIN)/ruff check .

@@ -15,6 +15,7 @@ from rattlebox.model.errors import CaseError
 
 from .card import Card
 from .core import core
+from .gpu import nvrtc
 
 THREADS = 128  # of a block
 _SPARE = 0.9  # of the free memory is taken at most
@@ -98,6 +99,25 @@ class Members:
         """Return the results by name, as the processor's sweep does."""
         arrays = {name: numbers[at : at + prod(shape)].reshape(shape) for name, at, shape in self._arrays}
         return {"status": status, **arrays}
+
+
+def ready() -> tuple[str, str]:
+    """See to it that there is a card with compiled kernels.
+
+    Returns
+    -------
+    tuple of str
+        What decides the last bits of a result, and what to tell of card, driver and compilation.
+
+    Raises
+    ------
+    CaseError
+        When there is no card that can be used, naming what is missing.
+    """
+    card = Card()
+    compiled, _ = card.kernels("impact.cpp", RATTLEBOX_THREADS=THREADS)
+    took = f"kernels compiled in {compiled.seconds:.1f} s" if compiled.seconds else "kernels from the cache"
+    return f"{card.arch}, NVRTC {'.'.join(map(str, nvrtc()))}", f"{card.describe()}; {took}"
 
 
 def run_members(

@@ -164,17 +164,18 @@ def run_task(
     """
     from rattlebox import __version__
 
-    where = _core()
+    bits = _core()
+    told: dict[str, str] = {}
     if isinstance(on, str):
-        task, where, block, on = *_on_card(task, on, block), None
-        threads = 1
+        task, bits, told = _on_card(task, on)
+        on, threads, block = None, 1, block or _CARD_BLOCK
     threads = threads or (1 if on else cores())
     plan = Plan(
         dims=tuple(design.dims),
         shape=tuple(design.shape),
         outputs=task.outputs,
         coords={**design.coords(), **(coords or {})},
-        about={**task.describe(), "design": dict(design.describe()), "version": __version__, "core": where},
+        about={**task.describe(), "design": dict(design.describe()), "version": __version__, "core": bits},
     )
 
     def cut() -> Blocks:
@@ -198,7 +199,7 @@ def run_task(
             for (number, _, _), values in results:
                 _heard(keeper.submit(kept.write, number, values))
                 tell(kept.done)
-            return kept.result()
+            return kept.result().assign_attrs(told)
     except KeyboardInterrupt:
         raise Stopped(_how_to_go_on(sum(kept.done for kept in opened), task.size, store)) from None
 
@@ -218,18 +219,17 @@ def _core() -> str:
     return instructions()
 
 
-def _on_card(task: Task, on: str, block: int | None) -> tuple[Task, str, int]:
-    """The work for a card, what decides the last bits there, and how many variants keep it busy."""
-    from rattlebox.engines.card import Card
-    from rattlebox.engines.gpu import nvrtc
+def _on_card(task: Task, on: str) -> tuple[Task, str, dict[str, str]]:
+    """The work for a card, what decides the last bits there, and what the result tells of it."""
+    from rattlebox.engines.gpu_impact import ready
 
     if on != "gpu":
         raise Hint(f"on = {on!r}", '"gpu", or a dask.distributed.Client')
     if not isinstance(task, OnCard):
         raise Hint('on = "gpu": a card cannot run this study', "threads of the processor, or a cluster")
     task = task.on_card()
-    major, minor = nvrtc()
-    return task, f"{Card().arch}, NVRTC {major}.{minor}", block or _CARD_BLOCK
+    bits, told = ready()
+    return task, bits, {"gpu": told}
 
 
 def _bits() -> str:

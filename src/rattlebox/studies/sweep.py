@@ -70,7 +70,7 @@ def sweep(
     threads
         Threads of this process; default as many as there are cores. Results do not depend on it, to the last bit.
     on
-        A dask.distributed Client to run blocks of variants on instead.
+        A dask.distributed Client to run blocks of variants on instead, or "gpu" for the graphics card of this machine.
     store
         Folder of a Zarr store for results: what is finished is on disk, and the same call goes on after a stop.
     progress
@@ -85,7 +85,7 @@ def sweep(
     Raises
     ------
     CaseError
-        When an axis or a measure does not fit the case, before anything runs.
+        When an axis or a measure does not fit the case, before anything runs; when there is no card that can be used.
 
     Examples
     --------

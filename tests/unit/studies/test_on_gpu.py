@@ -12,7 +12,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.cli.main import main
-from rattlebox.engines import card, gpu_impact
+from rattlebox.engines import gpu_impact
 from rattlebox.engines.core import core
 from rattlebox.engines.gpu_impact import THREADS, Need
 from rattlebox.model.errors import CaseError
@@ -32,12 +32,6 @@ SHAKEN = rb.Case(
 AXES = {"damper.gap": rb.linspace("0.2 mm", "1 mm", 40)}
 
 
-class FakeCard:
-    """Stands for a card whose kernels are the processor's."""
-
-    arch = "sm_90"
-
-
 @pytest.fixture
 def fake(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
     """A card that computes on the processor; ranges of variants that were asked of it."""
@@ -47,7 +41,7 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
         asked.append((start, stop))
         return core().sweep(packed, list(shape), start, stop, **kept, progress=progress)
 
-    monkeypatch.setattr(card, "Card", FakeCard)
+    monkeypatch.setattr(gpu_impact, "ready", lambda: ("sm_90", "a card of that kind"))
     monkeypatch.setattr(gpu_impact, "run_members", run)
     return asked
 
@@ -58,7 +52,7 @@ def test_sweeps_run_on_a_card_block_by_block(fake: list[tuple[int, int]], monkey
     told: list[tuple[int, int]] = []
     found = rb.sweep(CASE, AXES, ["impacts", "peak"], on="gpu", progress=lambda *done: told.append(done))
     assert [stop - start for start, stop in fake] == [14, 14, 12]
-    assert told[-1] == (40, 40)
+    assert told[-1] == (40, 40) and found.gpu == "a card of that kind"
     wanted = rb.sweep(CASE, AXES, ["impacts", "peak"])
     for name in wanted.data_vars:
         np.testing.assert_array_equal(found[name], wanted[name])

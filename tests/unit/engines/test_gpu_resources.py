@@ -1,0 +1,27 @@
+"""What the kernels take of a card, told by the assembler for three generations of cards."""
+
+from __future__ import annotations
+
+import pytest
+
+from rattlebox.engines.gpu import Resources, compile_kernels
+from rattlebox.engines.gpu_impact import THREADS
+
+ARCHITECTURES = ["sm_80", "sm_90", "sm_100"]
+BOUNDS = {
+    "prepare": Resources(registers=128, stack=9_000, spills=0, shared=0),
+    "impact": Resources(registers=255, stack=34_000, spills=5_000, shared=8 * THREADS),
+}
+"""Of the stack of `impact`, 16 KiB are vectors; the rest is the trajectory itself, with its two lone contacts."""
+
+
+@pytest.mark.parametrize("arch", ARCHITECTURES)
+def test_kernels_of_impact_dampers_are_bounded(arch: str) -> None:
+    """They compile for each generation, and take no more registers and memory than stated."""
+    compiled = compile_kernels("impact.cpp", arch, keep=False, RATTLEBOX_THREADS=THREADS)
+    print(arch, f"{len(compiled.code)} bytes, {compiled.seconds:.1f} s", compiled.resources)
+    assert compiled.resources.keys() == BOUNDS.keys()
+    for kernel, most in BOUNDS.items():
+        taken = compiled.resources[kernel]
+        assert 0 < taken.registers <= most.registers and taken.stack <= most.stack
+        assert taken.spills <= most.spills and taken.shared <= most.shared
