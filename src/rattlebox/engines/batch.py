@@ -87,6 +87,27 @@ def run_block(
     CaseError
         When there is no card that can be used, or its memory is too small.
     """
+    grid, asked = list(shape) or [1], kept(look, shape)
+    if gpu:
+        from .gpu_impact import run_members
+
+        return run_members(packed, grid, start, stop, progress, **asked)
+    result: Mapping[str, NDArray[Any]] | None = core().sweep(
+        packed, grid, start, stop, **asked, threads=max(1, min(threads, stop - start)), progress=progress
+    )
+    return result
+
+
+def kept(look: Look, shape: Sequence[int]) -> dict[str, Any]:
+    """Return what is kept of each run, in the core's words.
+
+    Parameters
+    ----------
+    look
+        What is kept.
+    shape
+        Of the grid.
+    """
     grid = list(shape) or [1]
     window = {
         "from": _number(look.start, grid),
@@ -94,21 +115,13 @@ def run_block(
         "shape": np.ascontiguousarray(look.shape, dtype=float),
         "samples": look.samples,
     }
-    kept: dict[str, Any] = {
+    return {
         "measures": list(look.measures),
         "window": window,
         "motion": look.motion,
         "state": look.state,
         "last": look.last,
     }
-    if gpu:
-        from .gpu_impact import run_members
-
-        return run_members(packed, grid, start, stop, progress, **kept)
-    result: Mapping[str, NDArray[Any]] | None = core().sweep(
-        packed, grid, start, stop, **kept, threads=max(1, min(threads, stop - start)), progress=progress
-    )
-    return result
 
 
 def _number(value: Any, grid: list[int]) -> Any:

@@ -30,15 +30,12 @@ class Resources:
         Number of 32-bit registers.
     stack
         Bytes of local memory, those of the functions that it calls included.
-    spills
-        Bytes that are stored to and loaded from local memory for want of registers.
     shared
         Bytes of shared memory of its block.
     """
 
     registers: int
     stack: int
-    spills: int
     shared: int
 
 
@@ -56,12 +53,15 @@ class Compiled:
         How long the compiler took; 0 where the code was in the cache.
     resources
         By kernel; empty where the code was in the cache.
+    spills
+        Bytes that all functions together store to and load from local memory for want of registers.
     """
 
     arch: str
     code: bytes
     seconds: float
     resources: Mapping[str, Resources]
+    spills: int
 
 
 def sources() -> Path:
@@ -155,12 +155,13 @@ def compile_kernels(source: str, arch: str, *, keep: bool = True, **macros: int)
     with utils.FileStreamProgramCache() as kept:
         found = kept.get(key) if keep else None
         if found and sha256(found[:-_CHECK]).digest() == found[-_CHECK:]:
-            return Compiled(arch, found[:-_CHECK], 0.0, {})
+            return Compiled(arch, found[:-_CHECK], 0.0, {}, 0)
         log, begin = io.StringIO(), perf_counter()
         cubin = bytes(core.Program(code, code_type="c++", options=options).compile("cubin", logs=log).code)
         if keep:
             kept[key] = cubin + sha256(cubin).digest()
-    return Compiled(arch, cubin, perf_counter() - begin, _resources(log.getvalue()))
+    spills = sum(map(int, re.findall(r"(\d+) bytes spill", log.getvalue())))
+    return Compiled(arch, cubin, perf_counter() - begin, _resources(log.getvalue()), spills)
 
 
 @cache
@@ -181,7 +182,6 @@ def _resources(log: str) -> dict[str, Resources]:
             match = re.search(rf"(\d+) {pattern}", part)
             return int(match[1]) if match else 0
 
-        spills = sum(int(n) for n in re.findall(r"(\d+) bytes spill", part))
         stack = max(number("bytes cumulative stack size"), number("bytes stack frame"))
-        found[name] = Resources(number("registers"), stack, spills, number("bytes smem"))
+        found[name] = Resources(number("registers"), stack, number("bytes smem"))
     return found

@@ -9,9 +9,10 @@ from rattlebox.engines.gpu_impact import THREADS
 
 ARCHITECTURES = ["sm_80", "sm_90", "sm_100"]
 BOUNDS = {
-    "prepare": Resources(registers=128, stack=9_000, spills=0, shared=0),
-    "impact": Resources(registers=255, stack=34_000, spills=5_000, shared=8 * THREADS),
+    "prepare": Resources(registers=128, stack=9_000, shared=0),
+    "impact": Resources(registers=255, stack=34_000, shared=8 * THREADS),
 }
+SPILLS = 10_000
 """Of the stack of `impact`, 16 KiB are vectors; the rest is the trajectory itself, with its two lone contacts."""
 
 
@@ -19,9 +20,10 @@ BOUNDS = {
 def test_kernels_of_impact_dampers_are_bounded(arch: str) -> None:
     """They compile for each generation, and take no more registers and memory than stated."""
     compiled = compile_kernels("impact.cpp", arch, keep=False, RATTLEBOX_THREADS=THREADS)
-    print(arch, f"{len(compiled.code)} bytes, {compiled.seconds:.1f} s", compiled.resources)
+    print(arch, f"{len(compiled.code)} bytes, {compiled.seconds:.1f} s", compiled.spills, compiled.resources)
     assert compiled.resources.keys() == BOUNDS.keys()
     for kernel, most in BOUNDS.items():
         taken = compiled.resources[kernel]
         assert 0 < taken.registers <= most.registers and taken.stack <= most.stack
-        assert taken.spills <= most.spills and taken.shared <= most.shared
+        assert taken.shared <= most.shared
+    assert compiled.spills <= SPILLS
