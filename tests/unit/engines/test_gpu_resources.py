@@ -10,7 +10,7 @@ from rattlebox.engines.gpu_impact import THREADS
 ARCHITECTURES = ["sm_80", "sm_90", "sm_100"]
 BOUNDS = {
     "prepare": Resources(registers=128, stack=9_000, shared=0),
-    "impact": Resources(registers=255, stack=34_000, shared=8 * THREADS),
+    "impact": Resources(registers=255, stack=40_000, shared=8 * THREADS),
 }
 SPILLS = 10_000
 """Of the stack of `impact`, 16 KiB are vectors; the rest is the trajectory itself, with its two lone contacts."""
