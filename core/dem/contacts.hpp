@@ -2,6 +2,7 @@
 // remembers.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "dem/touch.hpp"
@@ -44,6 +45,12 @@ struct Contacts {
         for (auto* numbers : {&first, &second}) numbers->resize(n + lane_count);
         slot.resize(n + lane_count, none);
         for (auto* numbers : {&origin, &active}) numbers->resize(n);
+    }
+
+    // Lanes past the end look at a particle that is at hand.
+    void pad(int first_at_hand, int second_at_hand) {
+        std::fill(first.begin() + size(), first.end(), first_at_hand);
+        std::fill(second.begin() + size(), second.end(), second_at_hand);
     }
 
     int take() {

@@ -229,8 +229,7 @@ private:
             at(pairs.slot, k) = at(chunk.near_slot, p);
             chunk.highest = std::max(chunk.highest, at(pairs.second, k));
         }
-        // Lanes past the end look at a particle of their own.
-        std::fill(pairs.second.begin() + sum, pairs.second.end(), chunk.begin);
+        pairs.pad(chunk.begin, chunk.begin);
     }
 
     static void scan_walls(const Bed& bed, Chunk& chunk) {
@@ -268,6 +267,7 @@ private:
                 at(list.origin, k) = (i - chunk.begin) * walls + w;
                 at(list.slot, k) = at(chunk.wall_slot, at(list.origin, k));
             }
+        list.pad(chunk.begin, 0);
     }
 };
 
