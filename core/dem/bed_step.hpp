@@ -3,6 +3,9 @@
 // Velocity Verlet. Forces that depend on the velocity take the one predicted from the last acceleration, v +
 // dt a, which keeps the second order:  v' = u + dt/2 (a' - a),  u' = v' + dt a',  x' = x + dt v' + dt^2/2 a',
 // u predicted, a the last. A particle adds up the forces on it in the order of its contacts, whoever does it.
+//
+// Contacts belong to the lower of their partners, and their forces read no lower ones: in ascending order a
+// chunk can move on as soon as its own forces are known, while all it needs is near.
 #pragma once
 
 #include "dem/forces.hpp"
@@ -98,12 +101,12 @@ class BedStep {
         }
     }
 
-    void add(const Contacts& list, int s, int i, real sign) {
+    void add(const Contacts& list, int s, int i, real sign, const Kind& kind) {
         const Row both = row(sign);
         at(bed_.touched, i) |= touched_now;
         at(bed_.force, i) += both * at(list.kept, s).force;
-        if (pair_.rough) at(bed_.couple, i) += at(list.kept, s).couple;
-        if (pair_.rolls) at(bed_.roll, i) += both * at(list.rolling, s).torque;
+        if (kind.rough) at(bed_.couple, i) += at(list.kept, s).couple;
+        if (kind.rolls) at(bed_.roll, i) += both * at(list.rolling, s).torque;
     }
 
 public:
@@ -112,7 +115,7 @@ public:
         for (const Wall& w : bed.cavity->walls) curved_ |= w.form != Wall::plane;
     }
 
-    // Forces of all contacts that the chunk owns, and of its walls on its particles.
+    // Forces of all contacts that the chunk owns, and of its particles at the walls.
     void forces(Chunk& chunk, bool sampled) {
         // Those of tier t were at least t / tiers of the skin apart.
         const real closed = 2 * bed_.since_scan / bed_.skin * Contacts::tiers * (1 + 1e-9);
@@ -126,10 +129,6 @@ public:
         for (int a = 0; a < list.actives; ++a) {
             const int k = at(list.active, a), s = at(list.slot, k), i = at(list.first, k);
             const Row f = at(list.kept, s).force;
-            at(bed_.touched, i) |= touched_now;
-            at(bed_.force, i) += f;
-            if (wall_.rough) at(bed_.couple, i) += at(list.kept, s).couple;
-            if (wall_.rolls) at(bed_.roll, i) += at(list.rolling, s).torque;
             total -= f;
             if (sampled) {
                 const Row place = at(bed_.position, i) - bed_.motion.displacement;
@@ -142,19 +141,23 @@ public:
         chunk.tally.wall_moment = moment;
     }
 
-    // The force of a candidate that a lower chunk owns on its second partner, if it touches.
-    void incoming(const Contacts& list, int k) {
+    // Adds the force of a candidate that a lower chunk owns on its second partner, if it touches.
+    void add_incoming(const Contacts& list, int k) {
         const int s = at(list.slot, k);
-        if (s >= 0) add(list, s, at(list.second, k), -1);
+        if (s >= 0) add(list, s, at(list.second, k), -1, pair_);
     }
 
-    // Forces of contacts that the chunk owns, on particles below `to`.
-    void outgoing(const Chunk& chunk, int to) {
-        const Contacts& list = chunk.pairs;
-        for (int a = 0; a < list.actives; ++a) {
-            const int k = at(list.active, a), s = at(list.slot, k), j = at(list.second, k);
-            add(list, s, at(list.first, k), 1);
-            if (j < to) add(list, s, j, -1);
+    // Adds the forces of contacts that the chunk owns, on particles below `to`.
+    void add_own(const Chunk& chunk, int to) {
+        const Contacts &pairs = chunk.pairs, &walls = chunk.walls;
+        for (int a = 0; a < pairs.actives; ++a) {
+            const int k = at(pairs.active, a), s = at(pairs.slot, k), j = at(pairs.second, k);
+            add(pairs, s, at(pairs.first, k), 1, pair_);
+            if (j < to) add(pairs, s, j, -1, pair_);
+        }
+        for (int a = 0; a < walls.actives; ++a) {
+            const int k = at(walls.active, a);
+            add(walls, at(walls.slot, k), at(walls.first, k), 1, wall_);
         }
     }
 

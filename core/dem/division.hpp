@@ -1,7 +1,8 @@
 // Which chunks each member of a team works on: parts of about the same cost, of all beds together.
 //
 // Contacts belong to the chunk of their first partner, and act on particles of their own part or a higher
-// one. A member computes those that reach into higher parts first, and tells when it has.
+// one. Where they reach into another part, forces of both sides come early: before any of these particles
+// moves on.
 #pragma once
 
 #include "dem/bed.hpp"
@@ -18,8 +19,9 @@ struct Incoming {
 };
 
 struct Part {
-    int begin = 0, end = 0;              // among the chunks of all beds
-    std::vector<Place> reaching, inside; // those with candidates in higher parts, and the rest
+    int begin = 0, end = 0; // among the chunks of all beds
+    std::vector<char>
+        early; // of each of them: has candidates in higher parts, or particles that lower parts reach
     std::vector<Incoming> incoming;
     std::vector<int> first, until; // particles of each bed
 };
@@ -73,25 +75,30 @@ public:
     // What a member needs to know of its part, once all candidates are known.
     void look_around(int rank) {
         Part& part = at(parts_, rank);
-        part.reaching.clear(), part.inside.clear(), part.incoming.clear();
+        part.incoming.clear();
         part.first.assign(beds_->size(), 0), part.until.assign(beds_->size(), 0);
         for (int k = part.end; k-- > part.begin;) {
             const Place p = at(all_, k);
             at(part.first, p.bed) = chunk(p).begin;
             at(part.until, p.bed) = std::max(at(part.until, p.bed), chunk(p).end);
         }
-        each_chunk(rank, [&](Place p) {
-            (chunk(p).highest < at(part.until, p.bed) ? part.inside : part.reaching).push_back(p);
-        });
+        std::vector<int> reached(beds_->size(), -1); // highest particle
         for (int k = 0; k < part.begin; ++k) {
             const Place p = at(all_, k);
             const int first = at(part.first, p.bed), until = at(part.until, p.bed);
             if (chunk(p).highest < first || first == until) continue;
             const Contacts& pairs = chunk(p).pairs;
             for (int c = 0; c < pairs.size(); ++c)
-                if (at(pairs.second, c) >= first && at(pairs.second, c) < until)
+                if (const int j = at(pairs.second, c); j >= first && j < until) {
                     part.incoming.push_back({p.bed, p.chunk, c});
+                    at(reached, p.bed) = std::max(at(reached, p.bed), j);
+                }
         }
+        part.early.clear();
+        each_chunk(rank, [&](Place p) {
+            const Chunk& c = chunk(p);
+            part.early.push_back(c.highest >= at(part.until, p.bed) || c.begin <= at(reached, p.bed));
+        });
     }
 };
 

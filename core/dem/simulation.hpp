@@ -120,6 +120,8 @@ class Simulation {
 
     // ---- neighbours
 
+    Chunk& chunk(Place p) { return at(at(beds_, p.bed).chunks, p.chunk); }
+
     void choose_reach(Bed& bed) {
         // A build costs as much as some ten scans, and a scan as some steps: measured, and flat about these
         // numbers.
@@ -171,20 +173,26 @@ class Simulation {
 
     // ---- steps
 
-    void advance(const Part& part, bool first, bool sample) {
-        for (const Incoming& in : part.incoming)
-            at(steps_, in.bed).incoming(at(at(beds_, in.bed).chunks, in.chunk).pairs, in.candidate);
+    template <class Team> void advance(Team& team, bool first, bool sample) {
+        const Part& part = division_.part(team.rank());
         const Row all = structure().body();
+        const auto forces = [&](Place p) { at(steps_, p.bed).forces(chunk(p), sample); };
+        for (int k = part.begin; k < part.end; ++k)
+            if (at(part.early, k - part.begin)) forces(division_.place(k));
+        team.report();
+        team.await_lower();
+        for (const Incoming& in : part.incoming)
+            at(steps_, in.bed).add_incoming(chunk({in.bed, in.chunk}).pairs, in.candidate);
         for (int k = part.begin; k < part.end; ++k) {
             const Place p = division_.place(k);
-            Bed& bed = at(beds_, p.bed);
-            Chunk& chunk = at(bed.chunks, p.chunk);
             BedStep& step = at(steps_, p.bed);
-            step.outgoing(chunk, at(part.until, p.bed));
+            if (!at(part.early, k - part.begin)) forces(p);
+            step.add_own(chunk(p), at(part.until, p.bed));
+            const Row reference = at(beds_, p.bed).motion.velocity;
             if (sample)
-                step.advance<true>(chunk, all, body_before_, bed.motion.velocity, first);
+                step.advance<true>(chunk(p), all, body_before_, reference, first);
             else
-                step.advance<false>(chunk, all, body_before_, bed.motion.velocity, first);
+                step.advance<false>(chunk(p), all, body_before_, reference, first);
         }
     }
 
@@ -258,15 +266,7 @@ class Simulation {
         while (step_ <= until && status_ == Status::finished && !halted_) {
             if (must_renew()) renew(team);
             const bool first = step_ == 0, sample = sampled();
-            const Part& part = division_.part(team.rank());
-            const auto forces = [&](Place p) {
-                at(steps_, p.bed).forces(at(at(beds_, p.bed).chunks, p.chunk), sample);
-            };
-            for (const Place p : part.reaching) forces(p);
-            team.report();
-            for (const Place p : part.inside) forces(p);
-            team.await_lower();
-            advance(part, first, sample);
+            advance(team, first, sample);
             team.sync([&] {
                 conclude(first, sample);
                 prepare();
