@@ -20,6 +20,7 @@ class BedStep {
     const Problem& problem_;
     Kind pair_, wall_;
     bool curved_ = false;
+    bool far_; // particles and contacts are more than caches hold
 
     const Encounter& between(int i, int j) const {
         const Cavity& c = *bed_.cavity;
@@ -111,8 +112,31 @@ class BedStep {
 
 public:
     BedStep(Bed& bed, const Problem& problem, const Kind& pair, const Kind& wall)
-        : bed_(bed), problem_(problem), pair_(pair), wall_(wall) {
+        : bed_(bed), problem_(problem), pair_(pair), wall_(wall), far_(bed.particles() > 20'000) {
         for (const Wall& w : bed.cavity->walls) curved_ |= w.form != Wall::plane;
+    }
+
+    // Asks memory for what the chunk after this will need, and for the lists of the one after that. Inlined:
+    // compilers take a call that only asks for one without effect.
+    RATTLEBOX_INLINE void fetch(const Chunk& next, const Chunk& later) const {
+        if (!far_) return;
+        const auto fetch = [](const auto& what)
+                               __attribute__((always_inline)) { __builtin_prefetch(&what, 1, 2); };
+        const auto lines = [&](const auto& values) __attribute__((always_inline)) {
+            for (std::size_t i = 0; i < values.size(); i += 64 / sizeof(values[0])) fetch(values[i]);
+        };
+        const Contacts &list = next.pairs, &then = later.pairs;
+        lines(then.first), lines(then.second), lines(then.slot), lines(then.active);
+        for (int k = 0; k < list.size(); ++k) {
+            const int j = at(list.second, k), s = at(list.slot, k);
+            fetch(at(bed_.position, j));
+            if (s < 0) continue;
+            for (const auto* rows : {&bed_.velocity, &bed_.spin, &bed_.force, &bed_.couple})
+                fetch(at(*rows, j));
+            fetch(at(list.kept, s)), fetch(at(list.kept, s).friction);
+        }
+        for (int i = next.begin; i < next.end; i += 2)
+            fetch(at(bed_.acceleration, i)), fetch(at(bed_.spin_rate, i));
     }
 
     // Forces of all contacts that the chunk owns, and of its particles at the walls.

@@ -173,6 +173,12 @@ class Simulation {
 
     // ---- steps
 
+    // The chunk some places on, if it is of the same bed and part; or else the same.
+    Place after(const Part& part, int k, int on) const {
+        const Place here = division_.place(k), there = division_.place(std::min(k + on, part.end - 1));
+        return there.bed == here.bed ? there : here;
+    }
+
     template <class Team> void advance(Team& team, bool first, bool sample) {
         const Part& part = division_.part(team.rank());
         const Row all = structure().body();
@@ -186,6 +192,7 @@ class Simulation {
         for (int k = part.begin; k < part.end; ++k) {
             const Place p = division_.place(k);
             BedStep& step = at(steps_, p.bed);
+            step.fetch(chunk(after(part, k, 1)), chunk(after(part, k, 2)));
             if (!at(part.early, k - part.begin)) forces(p);
             step.add_own(chunk(p), at(part.until, p.bed));
             const Row reference = at(beds_, p.bed).motion.velocity;
