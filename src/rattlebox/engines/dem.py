@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 Packed = dict[str, Any]
 Progress = Callable[[int, int], object]
 
-PARTICLES_EACH = 4000
+PARTICLES_EACH = 1000
 """Of a thread, at least: with fewer they wait for each other."""
 
 CLOSES = 0.01
