@@ -25,7 +25,7 @@ struct Rebound {
     bool extrapolated = false; // outside, and used all the same
 };
 
-inline Rebound rebound(const RestitutionLaw& law, real speed) {
+RATTLEBOX_CALL inline Rebound rebound(const RestitutionLaw& law, real speed) {
     return law.visit([&](const auto& l) {
         Rebound r;
         const bool above = speed > l.limit();

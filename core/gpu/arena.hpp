@@ -6,10 +6,9 @@
 
 #include <cstddef>
 
-#ifdef __CUDACC__
-#define RATTLEBOX_CALLED __noinline__ // not copied to each place that uses it
-#else
-#define RATTLEBOX_CALLED
+#include "base/real.hpp"
+
+#ifndef __CUDACC__
 extern "C" void abort();
 #endif
 
@@ -38,7 +37,7 @@ struct Arena {
 
     static std::size_t rounded(std::size_t bytes) { return (bytes + grain - 1) / grain * grain; }
 
-    RATTLEBOX_CALLED void* take(std::size_t bytes) {
+    RATTLEBOX_CALL void* take(std::size_t bytes) {
         bytes = rounded(bytes);
         // The near part is for what is often looked at, not for samples.
         const bool large = bytes > static_cast<std::size_t>(near.end - near.first) / 4;
@@ -49,7 +48,7 @@ struct Arena {
         most_far = larger(most_far, far.next - far.first);
         return p;
     }
-    RATTLEBOX_CALLED void give_back(void* p, std::size_t bytes) {
+    RATTLEBOX_CALL void give_back(void* p, std::size_t bytes) {
         char* from = static_cast<char*>(p);
         if (!near.give_back(from, rounded(bytes))) far.give_back(from, rounded(bytes));
     }

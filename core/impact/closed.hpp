@@ -118,7 +118,8 @@ protected:
     // Where in a step of length h from y_ the function turns from `before` (>= 0) to <= 0: the far end of a
     // bracket that has shrunk to `part` of it, by default to rounding. Every probe is a step of the
     // integrator itself.
-    template <class F> real locate(real h, real before, real after, F&& f, real part = 4 * epsilon) {
+    template <class F>
+    RATTLEBOX_CALL real locate(real h, real before, real after, F&& f, real part = 4 * epsilon) {
         real low = 0, high = h, f_low = before, f_high = after;
         int side = 0;
         for (int iteration = 0; iteration < 80 && f_high != 0; ++iteration) {
@@ -165,7 +166,7 @@ protected:
 
     enum class Event { none, boundary, touch, rest_touch, opened, engaged, unstuck };
 
-    void integrate_closed() {
+    RATTLEBOX_CALL void integrate_closed() {
         settle_released(-1);
         for (int r = static_cast<int>(released_.size()) - 1; r >= 0; --r) {
             const Released& released = released_[static_cast<std::size_t>(r)];

@@ -126,7 +126,7 @@ public:
     std::size_t size() const { return time_index() + 4 + 2 * active.size(); }
 
     // d(closing rate of a)/dt per unit of force in b.
-    real coupling(const Contact& a, const Contact& b) const {
+    RATTLEBOX_CALL real coupling(const Contact& a, const Contact& b) const {
         real sum = 0;
         const auto side = [](const Contact& c, int ball) {
             return (c.above == ball ? 1.0 : 0.0) - (c.below == ball ? 1.0 : 0.0);
@@ -155,7 +155,7 @@ public:
     // Forces of the stuck contacts found by the last evaluation.
     const std::vector<real>& stuck_forces() const { return forces_; }
 
-    void operator()(const real* y, real* dy) {
+    RATTLEBOX_CALL void operator()(const real* y, real* dy) {
         const std::size_t m = mode_count(), b = ball_count(), n = active.size();
         const real* v = velocities(problem_, y);
         cavity_rates(y);

@@ -81,7 +81,7 @@ protected:
     }
 
     // The whole contact at once, where that is possible and its energy balance agrees.
-    bool collocate(int c, real speed, real e) {
+    RATTLEBOX_CALL bool collocate(int c, real speed, real e) {
         const HertzTsuji* law = contact(c).normal.get_if<HertzTsuji>();
         if (!law) return false;
         const real zeta = law->zeta(e);

@@ -55,7 +55,7 @@ class TwoStep {
         });
     }
 
-    void right(real t, const real* y, real* dy) {
+    RATTLEBOX_CALL void right(real t, const real* y, real* dy) {
         const std::size_t m = problem_.modes.size(), b = problem_.ball_mass.size();
         std::fill(push_ball_.begin(), push_ball_.end(), 0.0);
         std::fill(push_cavity_.begin(), push_cavity_.end(), 0.0);
@@ -277,7 +277,7 @@ public:
         for (auto& k : k_) k.resize(n_);
     }
 
-    Result run() {
+    RATTLEBOX_CALL Result run() {
         const Settings& s = problem_.settings;
         real t = 0;
         if (!problem_.sample_times.empty() && problem_.sample_times[0] <= 0) {

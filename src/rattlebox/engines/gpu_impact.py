@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from math import prod
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from .gpu import nvrtc
 
 THREADS = 128  # of a block
 _SPARE = 0.9  # of the free memory is taken at most
-_TURNS = 8  # members for each thread in a launch: none waits long for the slowest, and a stop is heard soon
+_UNHEARD = 0.1  # s, that a launch may take before more members go into the next: a stop is heard between them
 _INTERRUPTED = 4
 
 
@@ -150,14 +151,17 @@ def run_members(
     local = int(work.attributes.local_size_bytes) * card.resident * card.multiprocessors
     found: list[dict[str, NDArray[Any]]] = []
     card.launch(kernel("prepare"), 1, 1)
-    step = most * _TURNS
-    for first in range(start, stop, step):
-        members = Members(packed, shape, first, min(first + step, stop), **look)
+    first, step = start, most
+    while first < stop:
+        members, begin = Members(packed, shape, first, min(first + step, stop), **look), perf_counter()
         each = -(-(len(members.image) + 8 * members.numbers) // members.count) + 1
         threads = Need(members.memory, each, local).threads(card.memory()[0], members.count, most)
         found.append(_launch(card, work, members, threads))
-        if progress and progress(first + members.count - start) is False:
+        first += members.count
+        if progress and progress(first - start) is False:
             return None
+        if perf_counter() - begin < _UNHEARD:
+            step *= 2
     return {name: np.concatenate([part[name] for part in found]) for name in found[0]}
 
 

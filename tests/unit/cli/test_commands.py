@@ -84,7 +84,8 @@ def test_schema_is_a_schema(tmp_path: Path) -> None:
 
 def test_doctor_and_materials_say_what_they_have(monkeypatch: pytest.MonkeyPatch) -> None:
     """Doctor names the core and why; materials lists the library, in a narrow terminal on some two screens."""
-    assert "core" in rattlebox("doctor").stdout
+    told = rattlebox("doctor").stdout
+    assert "core" in told and "nvrtc" in told and "gpu" in told
     monkeypatch.setenv("COLUMNS", "80")
     shown = rattlebox("materials").stdout
     assert "tungsten_carbide" in shown

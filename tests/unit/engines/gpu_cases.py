@@ -124,3 +124,30 @@ CASES: dict[str, dict[str, Variants]] = {
         "state at the end": Variants(_case(), {"damper.gap": ["0.5 mm", "1 mm"]}, {"cycles": CYCLES, "state": True}),
     },
 }
+
+MISSING: dict[str, dict[str, str]] = {
+    "method": {"Dem": "particles in space run on the processor"},
+    "output": {
+        "functions of a Run": "a card makes no Run; use measures by name",
+        "whole trajectories, impact logs": "`rb.simulate`, on the processor",
+    },
+    "study": {
+        "frequency_response, bifurcation": "variants that go on from each other",
+        "lyapunov": "pairs that are parted again and again",
+    },
+}
+STUDIES = ("sweep", "basins", "loss_map", "sensitivity", "design")
+
+
+def table() -> list[str]:
+    """Return the lines of the parity table of docs/gpu.md."""
+    from rattlebox.studies.measures import MEASURES
+
+    lines = ["| | on the processor | on a card |", "|---|---|---|"]
+    for group in dict.fromkeys([*CASES, *MISSING]):
+        names = [*CASES.get(group, ()), *(STUDIES if group == "study" else ())]
+        if names:
+            lines.append(f"| {group}: {', '.join(names)} | yes | yes |")
+        lines += [f"| {group}: {name} | yes | no: {why} |" for name, why in MISSING.get(group, {}).items()]
+    lines.append(f"| measure: {', '.join(MEASURES)} | yes | yes |")
+    return lines

@@ -7,12 +7,14 @@ import json
 import os
 import subprocess
 import sys
+import typing
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from rattlebox.engines.core import built
+from rattlebox.model import contacts, methods, restitutions, signals, structures
 
 
 def _beside(name: str) -> Any:
@@ -23,7 +25,8 @@ def _beside(name: str) -> Any:
     return module
 
 
-CASES, kernels = _beside("gpu_cases").CASES, _beside("kernels")
+cases, kernels = _beside("gpu_cases"), _beside("kernels")
+CASES = cases.CASES
 
 
 @pytest.fixture(scope="module")
@@ -46,3 +49,33 @@ def test_kernels_agree_with_the_processor(
     assert 0 < line["near"] <= kernels.NEAR and line["far"] <= line["reckoned"]
     bound = 0.0 if "v1" in built() else 1e-9
     assert {measure: off for measure, off in line["off"].items() if off is None or off > bound} == {}
+
+
+UNIONS = {
+    "contact": contacts.AnyContact,
+    "restitution": restitutions.AnyRestitution,
+    "structure": structures.AnyStructure,
+    "load": signals.AnySignal,
+    "method": methods.AnyMethod,
+}
+
+
+@pytest.mark.parametrize("group", UNIONS)
+def test_every_part_of_a_case_is_compared(group: str) -> None:
+    """What the model offers is among the cases, or is listed as missing."""
+    offered = {part.__name__ for part in _classes(UNIONS[group])}
+    assert offered and offered <= {*cases.CASES[group], *cases.MISSING.get(group, ())}
+
+
+def _classes(union: Any) -> list[type]:
+    if isinstance(union, type):
+        return [union]
+    inner = typing.get_args(union)
+    return [part for one in inner for part in _classes(one)] if inner else []
+
+
+def test_the_page_tells_what_a_card_can_do() -> None:
+    """The parity table of the page is the one that the cases make."""
+    page = (Path(__file__).parents[3] / "docs" / "gpu.md").read_text(encoding="utf-8")
+    wanted = "\n".join(cases.table())
+    assert wanted in page, wanted
