@@ -1,6 +1,7 @@
 // Plain data written to bytes and read back, in the order in which it is named.
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
@@ -8,10 +9,24 @@
 
 namespace rattlebox {
 
+// How many bytes a Writer will need, so that it need not move them.
+class Sizer {
+    template <class T> void one(const T&) { bytes += sizeof(T); }
+    template <class T> void one(const std::vector<T>& values) {
+        bytes += sizeof(std::size_t) + values.size() * sizeof(T);
+    }
+
+public:
+    static constexpr bool reads = false;
+    std::size_t bytes = 0;
+
+    template <class... T> void operator()(const T&... values) { (one(values), ...); }
+};
+
 class Writer {
     template <class T> void put(const T* data, std::size_t count) {
         static_assert(std::is_trivially_copyable_v<T>);
-        const auto* from = reinterpret_cast<const char*>(data);
+        const auto* from = reinterpret_cast<const std::uint8_t*>(data);
         bytes.insert(bytes.end(), from, from + count * sizeof(T));
     }
     template <class T> void one(const T& value) { put(&value, 1); }
@@ -22,7 +37,9 @@ class Writer {
 
 public:
     static constexpr bool reads = false;
-    std::vector<char> bytes;
+    std::vector<std::uint8_t> bytes;
+
+    explicit Writer(std::size_t size) { bytes.reserve(size); }
 
     template <class... T> void operator()(const T&... values) { (one(values), ...); }
 };

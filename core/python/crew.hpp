@@ -16,7 +16,7 @@ namespace rattlebox::door {
 
 namespace nb = nanobind;
 
-// Calls job(i, thread, stop) for i in 0..count, `chunk` at a time on one thread. Every 50 ms go_on(jobs done)
+// Calls job(i, thread, stop) for i in 0..count, `chunk` at a time on one thread. Every 20 ms go_on(jobs done)
 // is asked with the GIL held; when it says no, or after Ctrl-C, `stop` is set and the rest is left. False
 // when it was stopped.
 template <class Job, class GoOn>
@@ -48,7 +48,7 @@ bool work_off(std::size_t count, int threads, std::size_t chunk, Job&& job, GoOn
         {
             nb::gil_scoped_release unlocked;
             std::unique_lock lock(mutex);
-            finished = over.wait_for(lock, std::chrono::milliseconds(50), [&] { return working == 0; });
+            finished = over.wait_for(lock, std::chrono::milliseconds(20), [&] { return working == 0; });
         }
         if (finished || stopped) continue;
         try {

@@ -108,10 +108,11 @@ public:
     }
 
     nb::object save() {
-        Writer writer;
+        Sizer size;
+        simulation_->keep(size);
+        Writer writer(size.bytes);
         simulation_->keep(writer);
-        std::vector<std::uint8_t> bytes(writer.bytes.begin(), writer.bytes.end());
-        return array(std::move(bytes));
+        return array(std::move(writer.bytes));
     }
 
     void restore(const Bytes& bytes) {

@@ -71,7 +71,7 @@ def run_block(
     threads
         How many work at once. The results do not depend on it, to the last bit.
     progress
-        Called some twenty times a second with the number of members done; False stops.
+        Called some fifty times a second with the number of members done; False stops.
     gpu
         On the graphics card, and not on `threads`.
 

@@ -76,6 +76,7 @@ class Checkpoint:
     def __init__(self, path: str | os.PathLike[str], case: Case) -> None:
         self.path = Path(path)
         self.time: float | None = None  # of what is in the file
+        self._numbers = ""
         self._about = {"case": _bare(case), "version": Provenance.now().version, "core": instructions()}
 
     @contextmanager
@@ -138,7 +139,7 @@ class Checkpoint:
 
     def check(self, kept: Kept, packed: Mapping[str, Any]) -> None:
         """Refuse a checkpoint of a case that reads the same but has other numbers."""
-        if kept.numbers != fingerprint(packed):
+        if kept.numbers != self._fingerprint(packed):
             raise CaseError(
                 f"{self.path} holds another run\n  the case reads the same but has other numbers: a file that it names has "
                 "changed, or a library that prepares it\n  try: another file, or remove this one"
@@ -153,13 +154,17 @@ class Checkpoint:
             When that cannot be done; the file is then as it was.
         """
         time = dem.step * packed["dt"]
-        told = {"format": FORMAT, "time": time, "seconds": seconds, "numbers": fingerprint(packed), **self._about}
+        told = {"format": FORMAT, "time": time, "seconds": seconds, "numbers": self._fingerprint(packed), **self._about}
         arrays = {f"records.{name}": values for name, values in records.items()}
         arrays |= {f"position.{k}": cavity["position"] for k, cavity in enumerate(packed["cavities"])}
         about = np.frombuffer(json.dumps(told).encode(), np.uint8)
         with telling(self.path, _LOST), whole(self.path) as name, name.open("wb") as file:
             np.savez(file, allow_pickle=False, about=about, state=dem.save(), **arrays)
         self.time = time
+
+    def _fingerprint(self, packed: Mapping[str, Any]) -> str:
+        self._numbers = self._numbers or fingerprint(packed)  # which do not change
+        return self._numbers
 
     def _compare(self, about: Mapping[str, Any]) -> None:
         there = {name: about[name] for name in self._about}

@@ -247,7 +247,7 @@ class FollowTask(SweepTask):
         threads
             Not used: each value needs the one before it.
         cancelled
-            Asked some twenty times a second; True stops.
+            Asked some fifty times a second; True stops.
         before
             What was found of the variant before these; None where the walk begins.
         """

@@ -190,7 +190,7 @@ class GranularTask(SweepTask):
         threads
             Of each run.
         cancelled
-            Asked some twenty times a second; True stops.
+            Asked some fifty times a second; True stops.
         before
             Not needed.
 

@@ -196,7 +196,7 @@ class SweepTask:
         threads
             How many work at once.
         cancelled
-            Asked some twenty times a second; True stops.
+            Asked some fifty times a second; True stops.
 
         Returns
         -------
