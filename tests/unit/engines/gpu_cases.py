@@ -118,6 +118,12 @@ CASES: dict[str, dict[str, Variants]] = {
         "one ball": _of(),
         "a row of balls": Variants(_case(damper=ROW), {"damper.gap": ["1 mm", "1.5 mm"]}),
     },
+    "ending": {
+        "finished": _of(),
+        "law_domain": Variants(_case(rb.Tsuji(restitution=rb.JacksonGreen())), {"damper.velocity": [1.0, 3000.0]}),
+        "too_many_events": _of(method=rb.EventDriven(max_events=10)),
+        "no_rebound": _asked(rb.Tabulated(speeds=[0.01, 0.1], values=[0.5, 0.0])),
+    },
     "output": {
         "motion": Variants(_case(), {"damper.gap": ["0.5 mm", "1 mm"]}, {"cycles": CYCLES, "motion": True}),
         "last impacts": Variants(_case(), {"damper.gap": ["0.5 mm", "1 mm"]}, {"cycles": CYCLES, "last": 7}),
