@@ -42,6 +42,41 @@ template <class T> const T& tree(T* leaves) {
     return leaves[0];
 }
 
+// The trees above those of a reduce, by one member.
+template <class T> T total_of(int n, T* part) {
+    for (int count = trees(n); count > 1; count = trees(count)) {
+        T* above = part + count;
+        for (int g = 0; g < trees(count); ++g) {
+            T leaves[tree_width]{};
+            for (int l = 0; l < tree_width && g * tree_width + l < count; ++l)
+                leaves[l] = part[g * tree_width + l];
+            above[g] = tree(leaves);
+        }
+        part = above;
+    }
+    return part[0];
+}
+
+// A team of one.
+struct One {
+    template <class F> void each(int n, F&& f) const {
+        for (int i = 0; i < n; ++i) f(i);
+    }
+    template <class T, class F> void reduce(int n, T* part, F&& f) const {
+        for (int g = 0; g < trees(n); ++g) {
+            T leaves[tree_width]{};
+            for (int l = 0; l < tree_width && g * tree_width + l < n; ++l) leaves[l] = f(g * tree_width + l);
+            part[g] = tree(leaves);
+        }
+    }
+    template <class T> T total(int n, T* part) const { return total_of(n, part); }
+    static void sync() {}
+    static constexpr bool leads() { return true; }
+    static constexpr bool first() { return true; }
+    static int count(int& number) { return number++; }
+    static void least(int& number, int value) { number = value < number ? value : number; }
+};
+
 inline int lowest_bit(unsigned bits) {
 #ifdef __CUDACC__
     return __ffs(static_cast<int>(bits)) - 1;

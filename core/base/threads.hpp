@@ -62,19 +62,7 @@ public:
         });
     }
 
-    template <class T> T total(int n, T* part) const {
-        for (int count = trees(n); count > 1; count = trees(count)) {
-            T* above = part + count;
-            for (int g = 0; g < trees(count); ++g) {
-                T leaves[tree_width]{};
-                for (int l = 0; l < tree_width && g * tree_width + l < count; ++l)
-                    leaves[l] = part[g * tree_width + l];
-                above[g] = tree(leaves);
-            }
-            part = above;
-        }
-        return part[0];
-    }
+    template <class T> T total(int n, T* part) const { return total_of(n, part); }
 
     void sync() const { member_->sync(); }
     bool leads() const { return member_->rank() == 0; }
