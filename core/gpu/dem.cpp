@@ -1,4 +1,5 @@
-// Spheres in cavities: many small simulations, one a block and many steps a launch, or one large by all blocks.
+// Spheres in cavities: many small simulations, one a block and many steps a launch, or one large by all
+// blocks.
 //
 // Worlds (dem/wide/world.hpp) come laid out for the address at which they lie. Under a compiler of the
 // processor the same sources make functions with a team of one.
@@ -19,8 +20,10 @@ using Beds = dem::wide::Bed[most_beds];
 
 #include "gpu/teams.hpp"
 
-// Of all worlds, each of which begins so many bytes after the first; `size` bytes of shared memory are at hand.
-extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS, RATTLEBOX_BLOCKS) void block(char* worlds, const std::size_t* begin,
+// Of all worlds, each of which begins so many bytes after the first; `size` bytes of shared memory are at
+// hand.
+extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS,
+                                        RATTLEBOX_BLOCKS) void block(char* worlds, const std::size_t* begin,
                                                                      std::size_t until, std::size_t size) {
     extern __shared__ __align__(64) char near[];
     __shared__ __align__(64) char own[sizeof(World)], beds[sizeof(Beds)];
@@ -30,16 +33,17 @@ extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS, RATTLEBOX_BLOCKS) voi
                         static_cast<int>(size), static_cast<long>(until));
 }
 
-extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS, RATTLEBOX_BLOCKS) void grid(World* world, unsigned* barrier,
-                                                                    std::size_t until) {
+extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS, RATTLEBOX_BLOCKS) void grid(World* world,
+                                                                                       unsigned* barrier,
+                                                                                       std::size_t until) {
     gpu::Grid team(barrier);
     dem::wide::run(team, *world, static_cast<long>(until));
 }
 
 #else
 
-extern "C" void block(char* worlds, const std::size_t* begin, std::size_t blocks, std::size_t until, char* near,
-                      std::size_t size) {
+extern "C" void block(char* worlds, const std::size_t* begin, std::size_t blocks, std::size_t until,
+                      char* near, std::size_t size) {
     One team;
     for (std::size_t b = 0; b < blocks; ++b) {
         World own;

@@ -15,6 +15,17 @@ template <class F> void hot(Bed& b, Bed& home, F&& f) {
     f(b.spin, home.spin, n), f(b.acceleration, home.acceleration, n), f(b.spin_rate, home.spin_rate, n);
 }
 
+inline int near_bytes(int count, std::size_t size) { return (count * static_cast<int>(size) + 31) / 32 * 32; }
+
+// What there is to bring near.
+inline int near_bytes(const World& w) {
+    int bytes = 0;
+    for (int b = 0; b < w.beds; ++b)
+        hot(w.bed[b], w.bed[b],
+            [&](auto*, auto* array, int count) { bytes += near_bytes(count, sizeof(*array)); });
+    return bytes;
+}
+
 // Runs a world whose beds are copied to `beds` meanwhile, which have room in `memory`.
 template <class Team>
 void run_near(Team& team, World& home, World& own, Bed* beds, char* memory, int size, long until) {
@@ -28,7 +39,7 @@ void run_near(Team& team, World& home, World& own, Bed* beds, char* memory, int 
     int used = 0;
     for (int b = 0; b < home.beds; ++b)
         hot(beds[b], home.bed[b], [&](auto*& array, auto* far, int count) {
-            const int bytes = (count * static_cast<int>(sizeof(*far)) + 31) / 32 * 32;
+            const int bytes = near_bytes(count, sizeof(*far));
             if (used + bytes > size) return;
             auto* near = reinterpret_cast<decltype(far)>(memory + used);
             team.each(count, [&](int i) { near[i] = far[i]; });

@@ -205,6 +205,7 @@ template <bool sampled, class Team> RATTLEBOX_COLD void one_step(Team& team, Wor
 // Goes on until step `until` is done, or something stops or pauses it.
 template <class Team> void run(Team& team, World& w, long until) {
     const Control& c = w.control;
+    if (until > c.steps) until = c.steps;
     if (team.leads() && team.first()) {
         w.control.pause = Pause::none;
         prepare(w);

@@ -91,6 +91,18 @@ class Card:
         """Most threads that a multiprocessor holds: for so many local memory is set aside."""
         return int(self._device.properties.max_threads_per_multiprocessor)
 
+    def allow_shared(self, kernel: Any, size: int) -> int:
+        """Let blocks of a kernel have so many bytes of shared memory, or as many as there are; return how many."""
+        most = int(self._device.properties.max_shared_memory_per_block_optin) - int(kernel.attributes.shared_size_bytes)
+        size = min(size, most)
+        attribute = self._driver.CUfunction_attribute.CU_FUNC_ATTRIBUTE_MAX_DYNAMIC_SHARED_SIZE_BYTES
+        self._check(*self._driver.cuKernelSetAttribute(attribute, size, kernel.handle, self._device.device_id))
+        return size
+
+    def blocks_at_once(self, kernel: Any, threads: int) -> int:
+        """Return how many blocks of a kernel, of so many threads, the card holds at once."""
+        return int(kernel.occupancy.max_active_blocks_per_multiprocessor(threads, 0)) * self.multiprocessors
+
     def kernels(self, source: str, **macros: int) -> tuple[Compiled, Any]:
         """Compile the kernels of a source file, or take them from the cache, and load them.
 
@@ -126,14 +138,26 @@ class Card:
         self._stream.sync()
         self._check(*self._driver.cuMemcpyHtoD(int(buffer.handle), host.ctypes.data, host.nbytes))
 
-    def download(self, buffer: Any, array: NDArray[Any]) -> None:
-        """Copy from the card into an array, once all that was asked of the card is done."""
+    def download(self, buffer: Any, array: NDArray[Any], begin: int = 0) -> None:
+        """Copy from the card, from a byte of a block on, into an array, once all that was asked of the card is done."""
         self._stream.sync()
-        self._check(*self._driver.cuMemcpyDtoH(array.ctypes.data, int(buffer.handle), array.nbytes))
+        self._check(*self._driver.cuMemcpyDtoH(array.ctypes.data, int(buffer.handle) + begin, array.nbytes))
 
-    def launch(self, kernel: Any, blocks: int, threads: int, *arguments: Any) -> None:
-        """Start a kernel; whole numbers among its arguments are of 64 bits."""
-        config = self._core.LaunchConfig(grid=blocks, block=threads)
+    def launch(
+        self, kernel: Any, blocks: int, threads: int, *arguments: Any, shared: int = 0, at_once: bool = False
+    ) -> None:
+        """Start a kernel; whole numbers among its arguments are of 64 bits.
+
+        Parameters
+        ----------
+        kernel, blocks, threads, *arguments
+            The kernel, how many blocks of how many threads each, and what it is given.
+        shared
+            Bytes of shared memory of each block, beyond those that it always has.
+        at_once
+            Blocks wait for each other, and must all be there at once.
+        """
+        config = self._core.LaunchConfig(grid=blocks, block=threads, shmem_size=shared, is_cooperative=at_once)
         given = [np.uint64(value) if isinstance(value, int) else value for value in arguments]
         self._core.launch(self._stream, config, kernel, *given)
 

@@ -11,16 +11,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox.engines.base_motion import base_motion
+from rattlebox.engines.card import Card
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.core import core
 from rattlebox.engines.dem_follow import Journey
+from rattlebox.engines.dem_gpu import SMALL, CardDem, count_of, run_together
 from rattlebox.engines.dem_settle import settle
 from rattlebox.engines.dem_snapshots import snapshots_of
 from rattlebox.engines.dem_step import Step, choose_step, expected_speeds, outcome
 from rattlebox.engines.pack import pack, restitution
 from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
 from rattlebox.model.contacts import Linear
-from rattlebox.model.errors import at
+from rattlebox.model.errors import Hint, at
 from rattlebox.model.in_space import direction_of_base, inertia_along
 from rattlebox.model.methods import Dem, EventDriven, Output
 from rattlebox.model.packing import Settled
@@ -52,6 +54,7 @@ def simulate_dem(
     progress: Progress | None = None,
     checkpoint: Path | None = None,
     snapshots: Path | None = None,
+    on: str | None = None,
 ) -> GranularRun:
     """Run a case with particle dampers.
 
@@ -67,6 +70,8 @@ def simulate_dem(
         File in which the state is kept, and from which the run goes on if it is there.
     snapshots
         File to which snapshots are written.
+    on
+        "gpu": the graphics card of this machine; default the processor.
 
     Returns
     -------
@@ -81,19 +86,25 @@ def simulate_dem(
         When a file cannot be written.
     """
     if checkpoint is None:
-        return _simulated(case, threads, progress, None, snapshots)
+        return _simulated(case, threads, progress, None, snapshots, on)
     file = Checkpoint(checkpoint, case)
     with file.held():
-        return _simulated(case, threads, progress, file, snapshots)
+        return _simulated(case, threads, progress, file, snapshots, on)
 
 
 def _simulated(
-    case: Case, threads: int | None, progress: Progress | None, file: Checkpoint | None, snapshots: Path | None
+    case: Case,
+    threads: int | None,
+    progress: Progress | None,
+    file: Checkpoint | None,
+    snapshots: Path | None,
+    on: str | None,
 ) -> GranularRun:
     assert isinstance(case.method, Dem)
+    card = _card(on)
     kept = None if file is None else file.read()
     packed, step, tables = pack_dem(case, None if kept is None else kept.positions)
-    dem = core().Dem(packed)
+    dem: Any = CardDem(packed, card) if card else core().Dem(packed)
     dem.threads = threads or case.method.threads or useful_threads(packed)
     journey = Journey(dem, packed, file, case.method)
     if file is not None and kept is not None:
@@ -101,7 +112,25 @@ def _simulated(
         journey.resume(kept)
     if snapshots is not None:
         journey.watch(*snapshots_of(case, packed, snapshots))
-    status = journey.go(progress)
+    return _run(case, packed, step, tables, dem, journey, journey.go(progress))
+
+
+def _card(on: str | None) -> Card | None:
+    """Return the card, where one is asked for."""
+    if on not in (None, "gpu"):
+        raise Hint(f"on = {on!r}", '"gpu", or nothing for the processor')
+    return Card() if on else None
+
+
+def _run(
+    case: Case,
+    packed: Packed,
+    step: Step,
+    tables: list[ContactTable],
+    dem: Any,
+    journey: Journey,
+    status: int,
+) -> GranularRun:
     raw = journey.records()
     arrays = _arrays(case, packed, raw, dem, status, step, tables, journey)
     run = GranularRun(arrays, case.to_toml, Provenance.now(method=case.method.kind, seed=case.seed))
@@ -110,6 +139,40 @@ def _simulated(
         name, message = describe(end, case.duration, "", run.closure, case.method.kind)
         run = GranularRun(replace(arrays, status=name, message=message), case.to_toml, run.provenance)
     return run
+
+
+def simulate_dem_together(cases: Sequence[Case], on: str | None) -> list[GranularRun]:
+    """Run small cases with particle dampers side by side on a graphics card, and large ones one by one.
+
+    Parameters
+    ----------
+    cases
+        What to run.
+    on
+        "gpu".
+
+    Returns
+    -------
+    list of GranularRun
+        In the order of the cases.
+
+    Raises
+    ------
+    CaseError
+        When there is no card that can be used, or its memory is too small.
+    """
+    card = _card(on)
+    prepared = [(case, *pack_dem(case)) for case in cases]
+    dems = [CardDem(packed, card) for _, packed, *_ in prepared]
+    small = [dem for dem, (_, packed, *_) in zip(dems, prepared, strict=True) if count_of(packed) <= SMALL]
+    if card and small:
+        run_together(small, max(packed["steps"] for _, packed, *_ in prepared), card)
+    runs = []
+    for dem, (case, packed, step, tables) in zip(dems, prepared, strict=True):
+        assert isinstance(case.method, Dem)
+        journey = Journey(dem, packed, None, case.method)
+        runs.append(_run(case, packed, step, tables, dem, journey, journey.go()))
+    return runs
 
 
 def useful_threads(packed: Packed) -> int:

@@ -17,6 +17,8 @@ from rattlebox.model.errors import CaseError
 
 _ROOMS = ("base", "contact", "structure", "impact", "dem", "gpu")
 _CHECK = 32  # bytes of a checksum behind the machine code in the cache
+# Else all functions are copied to where they are used: of trajectories twice the code and five times the wait.
+_INLINED = {"dem.cpp": "0"}
 INSTALL = "python -m pip install 'rattlebox[gpu]'"
 
 
@@ -145,7 +147,7 @@ def compile_kernels(source: str, arch: str, *, keep: bool = True, **macros: int)
         include_path=[str(folder), str(folder / "gpu" / "std")],
         no_source_include=True,
         device_as_default_execution_space=True,
-        ofast_compile="min",  # without it, all is copied to where it is used: twice the code, five times the wait
+        ofast_compile=_INLINED.get(source, "min"),
         define_macro=["RATTLEBOX_GPU", *((name, str(value)) for name, value in macros.items())],
         ptxas_options=["-v"],
     )

@@ -32,6 +32,7 @@ def simulate(
     checkpoint: str | os.PathLike[str] | None = None,
     snapshots: str | os.PathLike[str] | None = None,
     progress: Callable[[int, int], object] | None = None,
+    on: str | None = None,
 ) -> Run:
     """Run a case.
 
@@ -48,6 +49,8 @@ def simulate(
     progress
         Of particles in space: called now and then with the number of steps done and of all; False stops the run, as Ctrl-C
         does.
+    on
+        Of particles in space: "gpu" for the graphics card of this machine; default the processor.
 
     Returns
     -------
@@ -59,7 +62,7 @@ def simulate(
     ------
     CaseError
         When the checkpoint is of another case, version or core, with what differs, or in use by another process; or when
-        files are given that the run has no use for.
+        files are given that the run has no use for; or when there is no card that can be used, naming what is missing.
     OSError
         When a file cannot be written.
     """
@@ -69,17 +72,26 @@ def simulate(
 
         if snapshots is None and case.output.snapshots is not None:
             raise Hint("the output asks for snapshots, and there is no file for them", 'snapshots="run.vtkhdf"')
-        return simulate_dem(case, progress=progress, checkpoint=_path(checkpoint), snapshots=_path(snapshots))
+        return simulate_dem(case, progress=progress, checkpoint=_path(checkpoint), snapshots=_path(snapshots), on=on)
     if checkpoint is not None or snapshots is not None:
         raise Hint("checkpoints and snapshots are of particles in space, and there are none", "leave them out")
+    _no_card(on)
     return simulate_many([case])[0]
+
+
+def _no_card(on: str | None) -> None:
+    if on is not None:
+        raise Hint(
+            f"on = {on!r}: a run of an impact damper takes milliseconds on the processor, and stays there",
+            'studies of many: rb.sweep(..., on="gpu")',
+        )
 
 
 def _path(path: str | os.PathLike[str] | None) -> Path | None:
     return None if path is None else Path(path)
 
 
-def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[Run]:
+def simulate_many(cases: Sequence[Case], *, threads: int | None = None, on: str | None = None) -> list[Run]:
     """Run several cases, each on one thread.
 
     Parameters
@@ -88,6 +100,8 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
         What to run.
     threads
         How many at once; default as many as there are cores. The results do not depend on it, to the last bit.
+    on
+        Of particles in space: "gpu" for the graphics card of this machine, where small cases run side by side.
 
     Returns
     -------
@@ -97,12 +111,17 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None) -> list[
     Raises
     ------
     CaseError
-        When something else than cases is given.
+        When something else than cases is given; or when there is no card that can be used, naming what is missing.
     """
     if isinstance(cases, Case):
         raise Hint("a list of cases is needed, not one case", "simulate(case)")
     for case in cases:
         _check_is_case(case)
+    if on is not None and cases and all(case.particle_dampers for case in cases):
+        from rattlebox.engines.dem import simulate_dem_together
+
+        return list(simulate_dem_together(cases, on))
+    _no_card(on)
     if any(case.particle_dampers for case in cases):
         return _in_space(cases, threads)
     packed = [pack(case) for case in cases]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from rattlebox.engines.dem_gpu import launch_bounds
 from rattlebox.engines.gpu import Resources, compile_kernels
 from rattlebox.engines.gpu_impact import THREADS
 
@@ -27,3 +28,22 @@ def test_kernels_of_impact_dampers_are_bounded(arch: str) -> None:
         assert 0 < taken.registers <= most.registers and taken.stack <= most.stack
         assert taken.shared <= most.shared
     assert compiled.spills <= SPILLS
+
+
+DEM = {  # by architecture: normal law, and friction or rolling; block and grid are compiled alike
+    "sm_80": {"RATTLEBOX_NORMAL": 2, "RATTLEBOX_RUBS": 2},
+    "sm_90": {"RATTLEBOX_NORMAL": 0, "RATTLEBOX_RUBS": 1},
+    "sm_100": {"RATTLEBOX_NORMAL": 1},
+}
+
+
+@pytest.mark.parametrize("arch", ARCHITECTURES)
+def test_kernels_of_particles_in_space_are_bounded(arch: str) -> None:
+    """With 128 registers four blocks of 128 threads share a multiprocessor; little is spilt."""
+    compiled = compile_kernels("dem.cpp", arch, keep=False, **launch_bounds(100), **DEM[arch])
+    print(arch, f"{len(compiled.code)} bytes, {compiled.seconds:.1f} s", compiled.spills, compiled.resources)
+    assert compiled.resources.keys() == {"block", "grid"}
+    for kernel, taken in compiled.resources.items():
+        assert 0 < taken.registers <= 128 and taken.stack <= 600
+        assert taken.shared <= (8_000 if kernel == "block" else 0)
+    assert compiled.spills <= 1000
