@@ -18,6 +18,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import gpu_particles
 import numpy as np
 
 import rattlebox as rb
@@ -119,6 +120,7 @@ JOBS: dict[str, Callable[[], Row]] = {
     "statistics": statistics,
     "the same bits": same_bits,
     "rate": rate,
+    **gpu_particles.JOBS,
     "memory check": lambda: sanitized("memcheck"),
     "race check": lambda: sanitized("racecheck"),
 }
@@ -142,6 +144,7 @@ def main() -> int:
         return 2
     if given.small:
         run(256, 0.1, Look(measures=["impacts", "peak"], samples=11), gpu=True)
+        gpu_particles.little()
         return 0
     rows: list[Row] = [("", "one core", "card", "")]
     for name, job in JOBS.items():

@@ -8,11 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.dem.varieties import VARIETIES, pair, told
 
 import rattlebox as rb
 from rattlebox.engines import dem, dem_gpu
+from rattlebox.engines.core import core
 
 from .card_of_paper import COMPILER, CardOfPaper, built
+
+DOCS = Path(__file__).parents[3] / "docs/gpu.md"
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C++ compiler")
 
@@ -29,6 +33,26 @@ def card(library: ctypes.CDLL, monkeypatch: pytest.MonkeyPatch) -> CardOfPaper:
     made = CardOfPaper(library)
     monkeypatch.setattr(dem, "Card", lambda: made)
     return made
+
+
+@pytest.fixture(scope="module")
+def any_law(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
+    """The kernels of any contacts."""
+    return built(tmp_path_factory.mktemp("any"))
+
+
+@pytest.mark.parametrize("variety", VARIETIES)
+def test_kernels_know_every_law_wall_structure_and_load(any_law: ctypes.CDLL, variety: str) -> None:
+    """Oblique impacts of two balls and at walls agree with the processor's engine, and the page about cards names them."""
+    packed, _, _ = dem.pack_dem(pair(VARIETIES[variety]))
+    here, there = core().Dem(packed), dem_gpu.CardDem(packed, CardOfPaper(any_law))  # type: ignore[arg-type]
+    for each in (here, there):
+        each.run(packed["steps"])
+    wanted, found = told(here), told(there)
+    for key in wanted:
+        scale = np.max(np.abs(wanted[key]), initial=0.0)
+        np.testing.assert_allclose(found[key], wanted[key], rtol=1e-7, atol=1e-7 * scale, err_msg=key)
+    assert variety in DOCS.read_text(encoding="utf-8")
 
 
 def case(speed: float = 1.0, **options: Any) -> Any:
