@@ -2,8 +2,8 @@
 
 scaling   particle-steps a second with 100 to 100,000 particles, one core and two, and the memory they take
 rest      the same for beds that have settled, where contacts persist
-peers     one start, step and physics in this and other programs: `peers FOLDER [N ...]`, with FOLDER of their decks
-          (make_initial.py, settle.py, in.lammps, in.lammps_legacy, in.liggghts); what is not installed is left out
+peers     one start, step and physics in this and other programs: `peers FOLDER [rest] [N ...]`, with FOLDER of their
+          decks (make_initial.py, settle.py, in.lammps, in.lammps_legacy, in.liggghts); what is not installed is left out
 
 A cube of 3 mm spheres (E = 100 MPa, e = 0.75, mu = 0.3, fill 0.36), shaken along z with 10 g at 50 Hz; steps of 14.549 us.
 Programs take turns; the median of three turns is told, and the ratio to it.
@@ -36,7 +36,11 @@ WINDOWS = {100: (5, 50), 1000: (5, 10), 10_000: (5, 5), 100_000: (1, 1)}
 """Periods before the clock starts, and while it runs."""
 
 
-def shaken(count: int, amplitude: float = 98.1) -> rb.Case:
+AMPLITUDES = {"shaken": 98.1, "rest": 0.0}
+"""Of the acceleration [m/s^2]."""
+
+
+def shaken(count: int, amplitude: float = AMPLITUDES["shaken"]) -> rb.Case:
     """Return the box, on a shaker that starts from rest."""
     edge = (count * np.pi * DIAMETER**3 / 6 / FILL) ** (1 / 3)
     motion = rb.Harmonic(amplitude=f"{amplitude} m/s^2", frequency=1 / PERIOD, phase=np.pi / 2, direction="z")
@@ -86,17 +90,14 @@ def one(kind: str, count: str, cores: str, start: str = "") -> None:
     """Print the JSON line of one measurement; what `apart` runs."""
     n = int(count)
     warm, window = WINDOWS[n]
-    if kind == "rest":
-        # Poured: a lattice that falls, with nothing shaken.
-        packed, _, _ = pack_dem(shaken(n, amplitude=0.0))
-        steps = steps_of(25)
-        print(json.dumps(timed(packed, steps, max(1, 2_000_000 // n), int(cores))))
-        return
-    packed, _, _ = pack_dem(shaken(n))
+    packed, _, _ = pack_dem(shaken(n, amplitude=AMPLITUDES[kind]))
     if start:  # a bed in motion, whose contacts are pressed in
         columns = np.loadtxt(start, delimiter=",", ndmin=2)
         for name, part in zip(("position", "velocity", "spin"), np.split(columns, 3, axis=1), strict=True):
             packed["cavities"][0][name] = np.ascontiguousarray(part)
+    elif kind == "rest":  # a lattice that falls
+        print(json.dumps(timed(packed, steps_of(25), max(1, 2_000_000 // n), int(cores))))
+        return
     print(json.dumps(timed(packed, steps_of(warm), steps_of(window), int(cores))))
 
 
@@ -127,19 +128,23 @@ _DECKS = {
 
 def peers(folder: str, *counts: str) -> Iterator[tuple[str, str]]:
     """Rates of all programs, from one start."""
-    for count in map(int, counts or map(str, WINDOWS)):
+    kind = "rest" if "rest" in counts else "shaken"
+    for count in [int(c) for c in counts if c != kind] or WINDOWS:
         with tempfile.TemporaryDirectory() as place:
             where = Path(place)
-            start = _start(Path(folder), where, count)
+            start = _start(Path(folder), where, count, kind)
             for cores in (1, 2):
-                yield from _compared(where, start, count, cores)
+                yield from _compared(where, start, count, cores, kind)
 
 
-def _start(folder: Path, where: Path, count: int) -> Path:
-    """A bed that LAMMPS has shaken for 25 periods, for all programs."""
+def _start(folder: Path, where: Path, count: int, kind: str) -> Path:
+    """A bed that LAMMPS has shaken, or let fall and rest, for 25 periods, for all programs."""
     for deck in folder.iterdir():
         if deck.is_file():
             shutil.copy(deck, where)
+    for name in ("in.lammps", "in.lammps_legacy", "in.liggghts"):
+        deck = where / name
+        deck.write_text(deck.read_text().replace("A equal 98.1/", f"A equal {AMPLITUDES[kind]}/"))
     quiet: Any = {"cwd": where, "check": True, "stdout": subprocess.DEVNULL}
     subprocess.run([sys.executable, "make_initial.py", str(count), "."], **quiet)
     subprocess.run([sys.executable, "settle.py", str(count), "2" if count >= 10_000 else "1"], **quiet)
@@ -155,9 +160,9 @@ def _start(folder: Path, where: Path, count: int) -> Path:
     return path
 
 
-def _compared(where: Path, start: Path, count: int, cores: int) -> Iterator[tuple[str, str]]:
+def _compared(where: Path, start: Path, count: int, cores: int, kind: str) -> Iterator[tuple[str, str]]:
     programs: dict[str, Callable[[], float]] = {
-        "Rattlebox": lambda: apart("one", "shaken", str(count), str(cores), str(start), cores=cores)["rate"]
+        "Rattlebox": lambda: apart("one", kind, str(count), str(cores), str(start), cores=cores)["rate"]
     }
     for name, (program, deck) in _DECKS.items():
         if shutil.which(program):
@@ -171,7 +176,7 @@ def _compared(where: Path, start: Path, count: int, cores: int) -> Iterator[tupl
         ratio = statistics.median(a / b for a, b in zip(own, each, strict=True))
         told = f"{statistics.median(each) / 1e6:.1f} million particle-steps/s"
         yield (
-            f"{count:,} particles, {cores} core(s): {name}",
+            f"{count:,} particles, {kind}, {cores} core(s): {name}",
             told + ("" if name == "Rattlebox" else f", 1/{ratio:.2f}"),
         )
 
