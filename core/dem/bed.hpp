@@ -53,6 +53,7 @@ struct Bed {
     std::vector<Chunk> chunks;
 
     real smallest = infinity;             // radius
+    real mass = 0;                        // of all
     real reach = 0, skin = 0;             // neighbours closer than reach, candidates closer than skin
     real since_build = 0, since_scan = 0; // bound on how far a particle has moved since
     CavityMotion motion;

@@ -62,7 +62,7 @@ struct Records {
                     sum.twist += one.wall_moment;
                 for (int k = 0; k < 2; ++k) sum.contacts[k] += one.contacts[k];
             }
-            for (const real m : bed.cavity->mass) sum.mass += m;
+            sum.mass = bed.mass;
             take(sum, gravity);
         }
     }

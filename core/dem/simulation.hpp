@@ -41,7 +41,8 @@ class Simulation {
     real now() const { return static_cast<real>(step_) * problem_.dt; }
     bool sampled() const { return step_ % problem_.every == 0 || step_ == problem_.steps; }
 
-    void fill_bed(Bed& bed, const Cavity& cavity, bool rolls) {
+    // Takes the particles over from the cavity.
+    void fill_bed(Bed& bed, Cavity& cavity, bool rolls) {
         bed.cavity = &cavity;
         const int n = cavity.particles();
         const auto size = static_cast<std::size_t>(n);
@@ -50,13 +51,16 @@ class Simulation {
             Row u = at(cavity.velocity, i), w = at(cavity.spin, i);
             u[3] = 1 / m;
             w[3] = radius / at(cavity.inertia, i);
+            bed.mass += m;
             bed.smallest = smaller(bed.smallest, radius);
-            bed.position.push_back(at(cavity.position, i));
             bed.velocity.push_back(u);
             bed.spin.push_back(w);
             bed.name.push_back(i);
         }
-        bed.kind = cavity.kind;
+        bed.position = std::move(cavity.position);
+        bed.kind = std::move(cavity.kind);
+        for (auto* rows : {&cavity.velocity, &cavity.spin}) std::vector<Row>().swap(*rows);
+        for (auto* numbers : {&cavity.mass, &cavity.inertia}) std::vector<real>().swap(*numbers);
         bed.touched.assign(size, 0);
         for (auto* rows : {&bed.acceleration, &bed.spin_rate, &bed.force, &bed.couple})
             rows->assign(size, Row{});
@@ -289,7 +293,7 @@ public:
         const std::size_t count = problem_.cavities.size();
         beds_.resize(count), neighbours_.resize(count);
         for (std::size_t b = 0; b < count; ++b) {
-            const Cavity& cavity = problem_.cavities[b];
+            Cavity& cavity = problem_.cavities[b];
             const Kind pair = kind_of(problem_, cavity.particle_entry),
                        wall = kind_of(problem_, cavity.wall_entry);
             Bed& bed = beds_[b];
