@@ -10,6 +10,7 @@ from ..results import Run
 from .style import (
     CHANNEL_COLOURS,
     INK,
+    SERIES_STYLES,
     PaperFigure,
     Scale,
     Size,
@@ -97,12 +98,13 @@ def draw_energies(run: Run, axes: Axes, time: Scale, *, log: bool = False) -> No
     highest = max((float(np.nanmax(energy)) for energy in parts.values()), default=0.0)
     scale, unit = scaled(highest, "J")
     names = {"particles": "balls" if "impact" in ledger.channels else "particles", "contact": "contacts"}
-    for name, energy in parts.items():
+    for (name, energy), style in zip(parts.items(), SERIES_STYLES, strict=False):
         axes.plot(
             run.arrays.time / time.divisor,
             np.where(energy > 0.0, energy, np.nan) / scale if log else energy / scale,
             color=CHANNEL_COLOURS[name],
             label=names.get(name, name),
+            linestyle=style,
             linewidth=pen(),
         )
     if log and highest > 0.0:
