@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import signal
 import sys
+import weakref
 from pathlib import Path
+from types import FrameType
 from typing import Annotated
 
 import typer
@@ -177,17 +179,31 @@ def main() -> None:
     """
     heard: list[int] = []
 
-    def stop(number: int, _: object) -> None:
-        heard.append(number)
-        raise KeyboardInterrupt
+    def stop(number: int, frame: FrameType | None) -> None:
+        if number != signal.SIGALRM:
+            heard.append(number)
+        if _loses_exceptions(frame):
+            signal.setitimer(signal.ITIMER_REAL, 1e-3)  # once more when this is over
+        else:
+            raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGTERM, stop)
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
+    before = {number: signal.signal(number, stop) for number in numbers if signal.getsignal(number) != signal.SIG_IGN}
     try:
         _main()
     except SystemExit as end:
         sys.exit(128 + heard[0] if heard and end.code == STOPPED else end.code)
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _loses_exceptions(frame: FrameType | None) -> bool:
+    while frame is not None:
+        if frame.f_code.co_filename == weakref.__file__ or frame.f_code.co_name == "__del__":
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _main() -> None:

@@ -102,6 +102,8 @@ class Journey:
             finished = self._through([k for k in self._shots if k + 1 >= self._dem.step], last, progress)
         except KeyboardInterrupt:
             finished = False
+        if self._dem.step == 0:  # a run shows at least how it began, however early it was stopped
+            self._dem.run(0)
         self._keep()
         return int(self._dem.status) if finished or self._dem.status else INTERRUPTED
 

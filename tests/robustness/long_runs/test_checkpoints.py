@@ -18,6 +18,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.engines.checkpoint import Checkpoint
+from rattlebox.engines.dem_follow import Journey
 from rattlebox.results.snapshots import SnapshotFile, Snapshots
 
 from ..mounts import needs_mounts, with_own_mounts
@@ -361,6 +362,55 @@ def test_runs_without_particles_take_no_files(tmp_path: Path) -> None:
         rb.Case(structure=rb.SDOF(mass=1, stiffness=1e4), duration="1 ms", output=rb.Output(snapshots=5))
     with pytest.raises(rb.CaseError, match=r'there is no file for them\n  try: snapshots="run\.vtkhdf"'):
         rb.simulate(case())
+
+
+def test_a_run_stopped_before_its_first_step_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C before the first step leaves a run with one sample, and a checkpoint from which it goes on."""
+
+    def press(*_: object) -> bool:
+        raise KeyboardInterrupt
+
+    file, short = tmp_path / "run.checkpoint", case(duration="5 ms", output=rb.Output(rate="2 kHz"))
+    with monkeypatch.context() as patch:
+        patch.setattr(Journey, "_through", press)
+        run = rb.simulate(short, checkpoint=file)
+    assert run.status == "interrupted"
+    assert run.arrays.time.tolist() == [0.0]
+    assert bits(rb.simulate(short, checkpoint=file)) == bits(rb.simulate(short))
+
+
+LOST = """
+import os, signal, sys, time, weakref
+import rattlebox.cli.main as command
+
+class Key:
+    armed = False
+    def __hash__(self):
+        if Key.armed:
+            os.kill(os.getpid(), signal.SIGTERM)
+        return 1
+
+class Thing:
+    pass
+
+@command.app.command()
+def wait():
+    thing, values = Thing(), weakref.WeakValueDictionary()
+    values[Key()] = thing
+    Key.armed = True
+    del thing
+    Key.armed = False
+    time.sleep(10)
+
+sys.argv = ["rattlebox", "wait"]
+command.main()
+"""
+
+
+def test_a_stop_where_exceptions_are_lost_is_heard() -> None:
+    """SIGTERM while a weak reference is cleared, where Python drops exceptions, stops the command all the same."""
+    done = subprocess.run([sys.executable, "-c", LOST], capture_output=True, text=True, check=False)
+    assert done.returncode == 128 + signal.SIGTERM, done.stderr
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

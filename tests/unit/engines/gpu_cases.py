@@ -132,7 +132,7 @@ CASES: dict[str, dict[str, Variants]] = {
 }
 
 MISSING: dict[str, dict[str, str]] = {
-    "method": {"Dem": "particles in space run on the processor"},
+    "method": {"Dem": "studies of it are refused; `rb.simulate` is not, see below"},
     "output": {
         "functions of a Run": "a card makes no Run; use measures by name",
         "whole trajectories, impact logs": "`rb.simulate`, on the processor",
