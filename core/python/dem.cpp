@@ -63,22 +63,17 @@ public:
     // Those that touched at the last instant, and the force on the first of each.
     nb::dict contacts(std::size_t number) const {
         const Bed& b = bed(number);
-        std::vector<std::int64_t> first, second;
-        std::vector<real> force;
+        Touching touching;
         for (const Chunk& chunk : b.chunks)
             for (const Contacts* list : {&chunk.pairs, &chunk.walls})
                 for (int k = 0; k < list->size(); ++k) {
                     const int s = at(list->slot, k), j = at(list->second, k);
                     if (s == Contacts::none) continue;
-                    first.push_back(at(b.name, at(list->first, k)));
-                    second.push_back(list == &chunk.pairs ? at(b.name, j) : b.particles() + j);
-                    for (int a = 0; a < 3; ++a) force.push_back(at(list->kept, s).force[a]);
+                    touching.add(at(b.name, at(list->first, k)),
+                                 list == &chunk.pairs ? at(b.name, j) : b.particles() + j,
+                                 at(list->kept, s).force);
                 }
-        nb::dict d;
-        const std::size_t n = first.size();
-        d["first"] = array(std::move(first)), d["second"] = array(std::move(second));
-        d["force"] = array(std::move(force), {n, 3});
-        return d;
+        return touching.write();
     }
 
     nb::dict counters() const {

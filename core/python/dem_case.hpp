@@ -142,6 +142,25 @@ template <class Name, class F> nb::object by_name(int n, std::size_t width, Name
     return array(std::move(values), {count, width});
 }
 
+// Contacts of a cavity, and the force on the first of each.
+struct Touching {
+    std::vector<std::int64_t> first, second;
+    std::vector<real> force;
+
+    void add(int one, int other, Row push) {
+        first.push_back(one), second.push_back(other);
+        for (int a = 0; a < 3; ++a) force.push_back(push[a]);
+    }
+
+    nb::dict write() {
+        nb::dict d;
+        const std::size_t n = first.size();
+        d["first"] = array(std::move(first)), d["second"] = array(std::move(second));
+        d["force"] = array(std::move(force), {n, 3});
+        return d;
+    }
+};
+
 // Places, velocities and spins at the last step whose forces are known: taken back from where particles are
 // going to. Those that did not touch anything in that step were accelerated as `body` is.
 template <class Bed, class N, class T>

@@ -69,21 +69,15 @@ public:
     nb::dict contacts(std::size_t number) const {
         if (number >= beds()) throw std::out_of_range("there is no such cavity");
         const wide::Bed& b = world().bed[number];
-        std::vector<std::int64_t> first, second;
-        std::vector<real> force;
+        Touching touching;
         for (int i = 0; i < b.particles; ++i)
             for (int k = 0; k < b.slots; ++k) {
                 if (!(b.touching[i] >> k & 1u)) continue;
                 const int s = k * b.particles + i, partner = b.partner[s];
-                first.push_back(b.name[i]);
-                second.push_back(partner < 0 ? b.particles - 1 - partner : b.name[partner]);
-                for (int a = 0; a < 3; ++a) force.push_back(b.kept[s].force[a]);
+                touching.add(b.name[i], partner < 0 ? b.particles - 1 - partner : b.name[partner],
+                             b.kept[s].force);
             }
-        nb::dict d;
-        const std::size_t n = first.size();
-        d["first"] = array(std::move(first)), d["second"] = array(std::move(second));
-        d["force"] = array(std::move(force), {n, 3});
-        return d;
+        return touching.write();
     }
 
     nb::dict counters() const {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from tests.unit.engines.test_gpu_dem import case
-from tests.verification.dem.varieties import VARIETIES, pair, told
+from tests.verification.dem.varieties import VARIETIES, agree, pair
 
 import rattlebox as rb
 from rattlebox.engines import dem_gpu
@@ -21,10 +21,7 @@ def test_a_card_agrees_with_the_processor(variety: str) -> None:
     here, there = core().Dem(packed), CardDem(packed)
     for each in (here, there):
         each.run(packed["steps"])
-    wanted, found = told(here), told(there)
-    for key in wanted:
-        scale = np.max(np.abs(wanted[key]), initial=0.0)
-        np.testing.assert_allclose(found[key], wanted[key], rtol=1e-7, atol=1e-7 * scale, err_msg=key)
+    agree(here, there, to=1e-7)
 
 
 def test_a_block_and_all_blocks_give_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.verification.dem.varieties import VARIETIES, pair, told
+from tests.verification.dem.varieties import VARIETIES, agree, pair
 
 import rattlebox as rb
 from rattlebox.engines import dem, dem_gpu
@@ -48,10 +48,7 @@ def test_kernels_know_every_law_wall_structure_and_load(any_law: ctypes.CDLL, va
     here, there = core().Dem(packed), dem_gpu.CardDem(packed, CardOfPaper(any_law))  # type: ignore[arg-type]
     for each in (here, there):
         each.run(packed["steps"])
-    wanted, found = told(here), told(there)
-    for key in wanted:
-        scale = np.max(np.abs(wanted[key]), initial=0.0)
-        np.testing.assert_allclose(found[key], wanted[key], rtol=1e-7, atol=1e-7 * scale, err_msg=key)
+    agree(here, there, to=1e-7)
     assert variety in DOCS.read_text(encoding="utf-8")
 
 

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 import rattlebox as rb
 
 from . import cases
@@ -69,3 +71,11 @@ def told(dem: Any) -> dict[str, Any]:
     counters = dem.counters()
     counts = {name: counters[name] for name in ("first_touches", "largest_overlap", "largest_approach_speed")}
     return {**dem.records(), **ends, **counts, "end of q": state["q"], "status": dem.status}
+
+
+def agree(one: Any, other: Any, to: float) -> None:
+    """Hold that two simulations tell the same, relative to the largest value of each kind."""
+    wanted, found = told(one), told(other)
+    for key in wanted:
+        scale = np.max(np.abs(wanted[key]), initial=0.0)
+        np.testing.assert_allclose(found[key], wanted[key], rtol=to, atol=to * scale, err_msg=key)
