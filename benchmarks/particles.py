@@ -2,47 +2,59 @@
 
 scaling   particle-steps a second with 100 to 100,000 particles, one core and two, and the memory they take
 rest      the same for beds that have settled, where contacts persist
-peers     one start, step and physics in this and other programs: `peers FOLDER [rest] [N ...]`, with FOLDER of their
-          decks (make_initial.py, settle.py, in.lammps, in.lammps_legacy, in.liggghts); what is not installed is left out
+peers     one start, step and physics in this and other programs: `peers FOLDER [rest] [N ...]`, with FOLDER of their decks
+          (particle_peers.py); what is not installed is left out. `--program NAME=PATH` adds another LAMMPS (lmp of another
+          environment, say). Beds are made by LAMMPS first; `--beds FOLDER` keeps them (shaken_1000.csv, rest_1000.csv), and
+          takes those that are there
+cut       what a particle and step cost in a large bed, and in its pieces of about a thousand: all in one run, which passes
+          through as much memory, and one after another, so that memory's share is told from density's: `cut BED`, with
+          one of these files
 
 A cube of 3 mm spheres (E = 100 MPa, e = 0.75, mu = 0.3, fill 0.36), shaken along z with 10 g at 50 Hz; steps of 14.549 us.
-Programs take turns; the median of three turns is told, and the ratio to it.
+Programs take turns; the median of `--turns` (three) is told, and the ratio to it. Who takes longer than 100 s for a turn
+has no other. `--cores 1` leaves two cores out. Contacts, between particles and at walls, are means over the time that was
+measured.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
-import os
-import re
 import shutil
 import statistics
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from particle_peers import PROGRAMS, Program, another_lammps, set_out
 
 import rattlebox as rb
 from rattlebox.engines.core import core
 from rattlebox.engines.dem import pack_dem
 
-DT, PERIOD, TURNS = 1.4549e-5, 0.02, 3
+DT, PERIOD, LONG, LOOKS = 1.4549e-5, 0.02, 100.0, 20
 DIAMETER, DENSITY, FILL = 3e-3, 7850.0, 0.36
 MATERIAL = rb.Material(name="soft steel", density=DENSITY, young=1e8, poisson=0.3)
 WINDOWS = {100: (5, 50), 1000: (5, 10), 10_000: (5, 5), 100_000: (1, 1)}
 """Periods before the clock starts, and while it runs."""
-
-
+CUT_STEPS = (100, 400)
 AMPLITUDES = {"shaken": 98.1, "rest": 0.0}
 """Of the acceleration [m/s^2]."""
 
 
+def edge_of(count: int) -> float:
+    """Return the edge of the box [m]."""
+    return float((count * np.pi * DIAMETER**3 / 6 / FILL) ** (1 / 3))
+
+
 def shaken(count: int, amplitude: float = AMPLITUDES["shaken"]) -> rb.Case:
     """Return the box, on a shaker that starts from rest."""
-    edge = (count * np.pi * DIAMETER**3 / 6 / FILL) ** (1 / 3)
+    edge = edge_of(count)
     motion = rb.Harmonic(amplitude=f"{amplitude} m/s^2", frequency=1 / PERIOD, phase=np.pi / 2, direction="z")
     return rb.Case(
         structure=rb.Shaker(motion=motion),
@@ -66,15 +78,23 @@ def steps_of(periods: float) -> int:
 
 
 def timed(packed: dict[str, Any], warm: int, steps: int, threads: int) -> dict[str, float]:
-    """Return particle-steps a second and bytes a particle of a run of some steps after others."""
+    """Return particle-steps a second of a run of some steps after others; and of a particle, bytes, contacts, candidates."""
     dem = core().Dem(packed)
     dem.threads = threads
     dem.run(warm)
-    before = dem.counters()["seconds"]
+    begun, before = dem.save(), dem.counters()["seconds"]
     dem.run(warm + steps)
-    count = len(packed["cavities"][0]["radius"])
     after = dem.counters()
-    return {"rate": count * steps / (after["seconds"] - before), "bytes": after["memory_bytes"] / count}
+    dem.restore(begun)  # the same once more, to look at it without the clock
+    looks = []
+    beds = range(len(packed["cavities"]))
+    for look in range(1, LOOKS + 1):
+        dem.run(warm + look * steps // LOOKS)
+        looks.append((sum(len(dem.contacts(bed)["first"]) for bed in beds), dem.counters()["candidates"]))
+    count = sum(len(cavity["radius"]) for cavity in packed["cavities"])
+    contacts, candidates = np.mean(looks, axis=0) / count
+    rate = count * steps / (after["seconds"] - before)
+    return {"rate": rate, "bytes": after["memory_bytes"] / count, "contacts": contacts, "candidates": candidates}
 
 
 def apart(job: str, *arguments: str, cores: int) -> dict[str, float]:
@@ -86,126 +106,174 @@ def apart(job: str, *arguments: str, cores: int) -> dict[str, float]:
     return result
 
 
+def put(packed: dict[str, Any], columns: np.ndarray) -> None:
+    """Replace places, velocities and spins: a bed in motion has contacts that are pressed in."""
+    for name, part in zip(("position", "velocity", "spin"), np.split(columns, 3, axis=1), strict=True):
+        packed["cavities"][0][name] = np.ascontiguousarray(part)
+
+
 def one(kind: str, count: str, cores: str, start: str = "") -> None:
     """Print the JSON line of one measurement; what `apart` runs."""
     n = int(count)
     warm, window = WINDOWS[n]
     packed, _, _ = pack_dem(shaken(n, amplitude=AMPLITUDES[kind]))
-    if start:  # a bed in motion, whose contacts are pressed in
-        columns = np.loadtxt(start, delimiter=",", ndmin=2)
-        for name, part in zip(("position", "velocity", "spin"), np.split(columns, 3, axis=1), strict=True):
-            packed["cavities"][0][name] = np.ascontiguousarray(part)
+    if start:
+        put(packed, np.loadtxt(start, delimiter=",", ndmin=2))
     elif kind == "rest":  # a lattice that falls
         print(json.dumps(timed(packed, steps_of(25), max(1, 2_000_000 // n), int(cores))))
         return
     print(json.dumps(timed(packed, steps_of(warm), steps_of(window), int(cores))))
 
 
-def scaling(kind: str = "shaken") -> Iterator[tuple[str, str]]:
+def one_cut(bed: str, pieces: str, how: str) -> None:
+    """Print the JSON line of a bed that is cut into some pieces along each axis; what `apart` runs.
+
+    Every piece floats in the frame of its mean motion, in a cube that is a diameter wider than the places of its particles.
+    """
+    columns = np.loadtxt(bed, delimiter=",", ndmin=2)
+    n, edge = int(pieces), edge_of(len(columns)) / int(pieces)
+    cell = np.clip(np.floor(columns[:, :3] / edge + n / 2), 0, n - 1).astype(int)
+    cases: list[dict[str, Any]] = []
+    for number in np.unique(cell, axis=0):
+        part = columns[(cell == number).all(axis=1)]
+        part[:, :3] -= (number + 0.5 - n / 2) * edge
+        part[:, 3:6] -= part[:, 3:6].mean(axis=0)
+        packed, _, _ = pack_dem(shaken(len(part), amplitude=0.0))
+        packed["gravity"] = np.zeros(3)
+        packed["cavities"][0]["wall_offset"] = np.full(6, (edge + DIAMETER) / 2)
+        put(packed, part)
+        cases.append(packed)
+    if how == "together":
+        cases = [{**cases[0], "cavities": [case["cavities"][0] for case in cases]}]
+    found = [timed(packed, *CUT_STEPS, threads=1) for packed in cases]
+    share = np.array([sum(len(cavity["radius"]) for cavity in case["cavities"]) for case in cases]) / len(columns)
+    rows = np.array([[1 / each["rate"], each["contacts"], each["candidates"]] for each in found])
+    print(json.dumps(dict(zip(("cost", "contacts", "candidates"), share @ rows, strict=True))))
+
+
+def scaling(kind: str = "shaken", turns: int = 3) -> Iterator[tuple[str, str]]:
     """Rate and memory over the number of particles."""
     for count in WINDOWS:
-        turns = [tuple(apart("one", kind, str(count), str(n), cores=n) for n in (1, 2)) for _ in range(TURNS)]
-        single = statistics.median(a["rate"] for a, _ in turns)
-        ratio = statistics.median(b["rate"] / a["rate"] for a, b in turns)
+        found = [tuple(apart("one", kind, str(count), str(n), cores=n) for n in (1, 2)) for _ in range(turns)]
+        single = statistics.median(a["rate"] for a, _ in found)
+        ratio = statistics.median(b["rate"] / a["rate"] for a, b in found)
         yield f"{count:,} particles, {kind}, one core", f"{single / 1e6:.1f} million particle-steps/s"
         yield "two cores against one", f"{ratio:.2f}"
-        yield "memory a particle", f"{turns[0][0]['bytes']:.0f} B"
+        yield "memory a particle", f"{found[0][0]['bytes']:.0f} B"
+        yield "contacts a particle", f"{found[0][0]['contacts']:.2f}"
 
 
-def rest() -> Iterator[tuple[str, str]]:
-    """The same of settled beds."""
-    return scaling("rest")
+def cut(bed: str, turns: int) -> Iterator[tuple[str, str]]:
+    """Cost of a bed, and of its pieces as cavities of one run and as runs of their own."""
+    count = len(Path(bed).read_text().splitlines())
+    pieces = max(2, round((count / 1000) ** (1 / 3)))
+    ways = {
+        f"{count:,} particles in one cavity": ("1", "alone"),
+        f"{pieces**3} cavities of about {count / pieces**3:,.0f}, in one run": (str(pieces), "together"),
+        "the same cavities, one after another": (str(pieces), "alone"),
+    }
+    found: dict[str, list[dict[str, float]]] = {name: [] for name in ways}
+    for _ in range(turns):
+        for name, how in ways.items():
+            found[name].append(apart("one_cut", bed, *how, cores=1))
+    last = [each["cost"] for each in found["the same cavities, one after another"]]
+    for name, each in found.items():
+        told = f"{1e9 * statistics.median(a['cost'] for a in each):.1f} ns a particle and step"
+        ratio = statistics.median(a["cost"] / b for a, b in zip(each, last, strict=True))
+        yield name, f"{told}, {each[0]['contacts']:.2f} contacts, {each[0]['candidates']:.2f} candidates, x {ratio:.2f}"
 
 
-# ---- other programs
-
-_DECKS = {
-    "LAMMPS granular": ("lmp", "in.lammps"),
-    "LAMMPS gran/hertz/history": ("lmp", "in.lammps_legacy"),
-    "LIGGGHTS": ("liggghts", "in.liggghts"),
-}
-
-
-def peers(folder: str, *counts: str) -> Iterator[tuple[str, str]]:
+def peers(
+    folder: Path,
+    kind: str,
+    counts: list[int],
+    programs: tuple[Program, ...],
+    beds: Path | None,
+    cores: list[int],
+    turns: int,
+) -> Iterator[tuple[str, str]]:
     """Rates of all programs, from one start."""
-    kind = "rest" if "rest" in counts else "shaken"
-    for count in [int(c) for c in counts if c != kind] or WINDOWS:
+    for program in programs:
+        if not program.here:
+            yield program.name, "not installed"
+    for count in counts or WINDOWS:
         with tempfile.TemporaryDirectory() as place:
             where = Path(place)
-            start = _start(Path(folder), where, count, kind)
-            for cores in (1, 2):
-                yield from _compared(where, start, count, cores, kind)
+            bed = (beds or where) / f"{kind}_{count}.csv"
+            set_out(folder, where, count, AMPLITUDES[kind], bed, edge_of(count))
+            for number in cores:
+                here = [program for program in programs if program.here]
+                yield from _compared(where, bed, count, number, kind, here, turns)
 
 
-def _start(folder: Path, where: Path, count: int, kind: str) -> Path:
-    """A bed that LAMMPS has shaken, or let fall and rest, for 25 periods, for all programs."""
-    for deck in folder.iterdir():
-        if deck.is_file():
-            shutil.copy(deck, where)
-    for name in ("in.lammps", "in.lammps_legacy", "in.liggghts"):
-        deck = where / name
-        deck.write_text(deck.read_text().replace("A equal 98.1/", f"A equal {AMPLITUDES[kind]}/"))
-    quiet: Any = {"cwd": where, "check": True, "stdout": subprocess.DEVNULL}
-    subprocess.run([sys.executable, "make_initial.py", str(count), "."], **quiet)
-    subprocess.run([sys.executable, "settle.py", str(count), "2" if count >= 10_000 else "1"], **quiet)
-    text = (where / f"w2_{count}.data").read_text()
-    atoms, velocities = (
-        np.array([line.split() for line in part.splitlines() if line.strip()], dtype=float)
-        for part in text.split("Atoms")[1].split("Velocities")
-    )
-    edge = (count * np.pi * DIAMETER**3 / 6 / FILL) ** (1 / 3)
-    columns = np.hstack([atoms[:, 4:7] - edge / 2, velocities[:, 1:7]])
-    path = where / "start.csv"
-    np.savetxt(path, columns, delimiter=",")
-    return path
+def _compared(
+    where: Path, bed: Path, count: int, cores: int, kind: str, programs: list[Program], turns: int
+) -> Iterator[tuple[str, str]]:
+    warm, steps = (steps_of(periods) for periods in WINDOWS[count])
+    own: list[dict[str, float]] = []
+    seconds: dict[str, list[float]] = {program.name: [] for program in programs}
+    done: set[str] = set()
+    for _ in range(turns):
+        own.append(apart("one", kind, str(count), str(cores), str(bed), cores=cores))
+        for program in programs:
+            if program.name not in done:
+                begun = time.monotonic()
+                try:
+                    seconds[program.name].append(program.seconds(where, count, cores, warm, steps))
+                except RuntimeError as error:
+                    print(error, file=sys.stderr)
+                    done.add(program.name)
+                if time.monotonic() - begun > LONG:
+                    done.add(program.name)
+    title = f"{count:,} particles, {kind}, {cores} core(s): "
+    rates = [a["rate"] / 1e6 for a in own]
+    told = f"{statistics.median(rates):.1f} million particle-steps/s"
+    yield title + "Rattlebox", f"{told}, {own[0]['contacts']:.2f} contacts a particle"
+    for name, each in seconds.items():
+        if not each:
+            yield title + name, "failed"
+            continue
+        theirs = [count * steps / 1e6 / taken for taken in each]
+        ratio = statistics.median(a / b for a, b in zip(rates, theirs, strict=False))
+        yield title + name, f"{statistics.median(theirs):.1f} million particle-steps/s, 1/{ratio:.2f}"
 
 
-def _compared(where: Path, start: Path, count: int, cores: int, kind: str) -> Iterator[tuple[str, str]]:
-    programs: dict[str, Callable[[], float]] = {
-        "Rattlebox": lambda: apart("one", kind, str(count), str(cores), str(start), cores=cores)["rate"]
-    }
-    for name, (program, deck) in _DECKS.items():
-        if shutil.which(program):
-            programs[name] = lambda program=program, deck=deck: _peer(where, program, deck, count, cores)
-    rates: dict[str, list[float]] = {name: [] for name in programs}
-    for _ in range(TURNS):
-        for name, run in programs.items():
-            rates[name].append(run())
-    own = rates["Rattlebox"]
-    for name, each in rates.items():
-        ratio = statistics.median(a / b for a, b in zip(own, each, strict=True))
-        told = f"{statistics.median(each) / 1e6:.1f} million particle-steps/s"
-        yield (
-            f"{count:,} particles, {kind}, {cores} core(s): {name}",
-            told + ("" if name == "Rattlebox" else f", 1/{ratio:.2f}"),
-        )
-
-
-def _peer(where: Path, program: str, deck: str, count: int, cores: int) -> float:
-    warm, window = WINDOWS[count]
-    variables = {"n": count, "warm": steps_of(warm), "win": steps_of(window), "nwin": 1, "skin": 0.0006, "px": cores}
-    command = [program, "-in", deck, *(w for key, value in variables.items() for w in ("-var", key, str(value)))]
-    if cores > 1:
-        command = ["mpirun", "--bind-to", "none", "-np", str(cores), *command]
-    command = ["taskset", "-c", "0" if cores == 1 else "0,1", *command]
-    as_root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1"}
-    out = subprocess.run(command, cwd=where, check=True, capture_output=True, text=True, env={**os.environ, **as_root})
-    seconds = [float(t) for t in re.findall(r"Loop time of ([\d.eE+-]+)", out.stdout)]
-    return count * steps_of(window) / seconds[1]
-
-
-def main(arguments: list[str]) -> None:
+def main() -> None:
     """Print a table of what was asked for."""
-    if arguments and arguments[0] == "one":
-        one(*arguments[1:])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("job", nargs="?", choices=["scaling", "rest", "peers", "cut", "one", "one_cut"])
+    parser.add_argument("arguments", nargs="*")
+    parser.add_argument("--beds", type=Path)
+    parser.add_argument("--program", type=another_lammps, action="append", default=[])
+    parser.add_argument("--turns", type=int, default=3)
+    parser.add_argument("--cores", type=int, nargs="+", choices=[1, 2], default=[1, 2])
+    given = parser.parse_intermixed_args()
+    if given.job in ("one", "one_cut"):
+        (one if given.job == "one" else one_cut)(*given.arguments)
         return
-    jobs: dict[str, Callable[..., Iterator[tuple[str, str]]]] = {"scaling": scaling, "rest": rest, "peers": peers}
-    names = arguments[:1] or ["scaling", "rest"]
+    rows: list[Iterator[tuple[str, str]]]
+    if given.job in ("peers", "cut") and not given.arguments:
+        parser.error(f"{given.job} needs a {'folder of decks' if given.job == 'peers' else 'file of a bed'}")
+    if given.job == "peers":
+        folder, *rest = given.arguments
+        kind = "rest" if "rest" in rest else "shaken"
+        counts = [int(word) for word in rest if word != kind]
+        if given.beds:
+            given.beds.mkdir(parents=True, exist_ok=True)
+        rows = [peers(Path(folder), kind, counts, (*PROGRAMS, *given.program), given.beds, given.cores, given.turns)]
+    elif given.job == "cut":
+        rows = [cut(given.arguments[0], given.turns)]
+    else:
+        rows = [
+            scaling(kind, given.turns)
+            for job, kind in {"scaling": "shaken", "rest": "rest"}.items()
+            if given.job in (job, None)
+        ]
     print("| what | measured |\n|---|---|")
-    for name in names:
-        for what, value in jobs[name](*arguments[1:]):
+    for table in rows:
+        for what, value in table:
             print(f"| {what} | {value} |", flush=True)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

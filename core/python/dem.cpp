@@ -78,9 +78,11 @@ public:
 
     nb::dict counters() const {
         Counts counts;
+        std::int64_t candidates = 0;
         for (const Bed& b : simulation_->beds()) {
             std::int64_t sum[2] = {};
             for (const Chunk& c : b.chunks) {
+                candidates += c.pairs.size() + c.walls.size();
                 const Tally& t = c.tally;
                 for (int k = 0; k < 2; ++k) sum[k] += t.first_touches[k];
                 counts.deepest = std::fmax(counts.deepest, largest(t.deepest));
@@ -89,8 +91,10 @@ public:
             }
             counts.touches.insert(counts.touches.end(), sum, sum + 2);
         }
-        return counts.write(simulation_->beds().size(), simulation_->step(), simulation_->builds(),
-                            simulation_->scans(), simulation_->memory(), seconds_);
+        nb::dict d = counts.write(simulation_->beds().size(), simulation_->step(), simulation_->builds(),
+                                  simulation_->scans(), simulation_->memory(), seconds_);
+        d["candidates"] = candidates;
+        return d;
     }
 
     nb::dict stopped() const {
