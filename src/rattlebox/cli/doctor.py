@@ -44,6 +44,6 @@ def _card() -> Iterator[tuple[str, str]]:
     try:
         yield "nvrtc", ".".join(map(str, nvrtc()))
         yield "gpu", Card().describe()
-        yield "", 'studies of impact dampers run there (on="gpu")'
+        yield "", 'studies and runs of particles in space run there (on="gpu")'
     except CaseError as error:
         yield "gpu", f"none to be used: {error}"

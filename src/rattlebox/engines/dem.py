@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,14 +16,14 @@ from rattlebox.engines.card import Card
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.core import core
 from rattlebox.engines.dem_follow import Journey
-from rattlebox.engines.dem_gpu import SMALL, CardDem, count_of, run_together
+from rattlebox.engines.dem_gpu import CardDem, run_together
 from rattlebox.engines.dem_settle import settle
 from rattlebox.engines.dem_snapshots import snapshots_of
 from rattlebox.engines.dem_step import Step, choose_step, expected_speeds, outcome
 from rattlebox.engines.pack import pack, restitution
 from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
 from rattlebox.model.contacts import Linear
-from rattlebox.model.errors import Hint, at
+from rattlebox.model.errors import CaseError, Hint, at
 from rattlebox.model.in_space import direction_of_base, inertia_along
 from rattlebox.model.methods import Dem, EventDriven, Output
 from rattlebox.model.packing import Settled
@@ -141,8 +142,8 @@ def _run(
     return run
 
 
-def simulate_dem_together(cases: Sequence[Case], on: str | None) -> list[GranularRun]:
-    """Run small cases with particle dampers side by side on a graphics card, and large ones one by one.
+def simulate_dem_together(cases: Sequence[Case], on: str, threads: int) -> list[GranularRun]:
+    """Run cases with particle dampers on a graphics card, small ones side by side.
 
     Parameters
     ----------
@@ -150,6 +151,8 @@ def simulate_dem_together(cases: Sequence[Case], on: str | None) -> list[Granula
         What to run.
     on
         "gpu".
+    threads
+        Of the processor, on which beds settle.
 
     Returns
     -------
@@ -159,20 +162,113 @@ def simulate_dem_together(cases: Sequence[Case], on: str | None) -> list[Granula
     Raises
     ------
     CaseError
-        When there is no card that can be used, or its memory is too small.
+        When there is no card that can be used, its memory is too small, or a case cannot be run.
     """
     card = _card(on)
-    prepared = [(case, *pack_dem(case)) for case in cases]
-    dems = [CardDem(packed, card) for _, packed, *_ in prepared]
-    small = [dem for dem, (_, packed, *_) in zip(dems, prepared, strict=True) if count_of(packed) <= SMALL]
-    if card and small:
-        run_together(small, max(packed["steps"] for _, packed, *_ in prepared), card)
+    assert card is not None
     runs = []
-    for dem, (case, packed, step, tables) in zip(dems, prepared, strict=True):
-        assert isinstance(case.method, Dem)
-        journey = Journey(dem, packed, None, case.method)
-        runs.append(_run(case, packed, step, tables, dem, journey, journey.go()))
+    for run in run_on_card(cases, card, threads=threads) or ():
+        if isinstance(run, CaseError):
+            raise run
+        runs.append(run)
     return runs
+
+
+def run_on_card(
+    cases: Sequence[Case],
+    card: Card,
+    *,
+    threads: int = 1,
+    progress: Callable[[float], object] | None = None,
+) -> Iterator[GranularRun | CaseError] | None:
+    """Run cases with particle dampers on a graphics card, small ones side by side.
+
+    Parameters
+    ----------
+    cases
+        What to run.
+    card
+        Where.
+    threads
+        Of the processor, on which beds settle.
+    progress
+        Called now and then with how much of all is done; False stops.
+
+    Returns
+    -------
+    iterator of GranularRun or CaseError, or None
+        In the order of the cases: the run, or why there is none. None when it was stopped.
+
+    Raises
+    ------
+    CaseError
+        When the card's memory is too small for one of them, with the number.
+    """
+
+    def go_on(*_: object) -> bool:
+        return progress is None or progress(0.0) is not False
+
+    with ThreadPoolExecutor(threads) as pool:
+        ready = list(pool.map(lambda case: _ready(case, go_on), cases))
+    if None in ready:
+        return None
+    dems = {k: CardDem(each[0], card) for k, each in enumerate(ready) if isinstance(each, tuple)}
+    lengths = np.array([dem.steps for dem in dems.values()], dtype=float)
+
+    def so_far(steps: Sequence[int]) -> bool:
+        done = np.sum(np.minimum(steps, lengths) / lengths) + len(cases) - len(dems)
+        return progress is None or progress(float(done) / len(cases)) is not False
+
+    if not run_together(list(dems.values()), int(lengths.max(initial=0)), card, so_far):
+        return None
+
+    def ended(k: int) -> GranularRun | CaseError:
+        case, each = cases[k], ready[k]
+        if not isinstance(each, tuple):
+            assert each is not None
+            return each
+        dem = dems.pop(k)
+        if dem.refused:
+            return dem.refused
+        assert isinstance(case.method, Dem)
+        packed, step, tables = each
+        journey = Journey(dem, packed, None, case.method)
+        return _run(case, packed, step, tables, dem, journey, journey.go())
+
+    return map(ended, range(len(cases)))
+
+
+def _ready(case: Case, go_on: Callable[[], bool]) -> tuple[Packed, Step, list[ContactTable]] | CaseError | None:
+    """A packed case, or why it cannot be; None when it was stopped."""
+    try:
+        return pack_dem(case) if settled(case, go_on) else None
+    except CaseError as error:
+        return error
+
+
+def settled(case: Case, go_on: Callable[[], bool]) -> bool:
+    """Let all particles of a case settle that are to.
+
+    Parameters
+    ----------
+    case
+        What is to be run.
+    go_on
+        Asked now and then; False stops.
+
+    Returns
+    -------
+    bool
+        Whether they did before it was stopped. The engine remembers the beds.
+
+    Raises
+    ------
+    CaseError
+        When particles cannot be inserted, or do not come to rest.
+    """
+    return all(
+        not isinstance(damper.packing, Settled) or settle(damper, go_on) is not None for damper in case.particle_dampers
+    )
 
 
 def useful_threads(packed: Packed) -> int:

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from rattlebox.model.errors import CaseError
 
 from .card import Card
-from .core import core
+from .core import core, instructions
+from .gpu import nvrtc
 
 SMALL = 2000
 """Particles up to which a case is one block's."""
 
-SAMPLES, MANY_SAMPLES = 256, 20_000
+SAMPLES, MANY_SAMPLES = 256, 2048
 """Samples for which there is room on the card, of a large case and of a small one; they are fetched when it is full."""
 
 MOST_BEDS = 8
@@ -27,6 +28,7 @@ MOST_BEDS = 8
 _SPARE = 0.9  # of the free memory is taken at most
 _GRAIN = 256  # of addresses
 _PIECE = 0.1  # time of a launch [s]: a stop is heard soon
+_PATIENCE = 4  # exchanges of all cases with the card, that one which needs room waits for the others
 
 Bytes = NDArray[np.uint8]
 
@@ -77,6 +79,17 @@ class CardDem:
     card
         The card; default the first of this machine.
 
+    Attributes
+    ----------
+    particles, steps
+        How many there are.
+    alone
+        It takes all of the card.
+    macros
+        For which its kernels are compiled. They depend on nothing but the case, and so do its bits.
+    refused
+        Why the card cannot go on with it, None while it can.
+
     Raises
     ------
     CaseError
@@ -92,6 +105,10 @@ class CardDem:
         self._dem = core().DemWide(packed, slots=12, samples=min(samples, MANY_SAMPLES if small else SAMPLES))
         self._packed = packed
         self._seconds = 0.0
+        self.particles, self.steps = count_of(packed), int(packed["steps"])
+        self.alone = not small or len(packed["cavities"]) > MOST_BEDS
+        self.macros = {**launch_bounds(self.particles), **laws([packed])}
+        self.refused: CaseError | None = None
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._dem, name)
@@ -102,15 +119,25 @@ class CardDem:
         Raises
         ------
         CaseError
-            When the card's memory is too small, with the number.
+            When the card's memory is too small, with the number, or a particle has too many neighbours.
         """
         begin = perf_counter()
         try:
-            return run_together(
-                [self], until, self._card, lambda *_: progress is None or progress(self.step) is not False
+            whole = run_together(
+                [self], until, self._card, lambda steps: progress is None or progress(steps[0]) is not False
             )
         finally:
             self._seconds += perf_counter() - begin
+        if self.refused:
+            raise self.refused
+        return whole
+
+    def make_room(self) -> None:
+        """Take samples out, and grow what was too small, or say that it cannot."""
+        try:
+            self._dem.make_room()
+        except ValueError as error:
+            self.refused = CaseError(f"on a card, {error}\n  try: the processor")
 
     def counters(self) -> dict[str, Any]:
         """As of the core."""
@@ -125,55 +152,87 @@ class CardDem:
         self._dem.absorb(state)
 
 
+def ready() -> tuple[str, str]:
+    """See to it that there is a card.
+
+    Returns
+    -------
+    tuple of str
+        What decides the last bits of a result, those of the processor included, on which beds settle; and what to tell of
+        card and driver. Kernels are compiled for the laws of a case when it is run.
+
+    Raises
+    ------
+    CaseError
+        When there is no card that can be used, naming what is missing.
+    """
+    card = Card()
+    return f"{card.arch}, NVRTC {'.'.join(map(str, nvrtc()))}, beds by {instructions()}", card.describe()
+
+
 def run_together(
-    cases: Sequence[CardDem], until: int, card: Card, progress: Callable[[int, int], object] | None = None
+    cases: Sequence[CardDem], until: int, card: Card, progress: Callable[[list[int]], object] | None = None
 ) -> bool:
     """Run cases to a step, or to their end where that comes before.
 
     Parameters
     ----------
     cases
-        One of any size, or several small ones.
+        Of any size and kind. Small ones that are alike run side by side, as many as fit, others one by one.
     until
         Last step.
     card
         The card.
     progress
-        Called between launches with the number of cases done and of all; False stops.
+        Called between launches with the step of each case; False stops.
 
     Returns
     -------
     bool
-        Whether all came so far.
+        Whether all came so far, but for those that are refused.
 
     Raises
     ------
     CaseError
-        When the card's memory is too small, with the number.
+        When the card's memory is too small for one of them, with the number.
     """
-    most = max(count_of(case._packed) for case in cases)
-    if most > SMALL and len(cases) > 1:
-        raise CaseError(f"a case of {most:,} particles has the card for itself\n  try: one case after the other")
-    kernel = _Kernel(card, cases, most)
-    waiting = _unfinished(cases, until)
-    while waiting:
-        before = len(cases) - len(waiting)
+    kernels: dict[tuple[Any, ...], _Kernel] = {}
+    while waiting := [case for case in cases if _goes_on(case, until)]:
+        group = _side_by_side(waiting, card)
+        kind = group[0].alone, *group[0].macros.items()
+        kernel = kernels.get(kind) or kernels.setdefault(kind, _Kernel(card, group[0]))
+        steps = {id(case): case.step for case in cases}
 
-        def go_on(done: int, before: int = before) -> bool:
-            return progress is None or progress(before + done, len(cases)) is not False
+        def go_on(now: list[int], group: list[CardDem] = group, steps: dict[int, int] = steps) -> bool:
+            steps.update({id(case): step for case, step in zip(group, now, strict=True)})
+            return progress is None or progress(list(steps.values())) is not False
 
-        with _Blocks(card, waiting).filled() as blocks:
+        with _Blocks(card, group).filled() as blocks:
             stopped = not kernel.work(blocks, until, go_on)
-        for case in waiting:
-            case._dem.make_room()
+        for case in group:
+            case.make_room()
         if stopped:
             return False
-        waiting = _unfinished(cases, until)
     return True
 
 
-def _unfinished(cases: Sequence[CardDem], until: int) -> list[CardDem]:
-    return [case for case in cases if case.step <= min(until, case._packed["steps"]) and not case.status]
+def _goes_on(case: CardDem, until: int) -> bool:
+    return case.step <= min(until, case.steps) and not case.status and not case.refused
+
+
+def _side_by_side(waiting: Sequence[CardDem], card: Card) -> list[CardDem]:
+    """Return the first of some cases with those like it that fit beside it."""
+    first, room = waiting[0], _SPARE * card.memory()[0]
+    alike = [
+        case for case in waiting if case is first or not (first.alone or case.alone or case.macros != first.macros)
+    ]
+    fit = int(np.searchsorted(np.cumsum([_room(case) for case in alike]), room, side="right"))
+    return alike[: max(1, fit)]
+
+
+def _room(case: CardDem) -> int:
+    """Bytes of a case in the card's memory."""
+    return -(-int(case.memory) // _GRAIN) * _GRAIN
 
 
 class _Blocks:
@@ -181,25 +240,26 @@ class _Blocks:
 
     def __init__(self, card: Card, cases: Sequence[CardDem]) -> None:
         self.card, self.cases = card, cases
-        sizes = [-(-case.memory // _GRAIN) * _GRAIN for case in cases]
-        self.begins = np.concatenate([[0], np.cumsum(sizes)]).astype(np.uint64)
+        self.seconds = 0.0  # that bringing them there took
+        self.begins = np.concatenate([[0], np.cumsum([_room(case) for case in cases])]).astype(np.uint64)
         needed, (free, _) = int(self.begins[-1]), card.memory()
         if needed > _SPARE * free:
             raise CaseError(
-                f"{sum(count_of(case._packed) for case in cases):,} particles need {needed / 2**30:.3g} GiB on the card, "
-                f"{free / 2**30:.3g} GiB are free\n  try: fewer particles or cases at once, or a card with more memory"
+                f"{cases[0].particles:,} particles need {needed / 2**30:.3g} GiB on the card, "
+                f"{free / 2**30:.3g} GiB are free\n  try: fewer particles, or a card with more memory"
             )
 
     @contextmanager
     def filled(self) -> Iterator[_Blocks]:
         """Bring the cases to the card, and back again."""
         with self.card.room(int(self.begins[-1])) as self.block:
-            address = int(self.block.handle)
+            begun, address = perf_counter(), int(self.block.handle)
             images = np.zeros(int(self.begins[-1]), np.uint8)
             for case, begin in zip(self.cases, self.begins, strict=False):
                 image = np.asarray(case.image(address + int(begin)))
                 images[int(begin) : int(begin) + image.size] = image
             self.card.upload(self.block, images)
+            self.seconds = perf_counter() - begun
             yield self
             self.card.download(self.block, images)
             for case, begin in zip(self.cases, self.begins, strict=False):
@@ -216,39 +276,41 @@ class _Blocks:
 
 
 class _Kernel:
-    """The kernel for some cases."""
+    """The kernel for cases like one."""
 
-    def __init__(self, card: Card, cases: Sequence[CardDem], most: int) -> None:
-        small = most <= SMALL and all(len(case._packed["cavities"]) <= MOST_BEDS for case in cases)
-        bounds = launch_bounds(most)
-        self._card, self._threads = card, bounds["RATTLEBOX_THREADS"]
-        self.compiled, kernel = card.kernels("dem.cpp", **bounds, **laws([case._packed for case in cases]))
-        self._kernel = kernel("block" if small else "grid")
-        self._small, self._steps = small, 16
-        if small:
-            self._near = card.allow_shared(self._kernel, max(int(case.near) for case in cases))
-        else:
+    def __init__(self, card: Card, case: CardDem) -> None:
+        self._card, self._threads = card, case.macros["RATTLEBOX_THREADS"]
+        self.compiled, kernel = card.kernels("dem.cpp", **case.macros)
+        self._kernel = kernel("grid" if case.alone else "block")
+        self._alone, self._steps = case.alone, 16
+        if case.alone:
             self._blocks = card.blocks_at_once(self._kernel, self._threads)
 
-    def work(self, blocks: _Blocks, until: int, go_on: Callable[[int], bool]) -> bool:
-        """Launch until each case is done or pauses; False when it was stopped."""
-        card, count = self._card, len(blocks.cases)
-        limits = [min(until, case._packed["steps"]) for case in blocks.cases]
+    def work(self, blocks: _Blocks, until: int, go_on: Callable[[list[int]], bool]) -> bool:
+        """Launch until each case is done, or those that pause have waited long enough; False when it was stopped."""
+        card, count, late = self._card, len(blocks.cases), 0.0
+        limits = [min(until, case.steps) for case in blocks.cases]
+        near = 0 if self._alone else card.allow_shared(self._kernel, max(int(case.near) for case in blocks.cases))
         with card.room(8 * count) as offsets, card.room(8) as barrier:
             card.upload(offsets, blocks.begins[:-1])
             card.fill(barrier, 0)
             at_work = [case.step for case in blocks.cases]
-            while at_work:
+            while at_work and late <= _PATIENCE * blocks.seconds:
                 goal, begin = min(at_work) + self._steps - 1, perf_counter()
-                if self._small:
-                    given = blocks.block, offsets, goal, self._near
-                    card.launch(self._kernel, count, self._threads, *given, shared=self._near)
-                else:
+                if self._alone:
                     card.launch(self._kernel, self._blocks, self._threads, blocks.block, barrier, goal, at_once=True)
+                else:
+                    card.launch(self._kernel, count, self._threads, blocks.block, offsets, goal, near, shared=near)
                 found = blocks.glance()
-                self._steps = max(1, int(self._steps * min(4.0, _PIECE / (perf_counter() - begin))))
-                over = [step > limit or status for (step, status, _), limit in zip(found, limits, strict=True)]
-                if not go_on(sum(map(bool, over))):
+                took = perf_counter() - begin
+                self._steps = max(1, int(self._steps * min(4.0, _PIECE / took)))
+                if not go_on([step for step, _, _ in found]):
                     return False
-                at_work = [step for (step, _, pause), done in zip(found, over, strict=True) if not (done or pause)]
+                going = [
+                    (step, pause)
+                    for (step, status, pause), limit in zip(found, limits, strict=True)
+                    if step <= limit and not status
+                ]
+                at_work = [step for step, pause in going if not pause]
+                late += took if len(at_work) < len(going) else 0.0
         return True

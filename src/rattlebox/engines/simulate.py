@@ -120,7 +120,7 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None, on: str 
     if on is not None and cases and all(case.particle_dampers for case in cases):
         from rattlebox.engines.dem import simulate_dem_together
 
-        return list(simulate_dem_together(cases, on))
+        return list(simulate_dem_together(cases, on, threads or os.cpu_count() or 1))
     _no_card(on)
     if any(case.particle_dampers for case in cases):
         return _in_space(cases, threads)

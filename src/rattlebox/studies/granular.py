@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +15,12 @@ from scipy.integrate import trapezoid
 
 from rattlebox.analysis import settling_time, shaken_cavity
 from rattlebox.engines.batch import Look
-from rattlebox.engines.dem import simulate_dem
-from rattlebox.engines.dem_settle import settle
+from rattlebox.engines.card import Card
+from rattlebox.engines.dem import run_on_card, settled, simulate_dem
+from rattlebox.engines.dem_gpu import ready
 from rattlebox.engines.status import REFUSED, STATUSES
 from rattlebox.model.errors import CaseError, Hint
 from rattlebox.model.methods import Output
-from rattlebox.model.packing import Settled
 from rattlebox.model.signals import Harmonic
 from rattlebox.model.space import unit_vector
 from rattlebox.results import GranularRun
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
 _BLOCKS = 2000
+_SIDE_BY_SIDE = 1024
 _SUMS = ("load_work", "base_work", "viscous_loss", "normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
 _NUMBERS = {name: number for number, (name, _) in enumerate(STATUSES)}
 
@@ -119,14 +121,12 @@ _FOUND: dict[str, Callable[[Seen], float]] = {
 
 
 @dataclass
-class GranularTask(SweepTask):
+class Granular(SweepTask):
     """A case with particles in space, its variants, and what is kept of each; attributes as those of SweepTask.
 
     Functions of a run are given the run that the measures are found from, whose samples are those of the case's output, or
     what `samples` or `cycles` ask for. Motions, impacts and states are not kept.
     """
-
-    no_card: ClassVar[str] = "particles in space"
 
     @property
     def look(self) -> Look:
@@ -155,14 +155,97 @@ class GranularTask(SweepTask):
             raise Hint(f"there is no point {self.point!r}", " or ".join(points) or "leave it out", ["point"])
         return Look()
 
+    def coords(self) -> dict[str, Any]:
+        """Return the coordinates of the further dimensions, of which there are none."""
+        return {}
+
+    def row(self, case: Case, run: GranularRun) -> dict[str, float]:
+        """Return what is kept of a run, and of what was run, by name."""
+        row: dict[str, float] = {"status": _NUMBERS[run.status]}
+        if run.ok:
+            seen = self._seen_in(run, case)
+            row |= {name: _FOUND[name](seen) for name in self.named}
+            row |= {name: measure(run) for name, measure in self.own.items()}
+        return row
+
+    def columns(self, rows: Mapping[int, Mapping[str, float]], start: int, stop: int) -> Values:
+        """Return each output of variants start to stop, of which those without a row were refused."""
+
+        def column(name: str, missing: float, kind: str) -> NDArray[Any]:
+            return np.array([rows.get(index, {}).get(name, missing) for index in range(start, stop)], kind)
+
+        values = {name: column(name, np.nan, "float64") for name in (*self.named, *self.own)}
+        return {"status": column("status", REFUSED, "int8"), **values}
+
+    def variant(self, index: int) -> Case:
+        """Return a variant as it is run.
+
+        Raises
+        ------
+        CaseError
+            When it cannot be.
+        """
+        case = self.design.case_at(self.case, index)
+        if not case.particle_dampers:
+            raise Hint("a variant without particles in space", "one sweep for each kind of damper")
+        duration, skip, samples = case.duration, self.skip, self.samples
+        if self.cycles is not None:
+            period = 1 / _frequency(case)
+            duration, skip = sum(self.cycles) * period, self.cycles[0] * period
+            samples = samples or 1 + math.ceil(64 * self.cycles[1])
+        if samples is None:
+            return case
+        output = Output(rate=max(1, samples - 1) / (duration - skip))
+        return case.model_copy(update={"duration": duration, "output": output})
+
+    def _seen_in(self, run: GranularRun, case: Case) -> Seen:
+        frequency = _frequency(case)
+        window = since(run, self.skip if self.cycles is None else self.cycles[0] / frequency)
+        arrays = window.arrays
+        if self.point is None:
+            along = unit_vector(case.particle_dampers[0].direction)
+            return Seen(
+                window, arrays.cavity_displacement[:, 0] @ along, arrays.cavity_velocity[:, 0] @ along, frequency
+            )
+        column = arrays.points.index(self.point)
+        return Seen(window, arrays.displacement[:, column], arrays.velocity[:, column], frequency)
+
+
+def since(run: GranularRun, start: float) -> GranularRun:
+    """Return a run from a time on [s]; work and losses count from its first sample."""
+    arrays = run.arrays
+    first = int(np.searchsorted(arrays.time, start * (1 - 1e-9)))
+    cut: dict[str, Any] = {"time": arrays.time[first:]}
+    for variable in arrays.form.stored:
+        if variable.dims[0] == "time":
+            values = getattr(arrays, variable.name)[first:]
+            cut[variable.name] = values - values[0] if variable.name in _SUMS else values
+    return GranularRun(replace(arrays, **cut), run.case_toml, run.provenance) if first else run
+
+
+def _frequency(case: Case) -> float:
+    """Of the first harmonic load or motion [Hz], NaN without one."""
+    for signal in (*case.loads, *case.base, *case.shaker_motion):
+        if isinstance(signal, Harmonic):
+            return signal.frequency
+    return math.nan
+
+
+# ---- where it runs
+
+
+@dataclass
+class GranularTask(Granular):
+    """On threads of the processor, each run on one of its own."""
+
     @property
     def block(self) -> int:
         """Largest number of variants in a block: one, unless there are very many."""
         return math.ceil(self.size / _BLOCKS)
 
-    def coords(self) -> dict[str, Any]:
-        """Return the coordinates of the further dimensions, of which there are none."""
-        return {}
+    def on_card(self) -> GranularOnCard:
+        """Return the same work for the card of this machine."""
+        return GranularOnCard(**{each.name: getattr(self, each.name) for each in fields(Granular)})
 
     def chains(self, blocks: Blocks) -> list[list[int]]:
         """Return the numbers of blocks, each by itself: they need nothing of each other, and take very different times."""
@@ -203,77 +286,67 @@ class GranularTask(SweepTask):
         def go_on(*_: int) -> bool:
             return not (cancelled and cancelled())
 
-        columns = {name: np.full(stop - start, np.nan) for name in (*self.named, *self.own)}
-        status = np.full(stop - start, REFUSED, np.int8)
+        rows = {}
         for index in range(start, stop):
             try:
-                case = self._case(index)
-                run = _simulated(case, threads, go_on)
+                case = self.variant(index)
+                run = simulate_dem(case, threads=threads, progress=go_on) if settled(case, go_on) else None
             except CaseError:  # one corner of many; run alone it says why
                 continue
-            if run is None:
+            if run is None or run.status == "interrupted":
                 return None
-            status[index - start] = _NUMBERS[run.status]
-            if run.ok:
-                seen = self._seen_in(run, case)
-                for name in self.named:
-                    columns[name][index - start] = _FOUND[name](seen)
-                for name, measure in self.own.items():
-                    columns[name][index - start] = measure(run)
-        return {"status": status, **columns}
-
-    def _case(self, index: int) -> Case:
-        """A variant as it is run."""
-        case = self.design.case_at(self.case, index)
-        if not case.particle_dampers:
-            raise Hint("a variant without particles in space", "one sweep for each kind of damper")
-        duration, skip, samples = case.duration, self.skip, self.samples
-        if self.cycles is not None:
-            period = 1 / _frequency(case)
-            duration, skip = sum(self.cycles) * period, self.cycles[0] * period
-            samples = samples or 1 + math.ceil(64 * self.cycles[1])
-        if samples is None:
-            return case
-        output = Output(rate=max(1, samples - 1) / (duration - skip))
-        return case.model_copy(update={"duration": duration, "output": output})
-
-    def _seen_in(self, run: GranularRun, case: Case) -> Seen:
-        frequency = _frequency(case)
-        window = since(run, self.skip if self.cycles is None else self.cycles[0] / frequency)
-        arrays = window.arrays
-        if self.point is None:
-            along = unit_vector(case.particle_dampers[0].direction)
-            return Seen(
-                window, arrays.cavity_displacement[:, 0] @ along, arrays.cavity_velocity[:, 0] @ along, frequency
-            )
-        column = arrays.points.index(self.point)
-        return Seen(window, arrays.displacement[:, column], arrays.velocity[:, column], frequency)
+            rows[index] = self.row(case, run)
+        return self.columns(rows, start, stop)
 
 
-def since(run: GranularRun, start: float) -> GranularRun:
-    """Return a run from a time on [s]; work and losses count from its first sample."""
-    arrays = run.arrays
-    first = int(np.searchsorted(arrays.time, start * (1 - 1e-9)))
-    cut: dict[str, Any] = {"time": arrays.time[first:]}
-    for variable in arrays.form.stored:
-        if variable.dims[0] == "time":
-            values = getattr(arrays, variable.name)[first:]
-            cut[variable.name] = values - values[0] if variable.name in _SUMS else values
-    return GranularRun(replace(arrays, **cut), run.case_toml, run.provenance) if first else run
+@dataclass
+class GranularOnCard(Granular):
+    """On the graphics card, many side by side."""
 
+    @property
+    def block(self) -> int:
+        """Largest number of variants in a block: about twice as many as a card holds at once."""
+        return max(_SIDE_BY_SIDE, math.ceil(self.size / _BLOCKS))
 
-def _simulated(case: Case, threads: int, go_on: Callable[..., bool]) -> GranularRun | None:
-    """The run; None when it was stopped."""
-    for damper in case.particle_dampers:
-        if isinstance(damper.packing, Settled) and settle(damper, go_on) is None:
+    def ready(self) -> tuple[str, str]:
+        """See to it that there is a card; return what decides the last bits, and what to tell of it."""
+        return ready()
+
+    def run(
+        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[..., bool] | None = None
+    ) -> Values | None:
+        """Run variants start to stop.
+
+        Parameters
+        ----------
+        start, stop
+            Variants, counted along the grid with its last axis fastest.
+        threads
+            Of the processor, on which beds settle.
+        cancelled
+            Asked some ten times a second with how many are done, parts of them included; True stops.
+
+        Returns
+        -------
+        dict of str to array, or None
+            Each output, (stop - start,); None when it was stopped.
+
+        Raises
+        ------
+        CaseError
+            When the card's memory is too small for one variant, with the number.
+        """
+
+        def go_on(part: float) -> bool:
+            return not (cancelled and cancelled(part * (stop - start)))
+
+        cases = {}
+        for index in range(start, stop):
+            with suppress(CaseError):
+                cases[index] = self.variant(index)
+        runs = run_on_card(list(cases.values()), Card(), threads=threads, progress=go_on)
+        if runs is None:
             return None
-    run = simulate_dem(case, threads=threads, progress=go_on)
-    return None if run.status == "interrupted" else run
-
-
-def _frequency(case: Case) -> float:
-    """Of the first harmonic load or motion [Hz], NaN without one."""
-    for signal in (*case.loads, *case.base, *case.shaker_motion):
-        if isinstance(signal, Harmonic):
-            return signal.frequency
-    return math.nan
+        ended = zip(cases.items(), runs, strict=True)
+        rows = {index: self.row(case, run) for (index, case), run in ended if isinstance(run, GranularRun)}
+        return self.columns(rows, start, stop)

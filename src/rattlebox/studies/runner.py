@@ -36,7 +36,6 @@ _BLOCKS = 2000  # at most, so that a store of weeks has no millions of files; a 
 _BLOCK_BYTES = 2**27
 _HERE_SECONDS = 1.0
 _DASK_SECONDS = 5.0
-_CARD_BLOCK = 2**18  # variants: some seconds of a card
 _SHARE = 16  # blocks for each worker of a cluster, at least, unless they would take less than the next
 _DASK_LEAST_SECONDS = 0.5
 
@@ -59,11 +58,22 @@ class Task(Protocol):
         """Return each output of variants start to stop, variants first; anything soon after `cancelled`."""
 
 
+class CardTask(Task, Protocol):
+    """Work on a graphics card, whose `cancelled` takes the number of variants done, parts of them included."""
+
+    @property
+    def block(self) -> int | None:
+        """Number of variants in a block, which keep the card busy."""
+
+    def ready(self) -> tuple[str, str]:
+        """See to it that there is a card; return what decides the last bits there, and what to tell of it."""
+
+
 @runtime_checkable
 class OnCard(Task, Protocol):
     """Work that a graphics card can do."""
 
-    def on_card(self) -> Task:
+    def on_card(self) -> CardTask:
         """Return the same work for the card of this machine."""
 
 
@@ -167,8 +177,8 @@ def run_task(
     bits = _core()
     told: dict[str, str] = {}
     if isinstance(on, str):
-        task, bits, told = _on_card(task, on)
-        on, threads, block = None, 1, block or _CARD_BLOCK
+        task, bits, told, block = _on_card(task, on)
+        on = None
     threads = threads or (1 if on else cores())
     plan = Plan(
         dims=tuple(design.dims),
@@ -194,7 +204,14 @@ def run_task(
             keeper = stack.enter_context(ThreadPoolExecutor(1))  # ends what it has begun when Ctrl-C comes
             tell(kept.done)
             todo = _chains(task, kept, plan.dims)
-            results = _on_cluster(on, task, todo, threads) if on else _here(task, todo, threads)
+
+            def part(done: float) -> None:
+                tell(kept.done + int(done))
+
+            if told:
+                results = _here(task, todo, threads, 1, part)
+            else:
+                results = _on_cluster(on, task, todo, threads) if on else _here(task, todo, threads, threads)
             stack.callback(results.close)
             for (number, _, _), values in results:
                 _heard(keeper.submit(kept.write, number, values))
@@ -219,17 +236,15 @@ def _core() -> str:
     return instructions()
 
 
-def _on_card(task: Task, on: str) -> tuple[Task, str, dict[str, str]]:
-    """The work for a card, what decides the last bits there, and what the result tells of it."""
-    from rattlebox.engines.gpu_impact import ready
-
+def _on_card(task: Task, on: str) -> tuple[Task, str, dict[str, str], int | None]:
+    """The work for a card, what decides the last bits there, what the result tells of it, and the size of blocks."""
     if on != "gpu":
         raise Hint(f"on = {on!r}", '"gpu", or a dask.distributed.Client')
     if not isinstance(task, OnCard):
         raise Hint('on = "gpu": a card cannot run this study', "threads of the processor, or a cluster")
-    task = task.on_card()
-    bits, told = ready()
-    return task, bits, {"gpu": told}
+    there = task.on_card()
+    bits, told = there.ready()
+    return there, bits, {"gpu": told}, there.block
 
 
 def _bits() -> str:
@@ -345,23 +360,43 @@ def _heard(future: Future[Any]) -> Any:
     return future.result()
 
 
-def _here(task: Task, chains: Sequence[_Chain], threads: int) -> Generator[tuple[Block, Values]]:
-    """Run chains beside each other, block after block, the next one while a result is being kept."""
+class _Ear:
+    """Tells a block whether to stop, and hears how much of it is done."""
+
+    def __init__(self, stop: threading.Event) -> None:
+        self.stop, self.done = stop, 0.0
+
+    def __call__(self, done: float = 0.0) -> bool:
+        self.done = done
+        return self.stop.is_set()
+
+
+def _here(
+    task: Task,
+    chains: Sequence[_Chain],
+    threads: int,
+    beside: int,
+    tell: Callable[[float], None] = lambda _: None,
+) -> Generator[tuple[Block, Values]]:
+    """Run chains, several beside each other, block after block, the next one while a result is being kept."""
     waiting = [(deque(chain.blocks), chain.before) for chain in chains if chain.blocks]
-    beside = max(1, min(threads, len(waiting)))
-    running: dict[Future[Values | None], deque[Block]] = {}
+    beside = max(1, min(beside, len(waiting)))
+    running: dict[Future[Values | None], tuple[deque[Block], _Ear]] = {}
     with _aside(beside) as (pool, stop):
 
         def submit(blocks: deque[Block], before: Values | None) -> None:
-            work = partial(_from(task, before), threads=threads // beside, cancelled=stop.is_set)
-            running[pool.submit(work, *blocks[0][1:])] = blocks
+            work = partial(_from(task, before), threads=threads // beside, cancelled=(ear := _Ear(stop)))
+            running[pool.submit(work, *blocks[0][1:])] = blocks, ear
 
         for _ in range(beside):
             if waiting:
                 submit(*waiting.pop(0))
         while running:
-            for future in wait(running, timeout=0.05, return_when=FIRST_COMPLETED).done:  # with an ear for Ctrl-C
-                blocks, values = running.pop(future), _whole(future.result())
+            ended = wait(running, timeout=0.05, return_when=FIRST_COMPLETED).done  # with an ear for Ctrl-C
+            if not ended:
+                tell(sum(ear.done for _, ear in running.values()))
+            for future in ended:
+                (blocks, _), values = running.pop(future), _whole(future.result())
                 block = blocks.popleft()
                 if blocks:
                     submit(blocks, _end(task, block, values))

@@ -8,11 +8,12 @@ from functools import cached_property
 from hashlib import sha256
 from inspect import getsource
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox.engines import gpu_impact
 from rattlebox.engines.batch import Look, run_block
 from rattlebox.engines.pack import Batch, Packed, pack_parts
 from rattlebox.engines.simulate import simulate_many
@@ -30,6 +31,7 @@ Extra = tuple[tuple[str, int], ...]
 Values = Mapping[str, NDArray[Any]]
 UserMeasure = Callable[["Run"], float]
 _UNHEARD = 0.05  # s, after which a stop is asked for between runs
+_CARD_BLOCK = 2**18  # variants: some seconds of a card
 
 
 @dataclass
@@ -69,7 +71,7 @@ class SweepTask:
     gpu: bool = False
     no_card: ClassVar[str] = ""  # what it is that only a processor can run
 
-    def on_card(self) -> Self:
+    def on_card(self) -> SweepTask:
         """Return the same work for the card of this machine.
 
         Raises
@@ -86,6 +88,10 @@ class SweepTask:
             )
         return replace(self, gpu=True)
 
+    def ready(self) -> tuple[str, str]:
+        """See to it that there is a card; return what decides the last bits there, and what to tell of it."""
+        return gpu_impact.ready()
+
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
 
@@ -97,7 +103,7 @@ class SweepTask:
     @property
     def block(self) -> int | None:
         """Largest number of variants in a block; None for what takes about a second."""
-        return None
+        return _CARD_BLOCK if self.gpu else None
 
     @property
     def named(self) -> list[str]:
@@ -185,7 +191,7 @@ class SweepTask:
         stop: int,
         *,
         threads: int = 1,
-        cancelled: Callable[[], bool] | None = None,
+        cancelled: Callable[..., bool] | None = None,
     ) -> Values | None:
         """Run variants start to stop.
 
@@ -196,7 +202,7 @@ class SweepTask:
         threads
             How many work at once.
         cancelled
-            Asked some fifty times a second; True stops.
+            Asked some fifty times a second, on a card with the number of variants done; True stops.
 
         Returns
         -------
@@ -205,7 +211,7 @@ class SweepTask:
         """
 
         def go_on(done: int) -> bool:
-            return not (cancelled and cancelled())
+            return not (cancelled and (cancelled(done) if self.gpu else cancelled()))
 
         result = self._measured(start, stop, threads, go_on)
         if result is None or not self.own:

@@ -47,10 +47,17 @@ class Block:
 class CardOfPaper:
     """What rattlebox.engines.card.Card does, with this memory in bytes and so much of it shared by a block."""
 
+    arch = "sm_90"
+
     def __init__(self, library: ctypes.CDLL, *, free: int = 1 << 30, shared: int = 200_000) -> None:
         self.library, self.free, self.shared = library, free, shared
         self.launched: list[str] = []
+        self.side_by_side: list[int] = []
         self.macros: dict[str, int] = {}
+
+    def describe(self) -> str:
+        """What it is."""
+        return "a card of paper"
 
     def memory(self) -> tuple[int, int]:
         """Free, and all."""
@@ -95,6 +102,7 @@ class CardOfPaper:
     ) -> None:
         """Run a kernel, block by block."""
         self.launched.append(kernel)
+        self.side_by_side.append(blocks if kernel == "block" else 1)
         worlds, second, until, *_ = arguments
         if kernel == "grid":
             assert at_once and shared == 0

@@ -132,7 +132,6 @@ CASES: dict[str, dict[str, Variants]] = {
 }
 
 MISSING: dict[str, dict[str, str]] = {
-    "method": {"Dem": "studies of it are refused; `rb.simulate` is not, see below"},
     "output": {
         "functions of a Run": "a card makes no Run; use measures by name",
         "whole trajectories, impact logs": "`rb.simulate`, on the processor",
@@ -142,6 +141,8 @@ MISSING: dict[str, dict[str, str]] = {
         "lyapunov": "pairs that are parted again and again",
     },
 }
+BELOW = {"method": ("Dem",)}
+"""What the page tells of in a part of its own."""
 STUDIES = ("sweep", "basins", "loss_map", "sensitivity", "design")
 
 
@@ -154,6 +155,7 @@ def table() -> list[str]:
         names = [*CASES.get(group, ()), *(STUDIES if group == "study" else ())]
         if names:
             lines.append(f"| {group}: {', '.join(names)} | yes | yes |")
+        lines += [f"| {group}: {name} | yes | yes, see below |" for name in BELOW.get(group, ())]
         lines += [f"| {group}: {name} | yes | no: {why} |" for name, why in MISSING.get(group, {}).items()]
     lines.append(f"| measure: {', '.join(MEASURES)} | yes | yes |")
     return lines

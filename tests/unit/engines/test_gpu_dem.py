@@ -104,6 +104,28 @@ def test_variants_run_side_by_side(card: CardOfPaper) -> None:
         assert np.array_equal(one.arrays.kinetic_energy, other.arrays.kinetic_energy)
 
 
+def test_who_waits_for_room_does_not_wait_for_the_others(card: CardOfPaper, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A case that needs room goes on with the others once it has waited some exchanges long, to the same bits."""
+    monkeypatch.setattr(dem_gpu, "MANY_SAMPLES", 12)  # of 31 in the longer case
+    monkeypatch.setattr(dem_gpu, "_PIECE", 1e-9)  # a step a launch
+    monkeypatch.setattr(dem_gpu, "_PATIENCE", 0.0)
+    cases = [case(0.5), case(0.5).model_copy(update={"duration": 3e-3, "output": rb.Output(rate=3000.0)})]
+    rounds: list[list[int]] = []
+    begun = dem_gpu._Blocks.filled
+
+    def filled(self: dem_gpu._Blocks) -> Any:
+        rounds.append([case.step for case in self.cases])
+        return begun(self)
+
+    monkeypatch.setattr(dem_gpu._Blocks, "filled", filled)
+    together = rb.simulate_many(cases, on="gpu")
+    assert any(len(steps) == 2 and steps[0] > 0 for steps in rounds)
+    monkeypatch.undo()
+    monkeypatch.setattr(dem, "Card", lambda: card)
+    for one, each in zip(together, cases, strict=True):
+        assert np.array_equal(one.arrays.position, rb.simulate(each, on="gpu").arrays.position)
+
+
 def test_a_large_case_has_all_of_the_card(card: CardOfPaper, monkeypatch: pytest.MonkeyPatch) -> None:
     """A case of many particles is not put into one block, and moves alike."""
     small = rb.simulate(case(), on="gpu")

@@ -18,7 +18,7 @@ from rattlebox.engines.gpu_impact import THREADS, Need
 from rattlebox.model.errors import CaseError
 from rattlebox.paper.seed import seed_case
 from rattlebox.results import Run
-from rattlebox.studies import runner
+from rattlebox.studies import task
 
 CASE = seed_case(duration=0.3)
 SHAKEN = rb.Case(
@@ -48,7 +48,7 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
 
 def test_sweeps_run_on_a_card_block_by_block(fake: list[tuple[int, int]], monkeypatch: pytest.MonkeyPatch) -> None:
     """Blocks go to the card one by one, with progress; the result is that of the processor."""
-    monkeypatch.setattr(runner, "_CARD_BLOCK", 16)
+    monkeypatch.setattr(task, "_CARD_BLOCK", 16)
     told: list[tuple[int, int]] = []
     found = rb.sweep(CASE, AXES, ["impacts", "peak"], on="gpu", progress=lambda *done: told.append(done))
     assert [stop - start for start, stop in fake] == [14, 14, 12]

@@ -198,7 +198,7 @@ def test_stops_are_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     task = granular.GranularTask(case, Design.of(case, {AMPLITUDE: [60.0]}), ["work"])
     assert task.run(0, 1, cancelled=lambda: True) is None
     asked: list[bool] = []
-    monkeypatch.setattr(granular, "settle", lambda damper, go_on: damper)
+    monkeypatch.setattr(granular, "settled", lambda case, go_on: True)
     assert task.run(0, 1, cancelled=lambda: (asked.append(True), len(asked) > 3)[1]) is None
 
 
