@@ -92,6 +92,16 @@ template <int n> Pack<n> read(const real* p) {
     else
         return {read<n / 2>(p), read<n / 2>(p + n / 2)};
 }
+// At any address.
+template <int n> Pack<n> unaligned(const real* p) {
+    if constexpr (n == register_width) {
+        Pack<n> value;
+        __builtin_memcpy(&value, p, sizeof(value));
+        return value;
+    } else {
+        return {unaligned<n / 2>(p), unaligned<n / 2>(p + n / 2)};
+    }
+}
 inline const Lanes& lanes(const real* p) { return pack<lane_count>(p); }
 inline Lanes& lanes(real* p) { return pack<lane_count>(p); }
 

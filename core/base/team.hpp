@@ -16,7 +16,7 @@ struct Alone {
     static void sync() {}
     template <class Last> static void sync(Last&& last) { last(); }
     static void report() {}
-    static void await_lower() {}
+    template <class Other> static void await_lower(Other&&) {}
 };
 
 // Where the members of a team wait for each other.
@@ -52,13 +52,14 @@ public:
         own.store(own.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
 
-    // All lower members have reported as often as this one.
-    void await_lower(int rank) {
+    // All lower members have reported as often as this one; until then it works on something other, while
+    // there is some.
+    template <class Other> void await_lower(int rank, Other&& other) {
         const unsigned own = marks_[static_cast<std::size_t>(rank)].reports.load(std::memory_order_relaxed);
         for (int r = 0; r < rank; ++r) {
             const std::atomic<unsigned>& theirs = marks_[static_cast<std::size_t>(r)].reports;
-            for (int spins = 0; static_cast<int>(theirs.load(std::memory_order_acquire) - own) < 0; ++spins)
-                if (spins > patience) std::this_thread::yield();
+            for (int spins = 0; static_cast<int>(theirs.load(std::memory_order_acquire) - own) < 0;)
+                if (!other() && ++spins > patience) std::this_thread::yield();
         }
     }
 };
@@ -78,7 +79,7 @@ public:
     template <class Last> void sync(Last&& last) const { point_->sync(last); }
     // Tells those of higher rank, in each round, that they may use what this member has done.
     void report() const { point_->report(rank_); }
-    void await_lower() const { point_->await_lower(rank_); }
+    template <class Other> void await_lower(Other&& other) const { point_->await_lower(rank_, other); }
 };
 
 // Calls work(member) on `threads` threads, this one among them.

@@ -15,7 +15,7 @@ namespace rattlebox::dem {
 // Some hundred particles that follow each other, and the contacts whose first partners they are.
 struct Chunk {
     int begin = 0, end = 0;
-    int highest = -1; // particle among the candidates
+    int highest = 0; // particle that the chunk's particles have as a neighbour
     std::vector<int> near_first, near_second,
         near_slot;              // neighbours within reach, and memory of those that touch
     std::vector<int> wall_slot; // of each particle at each wall
@@ -25,7 +25,7 @@ struct Chunk {
     std::vector<std::pair<int, Late>> late; // of contacts that begin in this step, by slot
 
     std::size_t memory() const {
-        std::size_t bytes = pairs.memory() + walls.memory() + sizeof(Chunk);
+        std::size_t bytes = pairs.bytes() + walls.bytes() + sizeof(Chunk);
         for (const auto* v : {&near_first, &near_second, &near_slot, &wall_slot})
             bytes += v->capacity() * sizeof(int);
         return bytes;
@@ -38,6 +38,12 @@ struct Chunk {
     }
 };
 
+// What all need to know of a chunk in a step: a line of memory.
+struct alignas(64) Brief {
+    Row push{};     // on the cavity; and how far any particle has moved beyond the reference
+    Row momentum{}; // and how much nearer to each other any two may have come since the build
+};
+
 struct Bed {
     static constexpr int chunk_size = 128;
 
@@ -45,17 +51,20 @@ struct Bed {
     std::vector<Row> position; // and radius
     std::vector<Row> velocity; // predicted for the end of the step, and 1 / mass
     std::vector<Row> spin;     // predicted, and radius / inertia
-    // Of those that touched something in the step before (others were accelerated as all are, and turned
-    // evenly), and of those that do in this.
-    std::vector<Row> acceleration, spin_rate, force, couple, roll;
-    std::vector<char> touched;   // bits: in the step before, in this step
+    // Of those that touched something in the step before: others were accelerated as all are, and turned
+    // evenly.
+    std::vector<Row> acceleration, spin_rate;
+    std::vector<char> touched;   // something in the step before
     std::vector<int> name, kind; // number in the case, material
     std::vector<Chunk> chunks;
+    std::vector<Brief> briefs; // of the chunks
 
-    real smallest = infinity;             // radius
-    real mass = 0;                        // of all
-    real reach = 0, skin = 0;             // neighbours closer than reach, candidates closer than skin
-    real since_build = 0, since_scan = 0; // bound on how far a particle has moved since
+    real smallest = infinity; // radius
+    real mass = 0;            // of all
+    bool rolls = false;       // some contacts resist rolling
+    real reach = 0;           // neighbours were closer than that at the build
+    Row reference{}; // velocity, beyond which motions of particles are counted: their mean in the step before
+    real apart = 0;  // how far the cavity has moved beyond the reference in the last step
     CavityMotion motion;
     Row shown{}; // displacement of the cavity at the last step whose forces are known
 
@@ -64,15 +73,15 @@ struct Bed {
 
     std::size_t memory() const {
         std::size_t bytes = touched.capacity() + (name.capacity() + kind.capacity()) * sizeof(int);
-        for (const auto* v : {&position, &velocity, &acceleration, &spin, &spin_rate, &force, &couple, &roll})
+        for (const auto* v : {&position, &velocity, &acceleration, &spin, &spin_rate})
             bytes += v->capacity() * sizeof(Row);
         for (const Chunk& c : chunks) bytes += c.memory();
         return bytes;
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(position, velocity, acceleration, spin, spin_rate, touched, name, kind, reach, skin, since_build,
-          since_scan, shown);
+        a(position, velocity, acceleration, spin, spin_rate, touched, name, kind, briefs, reach, reference,
+          apart, shown);
         for (Chunk& c : chunks) c.keep(a);
     }
 };

@@ -8,17 +8,17 @@
 // chunk can move on as soon as its own forces are known, while all it needs is near.
 #pragma once
 
+#include "dem/division.hpp"
 #include "dem/forces.hpp"
 #include "dem/neighbours.hpp"
 
 namespace rattlebox::dem {
 
 class BedStep {
-    static constexpr char touched_before = 1, touched_now = 2;
-
     Bed& bed_;
     const Problem& problem_;
     Kind pair_, wall_;
+    std::vector<real> pair_mu_, wall_mu_; // by kinds
     bool curved_ = false;
     bool far_; // particles and contacts are more than caches hold
 
@@ -44,7 +44,8 @@ class BedStep {
     }
 
     void settle(Contacts& list, int k, Partner partner, Tally& tally) const {
-        tally.plastic[partner] += dem::settle(at(list.dent, at(list.slot, k)), touch(list, k, partner));
+        tally.plastic[partner] +=
+            dem::settle(at(list.memory.dent, at(list.slot, k)), touch(list, k, partner));
     }
 
     template <class View>
@@ -52,12 +53,10 @@ class BedStep {
                Partner partner, bool sampled, Chunk& chunk) {
         Tally& tally = chunk.tally;
         const auto begun = [&](int k) {
-            const int s = list.take();
-            at(list.slot, k) = at(slot_of, at(list.origin, k)) = s;
             const Touch t = touch(list, k, partner);
             const Begun b = begin(t, problem_.dt);
-            list.begin(s, b);
-            if (b.late.share != 0) chunk.late.push_back({s, b.late});
+            at(list.slot, k) = at(slot_of, at(list.origin, k)) = list.memory.begin(b);
+            if (b.late.share != 0) chunk.late.push_back({k, b.late});
             if (b.lost != 0) tally.normal[partner] += first_lane(b.lost);
             ++tally.first_touches[partner];
             tally.extrapolated += b.extrapolated;
@@ -67,16 +66,17 @@ class BedStep {
         };
         const auto ended = [&](int k) {
             const int s = at(list.slot, k);
-            if (list.dents && at(list.dent, s)[3] != at(list.dent, s)[0]) settle(list, k, partner, tally);
+            if (list.memory.dents && at(list.memory.dent, s)[3] != at(list.memory.dent, s)[0])
+                settle(list, k, partner, tally);
             // What the springs still hold is lost.
-            if (kind.rough) tally.sliding[partner] += first_lane(held(at(list.kept, s).friction));
-            if (kind.rolls) tally.rolling[partner] += first_lane(held(at(list.rolling, s).spring));
-            list.free.push_back(s);
+            if (kind.rough) tally.sliding[partner] += first_lane(held(at(list.memory.kept, s).friction));
+            if (kind.rolls) tally.rolling[partner] += first_lane(held(at(list.memory.rolling, s).spring));
+            list.memory.free.push_back(s);
             at(list.slot, k) = at(slot_of, at(list.origin, k)) = Contacts::none;
         };
         chunk.late.clear();
         find_touching(list, view, candidates, begun, ended);
-        if (list.actives == 0) return;
+        if (list.actives == 0) return list.actions.all.clear();
         const auto with_law = [&](auto law) {
             using Law = decltype(law);
             const auto settled = [&](int k) { settle(list, k, partner, tally); };
@@ -93,27 +93,32 @@ class BedStep {
             with_law(LinearStep{});
         else
             with_law(PlasticStep{});
-        for (const auto& [slot, late] : chunk.late) {
-            Kept& kept = at(list.kept, slot);
+        for (const auto& [k, late] : chunk.late) {
+            const auto touching = list.active.begin();
+            const auto a = std::lower_bound(touching, touching + list.actives, k) - touching;
+            Action& action = at(list.actions.all, static_cast<int>(a));
             if (kind.rough)
-                tally.sliding[partner] += first_lane(-late.share * problem_.dt * dot(kept.force, late.slip));
-            kept.force *= row(1 + late.share);
-            kept.couple *= row(1 + late.share, 1 + late.share, 1 + late.share, 1);
+                tally.sliding[partner] +=
+                    first_lane(-late.share * problem_.dt * dot(action.force, late.slip));
+            action.force *= row(1 + late.share);
+            action.couple *= row(1 + late.share);
         }
     }
 
-    void add(const Contacts& list, int s, int i, real sign, const Kind& kind) {
-        const Row both = row(sign);
-        at(bed_.touched, i) |= touched_now;
-        at(bed_.force, i) += both * at(list.kept, s).force;
-        if (kind.rough) at(bed_.couple, i) += at(list.kept, s).couple;
-        if (kind.rolls) at(bed_.roll, i) += both * at(list.rolling, s).torque;
+    void add(Sums& sums, const Actions& actions, int a, int i, real sign, const Kind& kind) {
+        const Action& action = at(actions.all, a);
+        Action& sum = sums.of(i);
+        sum.force += row(sign, sign, sign, 1) * action.force;
+        sum.couple += action.couple;
+        if (kind.rolls) sums.torque(i) += row(sign) * at(actions.torque, a);
     }
 
 public:
     BedStep(Bed& bed, const Problem& problem, const Kind& pair, const Kind& wall)
         : bed_(bed), problem_(problem), pair_(pair), wall_(wall), far_(bed.particles() > 20'000) {
         for (const Wall& w : bed.cavity->walls) curved_ |= w.form != Wall::plane;
+        for (const int e : bed.cavity->particle_entry) pair_mu_.push_back(at(problem.encounters, e).friction);
+        for (const int e : bed.cavity->wall_entry) wall_mu_.push_back(at(problem.encounters, e).friction);
     }
 
     // Asks memory for what the chunk after this will need, and for the lists of the one after that. Inlined:
@@ -131,58 +136,71 @@ public:
             const int j = at(list.second, k), s = at(list.slot, k);
             fetch(at(bed_.position, j));
             if (s < 0) continue;
-            for (const auto* rows : {&bed_.velocity, &bed_.spin, &bed_.force, &bed_.couple})
-                fetch(at(*rows, j));
-            fetch(at(list.kept, s)), fetch(at(list.kept, s).friction);
+            fetch(at(bed_.velocity, j)), fetch(at(bed_.spin, j)), fetch(at(list.memory.kept, s));
         }
         for (int i = next.begin; i < next.end; i += 2)
             fetch(at(bed_.acceleration, i)), fetch(at(bed_.spin_rate, i));
     }
 
+    // Candidates are those that may touch in this step.
+    void look_around(const Neighbours& neighbours, Chunk& chunk) {
+        const int own = chunk.begin / Bed::chunk_size, last = chunk.highest / Bed::chunk_size;
+        const real moved = at(bed_.briefs, own).push[3];
+        real others = 0;
+        for (int c = own; c <= last; ++c) others = larger(others, at(bed_.briefs, c).push[3]);
+        Contacts &pairs = chunk.pairs, &walls = chunk.walls;
+        pairs.since += moved + others, ++pairs.age;
+        walls.since += moved + bed_.apart, ++walls.age;
+        at(bed_.briefs, own).momentum[3] += moved + others;
+        if (pairs.is_stale()) neighbours.scan_pairs(bed_, chunk), ++chunk.tally.scans;
+        if (walls.is_stale()) neighbours.scan_walls(bed_, chunk);
+    }
+
     // Forces of all contacts that the chunk owns, and of its particles at the walls.
     void forces(Chunk& chunk, bool sampled) {
         // Those of tier t were at least t / tiers of the skin apart.
-        const real closed = 2 * bed_.since_scan / bed_.skin * Contacts::tiers * (1 + 1e-9);
+        const real closed = chunk.pairs.since / chunk.pairs.skin * Contacts::tiers;
         const int tier = std::min(static_cast<int>(closed), Contacts::tiers - 1);
-        visit(chunk.pairs, PairView{bed_, chunk.pairs}, chunk.pairs.tier_end[tier], chunk.near_slot, pair_,
-              particle, sampled, chunk);
-        visit(chunk.walls, WallView{bed_, chunk.walls, curved_}, chunk.walls.size(), chunk.wall_slot, wall_,
-              wall, sampled, chunk);
+        visit(chunk.pairs, PairView{bed_, chunk.pairs, pair_mu_}, chunk.pairs.tier_end[tier], chunk.near_slot,
+              pair_, particle, sampled, chunk);
+        visit(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, chunk.walls.size(),
+              chunk.wall_slot, wall_, wall, sampled, chunk);
         Row total{}, moment{};
         const Contacts& list = chunk.walls;
         for (int a = 0; a < list.actives; ++a) {
-            const int k = at(list.active, a), s = at(list.slot, k), i = at(list.first, k);
-            const Row f = at(list.kept, s).force;
+            const int k = at(list.active, a), i = at(list.first, k);
+            const Row f = at(list.actions.all, a).force;
             total -= f;
             if (sampled) {
                 const Row place = at(bed_.position, i) - bed_.motion.displacement;
                 const Near near = nearest(at(bed_.cavity->walls, at(list.second, k)), place);
                 moment -= cross(place + near.normal * near.distance, f);
-                if (wall_.rolls) moment -= at(list.rolling, s).torque;
+                if (wall_.rolls) moment -= at(list.actions.torque, a);
             }
         }
-        chunk.tally.wall_force = total;
+        Row& push = at(bed_.briefs, chunk.begin / Bed::chunk_size).push;
+        push = row(total[0], total[1], total[2], push[3]);
         chunk.tally.wall_moment = moment;
     }
 
-    // Adds the force of a candidate that a lower chunk owns on its second partner, if it touches.
-    void add_incoming(const Contacts& list, int k) {
-        const int s = at(list.slot, k);
-        if (s >= 0) add(list, s, at(list.second, k), -1, pair_);
+    // Adds the forces of contacts that a lower chunk owns, on particles from `first` to `until`.
+    void add_incoming(Sums& sums, const Chunk& lower, int first, int until) {
+        const Contacts& pairs = lower.pairs;
+        for (int a = 0; a < pairs.actives; ++a)
+            if (const int j = at(pairs.second, at(pairs.active, a)); j >= first && j < until)
+                add(sums, pairs.actions, a, j, -1, pair_);
     }
 
-    // Adds the forces of contacts that the chunk owns, on particles below `to`.
-    void add_own(const Chunk& chunk, int to) {
+    // Adds the forces of contacts that the chunk owns, on particles below `until`.
+    void add_own(Sums& sums, const Chunk& chunk, int until) {
         const Contacts &pairs = chunk.pairs, &walls = chunk.walls;
         for (int a = 0; a < pairs.actives; ++a) {
-            const int k = at(pairs.active, a), s = at(pairs.slot, k), j = at(pairs.second, k);
-            add(pairs, s, at(pairs.first, k), 1, pair_);
-            if (j < to) add(pairs, s, j, -1, pair_);
+            const int k = at(pairs.active, a), j = at(pairs.second, k);
+            add(sums, pairs.actions, a, at(pairs.first, k), 1, pair_);
+            if (j < until) add(sums, pairs.actions, a, j, -1, pair_);
         }
-        for (int a = 0; a < walls.actives; ++a) {
-            const int k = at(walls.active, a);
-            add(walls, at(walls.slot, k), at(walls.first, k), 1, wall_);
-        }
+        for (int a = 0; a < walls.actives; ++a)
+            add(sums, walls.actions, a, at(walls.first, at(walls.active, a)), 1, wall_);
     }
 
     real turning(int i) const { // twice the energy of spin
@@ -191,38 +209,34 @@ public:
     }
 
     // Velocities at this step, and on to the next. `body` is what accelerates all alike, `body_before` in the
-    // step before; displacements are counted from those that `reference` makes; the first step has no step
-    // before.
-    template <bool sampled> void advance(Chunk& chunk, Row body, Row body_before, Row reference, bool first) {
+    // step before; the first step has none before.
+    template <bool sampled> void advance(Sums& sums, Chunk& chunk, Row body, Row body_before, bool first) {
         Tally& tally = chunk.tally;
         const bool spins = pair_.rough || wall_.rough, rolls = pair_.rolls || wall_.rolls;
         const real dt = problem_.dt, h = 0.5 * dt, ever = first ? 0 : h;
         const Row back = row(ever, ever, ever), step = row(dt, dt, dt), half = row(h, h, h),
                   space = row(1, 1, 1);
-        const Row evenly = back * (body - body_before);
+        const Row evenly = back * (body - body_before), reference = bed_.reference;
         Row momentum{}, mass_moment{};
         real drift = 0, kinetic = 0, rotation = 0;
         for (int i = chunk.begin; i < chunk.end; ++i) {
             Row &x = at(bed_.position, i), &u = at(bed_.velocity, i);
             char& touched = at(bed_.touched, i);
+            Action& sum = sums.of(i);
             Row a = body, v = u + evenly;
-            if (touched) {
-                const bool before = touched & touched_before, now = touched & touched_now;
-                if (now) {
-                    a = at(bed_.force, i) * u[3] + body;
-                    at(bed_.force, i) = Row{};
-                }
+            const bool before = touched, now = sum.force[3] > 0;
+            if (before || now) {
+                if (now) a = sum.force * u[3] + body;
                 v = u + back * (a - (before ? at(bed_.acceleration, i) : body_before));
                 at(bed_.acceleration, i) = a;
                 if (spins) {
                     Row &w = at(bed_.spin, i), rate = Row{},
                         rate_before = before ? at(bed_.spin_rate, i) : Row{};
                     if (now) {
-                        rate = at(bed_.couple, i);
-                        at(bed_.couple, i) = Row{};
+                        rate = sum.couple;
                         if (rolls) {
-                            rate += at(bed_.roll, i) / x[3];
-                            at(bed_.roll, i) = Row{};
+                            rate += sums.torque(i) / x[3];
+                            sums.torque(i) = Row{};
                         }
                         rate *= w[3];
                     }
@@ -233,7 +247,8 @@ public:
                 } else if constexpr (sampled) {
                     rotation += turning(i);
                 }
-                touched = now ? touched_before : 0;
+                touched = now;
+                if (now) sum = Action{};
             } else if constexpr (sampled) {
                 rotation += turning(i);
             }
@@ -249,8 +264,9 @@ public:
             const real speed = dot(moved, moved);
             drift = drift > speed ? drift : speed;
         }
-        tally.momentum = momentum;
-        tally.drift = drift;
+        Brief& brief = at(bed_.briefs, chunk.begin / Bed::chunk_size);
+        brief.push[3] = dt * std::sqrt(drift) * (1 + 1e-9);
+        brief.momentum = row(momentum[0], momentum[1], momentum[2], brief.momentum[3]);
         if constexpr (sampled) {
             tally.kinetic = 0.5 * kinetic;
             tally.rotation = 0.5 * rotation;

@@ -40,13 +40,14 @@ template <class T> struct Ball {
 template <bool spins, class T> RATTLEBOX_INLINE Meeting<T> meet(const Ball<T>& a, const Ball<T>& b) {
     const auto way = b.place - a.place;
     const T distance = root(dot(way, way)), near = a.radius + b.radius;
+    const T per_both = all(near, 1) / (distance * near); // one division for two
     Meeting<T> m;
-    m.normal = (all(near, 1) / distance) * way;
+    m.normal = (near * per_both) * way;
     m.overlap = near - distance;
     m.radius = smaller(a.radius, b.radius);
     m.velocity = a.velocity - b.velocity;
     if constexpr (spins) {
-        m.lever = distance / near;
+        m.lever = distance * distance * per_both;
         m.swirl = (m.lever * a.radius) * a.spin + (m.lever * b.radius) * b.spin;
         m.spin = a.spin - b.spin;
     }
@@ -74,32 +75,34 @@ RATTLEBOX_INLINE Meeting<T> meet(const Ball<T>& a, const Vector<T>& normal, cons
 template <class T> struct Holding {
     Vector<T> force, spring; // at this step
     Vector<T> ahead;         // the spring half a step later
+    T gives;                 // 1 / stiffness
     T loss;                  // energy lost in this step
     T stored;                // in the spring, mean of half a step before and after
 };
 
-// `before` is the spring's force half a step ago: half of the stretch of a step comes before its force is
-// needed and half after it, which is the trapezoidal rule.
+// `before` is the spring's force half a step ago, when it gave by `gave` times its force: half of the stretch
+// of a step comes before its force is needed and half after it, which is the trapezoidal rule.
 template <class T>
-RATTLEBOX_INLINE Holding<T> hold(const Vector<T>& before, const T& stiffness_before, const Vector<T>& normal,
+RATTLEBOX_INLINE Holding<T> hold(const Vector<T>& before, const T& gave, const Vector<T>& normal,
                                  const T& stiffness, const T& damping, const Vector<T>& velocity,
                                  const T& limit, const T& dt) {
     const T one = all(limit, 1), half = all(limit, 0.5), tiny = all(limit, 1e-290), zero = all(limit, 0);
     // Into the present plane, with its size, less what unloading takes.
     const Vector<T> flat = before - dot(before, normal) * normal;
-    const T was = dot(before, before), eased = smaller(one, stiffness / stiffness_before);
+    const T was = dot(before, before), eased = smaller(one, stiffness * gave);
     const T kept = eased * root(was / (dot(flat, flat) + tiny));
     const Vector<T> stretch = (half * stiffness * dt) * velocity;
     const Vector<T> trial = kept * flat - stretch;
     const T size = root(dot(trial, trial)), part = smaller(one, limit / (size + tiny));
     Holding<T> h;
+    h.gives = one / stiffness;
     h.spring = part * trial;
     h.ahead = h.spring - stretch;
     const T slip = dot(velocity, velocity), drag = damping * root(slip);
     const T dashpot = damping * smaller(one, larger(limit - size, zero) / (drag + tiny));
     h.force = h.spring - dashpot * velocity;
     // What the spring took up in this step and does not hold: by slipping, and by its change of stiffness.
-    const T held = half * was / stiffness_before, holds = half * dot(h.ahead, h.ahead) / stiffness;
+    const T held = half * was * gave, holds = half * dot(h.ahead, h.ahead) * h.gives;
     h.loss = dashpot * slip * dt + larger(held - holds - dot(h.spring, velocity) * dt, zero);
     h.stored = half * (held + holds);
     return h;
@@ -172,6 +175,7 @@ struct PlasticStep {
 template <class T> struct Tangential {
     Vector<T> force, couple; // on the first; the couple over its radius
     Four<T> friction;        // what the spring remembers
+    T stiffness;
     T lost, stored;
 };
 
@@ -188,7 +192,8 @@ RATTLEBOX_INLINE Tangential<T> rub(const Meeting<T>& m, const Push<T>& push, con
         hold(history.vector(), history.w, m.normal, stiffness, dashpot, slip, friction * pressed, dt);
     return {h.force,
             m.lever * cross(m.normal, h.force),
-            {h.ahead.x, h.ahead.y, h.ahead.z, stiffness},
+            {h.ahead.x, h.ahead.y, h.ahead.z, h.gives},
+            stiffness,
             h.loss,
             h.stored};
 }
@@ -208,7 +213,7 @@ RATTLEBOX_INLINE Rolling<T> roll(const Meeting<T>& m, const Push<T>& push, const
     const Vector<T> turning = m.spin - dot(m.spin, m.normal) * m.normal;
     const T spring = law.y * stiffness;
     const auto r = hold(past.vector(), past.w, m.normal, spring, law.z * drag, turning, law.x * pressed, dt);
-    return {r.force, {r.ahead.x, r.ahead.y, r.ahead.z, spring}, r.loss, r.stored};
+    return {r.force, {r.ahead.x, r.ahead.y, r.ahead.z, r.gives}, r.loss, r.stored};
 }
 
 } // namespace rattlebox::dem

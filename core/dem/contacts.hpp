@@ -12,15 +12,78 @@ namespace rattlebox::dem {
 template <class T> T& at(std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
 template <class T> const T& at(const std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
 
-// What of it must be carried along when particles change their order.
-struct Carried {
-    Row friction, law, rolling, rolling_law, dent;
-    real mu;
+// What contacts remember, by slot.
+struct Memory {
+    std::vector<Kept> kept;
+    std::vector<KeptRolling> rolling; // with rolling resistance only
+    std::vector<Row> dent; // of a plastic law: deepest overlap, stiffness and origin of the curve that
+                           // unloads, and the deepest overlap that this curve is for
+    std::vector<int> free;
+    bool rolls = false, dents = false;
+
+    int used() const { return static_cast<int>(kept.size() - free.size()); }
+
+    int take() {
+        if (!free.empty()) {
+            const int s = free.back();
+            free.pop_back();
+            return s;
+        }
+        if (kept.size() == kept.capacity()) reserve(kept.size() + kept.size() / 8 + 4);
+        kept.emplace_back();
+        if (rolls) rolling.emplace_back();
+        if (dents) dent.emplace_back();
+        return static_cast<int>(kept.size()) - 1;
+    }
+
+    void reserve(std::size_t slots) {
+        kept.reserve(slots);
+        if (rolls) rolling.reserve(slots);
+        if (dents) dent.reserve(slots);
+    }
+
+    int begin(const Begun& b) {
+        const int s = take();
+        at(kept, s) = b.kept;
+        if (rolls) at(rolling, s) = b.rolling;
+        if (dents) at(dent, s) = b.dent;
+        return s;
+    }
+
+    // `sign` is -1 where the partners have changed places.
+    int begin(const Memory& old, int slot, real sign) {
+        const int s = take();
+        const Row turn = row(sign, sign, sign, 1);
+        at(kept, s) = {turn * at(old.kept, slot).friction, at(old.kept, slot).law};
+        if (rolls) at(rolling, s) = {turn * at(old.rolling, slot).spring, at(old.rolling, slot).law};
+        if (dents) at(dent, s) = at(old.dent, slot);
+        return s;
+    }
+
+    std::size_t bytes() const {
+        return kept.capacity() * sizeof(Kept) + rolling.capacity() * sizeof(KeptRolling) +
+               dent.capacity() * sizeof(Row) + free.capacity() * sizeof(int);
+    }
+
+    template <class Archive> void keep(Archive& a) { a(kept, rolling, dent, free); }
+};
+
+// What those that touch do in a step, in the order in which they are listed.
+struct Actions {
+    std::vector<Action> all;
+    std::vector<Row> torque; // of rolling, on the first
+
+    void swap(Actions& other) { all.swap(other.all), torque.swap(other.torque); }
 };
 
 struct Contacts {
     static constexpr int tiers = 4; // candidates by distance at the last scan
     static constexpr int none = -1;
+
+    real skin = 0;         // candidates were closer than that at the scan,
+    real since = infinity; // and since then no two have come nearer to each other than that
+    int age = 0;           // in steps
+    real rate = 0;         // nearer in a step, between the last two scans
 
     // Candidates, tier by tier; lanes may read a few past the end.
     std::vector<int> first, second; // numbers of particles; of a wall for the second at a wall
@@ -29,16 +92,12 @@ struct Contacts {
     int tier_end[tiers] = {};
     std::vector<int> active; // candidates that touch
     int actives = 0;
+    Actions actions;
 
-    // Memory of those that touch, by slot.
-    std::vector<Kept> kept;
-    std::vector<KeptRolling> rolling; // with rolling resistance only
-    std::vector<Row> dent; // of a plastic law: deepest overlap, stiffness and origin of the curve that
-                           // unloads, and the deepest overlap that this curve is for
-    std::vector<int> free;
-    bool rolls = false, dents = false;
+    Memory memory;
 
     int size() const { return tier_end[tiers - 1]; }
+    bool is_stale() const { return !(since < skin); }
 
     void resize(int candidates) {
         const auto n = static_cast<std::size_t>(candidates);
@@ -53,61 +112,30 @@ struct Contacts {
         std::fill(second.begin() + size(), second.end(), second_at_hand);
     }
 
-    int take() {
-        if (!free.empty()) {
-            const int s = free.back();
-            free.pop_back();
-            return s;
-        }
-        const auto one_more = [](auto& memory) {
-            if (memory.size() == memory.capacity()) memory.reserve(memory.size() + memory.size() / 8 + 4);
-            memory.emplace_back();
-        };
-        one_more(kept);
-        if (rolls) one_more(rolling);
-        if (dents) one_more(dent);
-        return static_cast<int>(kept.size()) - 1;
-    }
-
-    void begin(int s, const Begun& b) {
-        at(kept, s) = b.kept;
-        if (rolls) at(rolling, s) = b.rolling;
-        if (dents) at(dent, s) = b.dent;
-    }
-
-    void forget_all() {
-        kept.clear(), rolling.clear(), dent.clear(), free.clear();
-        actives = 0;
+    // Nobody is a candidate any more; what they remember goes to `leaving`.
+    void leave(Memory& leaving) {
+        const bool rolls = memory.rolls, dents = memory.dents;
+        leaving = std::move(memory);
+        memory = {};
+        memory.rolls = rolls, memory.dents = dents;
+        memory.reserve(static_cast<std::size_t>(leaving.used()));
+        actives = 0, since = infinity;
+        actions.all.clear(), actions.torque.clear();
         resize(0);
         for (int& end : tier_end) end = 0;
     }
 
-    Carried carried(int s) const {
-        const Kept& k = at(kept, s);
-        const KeptRolling r = rolls ? at(rolling, s) : KeptRolling{};
-        return {k.friction, k.law, r.spring, r.law, dents ? at(dent, s) : Row{}, k.couple[3]};
-    }
-
-    // `sign` is -1 where the partners have changed places.
-    int remember(const Carried& old, real sign) {
-        const int s = take();
-        const Row turn = row(sign, sign, sign, 1);
-        at(kept, s) = Kept{Row{}, row(0, 0, 0, old.mu), turn * old.friction, old.law};
-        if (rolls) at(rolling, s) = KeptRolling{Row{}, turn * old.rolling, old.rolling_law};
-        if (dents) at(dent, s) = old.dent;
-        return s;
-    }
-
-    std::size_t memory() const {
-        std::size_t bytes = kept.capacity() * sizeof(Kept) + rolling.capacity() * sizeof(KeptRolling) +
-                            dent.capacity() * sizeof(Row);
-        for (const auto* v : {&first, &second, &origin, &slot, &active, &free})
-            bytes += v->capacity() * sizeof(int);
-        return bytes;
+    std::size_t bytes() const {
+        std::size_t sum = memory.bytes() + static_cast<std::size_t>(actives) *
+                                               (sizeof(Action) + (memory.rolls ? sizeof(Row) : 0));
+        for (const auto* v : {&first, &second, &origin, &slot, &active}) sum += v->capacity() * sizeof(int);
+        return sum;
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(first, second, origin, slot, tier_end, active, actives, kept, rolling, dent, free);
+        a(skin, since, age, rate, first, second, origin, slot, tier_end, active, actives, actions.all,
+          actions.torque);
+        memory.keep(a);
     }
 };
 

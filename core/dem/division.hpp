@@ -5,6 +5,8 @@
 // moves on.
 #pragma once
 
+#include <bit>
+
 #include "dem/bed.hpp"
 
 namespace rattlebox::dem {
@@ -13,17 +15,34 @@ struct Place {
     int bed, chunk;
 };
 
-// A candidate that a lower part owns and that acts here.
-struct Incoming {
-    int bed, chunk, candidate;
+// What acts on the particles of a part that are at hand, whose numbers lie close together: a ring.
+class Sums {
+    std::vector<Action> sums_;
+    std::vector<Row> torque_;
+    int mask_ = 0;
+
+public:
+    Action& of(int i) { return at(sums_, i & mask_); }
+    Row& torque(int i) { return at(torque_, i & mask_); } // of rolling
+
+    // All is zero between two steps.
+    void make_room(int span, bool rolls) {
+        const auto size = std::bit_ceil(static_cast<std::size_t>(span));
+        mask_ = static_cast<int>(size) - 1;
+        sums_.assign(size, Action{});
+        torque_.assign(rolls ? size : 1, Row{});
+    }
 };
 
 struct Part {
     int begin = 0, end = 0; // among the chunks of all beds
     std::vector<char>
-        early; // of each of them: has candidates in higher parts, or particles that lower parts reach
-    std::vector<Incoming> incoming;
+        early; // of each of them: has neighbours in higher parts, or particles that lower parts reach
+    std::vector<char> known;       // forces of it, in this step
+    std::vector<Place> incoming;   // chunks of lower parts that reach here
     std::vector<int> first, until; // particles of each bed
+    std::vector<Sums> sums;        // of each bed
+    Actions at_pairs, at_walls;    // of the chunk at work
 };
 
 class Division {
@@ -33,9 +52,7 @@ class Division {
 
     // Nanoseconds, about: where the time goes was measured.
     static long cost(const Chunk& c) {
-        const auto touching = [](const Contacts& list) {
-            return static_cast<long>(list.kept.size() - list.free.size());
-        };
+        const auto touching = [](const Contacts& list) { return static_cast<long>(list.memory.used()); };
         return 7 * (c.end - c.begin) + 2 * (c.pairs.size() + c.walls.size()) +
                20 * (touching(c.pairs) + touching(c.walls));
     }
@@ -51,6 +68,7 @@ public:
 
     int chunks() const { return static_cast<int>(all_.size()); }
     const Part& part(int rank) const { return at(parts_, rank); }
+    Part& part(int rank) { return at(parts_, rank); }
     Place place(int k) const { return at(all_, k); }
 
     template <class F> void each_chunk(int rank, F&& f) const {
@@ -72,33 +90,35 @@ public:
         for (int r = 0; r < members; ++r) at(parts_, r).begin = r == 0 ? 0 : at(parts_, r - 1).end;
     }
 
-    // What a member needs to know of its part, once all candidates are known.
+    // What a member needs to know of its part, once all neighbours are known.
     void look_around(int rank) {
         Part& part = at(parts_, rank);
+        const std::size_t beds = beds_->size();
         part.incoming.clear();
-        part.first.assign(beds_->size(), 0), part.until.assign(beds_->size(), 0);
+        part.first.assign(beds, 0), part.until.assign(beds, 0), part.sums.resize(beds);
         for (int k = part.end; k-- > part.begin;) {
             const Place p = at(all_, k);
             at(part.first, p.bed) = chunk(p).begin;
             at(part.until, p.bed) = std::max(at(part.until, p.bed), chunk(p).end);
         }
-        std::vector<int> reached(beds_->size(), -1); // highest particle
+        std::vector<int> reached(beds, -1); // highest particle
         for (int k = 0; k < part.begin; ++k) {
             const Place p = at(all_, k);
             const int first = at(part.first, p.bed), until = at(part.until, p.bed);
             if (chunk(p).highest < first || first == until) continue;
-            const Contacts& pairs = chunk(p).pairs;
-            for (int c = 0; c < pairs.size(); ++c)
-                if (const int j = at(pairs.second, c); j >= first && j < until) {
-                    part.incoming.push_back({p.bed, p.chunk, c});
-                    at(reached, p.bed) = std::max(at(reached, p.bed), j);
-                }
+            part.incoming.push_back(p);
+            at(reached, p.bed) = std::max(at(reached, p.bed), std::min(chunk(p).highest, until - 1));
         }
         part.early.clear();
+        std::vector<int> ahead = reached, span(beds, 1); // from the first particle that has not moved on
         each_chunk(rank, [&](Place p) {
             const Chunk& c = chunk(p);
-            part.early.push_back(c.highest >= at(part.until, p.bed) || c.begin <= at(reached, p.bed));
+            const int until = at(part.until, p.bed);
+            part.early.push_back(c.highest >= until || c.begin <= at(reached, p.bed));
+            at(ahead, p.bed) = std::max({at(ahead, p.bed), std::min(c.highest, until - 1), c.end - 1});
+            at(span, p.bed) = std::max(at(span, p.bed), at(ahead, p.bed) - c.begin + 1);
         });
+        for (std::size_t b = 0; b < beds; ++b) part.sums[b].make_room(span[b], (*beds_)[b].rolls);
     }
 };
 

@@ -6,10 +6,25 @@
 
 namespace rattlebox::dem {
 
+template <class Entry> RATTLEBOX_INLINE Lanes of_kinds(const std::vector<real>& value, Entry&& entry) {
+    if (value.size() == 1) return Lanes::all(value[0]);
+    alignas(64) real of[lane_count];
+    for (int l = 0; l < lane_count; ++l) of[l] = at(value, entry(l));
+    return lanes(of);
+}
+
 // A pair of particles, and a particle at a wall, in lanes.
 struct PairView {
     const Bed& bed;
     const Contacts& list;
+    const std::vector<real>& mu; // by kinds
+
+    RATTLEBOX_INLINE Lanes friction(const int* k) const {
+        return of_kinds(mu, [&](int l) {
+            return at(bed.kind, at(list.first, k[l])) * bed.cavity->kinds +
+                   at(bed.kind, at(list.second, k[l]));
+        });
+    }
 
     RATTLEBOX_INLINE Columns<8> first(const std::vector<Row>& rows, const int* k) const {
         return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
@@ -41,7 +56,14 @@ struct PairView {
 struct WallView {
     const Bed& bed;
     const Contacts& list;
+    const std::vector<real>& mu;
     bool curved;
+
+    RATTLEBOX_INLINE Lanes friction(const int* k) const {
+        return of_kinds(mu, [&](int l) {
+            return at(bed.kind, at(list.first, k[l])) * bed.cavity->wall_kinds + wall(k[l]).kind;
+        });
+    }
 
     RATTLEBOX_INLINE Columns<8> first(const std::vector<Row>& rows, const int* k) const {
         return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
@@ -126,21 +148,28 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
     const int count = list.actives;
     const int* active = list.active.data();
     const Lanes zero = Lanes::all(0), dt = Lanes::all(how.dt);
+    Actions& actions = list.actions;
+    actions.all.resize(static_cast<std::size_t>(count));
+    if constexpr (rolls) actions.torque.resize(static_cast<std::size_t>(count));
     alignas(64) real used[lane_count];
     for (int base = 0; base < count; base += lane_count) {
-        int k[lane_count], s[lane_count];
+        int a[lane_count], k[lane_count], s[lane_count];
         for (int l = 0; l < lane_count; ++l) {
-            k[l] = active[std::min(base + l, count - 1)];
+            a[l] = std::min(base + l, count - 1);
+            k[l] = active[a[l]];
             s[l] = at(list.slot, k[l]);
             used[l] = base + l < count;
         }
         const auto kept = [&](Row Kept::* part) {
-            return [&, part](int l) { return &(at(list.kept, s[l]).*part); };
+            return [&, part](int l) { return &(at(list.memory.kept, s[l]).*part); };
         };
         const auto rolling = [&](Row KeptRolling::* part) {
-            return [&, part](int l) { return &(at(list.rolling, s[l]).*part); };
+            return [&, part](int l) { return &(at(list.memory.rolling, s[l]).*part); };
         };
-        const auto dents = [&](int l) { return &at(list.dent, s[l]); };
+        const auto acting = [&](Row Action::* part) {
+            return [&, part](int l) { return &(at(actions.all, a[l]).*part); };
+        };
+        const auto dents = [&](int l) { return &at(list.memory.dent, s[l]); };
         const Lanes weight = lanes(used);
         const auto m = view.template meeting<rough>(k);
         const auto law = columns(kept(&Kept::law));
@@ -149,7 +178,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             alignas(64) real overlap[lane_count];
             lanes(overlap) = m.overlap;
             for (int l = 0; l < lane_count; ++l) {
-                Row& d = at(list.dent, s[l]);
+                Row& d = at(list.memory.dent, s[l]);
                 if (sampled) d[0] = std::fmax(d[0], overlap[l]);
                 if (d[3] != d[0] && (overlap[l] < d[0] || sampled)) settle(k[l]);
             }
@@ -159,7 +188,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
         auto push = Law::push(law, dent, m.overlap, rate);
         if (how.never_pulls) push.force = larger(push.force, zero);
         tally.normal[partner] += weight * dt * (push.force - push.elastic) * rate;
-        tally.deepest = larger(tally.deepest, m.overlap / m.radius);
+        tally.deepest.see(m.overlap, m.radius);
         Vector<Lanes> force = (zero - push.force) * m.normal;
         if (sampled) tally.stored += weight * Law::stored(law, dent, m.overlap);
         if constexpr (Law::plastic) {
@@ -167,24 +196,25 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             store(dent, dents);
         }
         if constexpr (rough) {
-            const Lanes mu = columns(kept(&Kept::couple)).w;
-            const auto h =
-                rub(m, push, rate, law, mu, columns(kept(&Kept::friction)), !Law::plastic, how.mindlin, dt);
+            const auto h = rub(m, push, rate, law, view.friction(k), columns(kept(&Kept::friction)),
+                               !Law::plastic, how.mindlin, dt);
             store(lay(h.friction), kept(&Kept::friction));
             tally.sliding[partner] += weight * h.lost;
             force = force + h.force;
-            store(Columns<8>{h.couple.x, h.couple.y, h.couple.z, mu}, kept(&Kept::couple));
+            store(Columns<8>{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&Action::couple));
             if (sampled) tally.stored += weight * h.stored;
             if constexpr (rolls) {
-                const auto r = roll(m, push, h.friction.w, columns(rolling(&KeptRolling::law)),
+                const auto r = roll(m, push, h.stiffness, columns(rolling(&KeptRolling::law)),
                                     columns(rolling(&KeptRolling::spring)), how.mindlin, dt);
                 store(lay(r.rolling), rolling(&KeptRolling::spring));
-                store(Columns<8>{r.torque.x, r.torque.y, r.torque.z, zero}, rolling(&KeptRolling::torque));
+                store(Columns<8>{r.torque.x, r.torque.y, r.torque.z, zero},
+                      [&](int l) { return &at(actions.torque, a[l]); });
                 tally.rolling[partner] += weight * r.lost;
                 if (sampled) tally.stored += weight * r.stored;
             }
-        }
-        store(Columns<8>{force.x, force.y, force.z, zero}, kept(&Kept::force));
+        } else
+            store(Columns<8>{zero, zero, zero, zero}, acting(&Action::couple));
+        store(Columns<8>{force.x, force.y, force.z, Lanes::all(1)}, acting(&Action::force));
     }
     if (sampled) tally.contacts[partner] += count;
 }

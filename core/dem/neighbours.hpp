@@ -1,8 +1,10 @@
 // Who may touch whom soon: cells, neighbours within reach, and of these the candidates that every step looks
 // at.
 //
-// A pair farther apart than `reach` at the last build cannot touch before both have moved by reach / 2, and
-// likewise for the candidates and `skin`: both bounds are kept by adding up the largest speed of each step.
+// A pair farther apart than `reach` at the last build cannot touch before it has come nearer by that much,
+// and likewise for the candidates of a chunk and their `skin`: chunk by chunk both bounds are kept by adding
+// up, in each step, how far its fastest particle has moved and the fastest of those chunks where it has
+// neighbours. Motions are counted beyond the mean one, which brings no two nearer to each other.
 // Candidates lie in tiers by how far apart they were at the scan, and a step looks at the tiers that may have
 // closed by then. Particles are sorted by cell at each build, so that neighbours are near in memory too, and
 // a row of three cells is one range.
@@ -18,20 +20,45 @@ namespace rattlebox::dem {
 class Neighbours {
     static constexpr int none = Contacts::none;
 
-    // A contact on its way from the order before a sort to that after it.
+    // A contact on its way from the order before a sort to that after it, and the memories of a chunk's.
     struct Moving {
-        int first, second, wall;
-        Carried memory;
+        int first, second, wall, slot;
+    };
+    struct Leaving {
+        std::vector<Moving> moving;
+        Memory pairs, walls;
     };
 
+    // All of a bed that is sorted.
+    struct Order {
+        std::vector<Row> position, velocity, acceleration, spin, spin_rate;
+        std::vector<char> touched;
+        std::vector<int> name, kind;
+
+        template <class F> void each(Bed& bed, F&& f) {
+            f(bed.position, position), f(bed.velocity, velocity), f(bed.acceleration, acceleration);
+            f(bed.spin, spin), f(bed.spin_rate, spin_rate);
+            f(bed.touched, touched), f(bed.name, name), f(bed.kind, kind);
+        }
+    } sorted_;
+
     std::vector<int> order_, place_, cell_, cell_start_;
-    std::vector<std::vector<Moving>> moving_; // by chunk before the sort
+    std::vector<real> along_[4];   // places and radii once more, axis by axis: searched in lanes
+    std::vector<Leaving> leaving_; // by chunk before the sort
     real largest_ = 0, low_[3] = {}, size_ = 0;
     int cells_[3] = {};
 
     int cell_along(real x, int axis) const {
         const int c = static_cast<int>((x - low_[axis]) / size_);
         return std::clamp(c, 0, cells_[axis] - 1);
+    }
+
+    // For some steps, if they go on as since the last scan.
+    static void choose_skin(Contacts& list, real smallest, real largest) {
+        constexpr real steps = 9; // a scan costs as much as some steps: measured, and flat about this number
+        if (list.age > 0 && list.since < infinity) list.rate = list.since / list.age;
+        list.skin = list.rate > 0 ? std::clamp(list.rate * steps, 2e-3 * smallest, largest) : 0.1 * largest;
+        list.since = 0, list.age = 0;
     }
 
     void lay_cells(const Bed& bed) {
@@ -53,16 +80,24 @@ class Neighbours {
     }
 
 public:
-    void start(const Bed& bed) {
+    void start(Bed& bed) {
         largest_ = 0;
-        moving_.resize(bed.chunks.size());
+        leaving_.resize(bed.chunks.size());
+        const auto n = static_cast<std::size_t>(bed.particles());
+        sorted_.each(bed, [&](const auto&, auto& sorted) { sorted.resize(n); });
+        for (auto& values : along_) values.resize(n + lane_count);
         for (const Row& p : bed.position) largest_ = larger(largest_, p[3]);
     }
 
     std::size_t memory() const {
-        std::size_t bytes = 0;
-        for (const auto* v : {&order_, &place_, &cell_, &cell_start_}) bytes += v->capacity() * sizeof(int);
-        for (const auto& m : moving_) bytes += m.capacity() * sizeof(Moving);
+        std::size_t bytes = sorted_.touched.capacity();
+        for (const auto* v :
+             {&sorted_.position, &sorted_.velocity, &sorted_.acceleration, &sorted_.spin, &sorted_.spin_rate})
+            bytes += v->capacity() * sizeof(Row);
+        for (const auto* v : {&order_, &place_, &cell_, &cell_start_, &sorted_.name, &sorted_.kind})
+            bytes += v->capacity() * sizeof(int);
+        for (const auto& values : along_) bytes += values.capacity() * sizeof(real);
+        for (const auto& from : leaving_) bytes += from.moving.capacity() * sizeof(Moving);
         return bytes;
     }
 
@@ -70,17 +105,17 @@ public:
     // arrive
 
     void pack_up(const Bed& bed, Chunk& chunk) {
-        std::vector<Moving>& moving = at(moving_, chunk.begin / Bed::chunk_size);
+        Leaving& leaving = at(leaving_, chunk.begin / Bed::chunk_size);
         const int walls = static_cast<int>(bed.cavity->walls.size());
+        leaving.moving.clear();
         for (std::size_t p = 0; p < chunk.near_slot.size(); ++p)
             if (chunk.near_slot[p] != none)
-                moving.push_back({chunk.near_first[p], chunk.near_second[p], none,
-                                  chunk.pairs.carried(chunk.near_slot[p])});
+                leaving.moving.push_back(
+                    {chunk.near_first[p], chunk.near_second[p], none, chunk.near_slot[p]});
         for (int p = 0; p < static_cast<int>(chunk.wall_slot.size()); ++p)
-            if (at(chunk.wall_slot, p) != none)
-                moving.push_back(
-                    {chunk.begin + p / walls, none, p % walls, chunk.walls.carried(at(chunk.wall_slot, p))});
-        chunk.pairs.forget_all(), chunk.walls.forget_all();
+            if (const int slot = at(chunk.wall_slot, p); slot != none)
+                leaving.moving.push_back({chunk.begin + p / walls, none, p % walls, slot});
+        chunk.pairs.leave(leaving.pairs), chunk.walls.leave(leaving.walls);
     }
 
     // The order of the particles by cell.
@@ -102,26 +137,26 @@ public:
         for (int i = 0; i < n; ++i) at(order_, at(place_, i)) = i;
     }
 
-    // Each array is one job.
-    template <class Team> void sort(Bed& bed, const Team& team) const {
-        int job = 0;
-        const auto permute = [&]<class T>(std::vector<T>& values) {
-            if (job++ % team.size() != team.rank()) return;
-            std::vector<T> sorted;
-            sorted.reserve(values.size());
-            for (const int i : order_) sorted.push_back(at(values, i));
-            values.swap(sorted);
-        };
-        for (auto* rows : {&bed.position, &bed.velocity, &bed.acceleration, &bed.spin, &bed.spin_rate})
-            permute(*rows);
-        permute(bed.touched), permute(bed.name), permute(bed.kind);
+    // The particles that come to lie from `first` to `until`.
+    void sort(Bed& bed, int first, int until) {
+        sorted_.each(bed, [&](const auto& values, auto& sorted) {
+            for (int i = first; i < until; ++i) at(sorted, i) = at(values, at(order_, i));
+        });
+        for (int i = first; i < until; ++i)
+            for (int a = 0; a < 4; ++a) at(along_[a], i) = at(sorted_.position, i)[a];
+    }
+
+    void exchange(Bed& bed) {
+        sorted_.each(bed, [](auto& values, auto& sorted) { values.swap(sorted); });
     }
 
     void search(const Bed& bed, Chunk& chunk) const {
-        chunk.near_first.clear(), chunk.near_second.clear();
-        const int n = bed.particles();
+        thread_local std::vector<int> first, second;
+        int count = 0;
         for (int i = chunk.begin; i < chunk.end; ++i) {
             const Row& p = at(bed.position, i);
+            const Vector<Lanes> place = {Lanes::all(p[0]), Lanes::all(p[1]), Lanes::all(p[2])};
+            const Lanes around = Lanes::all(p[3] + bed.reach);
             const int cx = cell_along(p[0], 0), cy = cell_along(p[1], 1), cz = cell_along(p[2], 2);
             const auto range = [&](int y, int z, bool own) {
                 if (y < 0 || y >= cells_[1] || z >= cells_[2]) return;
@@ -129,20 +164,27 @@ public:
                 const int from = own ? i + 1 : at(cell_start_, line + std::max(cx - 1, 0));
                 const int to = at(cell_start_, line + std::min(cx + 1, cells_[0] - 1) + 1);
                 for (int j = from; j < to; j += lane_count) {
-                    const auto q = columns([&](int l) { return &at(bed.position, std::min(j + l, n - 1)); });
-                    const Vector<Lanes> apart = {Lanes::all(p[0]) - q.x, Lanes::all(p[1]) - q.y,
-                                                 Lanes::all(p[2]) - q.z};
-                    const Lanes near = q.w + Lanes::all(p[3] + bed.reach);
+                    if (const auto room = static_cast<std::size_t>(count + lane_count); room > first.size())
+                        first.resize(2 * room), second.resize(2 * room);
+                    const auto others = [&](int a) { return unaligned<lane_count>(&at(along_[a], j)); };
+                    const Vector<Lanes> apart = place - Vector<Lanes>{others(0), others(1), others(2)};
+                    const Lanes near = around + others(3);
                     alignas(64) real room[lane_count];
                     lanes(room) = near * near - dot(apart, apart);
-                    for (int l = 0; l < lane_count && j + l < to; ++l)
-                        if (room[l] > 0) chunk.near_first.push_back(i), chunk.near_second.push_back(j + l);
+                    for (int l = 0; l < lane_count; ++l) {
+                        at(first, count) = i, at(second, count) = j + l;
+                        count += static_cast<int>(room[l] > 0) & static_cast<int>(j + l < to);
+                    }
                 }
             };
             range(cy, cz, true);
             range(cy + 1, cz, false);
             for (int y = cy - 1; y <= cy + 1; ++y) range(y, cz + 1, false);
         }
+        chunk.near_first.assign(first.begin(), first.begin() + count);
+        chunk.near_second.assign(second.begin(), second.begin() + count);
+        chunk.highest = chunk.end - 1;
+        for (const int j : chunk.near_second) chunk.highest = std::max(chunk.highest, j);
         chunk.near_slot.assign(chunk.near_first.size(), none);
         chunk.wall_slot.assign(static_cast<std::size_t>(chunk.end - chunk.begin) * bed.cavity->walls.size(),
                                none);
@@ -151,8 +193,8 @@ public:
     // Contacts arrive where their first partner is now, if that is from `first` to `until`.
     void unpack(Bed& bed, int first, int until) const {
         const int walls = static_cast<int>(bed.cavity->walls.size());
-        for (const auto& from_chunk : moving_)
-            for (const Moving& m : from_chunk) {
+        for (const Leaving& from : leaving_)
+            for (const Moving& m : from.moving) {
                 int i = at(place_, m.first), j = m.wall == none ? at(place_, m.second) : i;
                 const bool turned = i > j;
                 if (turned) std::swap(i, j);
@@ -160,7 +202,7 @@ public:
                 Chunk& chunk = at(bed.chunks, i / Bed::chunk_size);
                 if (m.wall != none) {
                     at(chunk.wall_slot, (i - chunk.begin) * walls + m.wall) =
-                        chunk.walls.remember(m.memory, 1);
+                        chunk.walls.memory.begin(from.walls, m.slot, 1);
                     continue;
                 }
                 auto p = std::lower_bound(chunk.near_first.begin(), chunk.near_first.end(), i) -
@@ -168,23 +210,20 @@ public:
                 while (chunk.near_second[static_cast<std::size_t>(p)] != j)
                     ++p; // touching, so among the neighbours
                 chunk.near_slot[static_cast<std::size_t>(p)] =
-                    chunk.pairs.remember(m.memory, turned ? -1 : 1);
+                    chunk.pairs.memory.begin(from.pairs, m.slot, turned ? -1 : 1);
             }
     }
 
-    void forget_moves() {
-        for (auto& moving : moving_) std::vector<Moving>().swap(moving);
+    void forget(const Chunk& chunk) {
+        Leaving& leaving = at(leaving_, chunk.begin / Bed::chunk_size);
+        leaving.pairs = leaving.walls = Memory{};
     }
 
     // ---- a scan of a chunk: candidates among the neighbours, and walls
 
-    void scan(const Bed& bed, Chunk& chunk) const {
-        scan_pairs(bed, chunk);
-        scan_walls(bed, chunk);
-    }
-
-private:
     void scan_pairs(const Bed& bed, Chunk& chunk) const {
+        choose_skin(chunk.pairs, bed.smallest, 0.4 * bed.reach);
+        const real skin = chunk.pairs.skin;
         thread_local std::vector<int> kept;
         thread_local std::vector<char> kept_tier;
         const int count = static_cast<int>(chunk.near_slot.size());
@@ -200,7 +239,7 @@ private:
             const Lanes near = a.w + b.w, distance = dot(apart, apart);
             Lanes tier = Lanes::all(0);
             for (int t = 1; t <= Contacts::tiers; ++t) {
-                const Lanes limit = near + Lanes::all(bed.skin * t / Contacts::tiers);
+                const Lanes limit = near + Lanes::all(skin * t / Contacts::tiers);
                 tier += choose(limit * limit - distance, Lanes::all(0), Lanes::all(1));
             }
             alignas(64) real number[lane_count];
@@ -220,19 +259,19 @@ private:
             pairs.tier_end[t] = sum += numbers[t];
         }
         pairs.resize(sum);
-        chunk.highest = -1;
         for (int n = 0; n < found; ++n) {
             const int p = at(kept, n), k = next[static_cast<int>(at(kept_tier, n))]++;
             at(pairs.first, k) = at(chunk.near_first, p);
             at(pairs.second, k) = at(chunk.near_second, p);
             at(pairs.origin, k) = p;
             at(pairs.slot, k) = at(chunk.near_slot, p);
-            chunk.highest = std::max(chunk.highest, at(pairs.second, k));
         }
         pairs.pad(chunk.begin, chunk.begin);
     }
 
-    static void scan_walls(const Bed& bed, Chunk& chunk) {
+    void scan_walls(const Bed& bed, Chunk& chunk) const {
+        choose_skin(chunk.walls, bed.smallest, 0.5 * bed.smallest);
+        const real skin = chunk.walls.skin;
         const auto& all_walls = bed.cavity->walls;
         const int walls = static_cast<int>(all_walls.size()), last = bed.particles() - 1;
         const Row c = bed.motion.displacement;
@@ -247,11 +286,11 @@ private:
             std::uint32_t* mask = &at(masks, i - chunk.begin);
             for (int w = 0; w < walls; ++w) {
                 alignas(64) real room[lane_count];
-                lanes(room) = Lanes::all(bed.skin) + a.w - distance(at(all_walls, w), place);
+                lanes(room) = Lanes::all(skin) + a.w - distance(at(all_walls, w), place);
                 for (int l = 0; l < lane_count; ++l) mask[l] |= static_cast<std::uint32_t>(room[l] > 0) << w;
-                if (largest(lanes(room) - a.w) > bed.skin) [[unlikely]] // a centre is outside
+                if (largest(lanes(room) - a.w) > skin) [[unlikely]] // a centre is outside
                     for (int l = 0; l < used; ++l)
-                        if (room[l] - at(bed.position, i + l)[3] > bed.skin)
+                        if (room[l] - at(bed.position, i + l)[3] > skin)
                             chunk.stopped = {Status::escaped, i + l, w, 0};
             }
             for (int l = 0; l < used; ++l) count += __builtin_popcount(mask[l]);

@@ -55,11 +55,11 @@ struct Records {
         for (std::size_t b = 0; b < beds.size(); ++b) {
             const Bed& bed = beds[b];
             Totals sum{.before = before_[b], .now = losses(bed)};
+            for (const Brief& one : bed.briefs) sum.momentum += one.momentum, sum.push += one.push;
             for (const Chunk& c : bed.chunks) {
                 const Tally& one = c.tally;
                 sum.kinetic += one.kinetic, sum.rotation += one.rotation, sum.stored += total(one.stored);
-                sum.place += one.mass_moment, sum.momentum += one.momentum, sum.push += one.wall_force,
-                    sum.twist += one.wall_moment;
+                sum.place += one.mass_moment, sum.twist += one.wall_moment;
                 for (int k = 0; k < 2; ++k) sum.contacts[k] += one.contacts[k];
             }
             sum.mass = bed.mass;

@@ -31,8 +31,8 @@ class Simulation {
     Status status_ = Status::finished;
     int stopped_cavity_ = 0;
     Stopped stopped_;
-    long builds_ = 0, scans_ = 0;
-    bool halted_ = false;
+    long builds_ = 0;
+    bool must_build_ = true, halted_ = false;
     Row body_before_{};
     long steps_since_ = 0;
     Division division_;
@@ -62,13 +62,13 @@ class Simulation {
         for (auto* rows : {&cavity.velocity, &cavity.spin}) std::vector<Row>().swap(*rows);
         for (auto* numbers : {&cavity.mass, &cavity.inertia}) std::vector<real>().swap(*numbers);
         bed.touched.assign(size, 0);
-        for (auto* rows : {&bed.acceleration, &bed.spin_rate, &bed.force, &bed.couple})
-            rows->assign(size, Row{});
-        if (rolls) bed.roll.assign(size, Row{});
+        for (auto* rows : {&bed.acceleration, &bed.spin_rate}) rows->assign(size, Row{});
+        bed.rolls = rolls;
         for (int from = 0; from < n; from += Bed::chunk_size) {
             Chunk& chunk = bed.chunks.emplace_back();
             chunk.begin = from, chunk.end = std::min(from + Bed::chunk_size, n);
         }
+        bed.briefs.assign(bed.chunks.size(), Brief{Row{}, row(0, 0, 0, infinity)});
     }
 
     // ---- the structure
@@ -111,7 +111,13 @@ class Simulation {
 
     Row force_on(const Bed& bed) const {
         Row total{};
-        for (const Chunk& c : bed.chunks) total += c.tally.wall_force;
+        for (const Brief& brief : bed.briefs) total += brief.push;
+        return total;
+    }
+
+    static Row momentum_of(const Bed& bed) {
+        Row total{};
+        for (const Brief& brief : bed.briefs) total += brief.momentum;
         return total;
     }
 
@@ -127,51 +133,43 @@ class Simulation {
     Chunk& chunk(Place p) { return at(at(beds_, p.bed).chunks, p.chunk); }
 
     void choose_reach(Bed& bed) {
-        // A build costs as much as some ten scans, and a scan as some steps: measured, and flat about these
-        // numbers.
-        constexpr real steps_of_build = 80, steps_of_scan = 9;
-        const real smallest = bed.smallest;
-        const real rate = steps_since_ > 0 ? bed.since_build / static_cast<real>(steps_since_) : 0;
-        bed.reach = rate > 0 ? std::clamp(2 * rate * steps_of_build, 0.02 * smallest, 0.6 * smallest)
-                             : 0.2 * smallest;
-        bed.skin = std::fmin(0.4 * bed.reach, rate > 0 ? std::fmax(2 * rate * steps_of_scan, 2e-3 * smallest)
-                                                       : 0.1 * bed.reach);
+        constexpr real steps = 80; // a build costs as much as some ten scans: measured, and flat about this
+        const real smallest = bed.smallest, since = since_build(bed);
+        bed.reach =
+            steps_since_ > 0 && since < infinity
+                ? std::clamp(since / static_cast<real>(steps_since_) * steps, 0.02 * smallest, 0.6 * smallest)
+                : 0.2 * smallest;
     }
 
-    // The next step may bring together what is on no list.
-    static bool is_stale(real since, real reach) { return !(2 * since < reach); }
-
-    template <class Team> void renew(Team& team) {
-        bool build = false;
-        for (const Bed& bed : beds_) build |= is_stale(bed.since_build, bed.reach - bed.skin);
+    template <class Team> void build(Team& team) {
         const auto each_chunk = [&](auto&& f) {
             division_.each_chunk(team.rank(),
                                  [&](Place p) { f(at(neighbours_, p.bed), at(beds_, p.bed), p.chunk); });
         };
-        if (build) {
-            each_chunk([](Neighbours& n, Bed& bed, int c) { n.pack_up(bed, at(bed.chunks, c)); });
-            team.sync([&] {
-                for (std::size_t b = 0; b < beds_.size(); ++b)
-                    choose_reach(beds_[b]), neighbours_[b].find_order(beds_[b]);
-            });
-            for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].sort(beds_[b], team);
-            team.sync([&] {
-                for (Bed& bed : beds_) bed.since_build = 0;
-                ++builds_;
-                steps_since_ = 0;
-            });
-            each_chunk([](const Neighbours& n, Bed& bed, int c) { n.search(bed, at(bed.chunks, c)); });
-            const Part& part = division_.part(team.rank());
-            for (int b = 0; b < static_cast<int>(beds_.size()); ++b)
-                at(neighbours_, b).unpack(at(beds_, b), at(part.first, b), at(part.until, b));
-        }
-        each_chunk([](const Neighbours& n, Bed& bed, int c) { n.scan(bed, at(bed.chunks, c)); });
+        each_chunk([](Neighbours& n, Bed& bed, int c) { n.pack_up(bed, at(bed.chunks, c)); });
         team.sync([&] {
-            for (Neighbours& n : neighbours_) n.forget_moves();
-            for (Bed& bed : beds_) bed.since_scan = 0;
-            ++scans_;
-            division_.divide(team.size());
+            for (std::size_t b = 0; b < beds_.size(); ++b)
+                choose_reach(beds_[b]), neighbours_[b].find_order(beds_[b]);
         });
+        const Part& part = division_.part(team.rank());
+        const auto each_bed = [&](auto&& f) {
+            for (int b = 0; b < static_cast<int>(beds_.size()); ++b)
+                f(at(neighbours_, b), at(beds_, b), at(part.first, b), at(part.until, b));
+        };
+        each_bed([](Neighbours& n, Bed& bed, int first, int until) { n.sort(bed, first, until); });
+        team.sync([&] {
+            for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].exchange(beds_[b]);
+            ++builds_;
+            steps_since_ = 0;
+        });
+        each_chunk([](const Neighbours& n, Bed& bed, int c) {
+            n.search(bed, at(bed.chunks, c));
+            at(bed.briefs, c) = Brief{};
+        });
+        each_bed([](Neighbours& n, Bed& bed, int first, int until) { n.unpack(bed, first, until); });
+        team.sync();
+        each_chunk([](Neighbours& n, Bed& bed, int c) { n.forget(at(bed.chunks, c)); });
+        team.sync([&] { division_.divide(team.size()); });
         division_.look_around(team.rank());
     }
 
@@ -183,27 +181,49 @@ class Simulation {
         return there.bed == here.bed ? there : here;
     }
 
-    template <class Team> void advance(Team& team, bool first, bool sample) {
-        const Part& part = division_.part(team.rank());
+    // In the last step forces of single contacts are kept; else only what others need.
+    template <class Team> void advance(Team& team, bool first, bool sample, bool last) {
+        Part& part = division_.part(team.rank());
         const Row all = structure().body();
-        const auto forces = [&](Place p) { at(steps_, p.bed).forces(chunk(p), sample); };
+        std::vector<char>& known = part.known;
+        known.assign(part.early.begin(), part.early.end());
+        const auto forces = [&](Place p) {
+            BedStep& step = at(steps_, p.bed);
+            step.look_around(at(neighbours_, p.bed), chunk(p));
+            step.forces(chunk(p), sample);
+        };
         for (int k = part.begin; k < part.end; ++k)
-            if (at(part.early, k - part.begin)) forces(division_.place(k));
+            if (at(known, k - part.begin)) forces(division_.place(k));
         team.report();
-        team.await_lower();
-        for (const Incoming& in : part.incoming)
-            at(steps_, in.bed).add_incoming(chunk({in.bed, in.chunk}).pairs, in.candidate);
+        team.await_lower([&, k = part.begin]() mutable {
+            while (k < part.end && at(known, k - part.begin)) ++k;
+            if (k == part.end) return false;
+            at(known, k - part.begin) = true;
+            forces(division_.place(k));
+            return true;
+        });
+        for (const Place in : part.incoming)
+            at(steps_, in.bed)
+                .add_incoming(at(part.sums, in.bed), chunk(in), at(part.first, in.bed),
+                              at(part.until, in.bed));
         for (int k = part.begin; k < part.end; ++k) {
             const Place p = division_.place(k);
+            Chunk& own = chunk(p);
+            Sums& sums = at(part.sums, p.bed);
             BedStep& step = at(steps_, p.bed);
             step.fetch(chunk(after(part, k, 1)), chunk(after(part, k, 2)));
-            if (!at(part.early, k - part.begin)) forces(p);
-            step.add_own(chunk(p), at(part.until, p.bed));
-            const Row reference = at(beds_, p.bed).motion.velocity;
+            const bool is_known = at(known, k - part.begin), lends = !is_known && !last;
+            const auto lend = [&] {
+                if (lends) own.pairs.actions.swap(part.at_pairs), own.walls.actions.swap(part.at_walls);
+            };
+            lend();
+            if (!is_known) forces(p);
+            step.add_own(sums, own, at(part.until, p.bed));
+            lend();
             if (sample)
-                step.advance<true>(chunk(p), all, body_before_, reference, first);
+                step.advance<true>(sums, own, all, body_before_, first);
             else
-                step.advance<false>(chunk(p), all, body_before_, reference, first);
+                step.advance<false>(sums, own, all, body_before_, first);
         }
     }
 
@@ -220,30 +240,31 @@ class Simulation {
             }
     }
 
-    // On to the next step; particles may have moved as far from their neighbours as the fastest of them.
+    // How much nearer to each other any two may have come since the build.
+    static real since_build(const Bed& bed) {
+        real since = 0, others = 0;
+        for (const Brief& brief : bed.briefs)
+            others = larger(others, brief.push[3]), since = larger(since, brief.momentum[3] + brief.push[3]);
+        return since + others;
+    }
+
+    // On to the next step.
     void move_on() {
         structure().kick();
         structure().drift();
+        must_build_ = false;
         for (Bed& bed : beds_) {
-            const CavityMotion before = bed.motion;
+            const Row before = bed.motion.displacement, momentum = momentum_of(bed);
             place(bed);
-            real fastest = 0;
-            for (const Chunk& c : bed.chunks) fastest = larger(fastest, c.tally.drift);
-            // Displacements of particles are counted from that which the cavity's velocity makes.
-            const Row apart = bed.motion.displacement - before.displacement - before.velocity * problem_.dt;
-            const real moved = problem_.dt * std::sqrt(fastest) + std::sqrt(dot(apart, apart));
-            bed.since_build += moved;
-            bed.since_scan += moved;
-            if (!(moved < infinity)) status_ = Status::not_finite;
+            const Row apart = bed.motion.displacement - before - bed.reference * problem_.dt;
+            bed.apart = std::sqrt(dot(apart, apart)) * (1 + 1e-9);
+            bed.reference = row(momentum[0], momentum[1], momentum[2]) / bed.mass;
+            const real since = since_build(bed);
+            must_build_ |= !(since < bed.reach);
+            if (!(since + bed.apart < infinity)) status_ = Status::not_finite;
         }
         ++step_;
         ++steps_since_;
-    }
-
-    bool must_renew() const {
-        for (const Bed& bed : beds_)
-            if (is_stale(bed.since_scan, bed.skin)) return true;
-        return false;
     }
 
     // What all need to know of the step to come; done by one.
@@ -260,7 +281,7 @@ class Simulation {
         Row momentum{};
         for (Bed& bed : beds_) {
             bed.shown = bed.motion.displacement;
-            for (const Chunk& c : bed.chunks) momentum += c.tally.momentum;
+            momentum += momentum_of(bed);
         }
         if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity)) status_ = Status::not_finite;
         structure().work_on_particles(momentum);
@@ -275,9 +296,9 @@ class Simulation {
         division_.look_around(team.rank());
         team.sync([&] { prepare(); });
         while (step_ <= until && status_ == Status::finished && !halted_) {
-            if (must_renew()) renew(team);
+            if (must_build_) build(team);
             const bool first = step_ == 0, sample = sampled();
-            advance(team, first, sample);
+            advance(team, first, sample, step_ == until);
             team.sync([&] {
                 conclude(first, sample);
                 prepare();
@@ -299,8 +320,8 @@ public:
             Bed& bed = beds_[b];
             fill_bed(bed, cavity, pair.rolls || wall.rolls);
             const auto prepare = [](Contacts& list, const Kind& kind) {
-                list.rolls = kind.rolls, list.dents = kind.normal == Kind::plastic;
-                list.forget_all();
+                list.memory.rolls = kind.rolls, list.memory.dents = kind.normal == Kind::plastic;
+                list.resize(0);
             };
             for (Chunk& chunk : bed.chunks) prepare(chunk.pairs, pair), prepare(chunk.walls, wall);
             neighbours_[b].start(bed);
@@ -328,7 +349,7 @@ public:
 
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
-        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, scans_, steps_since_,
+        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, must_build_, steps_since_,
                 modes_, modes_shown_, modal_force_, load_work_, base_work_, viscous_);
         for (Bed& bed : beds_) bed.keep(archive);
     }
@@ -349,7 +370,12 @@ public:
     }
     long step() const { return step_; }
     long builds() const { return builds_; }
-    long scans() const { return scans_; }
+    long scans() const { // of a chunk, on average
+        long sum = 0;
+        for (const Bed& bed : beds_)
+            for (const Chunk& c : bed.chunks) sum += c.tally.scans;
+        return sum / division_.chunks();
+    }
     Status status() const { return status_; }
     const Stopped& stopped() const { return stopped_; }
     Records& records() { return records_; }

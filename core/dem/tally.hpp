@@ -20,20 +20,27 @@ inline Lanes first_lane(real v) {
     return lanes(x);
 }
 
+// The deepest overlap over the smaller radius, found without dividing.
+struct Deepest {
+    Lanes overlap{}, radius = Lanes::all(1);
+
+    RATTLEBOX_INLINE void see(const Lanes& other, const Lanes& its_radius) {
+        const Lanes deeper = other * radius - overlap * its_radius;
+        overlap = choose(deeper, other, overlap), radius = choose(deeper, its_radius, radius);
+    }
+    real ratio() const { return largest(overlap / radius); }
+};
+
 struct alignas(64) Tally {
     // over the run
     Lanes normal[2]{}, sliding[2]{}, rolling[2]{};
     real plastic[2]{};
-    long first_touches[2]{}, extrapolated = 0;
-    Lanes deepest{};  // overlap over the radius of the first partner
+    long first_touches[2]{}, extrapolated = 0, scans = 0;
+    Deepest deepest;
     real fastest = 0; // approach
 
-    // in this step
-    Row wall_force{}, wall_moment{}, momentum{};
-    real drift = 0; // largest speed squared relative to the reference
-
     // at a sample
-    Row mass_moment{};
+    Row wall_moment{}, mass_moment{};
     real kinetic = 0, rotation = 0;
     Lanes stored{};
     long contacts[2]{};

@@ -101,18 +101,21 @@ struct Late {
     Row slip{};     // of the first along the second
 };
 
-// What a contact remembers while it lasts: two lines of memory.
+// What a contact remembers while it lasts: a line of memory.
 struct alignas(64) Kept {
-    Row force;    // on the first
-    Row couple;   // torque on the first over its radius; of a pair also that on the second over its own; mu
-    Row friction; // force of the tangential spring on the first, and its stiffness
+    Row friction; // force of the tangential spring on the first, and 1 / stiffness
     Row law;      // A, c, B, c_t: see contact_step.hpp
 };
 
-struct KeptRolling {
-    Row torque; // on the first
-    Row spring; // torque of the rolling spring on the first, and its stiffness
+struct alignas(64) KeptRolling {
+    Row spring; // torque of the rolling spring on the first, and 1 / stiffness
     Row law;    // mu_r R*, k_r / k_t, c_r
+};
+
+// What it does in a step.
+struct alignas(64) Action {
+    Row force;  // on the first, and 1 to be counted
+    Row couple; // torque on the first over its radius; of a pair also that on the second over its own
 };
 
 // What it knows from its first touch on.
@@ -159,20 +162,19 @@ inline Begun begin(const Touch& t, real dt) {
             b.kept.law = row(law.stiffness, now.damping, tangential, drag);
         }
         const real roll = e.rolling_stiffness > 0 ? e.rolling_stiffness * square(t.radius) : 1;
-        b.rolling = {Row{}, row(0, 0, 0, 1e290), // nothing stretched yet
+        b.rolling = {row(0), // nothing stretched yet
                      row(e.rolling * t.radius, roll,
                          2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential))};
     });
-    b.kept.couple = row(0, 0, 0, e.friction);
     // The spring as if it had been stretched since half a step ago, which makes it stretched since the touch.
     const real stiffness = b.kept.law[2] * (e.shear > 0 ? std::sqrt(t.overlap) : 1);
     b.kept.friction = t.slip * (-stiffness * (since - 0.5 * dt));
-    b.kept.friction[3] = stiffness;
+    b.kept.friction[3] = 1 / stiffness;
     return b;
 }
 
 // Energy that a spring of these rows holds.
-inline real held(Row spring) { return 0.5 * dot(spring, spring) / spring[3]; }
+inline real held(Row spring) { return 0.5 * dot(spring, spring) * spring[3]; }
 
 // The curve that unloads from the deepest overlap so far; returns the energy that reaching it has cost.
 inline real settle(Row& dent, const Touch& t) {

@@ -53,25 +53,25 @@ public:
         const real dt = simulation_->problem().dt, passed = simulation_->step() > 0 ? dt : 0;
         nb::list cavities;
         for (const Bed& b : simulation_->beds()) {
-            const auto touched = [&](int i) { return (at(b.touched, i) & 1) != 0; };
+            const auto touched = [&](int i) { return at(b.touched, i) != 0; };
             cavities.append(write_bed(b, b.particles(), b.name, touched, simulation_->body_shown(), passed));
         }
         const auto& modes = simulation_->modes();
         return write_state(simulation_->step(), dt, modes, modes.size(), cavities);
     }
 
-    // Those that touched at the last instant, and the force on the first of each.
+    // Those that touched at the last instant, where `advance` was asked to end, and the force on the first of
+    // each.
     nb::dict contacts(std::size_t number) const {
         const Bed& b = bed(number);
         Touching touching;
         for (const Chunk& chunk : b.chunks)
             for (const Contacts* list : {&chunk.pairs, &chunk.walls})
-                for (int k = 0; k < list->size(); ++k) {
-                    const int s = at(list->slot, k), j = at(list->second, k);
-                    if (s == Contacts::none) continue;
+                for (int a = 0; a < static_cast<int>(list->actions.all.size()); ++a) {
+                    const int k = at(list->active, a), j = at(list->second, k);
                     touching.add(at(b.name, at(list->first, k)),
                                  list == &chunk.pairs ? at(b.name, j) : b.particles() + j,
-                                 at(list->kept, s).force);
+                                 at(list->actions.all, a).force);
                 }
         return touching.write();
     }
@@ -85,7 +85,7 @@ public:
                 candidates += c.pairs.size() + c.walls.size();
                 const Tally& t = c.tally;
                 for (int k = 0; k < 2; ++k) sum[k] += t.first_touches[k];
-                counts.deepest = std::fmax(counts.deepest, largest(t.deepest));
+                counts.deepest = std::fmax(counts.deepest, t.deepest.ratio());
                 counts.fastest = std::fmax(counts.fastest, t.fastest);
                 counts.extrapolated += t.extrapolated;
             }

@@ -75,7 +75,7 @@ public:
                 if (!(b.touching[i] >> k & 1u)) continue;
                 const int s = k * b.particles + i, partner = b.partner[s];
                 touching.add(b.name[i], partner < 0 ? b.particles - 1 - partner : b.name[partner],
-                             b.kept[s].force);
+                             b.action[s].force);
             }
         return touching.write();
     }

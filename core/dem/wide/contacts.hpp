@@ -116,31 +116,31 @@ template <bool sampled> class OwnContacts {
         if (sampled) sum.stored += Law::stored(law, dent, m.overlap), sum.contacts[p] += 1;
         if constexpr (Law::plastic) bed_.dent[s][0] = larger(dent.x, m.overlap);
         if (k.rough) {
-            const real mu = bed_.kept[s].couple[3];
+            const real mu = encounter(partner).friction;
             const auto h =
                 rub(m, push, rate, law, mu, four(bed_.kept[s].friction), !Law::plastic, k.how.mindlin, dt);
             bed_.kept[s].friction = row(h.friction);
             sum.lost.sliding[p] += h.lost;
             force = force + h.force;
-            bed_.kept[s].couple = row((1 + late.share) * h.couple, mu);
+            bed_.action[s].couple = row((1 + late.share) * h.couple);
             if (sampled) sum.stored += h.stored;
             if (k.rolls) {
                 KeptRolling& rolling = bed_.rolling[s];
                 const auto r =
-                    roll(m, push, h.friction.w, four(rolling.law), four(rolling.spring), k.how.mindlin, dt);
+                    roll(m, push, h.stiffness, four(rolling.law), four(rolling.spring), k.how.mindlin, dt);
                 rolling.spring = row(r.rolling);
-                rolling.torque = row(r.torque);
+                bed_.torque[s] = row(r.torque);
                 sum.lost.rolling[p] += r.lost;
                 if (sampled) sum.stored += r.stored;
             }
             sum.lost.sliding[p] -= late.share * dt * dot(row(force), late.slip);
         }
         const Row whole = row(force) * rattlebox::row(1 + late.share);
-        bed_.kept[s].force = whole;
+        bed_.action[s].force = whole;
         if (sampled && partner < 0) {
             const Near at = near(-1 - partner);
             Row twist = cross(place_ - bed_.motion.displacement + at.normal * at.distance, whole);
-            if (k.rolls) twist += bed_.rolling[s].torque;
+            if (k.rolls) twist += bed_.torque[s];
             for (int a = 0; a < 3; ++a) sum.twist[a] -= twist[a];
         }
     }

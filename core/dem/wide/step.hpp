@@ -20,11 +20,11 @@ inline bool gather(const Bed& bed, int i, Row& force, Row& turning, StepSum& sum
     bool touches = false;
     const auto add = [&](int s, real sign) {
         const Kind& kind = bed.partner[s] < 0 ? at_wall : pair;
-        const Row f = bed.kept[s].force;
+        const Row f = bed.action[s].force;
         touches = true;
         force += f * rattlebox::row(sign);
-        if (kind.rough) turning += bed.kept[s].couple;
-        if (kind.rolls) turning += bed.rolling[s].torque * (sign / bed.position[i][3]);
+        if (kind.rough) turning += bed.action[s].couple;
+        if (kind.rolls) turning += bed.torque[s] * (sign / bed.position[i][3]);
         if (bed.partner[s] < 0)
             for (int a = 0; a < 3; ++a) sum.push[a] -= f[a];
     };

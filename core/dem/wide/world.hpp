@@ -104,6 +104,8 @@ struct Bed {
     int* partner = nullptr;
     Kept* kept = nullptr;
     KeptRolling* rolling = nullptr;
+    Action* action = nullptr;
+    Row* torque = nullptr; // of rolling, on the first
     Row* dent = nullptr;
     // Slots of others that are about a particle, from its begin to that of the next.
     int *incoming_begin = nullptr, *incoming_count = nullptr, *incoming = nullptr;
@@ -195,10 +197,10 @@ template <class Deal> void lay(Deal& deal, Bed& b) {
     const auto slots = [&](auto&... array) { (deal(array, s), ...); };
     rows(b.position, b.velocity, b.spin, b.acceleration, b.spin_rate, b.name, b.kind, b.touched, b.touching,
          b.used, b.account, b.incoming_count, b.cell, b.member);
-    slots(b.partner, b.kept, b.incoming);
+    slots(b.partner, b.kept, b.action, b.incoming);
     const bool rolls = b.pair.rolls || b.at_wall.rolls;
     const bool dents = b.pair.normal == Kind::plastic || b.at_wall.normal == Kind::plastic;
-    deal(b.rolling, rolls ? s : 0), deal(b.dent, dents ? s : 0);
+    deal(b.rolling, rolls ? s : 0), deal(b.torque, rolls ? s : 0), deal(b.dent, dents ? s : 0);
     deal(b.incoming_begin, n + 1), deal(b.cell_begin, cells), deal(b.cell_count, cells);
     deal(b.scan_part, static_cast<std::size_t>(scan_parts(cells_at_most(b.particles))));
     const auto room = static_cast<std::size_t>(tree_room(b.particles));
