@@ -37,12 +37,14 @@ import rattlebox as rb
 from rattlebox.engines.core import core
 from rattlebox.engines.dem import pack_dem
 
-DT, PERIOD, LONG, LOOKS = 1.4549e-5, 0.02, 100.0, 20
+DT, PERIOD, LONG = 1.4549e-5, 0.02, 100.0
 DIAMETER, DENSITY, FILL = 3e-3, 7850.0, 0.36
 MATERIAL = rb.Material(name="soft steel", density=DENSITY, young=1e8, poisson=0.3)
 WINDOWS = {100: (5, 50), 1000: (5, 10), 10_000: (5, 5), 100_000: (1, 1)}
 """Periods before the clock starts, and while it runs."""
 CUT_STEPS = (100, 400)
+LOOKS = 101
+"""At contacts, at all phases of the shaking."""
 AMPLITUDES = {"shaken": 98.1, "rest": 0.0}
 """Of the acceleration [m/s^2]."""
 
