@@ -9,16 +9,23 @@ namespace {
 
 inline constexpr std::size_t near_bytes = 16384; // what a ball or two, a mode or two and their contacts take
 
+// What threads and host tell each other: how many members have been begun, and whether to stop.
+struct Desk {
+    unsigned long long begun;
+    alignas(64) std::atomic<bool> stop;
+};
+
 // Works off members, `next()` being the first that nobody has.
 template <class Next>
 void work_off(const char* image, const Kept& kept, std::size_t members, char* far, std::size_t far_bytes,
-              Next&& next, gpu::Arena& arena) {
+              const Desk& desk, Next&& next, gpu::Arena& arena) {
     alignas(gpu::Arena::grain) char near[near_bytes];
     gpu::use(arena);
-    for (std::size_t i = next(); i < members; i = next()) {
+    const auto stopped = [&] { return desk.stop.load(std::memory_order_relaxed); };
+    for (std::size_t i = next(); i < members && !stopped(); i = next()) {
         arena.near = {near, near, near + near_bytes};
         arena.far = {far, far, far + far_bytes};
-        work(image, i, kept);
+        work(image, i, kept, &desk.stop);
     }
 }
 
@@ -34,28 +41,27 @@ extern "C" __global__ void prepare() {
 extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS) void impact(const char* image, std::int8_t* status,
                                                                        real* numbers, std::size_t members,
                                                                        char* far, std::size_t far_bytes,
-                                                                       unsigned long long* taken) {
+                                                                       Desk* desk) {
     gpu::Arena arena;
     Kept kept;
     kept.status = status;
     kept.numbers = numbers;
     const std::size_t thread = blockIdx.x * static_cast<std::size_t>(blockDim.x) + threadIdx.x;
     work_off(
-        image, kept, members, far + thread * far_bytes, far_bytes,
-        [&] { return static_cast<std::size_t>(atomicAdd(taken, 1ull)); }, arena);
+        image, kept, members, far + thread * far_bytes, far_bytes, *desk,
+        [&] { return static_cast<std::size_t>(atomicAdd(&desk->begun, 1ull)); }, arena);
 }
 
 #else
 
 // The most memory that a member took comes back in `most`: in local memory, and beyond it.
 extern "C" void impact(const char* image, std::int8_t* status, real* numbers, std::size_t members, char* far,
-                       std::size_t far_bytes, std::size_t* most) {
+                       std::size_t far_bytes, Desk* desk, std::size_t* most) {
     gpu::Arena arena;
     Kept kept;
     kept.status = status;
     kept.numbers = numbers;
-    std::size_t taken = 0;
-    work_off(image, kept, members, far, far_bytes, [&] { return taken++; }, arena);
+    work_off(image, kept, members, far, far_bytes, *desk, [&] { return desk->begun++; }, arena);
     most[0] = arena.most_near;
     most[1] = arena.most_far;
 }

@@ -101,7 +101,7 @@ public:
 } // namespace image
 
 // The problem of one member, solved on its own: what a thread of a GPU does.
-inline void work(const char* bytes, std::size_t member, Kept kept) {
+inline void work(const char* bytes, std::size_t member, Kept kept, const std::atomic<bool>* stop) {
     Problem problem;
     Window window;
     Wanted wanted;
@@ -111,7 +111,7 @@ inline void work(const char* bytes, std::size_t member, Kept kept) {
     wanted.limit_log(problem, window);
     kept.members = reader.members();
     kept.lay(problem, window, wanted);
-    kept.keep(member, problem, window, wanted, run(problem));
+    kept.keep(member, problem, window, wanted, run(problem, stop));
 }
 
 } // namespace rattlebox

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -68,7 +69,8 @@ class Card:
                 f"{_LEAST[0]}.{_LEAST[1]} or newer is needed\n  try: a card since 2018 (Turing)"
             )
         self.arch = f"sm_{capability[0]}{capability[1]}"
-        self._stream = self._device.create_stream()
+        self._stream, self._beside = self._device.create_stream(), self._device.create_stream()
+        self._loaded: dict[Any, tuple[Compiled, Any]] = {}
 
     def describe(self) -> str:
         """Return its name, memory, architecture and driver."""
@@ -116,8 +118,12 @@ class Card:
         tuple
             Machine code, and a function that returns the kernel of a name.
         """
-        compiled = compile_kernels(source, self.arch, keep=True, **macros)
-        return compiled, self._core.ObjectCode.from_cubin(compiled.code, name=source).get_kernel
+        key = source, *macros.items()
+        if key not in self._loaded:
+            compiled = compile_kernels(source, self.arch, keep=True, **macros)
+            loaded = self._core.ObjectCode.from_cubin(compiled.code, name=source)
+            self._loaded[key] = compiled, loaded.get_kernel
+        return self._loaded[key]
 
     @contextmanager
     def room(self, size: int) -> Iterator[Any]:
@@ -161,6 +167,30 @@ class Card:
         given = [np.uint64(value) if isinstance(value, int) else value for value in arguments]
         self._core.launch(self._stream, config, kernel, *given)
 
+    def works(self) -> bool:
+        """Tell whether something that was asked of the card is not done yet."""
+        (found,) = self._driver.cuStreamQuery(self._stream.handle)
+        if found == self._driver.CUresult.CUDA_ERROR_NOT_READY:
+            return True
+        self._check(found)
+        return False
+
+    def peek(self, buffer: Any, array: NDArray[Any]) -> None:
+        """Copy from the card what a kernel at work has written so far, from the begin of a block, into an array."""
+        self._check(
+            *self._driver.cuMemcpyDtoHAsync(array.ctypes.data, int(buffer.handle), array.nbytes, self._beside.handle)
+        )
+        self._beside.sync()
+
+    def poke(self, buffer: Any, begin: int, array: NDArray[Any]) -> None:
+        """Copy an array to where a kernel at work may look, from a byte of a block on."""
+        self._check(
+            *self._driver.cuMemcpyHtoDAsync(
+                int(buffer.handle) + begin, array.ctypes.data, array.nbytes, self._beside.handle
+            )
+        )
+        self._beside.sync()
+
     def wait(self) -> None:
         """Wait until all that was asked of the card is done."""
         self._stream.sync()
@@ -172,3 +202,14 @@ class Card:
     def _answer(self, answered: tuple[Any, ...]) -> Any:
         self._check(answered[0])
         return answered[1] if len(answered) == 2 else answered[1:]
+
+
+def this_card() -> Card:
+    """Return the card that this thread has made before, or make it, with the errors of Card."""
+    if not hasattr(_made, "card"):
+        _made.card = Card()
+    card: Card = _made.card
+    return card
+
+
+_made = threading.local()

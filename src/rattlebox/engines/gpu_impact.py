@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from math import prod
-from time import perf_counter
+from time import sleep
 from typing import Any
 
 import numpy as np
@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 
 from rattlebox.model.errors import CaseError
 
-from .card import Card
+from .card import Card, this_card
 from .core import core
 from .gpu import nvrtc
 
 THREADS = 128  # of a block
 _SPARE = 0.9  # of the free memory is taken at most
-_UNHEARD = 0.1  # s, that a launch may take before more members go into the next: a stop is heard between them
+_NAP = 0.02  # s, between two looks at a launch
+_DESK, _STOP = 128, 64  # bytes of what threads and host tell each other; where among them a stop is told
 _INTERRUPTED = 4
 
 
@@ -143,29 +144,23 @@ def run_members(
     CaseError
         When there is no card that can be used, or its memory is too small.
     """
-    card = Card()
+    card = this_card()
     _, kernel = card.kernels("impact.cpp", RATTLEBOX_THREADS=THREADS)
     work = kernel("impact")
     blocks = work.occupancy.max_active_blocks_per_multiprocessor(THREADS, 0)
     most = blocks * card.multiprocessors * THREADS
     local = int(work.attributes.local_size_bytes) * card.resident * card.multiprocessors
-    found: list[dict[str, NDArray[Any]]] = []
     card.launch(kernel("prepare"), 1, 1)
-    first, step = start, most
-    while first < stop:
-        members, begin = Members(packed, shape, first, min(first + step, stop), **look), perf_counter()
-        each = -(-(len(members.image) + 8 * members.numbers) // members.count) + 1
-        threads = Need(members.memory, each, local).threads(card.memory()[0], members.count, most)
-        found.append(_launch(card, work, members, threads))
-        first += members.count
-        if progress and progress(first - start) is False:
-            return None
-        if perf_counter() - begin < _UNHEARD:
-            step *= 2
-    return {name: np.concatenate([part[name] for part in found]) for name in found[0]}
+    members = Members(packed, shape, start, stop, **look)
+    each = -(-(len(members.image) + 8 * members.numbers) // members.count) + 1
+    threads = Need(members.memory, each, local).threads(card.memory()[0], members.count, most)
+    return _launch(card, work, members, threads, lambda done: progress is None or progress(done) is not False)
 
 
-def _launch(card: Card, work: Any, members: Members, threads: int) -> dict[str, NDArray[Any]]:
+def _launch(
+    card: Card, work: Any, members: Members, threads: int, go_on: Callable[[int], bool]
+) -> dict[str, NDArray[Any]] | None:
+    """Run members; None when it was stopped, which threads hear at their next event."""
     status, numbers = np.full(members.count, _INTERRUPTED, np.int8), np.empty(members.numbers)
     with ExitStack() as stack:
 
@@ -173,12 +168,33 @@ def _launch(card: Card, work: Any, members: Members, threads: int) -> dict[str, 
             return stack.enter_context(card.room(size))
 
         image, states, values = room(len(members.image)), room(members.count), room(numbers.nbytes)
-        far, taken = room(threads * members.memory), room(8)
-        card.upload(image, members.image)
+        far, desk = room(threads * members.memory), room(_DESK)
+        card.fill(desk, 0)
         card.fill(values, 0xFF)  # not a number, where a run does not finish
-        card.fill(taken, 0)
-        card.launch(work, threads // THREADS, THREADS, image, states, values, members.count, far, members.memory, taken)
+        card.upload(image, members.image)  # waits for what was asked before, so that a stop comes after it
+        card.launch(work, threads // THREADS, THREADS, image, states, values, members.count, far, members.memory, desk)
+        try:
+            whole = _followed(card, desk, members.count, threads, go_on)
+        except BaseException:
+            card.poke(desk, _STOP, np.ones(1, np.uint8))
+            raise
+        if not whole:
+            card.poke(desk, _STOP, np.ones(1, np.uint8))
+            return None
         card.download(states, status)
         if numbers.size:
             card.download(values, numbers)
-    return members.named(status, numbers)
+    return members.named(status, numbers) if go_on(members.count) else None
+
+
+def _followed(card: Card, desk: Any, count: int, threads: int, go_on: Callable[[int], bool]) -> bool:
+    """Wait for the card, and ask now and then whether to go on."""
+    begun, nap = np.zeros(1, np.uint64), 1e-4
+    while card.works():
+        sleep(nap)
+        nap = min(2 * nap, _NAP)
+        if nap == _NAP:
+            card.peek(desk, begun)
+            if not go_on(max(0, min(int(begun[0]), count) - threads)):
+                return False
+    return True

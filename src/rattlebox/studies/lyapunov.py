@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox.engines import gpu_impact
 from rattlebox.model.errors import CaseError
 from rattlebox.model.units import parse
 
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     import xarray
 
     from rattlebox.model.case import Case
+
+
+_MOTIONS = 2**16  # at once on a card: some for each of its threads
 
 
 def lyapunov(
@@ -136,7 +140,13 @@ def lyapunov(
 
 @dataclass
 class LyapunovTask:
-    """A case, its variants, and how their neighbours are watched; attributes as of `lyapunov`."""
+    """A case, its variants, and how their neighbours are watched; attributes as of `lyapunov`.
+
+    Attributes
+    ----------
+    gpu
+        Run on the graphics card.
+    """
 
     case: Case
     design: Design
@@ -147,6 +157,7 @@ class LyapunovTask:
     distance: float = 1e-7
     reach: float = 1e-3
     seed: int = 0
+    gpu: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "sweep"}
@@ -176,6 +187,21 @@ class LyapunovTask:
                 "motions under a record cannot be started anew in its middle\n"
                 "  try: rattlebox.analysis.lyapunov_exponent with pairs of runs"
             )
+
+    # ---- on a card
+
+    def on_card(self) -> LyapunovTask:
+        """Return the same work for the card of this machine, where motions and neighbours of many variants run at once."""
+        return replace(self, gpu=True)
+
+    @property
+    def block(self) -> int | None:
+        """Largest number of variants in a block; None for what takes about a second."""
+        return max(1, _MOTIONS // (2 * self.pairs)) if self.gpu else None
+
+    def ready(self) -> tuple[str, str]:
+        """See to it that there is a card; return what decides the last bits there, and what to tell of it."""
+        return gpu_impact.ready()
 
     # ---- as any study
 
@@ -226,7 +252,7 @@ class LyapunovTask:
         return SweepTask(self.case, self.design, skip=self.skip, cycles=self.cycles)
 
     def run(
-        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None
+        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[..., bool] | None = None
     ) -> Mapping[str, NDArray[Any]] | None:
         """Run variants start to stop; None when it was stopped."""
         pairs = Pairs(self, start, stop, threads, cancelled)

@@ -45,10 +45,10 @@ class Pairs:
     """
 
     def __init__(
-        self, task: LyapunovTask, start: int, stop: int, threads: int, cancelled: Callable[[], bool] | None
+        self, task: LyapunovTask, start: int, stop: int, threads: int, cancelled: Callable[..., bool] | None
     ) -> None:
-        self._task, self._threads, self._cancelled = task, threads, cancelled or (lambda: False)
-        self._count = stop - start
+        self._task, self._threads, self._asked = task, threads, cancelled
+        self._count, self._part = stop - start, 0.0
         shape = task.design.shape
         members = np.unravel_index(np.arange(start, stop), shape) if shape else ()
         self._packed: Packed = _taken(task.sweep.packed, shape, members)
@@ -65,6 +65,11 @@ class Pairs:
         rate = 2 * np.pi / self.period if task.cycles else slowest
         self._rng = np.random.default_rng(task.seed)
         self._begin(rate)
+
+    def _cancelled(self) -> bool:
+        if not self._asked:
+            return False
+        return self._asked(self._part * self._count) if self._task.gpu else self._asked()
 
     def _each(self, number: Any) -> Array:
         """A packed number of each variant, (variants, 1)."""
@@ -141,6 +146,7 @@ class Pairs:
             grown = np.where(merged, -np.inf, np.where(taken, grown + np.log(size / distance), grown))
             state = np.where(taken[..., None, None], ended, state)
             alive &= ~merged
+            self._part = float(np.mean(time / self._end))
             times.append(time)
             sums.append(grown)
         return np.array(times), np.array(sums)
@@ -196,7 +202,14 @@ class Pairs:
         shape = state.shape[:-1]
         look, size = Look(state=True), int(np.prod(shape))
         result = run_block(
-            packed, shape, 0, size, look, threads=self._threads, progress=lambda _: not self._cancelled()
+            packed,
+            shape,
+            0,
+            size,
+            look,
+            threads=self._threads,
+            progress=lambda _: not self._cancelled(),
+            gpu=self._task.gpu,
         )
         if result is None or self._cancelled():
             raise _Stopped

@@ -138,12 +138,11 @@ MISSING: dict[str, dict[str, str]] = {
     },
     "study": {
         "frequency_response, bifurcation": "variants that go on from each other",
-        "lyapunov": "pairs that are parted again and again",
     },
 }
 BELOW = {"method": ("Dem",)}
 """What the page tells of in a part of its own."""
-STUDIES = ("sweep", "basins", "loss_map", "sensitivity", "design")
+STUDIES = ("sweep", "basins", "lyapunov", "loss_map", "sensitivity", "design")
 
 
 def table() -> list[str]:

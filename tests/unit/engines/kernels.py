@@ -11,6 +11,7 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -48,7 +49,7 @@ def emulated(library: ctypes.CDLL, members: Members) -> tuple[dict[str, NDArray[
     """Run members as one thread of a card would; also the most local and further memory that one of them took."""
     status, numbers = np.full(members.count, 4, np.int8), np.full(members.numbers, np.nan)
     room = np.zeros(members.memory + 64, np.uint8)
-    most = (ctypes.c_size_t * 2)()
+    most, desk = (ctypes.c_size_t * 2)(), _zeros(128)
     library.impact(
         ctypes.c_char_p(members.image),
         status.ctypes.data_as(ctypes.c_void_p),
@@ -56,13 +57,20 @@ def emulated(library: ctypes.CDLL, members: Members) -> tuple[dict[str, NDArray[
         ctypes.c_size_t(members.count),
         ctypes.c_void_p(room.ctypes.data + -room.ctypes.data % 64),
         ctypes.c_size_t(members.memory),
+        ctypes.c_void_p(desk.ctypes.data),
         most,
     )
     return members.named(status, numbers), most[0], most[1]
 
 
+def _zeros(size: int) -> NDArray[np.uint8]:
+    block = np.zeros(size + 64, np.uint8)
+    begin = -block.ctypes.data % 64
+    return block[begin : begin + size]
+
+
 class Card:
-    """A card whose memory is the processor's, and whose threads run one after the other."""
+    """A card whose memory is the processor's, and whose threads run one after the other while the host goes on."""
 
     multiprocessors, resident = 2, 2048
     occupancy = attributes = SimpleNamespace(
@@ -71,6 +79,7 @@ class Card:
 
     def __init__(self, library: ctypes.CDLL) -> None:
         self.library, self.launched, self.held = library, [], 0
+        self.at_work: threading.Thread | None = None
 
     def kernels(self, source: str, **macros: int) -> tuple[None, Any]:
         """Return the kernel of a name: of this card, the name itself."""
@@ -86,8 +95,11 @@ class Card:
         block = np.full(size + 64, 0xA5, np.uint8)
         begin = -block.ctypes.data % 64
         self.held += 1
-        yield block[begin : begin + size]
-        self.held -= 1
+        try:
+            yield block[begin : begin + size]
+        finally:
+            self.wait()  # as blocks are given back in the order of the stream
+            self.held -= 1
 
     def fill(self, buffer: NDArray[np.uint8], byte: int) -> None:
         """Write the same byte all over a block."""
@@ -99,18 +111,38 @@ class Card:
 
     def download(self, buffer: NDArray[np.uint8], array: NDArray[Any]) -> None:
         """Copy from a block into an array."""
+        self.wait()
         array.view(np.uint8)[:] = buffer
+
+    def wait(self) -> None:
+        """Wait for the kernel."""
+        if self.at_work:
+            self.at_work.join()
+
+    def works(self) -> bool:
+        """Tell whether the kernel is at work."""
+        return self.at_work is not None and self.at_work.is_alive()
+
+    def peek(self, buffer: NDArray[np.uint8], array: NDArray[Any]) -> None:
+        """Copy from the begin of a block while the kernel is at work."""
+        array.view(np.uint8)[:] = buffer[: array.nbytes]
+
+    def poke(self, buffer: NDArray[np.uint8], begin: int, array: NDArray[Any]) -> None:
+        """Copy into a block while the kernel is at work."""
+        buffer[begin : begin + array.nbytes] = array.view(np.uint8)
 
     def launch(self, kernel: Any, blocks: int, threads: int, *arguments: Any) -> None:
         """Run a kernel."""
         if kernel.name == "prepare":
             return
-        image, status, numbers, members, far, each, taken = arguments
-        assert far.size == blocks * threads * each and not taken.any()
+        image, status, numbers, members, far, each, desk = arguments
+        assert far.size == blocks * threads * each and not desk.any()
         self.launched.append((members, blocks * threads))
         most = (ctypes.c_size_t * 2)()
-        at = [ctypes.c_void_p(buffer.ctypes.data) for buffer in (image, status, numbers, far)]
-        self.library.impact(*at[:3], ctypes.c_size_t(members), at[3], ctypes.c_size_t(each), most)
+        at = [ctypes.c_void_p(buffer.ctypes.data) for buffer in (image, status, numbers, far, desk)]
+        given = *at[:3], ctypes.c_size_t(members), at[3], ctypes.c_size_t(each), at[4], most
+        self.at_work = threading.Thread(target=self.library.impact, args=given)
+        self.at_work.start()
 
 
 def compared(library: ctypes.CDLL) -> Iterator[dict[str, Any]]:

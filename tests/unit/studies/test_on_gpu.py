@@ -18,7 +18,7 @@ from rattlebox.engines.gpu_impact import THREADS, Need
 from rattlebox.model.errors import CaseError
 from rattlebox.paper.seed import seed_case
 from rattlebox.results import Run
-from rattlebox.studies import task
+from rattlebox.studies import lyapunov, task
 
 CASE = seed_case(duration=0.3)
 SHAKEN = rb.Case(
@@ -56,6 +56,19 @@ def test_sweeps_run_on_a_card_block_by_block(fake: list[tuple[int, int]], monkey
     wanted = rb.sweep(CASE, AXES, ["impacts", "peak"])
     for name in wanted.data_vars:
         np.testing.assert_array_equal(found[name], wanted[name])
+
+
+def test_pairs_are_parted_on_a_card(fake: list[tuple[int, int]], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Motions and neighbours of as many variants as keep a card busy run at once, to the processor's exponents."""
+    monkeypatch.setattr(lyapunov, "_MOTIONS", 8)
+    gaps = {"damper.gap": rb.linspace("0.5 mm", "1.5 mm", 4)}
+    told: list[int] = []
+    options: dict[str, Any] = {"cycles": (4, 3), "pairs": 2, "progress": lambda done, _: told.append(done)}
+    there, here = (rb.lyapunov(SHAKEN, gaps, on=on, **options) for on in ("gpu", None))
+    assert {stop for _, stop in fake} == {2 * 2, 2 * 2 * 2} and told[-1] == 4
+    assert np.isfinite(here.exponent).all()
+    for name in here.data_vars:
+        np.testing.assert_array_equal(there[name], here[name])
 
 
 def test_a_study_goes_on_where_it_began(fake: list[tuple[int, int]], tmp_path: Path) -> None:
