@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from dataclasses import dataclass, fields, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from rattlebox.model.paths import place_of
 
 from .axes import Axes, Design
 from .blocks import Blocks
+from .chosen import chosen
 from .measures import MEASURES
 from .runner import run_task
 from .task import Extra, SweepTask
@@ -30,12 +32,14 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
 Vector = NDArray[np.float64]
+Members = NDArray[np.intp]
 Values = Mapping[str, NDArray[Any]]
 
 _FINISHED = [name for name, _ in STATUSES].index("finished")
 _STARTS = ("start", "velocity", "displacement")
 _EARLIER = np.arange(1, 8) / 8  # parts of a cycle
 _CLOSED = -1e-12  # part of the clearance, far above rounding
+_WALKS = 2**13  # at once on a card
 
 
 def follow(
@@ -171,7 +175,7 @@ def whole_cycles(cycles: Any) -> tuple[int, int]:
 
 
 @dataclass
-class FollowTask(SweepTask):
+class Walks(SweepTask):
     """Variants that are followed along the last dimension of the design, in the directions of the first one.
 
     Attributes
@@ -182,7 +186,6 @@ class FollowTask(SweepTask):
 
     ways: tuple[str, ...] = ("up",)
     turning: bool = False
-    no_card: ClassVar[str] = "variants that go on from each other"
 
     @property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:
@@ -214,7 +217,44 @@ class FollowTask(SweepTask):
                     "harmonics that act for good, the slowest one first, the others at multiples of its frequency",
                 )
 
-    # ---- walks
+    def way(self, index: int) -> str:
+        """Return the direction of a variant."""
+        return self.ways[index * len(self.ways) // self.size]
+
+    def step(self, at: At | None, members: Members, cancelled: Callable[[], bool] | None) -> Values | None:
+        """Run a variant of each of some walks.
+
+        Parameters
+        ----------
+        at
+            Where the walks are; None where they begin.
+        members
+            The variants.
+        cancelled
+            Asked some fifty times a second; True stops.
+
+        Returns
+        -------
+        dict of str to array, or None
+            What is found of them, state and early being those to go on from; None when it was stopped.
+        """
+        step = _Step(self, at, members, cancelled)
+        found = step.run()
+        if found is None:
+            return None
+        after = at or At(step.own(), np.zeros(len(members)))
+        if "last_time" in found:
+            found["last_time"] = found["last_time"] - (after.early * step.period)[:, None]
+        finished = found["status"] == _FINISHED
+        after = At(np.where(finished[:, None], found["state"], after.state), np.where(finished, 0.0, after.early))
+        closed = finished & step.closed(after.state)
+        after = step.back(after, closed)
+        return {**found, "state": after.state, "early": after.early}
+
+
+@dataclass
+class FollowTask(Walks):
+    """On threads of the processor, a walk on each."""
 
     def chains(self, blocks: Blocks) -> list[list[int]]:
         """Return the numbers of the blocks of each walk, in the order in which they follow each other."""
@@ -226,8 +266,7 @@ class FollowTask(SweepTask):
 
     def order(self, start: int, stop: int) -> range:
         """Return variants of one walk in the order in which they follow each other."""
-        way = self.ways[start * len(self.ways) // self.size]
-        return range(start, stop) if way == "up" else range(stop - 1, start - 1, -1)
+        return range(start, stop) if self.way(start) == "up" else range(stop - 1, start - 1, -1)
 
     def run(
         self,
@@ -235,7 +274,7 @@ class FollowTask(SweepTask):
         stop: int,
         *,
         threads: int = 1,
-        cancelled: Callable[[], bool] | None = None,
+        cancelled: Callable[..., bool] | None = None,
         before: Values | None = None,
     ) -> Values | None:
         """Run variants of one walk.
@@ -251,127 +290,196 @@ class FollowTask(SweepTask):
         before
             What was found of the variant before these; None where the walk begins.
         """
-        at = None if before is None else _At(before["state"][-1], float(before["early"][-1]))
+        at = None if before is None else At(before["state"][-1:], before["early"][-1:])
         found: dict[int, Values] = {}
         for index in self.order(start, stop):
-            values = self._step(at, index, cancelled)
+            values = self.step(at, np.array([index]), cancelled)
             if values is None:
                 return None
-            at = _At(values["state"][0], float(values["early"][0]))
+            at = At(values["state"], values["early"])
             found[index] = values
         return {name: np.concatenate([found[index][name] for index in range(start, stop)]) for name in self.outputs}
 
-    def _step(self, at: _At | None, index: int, cancelled: Callable[[], bool] | None) -> Values | None:
-        """What is found of one variant that begins where another one has ended; state and early are those to go on from."""
-        packed, look = self._begun(at, index)
-        found = self._alone(packed, look, index, cancelled)
-        if found is None:
-            return None
-        after = at or _At(self._own(index), 0.0)
-        if "last_time" in found:
-            found["last_time"] = found["last_time"] - after.early * self._number(self.look.period, index)
-        if found["status"][0] == _FINISHED:
-            after = _At(found["state"][0], 0.0)
-            if self._closed(after.state, index):
-                after = self._back(after, packed, look, index, cancelled)
-        return {**found, "state": after.state[None], "early": np.array([after.early])}
+    def on_card(self) -> Walks:
+        """Return the same work for the card of this machine.
 
-    def _alone(
-        self, packed: Packed, look: Look, index: int, cancelled: Callable[[], bool] | None
-    ) -> dict[str, NDArray[Any]] | None:
+        Raises
+        ------
+        CaseError
+            When there is only one walk.
+        """
+        walks = self.size // self.design.shape[-1] // (len(self.ways) if self.turning else 1)
+        if walks == 1:
+            raise Hint(
+                'on = "gpu": each value goes on from the one before, so there is nothing to run side by side',
+                'the processor, direction = "fresh", or rb.basins or rb.lyapunov, which have work for a card',
+            )
+        given = {each.name: getattr(self, each.name) for each in fields(self)}
+        return FollowOnCard(**{**given, "gpu": True})
+
+
+@dataclass
+class FollowOnCard(Walks):
+    """On the graphics card, all walks at once, value by value."""
+
+    def side_by_side(self, most: int) -> int:
+        """Return the largest number of variants in a block: whole walks, up to eight times what a block should hold."""
+        length = self.design.shape[-1]
+        return length * max(1, min(_WALKS, 8 * most // length))
+
+    def run(
+        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[..., bool] | None = None
+    ) -> Values | None:
+        """Run whole walks.
+
+        Parameters
+        ----------
+        start, stop
+            Variants.
+        threads
+            Not used.
+        cancelled
+            Asked some fifty times a second with the number of variants done; True stops.
+        """
+        rows = np.arange(start, stop).reshape(-1, self.design.shape[-1])
+        walks = np.array([row if self.way(int(row[0])) == "up" else row[::-1] for row in rows])
+        whole: dict[str, NDArray[Any]] = {}
+        at: At | None = None
+        for k, members in enumerate(walks.T):
+            done = k * len(walks)
+            values = self.step(at, members, partial(cancelled, done) if cancelled else None)
+            if values is None:
+                return None
+            at = At(values["state"], values["early"])
+            for name, array in values.items():
+                whole.setdefault(name, np.empty((stop - start, *array.shape[1:]), array.dtype))[members - start] = array
+        return whole
+
+
+@dataclass
+class At:
+    """Where walks are: states, (walks, components), taken `early` cycles before a cycle ends, (walks,)."""
+
+    state: Vector
+    early: Vector
+
+
+class _Step:
+    """A variant of each of some walks, from where they are."""
+
+    def __init__(self, task: Walks, at: At | None, members: Members, cancelled: Callable[[], bool] | None) -> None:
+        self._cancelled, self._gpu, self._count = cancelled, task.gpu, len(members)
+        shape, look = task.design.shape, task.look
+        self._own: Packed = chosen(task.packed, shape, members)
+
+        def each(number: Any) -> Any:
+            return chosen(np.asarray(number, dtype=float), shape, members)
+
+        self.look = replace(look, shape=each(look.shape), start=each(look.start), period=each(look.period))
+        self.period = np.asarray(self.look.period)
+        self._packed = self._own if at is None else self._begun(at)
+
+    def run(self) -> dict[str, NDArray[Any]] | None:
+        """Return what is found; None when it was stopped."""
+        return self._found(self._packed, self.look, self._count)
+
+    def _found(self, packed: Packed, look: Look, count: int) -> dict[str, NDArray[Any]] | None:
         found = run_block(
-            packed, self.design.shape, index, index + 1, look, progress=lambda _: not (cancelled and cancelled())
+            packed,
+            (count,),
+            0,
+            count,
+            look,
+            progress=lambda _: not (self._cancelled and self._cancelled()),
+            gpu=self._gpu,
         )
         return None if found is None else dict(found)
 
-    def _number(self, number: Any, index: int) -> float:
-        """What a variant has of a packed number."""
-        return float(np.broadcast_to(number, self.design.shape).flat[index])
-
-    def _vector(self, vector: Any, index: int) -> Vector:
-        """What a variant has of a packed vector, (components,)."""
-        return np.array([self._number(component, index) for component in vector])
-
-    def _column(self, values: Vector) -> Vector:
-        """A vector as the core reads it."""
-        return np.ascontiguousarray(values).reshape(-1, *(1,) * len(self.design.shape))
-
-    def _begun(self, at: _At | None, index: int) -> tuple[Packed, Look]:
-        """What the core runs of a variant from where the walk is."""
-        packed, look = self.packed, self.look
-        if at is None:
-            return packed, look
+    def _begun(self, at: At) -> Packed:
+        """What the core runs from where the walks are."""
         q, p, _, _ = self._parts(at.state)
         dampers = [
             {
                 **damper,
-                "position": self._column(np.clip(np.maximum.accumulate(place), *walls)),
-                "velocity": self._column(speed),
+                "position": np.clip(np.maximum.accumulate(place, axis=0), *walls),
+                "velocity": speed,
             }
-            for damper, place, speed, walls in self._rows(at.state, index)
+            for damper, place, speed, walls in self._rows(at.state)
         ]
-        begun = {
-            **packed,
-            "mode_displacement": self._column(q),
-            "mode_velocity": self._column(p),
-            "dampers": dampers,
-        }
-        if not at.early:
-            return begun, look
-        wait = at.early * np.asarray(look.period)
-        loads = [{**load, "phase": load["phase"] - load["frequency"] * wait} for load in packed["loads"]]
-        settings = {**packed["settings"], "duration": packed["settings"]["duration"] + wait}
-        return {**begun, "loads": loads, "settings": settings}, replace(look, start=look.start + wait)
+        begun = {**self._own, "mode_displacement": q, "mode_velocity": p, "dampers": dampers}
+        if not at.early.any():
+            return begun
+        wait = at.early * self.period
+        loads = [{**load, "phase": load["phase"] - load["frequency"] * wait} for load in begun["loads"]]
+        settings = {**begun["settings"], "duration": begun["settings"]["duration"] + wait}
+        self.look = replace(self.look, start=self.look.start + wait)
+        return {**begun, "loads": loads, "settings": settings}
 
-    def _own(self, index: int) -> Vector:
-        """The state that the case gives to a variant."""
-        packed = self.packed
-        q, p = (self._vector(packed[name], index) for name in ("mode_displacement", "mode_velocity"))
+    def own(self) -> Vector:
+        """Return the states that the case gives."""
+        packed = self._own
+        q, p = packed["mode_displacement"], packed["mode_velocity"]
         place, speed = (
-            np.concatenate([self._vector(damper[name], index) for damper in packed["dampers"]] or [q[:0]])
+            [np.broadcast_to(damper[name], (len(damper[name]), self._count)) for damper in packed["dampers"]]
             for name in ("position", "velocity")
         )
-        return np.concatenate([np.stack([q, p], axis=1).ravel(), place, speed])
+        modes = [np.broadcast_to(part, (self._count,)) for pair in zip(q, p, strict=True) for part in pair]
+        return np.concatenate([np.reshape(modes, (-1, self._count)), *place, *speed]).T
 
-    def _rows(self, state: Vector, index: int) -> Iterator[tuple[Packed, Vector, Vector, tuple[float, float]]]:
-        """Each damper with places and velocities of its balls, and its walls."""
+    def _rows(self, state: Vector) -> Iterator[tuple[Packed, Vector, Vector, tuple[Vector, Vector]]]:
+        """Each damper with places and velocities of its balls, (balls, walks), and its walls."""
         q, _, place, speed = self._parts(state)
         first = 0
-        for damper in self.packed["dampers"]:
+        for damper in self._own["dampers"]:
             balls = slice(first, first := first + len(damper["mass"]))
-            centre = float(self._vector(damper["shape"], index) @ q)
-            half = 0.5 * self._number(damper["clearance"], index)
+            centre = np.sum(damper["shape"] * q, axis=0)
+            half = 0.5 * np.asarray(damper["clearance"])
             yield damper, place[balls], speed[balls], (centre - half, centre + half)
 
     def _parts(self, state: Vector) -> tuple[Vector, Vector, Vector, Vector]:
-        """Displacements and velocities of modes, places and velocities of balls."""
-        modes = len(self.packed["mode_decay"])
-        place, speed = np.split(state[2 * modes :], 2)
-        return state[0 : 2 * modes : 2], state[1 : 2 * modes : 2], place, speed
+        """Displacements and velocities of modes, places and velocities of balls, each (components, walks)."""
+        modes = len(self._own["mode_decay"])
+        rows = np.ascontiguousarray(state.T)
+        place, speed = np.split(rows[2 * modes :], 2)
+        parts = rows[0 : 2 * modes : 2], rows[1 : 2 * modes : 2], place, speed
+        q, p, place, speed = map(np.ascontiguousarray, parts)
+        return q, p, place, speed
 
-    def _closed(self, state: Vector, index: int) -> bool:
-        """Tell whether a soft contact is closed."""
-        return self.packed["settings"]["method"] != "newton" and any(
-            bool((np.diff([left, *place, right]) < _CLOSED * (right - left)).any())
-            for _, place, _, (left, right) in self._rows(state, index)
-        )
+    def closed(self, state: Vector) -> NDArray[np.bool_]:
+        """Tell of each walk whether a soft contact is closed."""
+        found = np.zeros(self._count, bool)
+        if self._own["settings"]["method"] != "newton":
+            for _, place, _, (left, right) in self._rows(state):
+                row = np.concatenate([left[None], place, right[None]])
+                found |= (np.diff(row, axis=0) < _CLOSED * (right - left)).any(axis=0)
+        return found
 
-    def _back(self, end: _At, packed: Packed, look: Look, index: int, cancelled: Callable[[], bool] | None) -> _At:
-        """The state at an earlier moment, at which all contacts are open; or that at the end, where there is none."""
-        settings = packed["settings"]
-        bare = replace(look, measures=(), start=0.0, samples=2, motion=False, last=0)
+    def back(self, end: At, closed: NDArray[np.bool_]) -> At:
+        """Return states at an earlier moment, at which all contacts are open; or those at the end, where there is none.
+
+        Parameters
+        ----------
+        end
+            States at the end.
+        closed
+            For which an earlier moment is needed, (walks,).
+        """
+        settings, waiting = self._packed["settings"], closed
+        bare = replace(self.look, measures=(), start=0.0, samples=2, motion=False, last=0)
         for early in _EARLIER:
-            duration = np.asarray(settings["duration"] - early * np.asarray(look.period))
-            sooner = {**packed, "settings": {**settings, "duration": duration}}
-            found = self._alone(sooner, bare, index, cancelled)
-            if found and found["status"][0] == _FINISHED and not self._closed(found["state"][0], index):
-                return _At(found["state"][0], float(early))
+            if not waiting.any():
+                break
+            duration = np.asarray(settings["duration"] - early * self.period)
+            sooner = {**self._packed, "settings": {**settings, "duration": duration}}
+            members = np.flatnonzero(waiting)
+            there = [chosen(part, (self._count,), members) for part in (sooner, self.look.shape, self.period)]
+            found = self._found(there[0], replace(bare, shape=there[1], period=there[2]), len(members))
+            if found is None:
+                break
+            state = end.state.copy()
+            state[members] = found["state"]
+            taken = waiting & ~self.closed(state)
+            taken[members] &= found["status"] == _FINISHED
+            end = At(np.where(taken[:, None], state, end.state), np.where(taken, early, end.early))
+            waiting = waiting & ~taken
         return end
-
-
-@dataclass
-class _At:
-    """Where a walk is: a state, (components,), taken `early` cycles before a cycle ends."""
-
-    state: Vector
-    early: float

@@ -303,9 +303,8 @@ class GranularTask(Granular):
 class GranularOnCard(Granular):
     """On the graphics card, many side by side."""
 
-    @property
-    def block(self) -> int:
-        """Largest number of variants in a block: about twice as many as a card holds at once."""
+    def side_by_side(self, most: int) -> int:
+        """Return the largest number of variants in a block: about twice as many as a card holds at once."""
         return max(_SIDE_BY_SIDE, math.ceil(self.size / _BLOCKS))
 
     def ready(self) -> tuple[str, str]:

@@ -194,10 +194,9 @@ class LyapunovTask:
         """Return the same work for the card of this machine, where motions and neighbours of many variants run at once."""
         return replace(self, gpu=True)
 
-    @property
-    def block(self) -> int | None:
-        """Largest number of variants in a block; None for what takes about a second."""
-        return max(1, _MOTIONS // (2 * self.pairs)) if self.gpu else None
+    def side_by_side(self, most: int) -> int:
+        """Return the largest number of variants in a block."""
+        return max(1, min(most, _MOTIONS // (2 * self.pairs)))
 
     def ready(self) -> tuple[str, str]:
         """See to it that there is a card; return what decides the last bits there, and what to tell of it."""

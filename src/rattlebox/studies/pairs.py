@@ -12,13 +12,14 @@ from rattlebox.engines.batch import Look, run_block
 from rattlebox.engines.pack import Packed
 from rattlebox.engines.status import LEDGER_OPEN, STATUSES
 
+from .chosen import chosen
+
 if TYPE_CHECKING:
     from .lyapunov import LyapunovTask
 
 Array = NDArray[np.float64]
 
 _FINISHED = [name for name, _ in STATUSES].index("finished")
-_TABLES = "times", "values", "speeds"
 _ALIGNING = 20  # legs in which a neighbour turns into the direction that grows most
 _TURN = 0.6180339887498949  # of a leg, on: contacts that are closed at one moment are open at another
 _PATIENCE = 8
@@ -50,11 +51,11 @@ class Pairs:
         self._task, self._threads, self._asked = task, threads, cancelled
         self._count, self._part = stop - start, 0.0
         shape = task.design.shape
-        members = np.unravel_index(np.arange(start, stop), shape) if shape else ()
-        self._packed: Packed = _taken(task.sweep.packed, shape, members)
+        members = np.arange(start, stop)
+        self._packed: Packed = chosen(task.sweep.packed, shape, members, 2)
         self._modes = len(self._packed["mode_decay"])
         self.status = np.full((self._count, task.pairs), _FINISHED)
-        self.period = self._each(_taken(np.asarray(task.sweep.look.period), shape, members))
+        self.period = self._each(chosen(np.asarray(task.sweep.look.period), shape, members, 2))
         duration = self._each(self._packed["settings"]["duration"])
         length = duration - task.skip if task.cycles is None else task.cycles[1] * self.period
         self.leg = length / task.count
@@ -246,21 +247,6 @@ class Pairs:
             if places.shape[-1] > 1:
                 found = np.minimum(found, np.diff(places, axis=-1).min(axis=-1) / clearance)
         return found
-
-
-def _taken(node: Any, shape: tuple[int, ...], members: tuple[NDArray[np.intp], ...], key: str = "") -> Any:
-    """What some members of a batch have, with their number and two more axes in place of the grid's."""
-    if isinstance(node, dict):
-        return {name: _taken(item, shape, members, name) for name, item in node.items()}
-    if isinstance(node, list):
-        return [_taken(item, shape, members) for item in node]
-    if not isinstance(node, np.ndarray) or key in _TABLES or node.ndim == 0:
-        return node
-    own = node.ndim - len(shape)  # axes of a vector
-    places = tuple(place if n > 1 else 0 * place for place, n in zip(members, node.shape[own:], strict=True))
-    if all(n == 1 for n in node.shape[own:]):
-        return node.reshape(*node.shape[:own], 1, 1, 1)
-    return _flat(node[(slice(None),) * own + places])[..., None, None]
 
 
 def _later(load: Packed, wait: Array) -> Packed:

@@ -61,9 +61,8 @@ class Task(Protocol):
 class CardTask(Task, Protocol):
     """Work on a graphics card, whose `cancelled` takes the number of variants done, parts of them included."""
 
-    @property
-    def block(self) -> int | None:
-        """Number of variants in a block, which keep the card busy."""
+    def side_by_side(self, most: int) -> int:
+        """Return the number of variants in a block, which keep the card busy; it should hold at most so many."""
 
     def ready(self) -> tuple[str, str]:
         """See to it that there is a card; return what decides the last bits there, and what to tell of it."""
@@ -176,9 +175,11 @@ def run_task(
 
     bits = _core()
     told: dict[str, str] = {}
+    card: CardTask | None = None
     if isinstance(on, str):
-        task, bits, told, block = _on_card(task, on)
-        on = None
+        task = card = _on_card(task, on)
+        bits, about = card.ready()
+        on, told = None, {"gpu": about}
     threads = threads or (1 if on else cores())
     plan = Plan(
         dims=tuple(design.dims),
@@ -189,6 +190,8 @@ def run_task(
     )
 
     def cut() -> Blocks:
+        if card:
+            return Blocks.of(plan.shape, card.side_by_side(_held(card.size, plan)))
         size = (block and _held(block, plan)) or _block_size(
             task, plan, on, 1 if isinstance(task, Chained) else threads
         )
@@ -208,7 +211,7 @@ def run_task(
             def part(done: float) -> None:
                 tell(kept.done + int(done))
 
-            if told:
+            if card:
                 results = _here(task, todo, threads, 1, part)
             else:
                 results = _on_cluster(on, task, todo, threads) if on else _here(task, todo, threads, threads)
@@ -236,15 +239,13 @@ def _core() -> str:
     return instructions()
 
 
-def _on_card(task: Task, on: str) -> tuple[Task, str, dict[str, str], int | None]:
-    """The work for a card, what decides the last bits there, what the result tells of it, and the size of blocks."""
+def _on_card(task: Task, on: str) -> CardTask:
+    """The work for a card."""
     if on != "gpu":
         raise Hint(f"on = {on!r}", '"gpu", or a dask.distributed.Client')
     if not isinstance(task, OnCard):
         raise Hint('on = "gpu": a card cannot run this study', "threads of the processor, or a cluster")
-    there = task.on_card()
-    bits, told = there.ready()
-    return there, bits, {"gpu": told}, there.block
+    return task.on_card()
 
 
 def _bits() -> str:

@@ -8,7 +8,7 @@ from functools import cached_property
 from hashlib import sha256
 from inspect import getsource
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,7 +69,6 @@ class SweepTask:
     last: int = 0
     state: bool = False
     gpu: bool = False
-    no_card: ClassVar[str] = ""  # what it is that only a processor can run
 
     def on_card(self) -> SweepTask:
         """Return the same work for the card of this machine.
@@ -79,8 +78,6 @@ class SweepTask:
         CaseError
             When a card cannot do it.
         """
-        if self.no_card:
-            raise Hint(f'on = "gpu": a card cannot run {self.no_card}', "threads of the processor, or a cluster")
         if self.own:
             raise Hint(
                 f'on = "gpu": {next(iter(self.own))} is a function of a Run, which a card does not make',
@@ -103,7 +100,11 @@ class SweepTask:
     @property
     def block(self) -> int | None:
         """Largest number of variants in a block; None for what takes about a second."""
-        return _CARD_BLOCK if self.gpu else None
+        return None
+
+    def side_by_side(self, most: int) -> int:
+        """Return the largest number of variants in a block on a card; a block should hold at most so many."""
+        return min(_CARD_BLOCK, most)
 
     @property
     def named(self) -> list[str]:

@@ -137,12 +137,21 @@ MISSING: dict[str, dict[str, str]] = {
         "whole trajectories, impact logs": "`rb.simulate`, on the processor",
     },
     "study": {
-        "frequency_response, bifurcation": "variants that go on from each other",
+        "bifurcation up or down": "one motion, each value of which goes on from the one before",
     },
 }
 BELOW = {"method": ("Dem",)}
 """What the page tells of in a part of its own."""
-STUDIES = ("sweep", "basins", "lyapunov", "loss_map", "sensitivity", "design")
+STUDIES = (
+    "sweep",
+    "basins",
+    "lyapunov",
+    "frequency_response",
+    "bifurcation with direction fresh",
+    "loss_map",
+    "sensitivity",
+    "design",
+)
 
 
 def table() -> list[str]:

@@ -18,7 +18,7 @@ from rattlebox.engines.gpu_impact import THREADS, Need
 from rattlebox.model.errors import CaseError
 from rattlebox.paper.seed import seed_case
 from rattlebox.results import Run
-from rattlebox.studies import lyapunov, task
+from rattlebox.studies import follow, lyapunov, task
 
 CASE = seed_case(duration=0.3)
 SHAKEN = rb.Case(
@@ -30,6 +30,7 @@ SHAKEN = rb.Case(
     duration="1 s",
 )
 AXES = {"damper.gap": rb.linspace("0.2 mm", "1 mm", 40)}
+LINEAR = rb.Linear(stiffness=500.0, restitution=0.6)
 
 
 @pytest.fixture
@@ -71,6 +72,24 @@ def test_pairs_are_parted_on_a_card(fake: list[tuple[int, int]], monkeypatch: py
         np.testing.assert_array_equal(there[name], here[name])
 
 
+def test_walks_are_taken_side_by_side(fake: list[tuple[int, int]], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Levels and directions of a frequency response go on together, value by value, each as on the processor."""
+    soft = rb.ImpactDamper(ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", contact=LINEAR)
+    case = SHAKEN.model_copy(update={"dampers": (soft,)})
+    told: list[int] = []
+    options: dict[str, Any] = {"levels": ["4 N", "5 N", "8 N"], "cycles": (4, 2), "samples": 8}
+    options["progress"] = lambda done, _: told.append(done)
+    there, here = (rb.frequency_response(case, [9.0, 9.5, 10.0], on=on, **options) for on in ("gpu", None))
+    assert {stop for _, stop in fake} == {6, 5, 3} and told[-1] == 18  # some contacts are closed at the end of a cycle
+    assert (here.status == 0).all()
+    for name in here.data_vars:
+        np.testing.assert_array_equal(there[name], here[name])
+    monkeypatch.setattr(follow, "_WALKS", 2)
+    fake.clear()
+    again = rb.frequency_response(case, [9.0, 9.5, 10.0], on="gpu", **options)
+    assert max(stop for _, stop in fake) == 2 and again.equals(there)
+
+
 def test_a_study_goes_on_where_it_began(fake: list[tuple[int, int]], tmp_path: Path) -> None:
     """A store that was begun on a card is not gone on with on the processor, whose bits differ."""
     rb.sweep(CASE, AXES, on="gpu", store=tmp_path / "study")
@@ -92,8 +111,8 @@ def own(run: Run) -> float:
         (lambda: rb.sweep(CASE, AXES, [own], on="gpu"), "own is a function of a Run"),
         (lambda: rb.sweep(CASE, AXES, on="tpu"), "on = 'tpu'"),
         (
-            lambda: rb.frequency_response(SHAKEN, ["9 Hz", "10 Hz"], on="gpu"),
-            "go on from each other",
+            lambda: rb.bifurcation(SHAKEN, "load.amplitude", [4.0, 5.0], direction="up", on="gpu"),
+            "each value goes on from the one before, so there is nothing to run side by side",
         ),
     ],
 )
