@@ -106,22 +106,23 @@ template <int n> struct Columns {
     Vector<Pack<n>> vector() const { return {x, y, z}; }
 };
 
-// The rows that at(0), at(1), ... point to, as lanes.
-template <int n = lane_count, class At> RATTLEBOX_INLINE Columns<n> columns(At&& at) {
+// The rows of(0), of(1), ... as lanes.
+template <int n = lane_count, class Of> RATTLEBOX_INLINE Columns<n> columns_of(Of&& of) {
     if constexpr (n > register_width) {
-        const auto low = columns<n / 2>(at);
-        const auto high = columns<n / 2>([&](int l) { return at(l + n / 2); });
+        const auto low = columns_of<n / 2>(of);
+        const auto high =
+            columns_of<n / 2>([&](int l) __attribute__((always_inline)) { return of(l + n / 2); });
         return {{low.x, high.x}, {low.y, high.y}, {low.z, high.z}, {low.w, high.w}};
 #ifdef RATTLEBOX_GPU
     } else {
-        const Row a = *at(0);
+        const Row a = of(0);
         return {{a[0]}, {a[1]}, {a[2]}, {a[3]}};
     }
 #else
 #if defined(__AVX512F__)
     } else if constexpr (n == 8) {
-        const auto two = [&](int l) {
-            return __builtin_shufflevector(*at(l), *at(l + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+        const auto two = [&](int l) __attribute__((always_inline)) {
+            return __builtin_shufflevector(of(l), of(l + 4), 0, 1, 2, 3, 4, 5, 6, 7);
         };
         const auto a = two(0), b = two(1), c = two(2), d = two(3);
         const auto xz = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -134,7 +135,7 @@ template <int n = lane_count, class At> RATTLEBOX_INLINE Columns<n> columns(At&&
                 {__builtin_shufflevector(yw, wy, 2, 3, 10, 11, 6, 7, 14, 15)}};
 #endif
     } else if constexpr (n == 4) {
-        const Row a = *at(0), b = *at(1), c = *at(2), d = *at(3);
+        const Row a = of(0), b = of(1), c = of(2), d = of(3);
         const Row xz = __builtin_shufflevector(a, b, 0, 4, 2, 6),
                   yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
         const Row zx = __builtin_shufflevector(c, d, 0, 4, 2, 6),
@@ -145,11 +146,18 @@ template <int n = lane_count, class At> RATTLEBOX_INLINE Columns<n> columns(At&&
                 {__builtin_shufflevector(yw, wy, 2, 3, 6, 7)}};
     } else {
         static_assert(n == 2);
-        const Row a = *at(0), b = *at(1);
-        const auto both = [&](int k) { return Pack<n>{typename Pack<n>::Register{a[k], b[k]}}; };
+        const Row a = of(0), b = of(1);
+        const auto both = [&](int k) __attribute__((always_inline)) {
+            return Pack<n>{typename Pack<n>::Register{a[k], b[k]}};
+        };
         return {both(0), both(1), both(2), both(3)};
     }
 #endif
+}
+
+// The rows that at(0), at(1), ... point to.
+template <int n = lane_count, class At> RATTLEBOX_INLINE Columns<n> columns(At&& at) {
+    return columns_of<n>([&](int l) __attribute__((always_inline)) { return *at(l); });
 }
 
 // The other way: lane l becomes the row that at(l) points to. Where lanes share a row, one of them stays.
@@ -168,7 +176,7 @@ template <int n, class At> RATTLEBOX_INLINE void store(const Columns<n>& c, At&&
         const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 8, 9, 4, 5, 12, 13);
         const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 10, 11, 6, 7, 14, 15);
         const auto wy = __builtin_shufflevector(c.y.v, c.w.v, 2, 3, 10, 11, 6, 7, 14, 15);
-        const auto put = [&](int l, auto both) {
+        const auto put = [&](int l, auto both) __attribute__((always_inline)) {
             *at(l) = __builtin_shufflevector(both, both, 0, 1, 2, 3);
             *at(l + 4) = __builtin_shufflevector(both, both, 4, 5, 6, 7);
         };

@@ -37,19 +37,32 @@ template <class T> struct Ball {
     T radius;
 };
 
-template <bool spins, class T> RATTLEBOX_INLINE Meeting<T> meet(const Ball<T>& a, const Ball<T>& b) {
-    const auto way = b.place - a.place;
-    const T distance = root(dot(way, way)), near = a.radius + b.radius;
-    const T per_both = all(near, 1) / (distance * near); // one division for two
+// Two spheres, seen from each other.
+template <class T> struct Facing {
+    Vector<T> way;            // from the first centre to the second
+    Vector<T> velocity, spin; // of the first relative to the second
+    Vector<T> swirl;          // sum of spin times radius
+    T near, radius;           // sum of the radii, and the smaller of them
+};
+
+template <class T> RATTLEBOX_INLINE Facing<T> facing(const Ball<T>& a, const Ball<T>& b) {
+    return {b.place - a.place,   a.velocity - b.velocity,
+            a.spin - b.spin,     a.radius * a.spin + b.radius * b.spin,
+            a.radius + b.radius, smaller(a.radius, b.radius)};
+}
+
+template <bool spins, class T> RATTLEBOX_INLINE Meeting<T> meet(const Facing<T>& f) {
+    const T distance = root(dot(f.way, f.way));
+    const T per_both = all(distance, 1) / (distance * f.near); // one division for two
     Meeting<T> m;
-    m.normal = (near * per_both) * way;
-    m.overlap = near - distance;
-    m.radius = smaller(a.radius, b.radius);
-    m.velocity = a.velocity - b.velocity;
+    m.normal = (f.near * per_both) * f.way;
+    m.overlap = f.near - distance;
+    m.radius = f.radius;
+    m.velocity = f.velocity;
     if constexpr (spins) {
         m.lever = distance * distance * per_both;
-        m.swirl = (m.lever * a.radius) * a.spin + (m.lever * b.radius) * b.spin;
-        m.spin = a.spin - b.spin;
+        m.swirl = m.lever * f.swirl;
+        m.spin = f.spin;
     }
     return m;
 }

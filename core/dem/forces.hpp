@@ -26,30 +26,46 @@ struct PairView {
         });
     }
 
-    RATTLEBOX_INLINE Columns<8> first(const std::vector<Row>& rows, const int* k) const {
-        return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
+    // Rows are combined before they are turned into lanes, which costs more.
+    template <class Combine>
+    RATTLEBOX_INLINE Columns<8> both(const std::vector<Row>& rows, const int* k, Combine&& combine) const {
+        return columns_of([&](int l) __attribute__((always_inline)) {
+            const int i = at(list.first, k[l]), j = at(list.second, k[l]);
+            return combine(at(rows, i), at(rows, j), i, j);
+        });
     }
-    RATTLEBOX_INLINE Columns<8> second(const std::vector<Row>& rows, const int* k) const {
-        return columns([&](int l) { return &at(rows, at(list.second, k[l])); });
+
+    // From the first centre to the second, and the sum of the radii.
+    RATTLEBOX_INLINE Columns<8> way(const int* k) const {
+        return both(bed.position, k, [](Row a, Row b, int, int) __attribute__((always_inline)) {
+            return b + row(-1, -1, -1, 1) * a;
+        });
     }
 
     // Positive where the pair touches.
     RATTLEBOX_INLINE Lanes room(const int* k) const {
-        const auto a = first(bed.position, k), b = second(bed.position, k);
-        const auto apart = a.vector() - b.vector();
-        const Lanes near = a.w + b.w;
-        return near * near - dot(apart, apart);
+        const auto apart = way(k);
+        return apart.w * apart.w - dot(apart.vector(), apart.vector());
     }
 
     template <bool spins> RATTLEBOX_INLINE Meeting<Lanes> meeting(const int* k) const {
-        const auto a = first(bed.position, k), b = second(bed.position, k);
-        Ball<Lanes> one{a.vector(), first(bed.velocity, k).vector(), {}, a.w};
-        Ball<Lanes> other{b.vector(), second(bed.velocity, k).vector(), {}, b.w};
+        const auto apart = way(k);
+        const auto radius = [&](int i) __attribute__((always_inline)) { return at(bed.position, i)[3]; };
+        const auto moving =
+            both(bed.velocity, k, [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
+                Row relative = a - b;
+                relative[3] = smaller(radius(i), radius(j));
+                return relative;
+            });
+        Facing<Lanes> f{apart.vector(), moving.vector(), {}, {}, apart.w, moving.w};
         if constexpr (spins) {
-            one.spin = first(bed.spin, k).vector();
-            other.spin = second(bed.spin, k).vector();
+            const auto swirl = [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
+                return row(radius(i)) * a + row(radius(j)) * b;
+            };
+            const auto relative = [](Row a, Row b, int, int) __attribute__((always_inline)) { return a - b; };
+            f.swirl = both(bed.spin, k, swirl).vector(), f.spin = both(bed.spin, k, relative).vector();
         }
-        return meet<spins>(one, other);
+        return meet<spins>(f);
     }
 };
 

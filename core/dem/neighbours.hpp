@@ -231,12 +231,12 @@ public:
         kept_tier.resize(kept.size());
         int found = 0, numbers[Contacts::tiers + 1] = {};
         for (int p = 0; p < count; p += lane_count) {
-            const auto partner = [&](const std::vector<int>& of) {
-                return columns([&](int l) { return &at(bed.position, at(of, std::min(p + l, count - 1))); });
-            };
-            const auto a = partner(chunk.near_first), b = partner(chunk.near_second);
-            const auto apart = a.vector() - b.vector();
-            const Lanes near = a.w + b.w, distance = dot(apart, apart);
+            const auto apart = columns_of([&](int l) __attribute__((always_inline)) {
+                const int q = std::min(p + l, count - 1);
+                const Row a = at(bed.position, at(chunk.near_first, q));
+                return at(bed.position, at(chunk.near_second, q)) + row(-1, -1, -1, 1) * a;
+            });
+            const Lanes near = apart.w, distance = dot(apart.vector(), apart.vector());
             Lanes tier = Lanes::all(0);
             for (int t = 1; t <= Contacts::tiers; ++t) {
                 const Lanes limit = near + Lanes::all(skin * t / Contacts::tiers);

@@ -88,7 +88,7 @@ template <bool sampled> class OwnContacts {
             const Row x = bed_.position[i];
             return {vector(x), vector(bed_.velocity[i]), spins ? vector(bed_.spin[i]) : Vector<real>{}, x[3]};
         };
-        if (partner >= 0) return meet<spins>(ball(i_), ball(partner));
+        if (partner >= 0) return meet<spins>(facing(ball(i_), ball(partner)));
         const Near at = near(-1 - partner);
         return meet<spins>(ball(i_), vector(at.normal), at.distance, vector(bed_.motion.velocity));
     }
