@@ -33,6 +33,7 @@ typedef real Row __attribute__((vector_size(4 * sizeof(real))));
 
 inline Row row(real x, real y, real z, real w = 0) { return Row{x, y, z, w}; }
 inline Row row(real all) { return Row{} + all; }
+inline Row row(const real* v) { return Row{v[0], v[1], v[2], 0}; }
 inline real dot(Row a, Row b) {
     const Row c = a * b;
     return (c[0] + c[1]) + c[2];

@@ -40,8 +40,9 @@ struct Chunk {
 
 // What all need to know of a chunk in a step: a line of memory.
 struct alignas(64) Brief {
-    Row push{};     // on the cavity; and how far any particle has moved beyond the reference
-    Row momentum{}; // and how much nearer to each other any two may have come since the build
+    real push[3] = {}, moved = 0; // on the cavity; how far any particle has moved beyond the reference
+    real momentum[3] = {},
+         closed = 0; // and how much nearer to each other any two may have come since the build
 };
 
 struct Bed {

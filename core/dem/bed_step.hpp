@@ -145,13 +145,13 @@ public:
     // Candidates are those that may touch in this step.
     void look_around(const Neighbours& neighbours, Chunk& chunk) {
         const int own = chunk.begin / Bed::chunk_size, last = chunk.highest / Bed::chunk_size;
-        const real moved = at(bed_.briefs, own).push[3];
+        const real moved = at(bed_.briefs, own).moved;
         real others = 0;
-        for (int c = own; c <= last; ++c) others = larger(others, at(bed_.briefs, c).push[3]);
+        for (int c = own; c <= last; ++c) others = larger(others, at(bed_.briefs, c).moved);
         Contacts &pairs = chunk.pairs, &walls = chunk.walls;
         pairs.since += moved + others, ++pairs.age;
         walls.since += moved + bed_.apart, ++walls.age;
-        at(bed_.briefs, own).momentum[3] += moved + others;
+        at(bed_.briefs, own).closed += moved + others;
         if (pairs.is_stale()) neighbours.scan_pairs(bed_, chunk), ++chunk.tally.scans;
         if (walls.is_stale()) neighbours.scan_walls(bed_, chunk);
     }
@@ -178,8 +178,8 @@ public:
                 if (wall_.rolls) moment -= at(list.actions.torque, a);
             }
         }
-        Row& push = at(bed_.briefs, chunk.begin / Bed::chunk_size).push;
-        push = row(total[0], total[1], total[2], push[3]);
+        Brief& brief = at(bed_.briefs, chunk.begin / Bed::chunk_size);
+        for (int a = 0; a < 3; ++a) brief.push[a] = total[a];
         chunk.tally.wall_moment = moment;
     }
 
@@ -265,8 +265,8 @@ public:
             drift = drift > speed ? drift : speed;
         }
         Brief& brief = at(bed_.briefs, chunk.begin / Bed::chunk_size);
-        brief.push[3] = dt * std::sqrt(drift) * (1 + 1e-9);
-        brief.momentum = row(momentum[0], momentum[1], momentum[2], brief.momentum[3]);
+        brief.moved = dt * std::sqrt(drift) * (1 + 1e-9);
+        for (int a = 0; a < 3; ++a) brief.momentum[a] = momentum[a];
         if constexpr (sampled) {
             tally.kinetic = 0.5 * kinetic;
             tally.rotation = 0.5 * rotation;

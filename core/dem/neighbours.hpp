@@ -151,8 +151,14 @@ public:
     }
 
     void search(const Bed& bed, Chunk& chunk) const {
-        thread_local std::vector<int> first, second;
-        int count = 0;
+        thread_local std::vector<int> firsts, seconds;
+        int count = 0, *first = firsts.data(), *second = seconds.data();
+        const auto make_room = [&] {
+            const auto room = static_cast<std::size_t>(count + lane_count);
+            if (room <= firsts.size()) return;
+            firsts.resize(2 * room), seconds.resize(2 * room);
+            first = firsts.data(), second = seconds.data();
+        };
         for (int i = chunk.begin; i < chunk.end; ++i) {
             const Row& p = at(bed.position, i);
             const Vector<Lanes> place = {Lanes::all(p[0]), Lanes::all(p[1]), Lanes::all(p[2])};
@@ -164,15 +170,14 @@ public:
                 const int from = own ? i + 1 : at(cell_start_, line + std::max(cx - 1, 0));
                 const int to = at(cell_start_, line + std::min(cx + 1, cells_[0] - 1) + 1);
                 for (int j = from; j < to; j += lane_count) {
-                    if (const auto room = static_cast<std::size_t>(count + lane_count); room > first.size())
-                        first.resize(2 * room), second.resize(2 * room);
+                    make_room();
                     const auto others = [&](int a) { return unaligned<lane_count>(&at(along_[a], j)); };
                     const Vector<Lanes> apart = place - Vector<Lanes>{others(0), others(1), others(2)};
                     const Lanes near = around + others(3);
                     alignas(64) real room[lane_count];
                     lanes(room) = near * near - dot(apart, apart);
                     for (int l = 0; l < lane_count; ++l) {
-                        at(first, count) = i, at(second, count) = j + l;
+                        first[count] = i, second[count] = j + l;
                         count += static_cast<int>(room[l] > 0) & static_cast<int>(j + l < to);
                     }
                 }
@@ -181,8 +186,8 @@ public:
             range(cy + 1, cz, false);
             for (int y = cy - 1; y <= cy + 1; ++y) range(y, cz + 1, false);
         }
-        chunk.near_first.assign(first.begin(), first.begin() + count);
-        chunk.near_second.assign(second.begin(), second.begin() + count);
+        chunk.near_first.assign(first, first + count);
+        chunk.near_second.assign(second, second + count);
         chunk.highest = chunk.end - 1;
         for (const int j : chunk.near_second) chunk.highest = std::max(chunk.highest, j);
         chunk.near_slot.assign(chunk.near_first.size(), none);
@@ -224,12 +229,14 @@ public:
     void scan_pairs(const Bed& bed, Chunk& chunk) const {
         choose_skin(chunk.pairs, bed.smallest, 0.4 * bed.reach);
         const real skin = chunk.pairs.skin;
-        thread_local std::vector<int> kept;
-        thread_local std::vector<char> kept_tier;
+        thread_local std::vector<int> found_pairs;
+        thread_local std::vector<real> found_tiers;
         const int count = static_cast<int>(chunk.near_slot.size());
-        kept.resize(static_cast<std::size_t>(count) + lane_count);
-        kept_tier.resize(kept.size());
-        int found = 0, numbers[Contacts::tiers + 1] = {};
+        found_pairs.resize(static_cast<std::size_t>(count) + lane_count);
+        found_tiers.resize(found_pairs.size());
+        int* const found_pair = found_pairs.data();
+        real* const found_tier = found_tiers.data();
+        int found = 0;
         for (int p = 0; p < count; p += lane_count) {
             const auto apart = columns_of([&](int l) __attribute__((always_inline)) {
                 const int q = std::min(p + l, count - 1);
@@ -245,22 +252,20 @@ public:
             alignas(64) real number[lane_count];
             lanes(number) = tier;
             for (int l = 0; l < std::min(lane_count, count - p); ++l) {
-                const int t = static_cast<int>(number[l]);
-                at(kept, found) = p + l;
-                at(kept_tier, found) = static_cast<char>(t);
-                found += t < Contacts::tiers;
-                ++numbers[t];
+                found_pair[found] = p + l, found_tier[found] = number[l];
+                found += number[l] < Contacts::tiers;
             }
         }
         Contacts& pairs = chunk.pairs;
-        int next[Contacts::tiers], sum = 0;
+        int numbers[Contacts::tiers] = {}, next[Contacts::tiers], sum = 0;
+        for (int n = 0; n < found; ++n) ++numbers[static_cast<int>(found_tier[n])];
         for (int t = 0; t < Contacts::tiers; ++t) {
             next[t] = sum;
             pairs.tier_end[t] = sum += numbers[t];
         }
         pairs.resize(sum);
         for (int n = 0; n < found; ++n) {
-            const int p = at(kept, n), k = next[static_cast<int>(at(kept_tier, n))]++;
+            const int p = found_pair[n], k = next[static_cast<int>(found_tier[n])]++;
             at(pairs.first, k) = at(chunk.near_first, p);
             at(pairs.second, k) = at(chunk.near_second, p);
             at(pairs.origin, k) = p;

@@ -55,7 +55,7 @@ struct Records {
         for (std::size_t b = 0; b < beds.size(); ++b) {
             const Bed& bed = beds[b];
             Totals sum{.before = before_[b], .now = losses(bed)};
-            for (const Brief& one : bed.briefs) sum.momentum += one.momentum, sum.push += one.push;
+            for (const Brief& one : bed.briefs) sum.momentum += row(one.momentum), sum.push += row(one.push);
             for (const Chunk& c : bed.chunks) {
                 const Tally& one = c.tally;
                 sum.kinetic += one.kinetic, sum.rotation += one.rotation, sum.stored += total(one.stored);

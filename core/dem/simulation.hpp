@@ -68,7 +68,7 @@ class Simulation {
             Chunk& chunk = bed.chunks.emplace_back();
             chunk.begin = from, chunk.end = std::min(from + Bed::chunk_size, n);
         }
-        bed.briefs.assign(bed.chunks.size(), Brief{Row{}, row(0, 0, 0, infinity)});
+        bed.briefs.assign(bed.chunks.size(), Brief{.closed = infinity});
     }
 
     // ---- the structure
@@ -111,13 +111,13 @@ class Simulation {
 
     Row force_on(const Bed& bed) const {
         Row total{};
-        for (const Brief& brief : bed.briefs) total += brief.push;
+        for (const Brief& brief : bed.briefs) total += row(brief.push);
         return total;
     }
 
     static Row momentum_of(const Bed& bed) {
         Row total{};
-        for (const Brief& brief : bed.briefs) total += brief.momentum;
+        for (const Brief& brief : bed.briefs) total += row(brief.momentum);
         return total;
     }
 
@@ -244,7 +244,7 @@ class Simulation {
     static real since_build(const Bed& bed) {
         real since = 0, others = 0;
         for (const Brief& brief : bed.briefs)
-            others = larger(others, brief.push[3]), since = larger(since, brief.momentum[3] + brief.push[3]);
+            others = larger(others, brief.moved), since = larger(since, brief.closed + brief.moved);
         return since + others;
     }
 

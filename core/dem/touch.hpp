@@ -162,7 +162,7 @@ inline Begun begin(const Touch& t, real dt) {
             b.kept.law = row(law.stiffness, now.damping, tangential, drag);
         }
         const real roll = e.rolling_stiffness > 0 ? e.rolling_stiffness * square(t.radius) : 1;
-        b.rolling = {row(0), // nothing stretched yet
+        b.rolling = {Row{}, // nothing stretched yet
                      row(e.rolling * t.radius, roll,
                          2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential))};
     });
