@@ -6,9 +6,8 @@ peers     one start, step and physics in this and other programs: `peers FOLDER 
           (particle_peers.py); what is not installed is left out. `--program NAME=PATH` adds another LAMMPS (lmp of another
           environment, say). Beds are made by LAMMPS first; `--beds FOLDER` keeps them (shaken_1000.csv, rest_1000.csv), and
           takes those that are there
-cut       what a particle and step cost in a large bed, and in its pieces of about a thousand: all in one run, which passes
-          through as much memory, and one after another, so that memory's share is told from density's: `cut BED`, with
-          one of these files
+wide      what a particle and step cost in a bed, and in wide ones of the same depth and state, so that the share of memory is
+          told from that of density: `wide BED`, with one of these files
 
 A cube of 3 mm spheres (E = 100 MPa, e = 0.75, mu = 0.3, fill 0.36), shaken along z with 10 g at 50 Hz; steps of 14.549 us.
 Programs take turns; the median of `--turns` (three) is told, and the ratio to it. Who takes longer than 100 s for a turn
@@ -42,27 +41,26 @@ DIAMETER, DENSITY, FILL = 3e-3, 7850.0, 0.36
 MATERIAL = rb.Material(name="soft steel", density=DENSITY, young=1e8, poisson=0.3)
 WINDOWS = {100: (5, 50), 1000: (5, 10), 10_000: (5, 5), 100_000: (1, 1)}
 """Periods before the clock starts, and while it runs."""
-CUT_STEPS = (100, 400)
 LOOKS = 101
 """At contacts, at all phases of the shaking."""
 AMPLITUDES = {"shaken": 98.1, "rest": 0.0}
 """Of the acceleration [m/s^2]."""
 
 
-def edge_of(count: int) -> float:
+def edge_of(count: float) -> float:
     """Return the edge of the box [m]."""
     return float((count * np.pi * DIAMETER**3 / 6 / FILL) ** (1 / 3))
 
 
-def shaken(count: int, amplitude: float = AMPLITUDES["shaken"]) -> rb.Case:
-    """Return the box, on a shaker that starts from rest."""
-    edge = edge_of(count)
+def shaken(count: int, amplitude: float = AMPLITUDES["shaken"], across: int = 1) -> rb.Case:
+    """Return the box, some times as wide as it is high, on a shaker that starts from rest."""
+    edge = edge_of(count / across**2)
     motion = rb.Harmonic(amplitude=f"{amplitude} m/s^2", frequency=1 / PERIOD, phase=np.pi / 2, direction="z")
     return rb.Case(
         structure=rb.Shaker(motion=motion),
         damper=rb.ParticleDamper(
             particles=rb.Particles(material=MATERIAL, diameter=DIAMETER, count=count),
-            cavity=rb.Box(size=(edge, edge, edge)),
+            cavity=rb.Box(size=(across * edge, across * edge, edge)),
             contact=rb.Tsuji(restitution=0.75),
             friction=rb.Mindlin(0.3),
             direction="z",
@@ -89,11 +87,10 @@ def timed(packed: dict[str, Any], warm: int, steps: int, threads: int) -> dict[s
     after = dem.counters()
     dem.restore(begun)  # the same once more, to look at it without the clock
     looks = []
-    beds = range(len(packed["cavities"]))
     for look in range(1, LOOKS + 1):
         dem.run(warm + look * steps // LOOKS)
-        looks.append((sum(len(dem.contacts(bed)["first"]) for bed in beds), dem.counters()["candidates"]))
-    count = sum(len(cavity["radius"]) for cavity in packed["cavities"])
+        looks.append((len(dem.contacts(0)["first"]), dem.counters()["candidates"]))
+    count = len(packed["cavities"][0]["radius"])
     contacts, candidates = np.mean(looks, axis=0) / count
     rate = count * steps / (after["seconds"] - before)
     return {"rate": rate, "bytes": after["memory_bytes"] / count, "contacts": contacts, "candidates": candidates}
@@ -127,30 +124,21 @@ def one(kind: str, count: str, cores: str, start: str = "") -> None:
     print(json.dumps(timed(packed, steps_of(warm), steps_of(window), int(cores))))
 
 
-def one_cut(bed: str, pieces: str, how: str) -> None:
-    """Print the JSON line of a bed that is cut into some pieces along each axis; what `apart` runs.
-
-    Every piece floats in the frame of its mean motion, in a cube that is a diameter wider than the places of its particles.
-    """
-    columns = np.loadtxt(bed, delimiter=",", ndmin=2)
-    n, edge = int(pieces), edge_of(len(columns)) / int(pieces)
-    cell = np.clip(np.floor(columns[:, :3] / edge + n / 2), 0, n - 1).astype(int)
-    cases: list[dict[str, Any]] = []
-    for number in np.unique(cell, axis=0):
-        part = columns[(cell == number).all(axis=1)]
-        part[:, :3] -= (number + 0.5 - n / 2) * edge
-        part[:, 3:6] -= part[:, 3:6].mean(axis=0)
-        packed, _, _ = pack_dem(shaken(len(part), amplitude=0.0))
-        packed["gravity"] = np.zeros(3)
-        packed["cavities"][0]["wall_offset"] = np.full(6, (edge + DIAMETER) / 2)
-        put(packed, part)
-        cases.append(packed)
-    if how == "together":
-        cases = [{**cases[0], "cavities": [case["cavities"][0] for case in cases]}]
-    found = [timed(packed, *CUT_STEPS, threads=1) for packed in cases]
-    share = np.array([sum(len(cavity["radius"]) for cavity in case["cavities"]) for case in cases]) / len(columns)
-    rows = np.array([[1 / each["rate"], each["contacts"], each["candidates"]] for each in found])
-    print(json.dumps(dict(zip(("cost", "contacts", "candidates"), share @ rows, strict=True))))
+def one_wide(kind: str, bed: str, across: str) -> None:
+    """Print the JSON line of a bed beside its mirror images, with no walls between them; what `apart` runs."""
+    columns, n = np.loadtxt(bed, delimiter=",", ndmin=2), int(across)
+    edge = edge_of(len(columns))
+    parts = []
+    for i, j in np.ndindex(n, n):
+        part = columns.copy()
+        part[:, [0, 3, 7, 8]] *= (-1) ** i
+        part[:, [1, 4, 6, 8]] *= (-1) ** j
+        part[:, :2] += (np.array([i, j]) - (n - 1) / 2) * edge
+        parts.append(part)
+    packed, _, _ = pack_dem(shaken(len(columns) * n**2, AMPLITUDES[kind], n))
+    put(packed, np.concatenate(parts))
+    warm, steps = (steps_of(periods) for periods in WINDOWS[100_000])
+    print(json.dumps(timed(packed, warm, steps, threads=1)))
 
 
 def scaling(kind: str = "shaken", turns: int = 3) -> Iterator[tuple[str, str]]:
@@ -165,24 +153,19 @@ def scaling(kind: str = "shaken", turns: int = 3) -> Iterator[tuple[str, str]]:
         yield "contacts a particle", f"{found[0][0]['contacts']:.2f}"
 
 
-def cut(bed: str, turns: int) -> Iterator[tuple[str, str]]:
-    """Cost of a bed, and of its pieces as cavities of one run and as runs of their own."""
-    count = len(Path(bed).read_text().splitlines())
-    pieces = max(2, round((count / 1000) ** (1 / 3)))
-    ways = {
-        f"{count:,} particles in one cavity": ("1", "alone"),
-        f"{pieces**3} cavities of about {count / pieces**3:,.0f}, in one run": (str(pieces), "together"),
-        "the same cavities, one after another": (str(pieces), "alone"),
-    }
-    found: dict[str, list[dict[str, float]]] = {name: [] for name in ways}
+def wide(bed: str, turns: int) -> Iterator[tuple[str, str]]:
+    """Cost of a bed, and of wide ones that are put together from it."""
+    kind, count = Path(bed).stem.split("_")
+    found: dict[int, list[dict[str, float]]] = {1: [], 3: [], 10: []}
     for _ in range(turns):
-        for name, how in ways.items():
-            found[name].append(apart("one_cut", bed, *how, cores=1))
-    last = [each["cost"] for each in found["the same cavities, one after another"]]
-    for name, each in found.items():
-        told = f"{1e9 * statistics.median(a['cost'] for a in each):.1f} ns a particle and step"
-        ratio = statistics.median(a["cost"] / b for a, b in zip(each, last, strict=True))
-        yield name, f"{told}, {each[0]['contacts']:.2f} contacts, {each[0]['candidates']:.2f} candidates, x {ratio:.2f}"
+        for across, each in found.items():
+            each.append(apart("one_wide", kind, bed, str(across), cores=1))
+    for across, each in found.items():
+        cost = statistics.median(1e9 / a["rate"] for a in each)
+        ratio = statistics.median(b["rate"] / a["rate"] for a, b in zip(each, found[1], strict=True))
+        told = f"{cost:.1f} ns a particle and step, x {ratio:.2f}, "
+        told += f"{each[0]['contacts']:.2f} contacts, {each[0]['candidates']:.2f} candidates"
+        yield f"{int(count) * across**2:,} particles, {kind}, as deep as {int(count):,}", told
 
 
 def peers(
@@ -243,18 +226,18 @@ def _compared(
 def main() -> None:
     """Print a table of what was asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("job", nargs="?", choices=["scaling", "rest", "peers", "cut", "one", "one_cut"])
+    parser.add_argument("job", nargs="?", choices=["scaling", "rest", "peers", "wide", "one", "one_wide"])
     parser.add_argument("arguments", nargs="*")
     parser.add_argument("--beds", type=Path)
     parser.add_argument("--program", type=another_lammps, action="append", default=[])
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--cores", type=int, nargs="+", choices=[1, 2], default=[1, 2])
     given = parser.parse_intermixed_args()
-    if given.job in ("one", "one_cut"):
-        (one if given.job == "one" else one_cut)(*given.arguments)
+    if given.job in ("one", "one_wide"):
+        (one if given.job == "one" else one_wide)(*given.arguments)
         return
     rows: list[Iterator[tuple[str, str]]]
-    if given.job in ("peers", "cut") and not given.arguments:
+    if given.job in ("peers", "wide") and not given.arguments:
         parser.error(f"{given.job} needs a {'folder of decks' if given.job == 'peers' else 'file of a bed'}")
     if given.job == "peers":
         folder, *rest = given.arguments
@@ -263,8 +246,8 @@ def main() -> None:
         if given.beds:
             given.beds.mkdir(parents=True, exist_ok=True)
         rows = [peers(Path(folder), kind, counts, (*PROGRAMS, *given.program), given.beds, given.cores, given.turns)]
-    elif given.job == "cut":
-        rows = [cut(given.arguments[0], given.turns)]
+    elif given.job == "wide":
+        rows = [wide(given.arguments[0], given.turns)]
     else:
         rows = [
             scaling(kind, given.turns)
