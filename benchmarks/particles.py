@@ -6,8 +6,8 @@ peers     one start, step and physics in this and other programs: `peers FOLDER 
           (particle_peers.py); what is not installed is left out. `--program NAME=PATH` adds another LAMMPS (lmp of another
           environment, say). Beds are made by LAMMPS first; `--beds FOLDER` keeps them (shaken_1000.csv, rest_1000.csv), and
           takes those that are there
-wide      what a particle and step cost in a bed, and in wide ones of the same depth and state, so that the share of memory is
-          told from that of density: `wide BED`, with one of these files
+wide      what a particle and step cost in a bed, and in wide ones of the same depth and state, so that memory's share is
+          told from density's: `wide BED`, with one of these files
 
 A cube of 3 mm spheres (E = 100 MPa, e = 0.75, mu = 0.3, fill 0.36), shaken along z with 10 g at 50 Hz; steps of 14.549 us.
 Programs take turns; the median of `--turns` (three) is told, and the ratio to it. Who takes longer than 100 s for a turn
