@@ -14,6 +14,17 @@ constexpr int most_beds = 8;
 
 using Beds = dem::wide::Bed[most_beds];
 
+// What the host looks at between launches, of each world.
+struct Told {
+    long step;
+    int status, pause;
+
+    Told& operator=(const dem::wide::Control& c) {
+        step = c.step, status = static_cast<int>(c.status), pause = static_cast<int>(c.pause);
+        return *this;
+    }
+};
+
 } // namespace
 
 #ifdef __CUDACC__
@@ -24,38 +35,43 @@ using Beds = dem::wide::Bed[most_beds];
 // hand.
 extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS,
                                         RATTLEBOX_BLOCKS) void block(char* worlds, const std::size_t* begin,
-                                                                     std::size_t until, std::size_t size) {
+                                                                     std::size_t until, std::size_t size,
+                                                                     Told* told) {
     extern __shared__ __align__(64) char near[];
     __shared__ __align__(64) char own[sizeof(World)], beds[sizeof(Beds)];
     gpu::Block team;
-    dem::wide::run_near(team, *reinterpret_cast<World*>(worlds + begin[blockIdx.x]),
-                        *reinterpret_cast<World*>(own), *reinterpret_cast<Beds*>(beds), near,
+    World& world = *reinterpret_cast<World*>(worlds + begin[blockIdx.x]);
+    dem::wide::run_near(team, world, *reinterpret_cast<World*>(own), *reinterpret_cast<Beds*>(beds), near,
                         static_cast<int>(size), static_cast<long>(until));
+    if (team.first()) told[blockIdx.x] = world.control;
 }
 
-extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS, RATTLEBOX_BLOCKS) void grid(World* world,
-                                                                                       unsigned* barrier,
-                                                                                       std::size_t until) {
+extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS,
+                                        RATTLEBOX_BLOCKS) void grid(World* world, unsigned* barrier,
+                                                                    std::size_t until, Told* told) {
     gpu::Grid team(barrier);
     dem::wide::run(team, *world, static_cast<long>(until));
+    if (team.first()) *told = world->control;
 }
 
 #else
 
 extern "C" void block(char* worlds, const std::size_t* begin, std::size_t blocks, std::size_t until,
-                      char* near, std::size_t size) {
+                      char* near, std::size_t size, Told* told) {
     One team;
     for (std::size_t b = 0; b < blocks; ++b) {
+        World& world = *reinterpret_cast<World*>(worlds + begin[b]);
         World own;
         Beds beds;
-        dem::wide::run_near(team, *reinterpret_cast<World*>(worlds + begin[b]), own, beds, near,
-                            static_cast<int>(size), static_cast<long>(until));
+        dem::wide::run_near(team, world, own, beds, near, static_cast<int>(size), static_cast<long>(until));
+        told[b] = world.control;
     }
 }
 
-extern "C" void grid(World* world, unsigned*, std::size_t until) {
+extern "C" void grid(World* world, unsigned*, std::size_t until, Told* told) {
     One team;
     dem::wide::run(team, *world, static_cast<long>(until));
+    *told = world->control;
 }
 
 #endif

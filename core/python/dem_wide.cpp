@@ -126,16 +126,7 @@ public:
     long step() const { return world().control.step; }
     std::size_t memory() const { return simulation_.memory(); }
 
-    // What a card needs to know of it, and to tell while it works.
     int near() const { return wide::near_bytes(world()); }
-    static std::size_t head() { return sizeof(wide::World); }
-    static nb::tuple glance(const Bytes& bytes) {
-        if (bytes.shape(0) < head()) throw std::invalid_argument("the state is cut short");
-        wide::World w;
-        std::memcpy(static_cast<void*>(&w), bytes.data(), sizeof(w));
-        return nb::make_tuple(w.control.step, static_cast<int>(w.control.status),
-                              static_cast<int>(w.control.pause));
-    }
 };
 
 } // namespace
@@ -160,8 +151,6 @@ void add_dem_wide(nb::module_& module) {
         .def_prop_ro("status", &DemWide::status)
         .def_prop_ro("pause", &DemWide::pause)
         .def_prop_ro("near", &DemWide::near, "Bytes of the arrays that every step uses.")
-        .def_static("head", &DemWide::head, "Bytes at the beginning of an image that can be glanced at.")
-        .def_static("glance", &DemWide::glance, nb::arg("bytes"), "Step, status and pause.")
         .def_prop_ro("memory", &DemWide::memory)
         .def_prop_ro("step", &DemWide::step);
 }

@@ -34,6 +34,17 @@ def test_a_block_and_all_blocks_give_the_same_bits(monkeypatch: pytest.MonkeyPat
         assert np.array_equal(run.arrays.cavity_force, runs[0].arrays.cavity_force)
 
 
+def test_studies_are_those_of_the_processor() -> None:
+    """A study of many variants, more than the card holds at once, has the processor's measures but for rounding."""
+    axes = {"structure.velocity": rb.linspace("0.1 m/s", "0.7 m/s", 1500)}
+    found = rb.sweep(case(), axes, ["impact_share", "peak"], on="gpu", progress=False)
+    some = {"structure.velocity": found["structure.velocity"].values[::100]}
+    here = rb.sweep(case(), some, ["impact_share", "peak"], progress=False)
+    assert (found.status == 0).all()
+    for name in ("impact_share", "peak"):
+        np.testing.assert_allclose(found[name][::100], here[name], rtol=1e-4)
+
+
 def test_variants_side_by_side_are_those_alone() -> None:
     """Blocks do not disturb each other."""
     cases = [case(0.2 * k) for k in range(1, 40)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,9 @@ import rattlebox as rb
 from rattlebox.engines.card import Card
 from rattlebox.engines.gpu_impact import ready
 from rattlebox.paper.seed import seed_case
+from rattlebox.studies.axes import Design
 from rattlebox.studies.measures import MEASURES
+from rattlebox.studies.task import SweepTask
 
 BESIDE = Path(__file__).parents[1] / "unit/engines/gpu_cases.py"
 
@@ -57,3 +60,40 @@ def test_kernels_are_compiled_once_on_a_machine(card: Card) -> None:
     """The second time they come from the cache."""
     ready()
     assert "cache" in ready()[1] and card.arch in ready()[1]
+
+
+def shaken(**more: Any) -> rb.Case:
+    """Return a ball that a shaker throws from wall to wall, again and again the same way."""
+    usual: dict[str, Any] = {
+        "structure": rb.Shaker(motion=rb.Harmonic(amplitude="3 mm", frequency="12 Hz")),
+        "damper": rb.ImpactDamper(
+            ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", start=0.3, contact=rb.Tsuji(restitution=0.6)
+        ),
+        "duration": "1 s",
+    }
+    return rb.Case(**usual | more)
+
+
+def test_pairs_and_walks_are_those_of_the_processor() -> None:
+    """Exponents of a motion that repeats, and a frequency response, each value of which goes on from the one before."""
+    axes = {"structure.motion.amplitude": ["3 mm"]}
+    here, there = (rb.lyapunov(shaken(), axes, cycles=(20, 10), pairs=2, on=on) for on in (None, "gpu"))
+    np.testing.assert_allclose(there.exponent, here.exponent, rtol=1e-4)
+    damper = shaken().dampers[0].model_copy(update={"contact": rb.Tsuji(restitution=0.3)})
+    structure = rb.SDOF(mass="1 kg", stiffness="4 kN/m", damping_ratio=0.05)
+    case = shaken(structure=structure, damper=damper, load=rb.Harmonic(amplitude="5 N", frequency="9 Hz"))
+    options: dict[str, Any] = {"levels": ["20 N", "40 N"], "cycles": (60, 8)}
+    here, there = (rb.frequency_response(case, [8.0, 9.0], on=on, **options) for on in (None, "gpu"))
+    assert (here.period == 1).all()
+    np.testing.assert_array_equal(there.period, here.period)
+    np.testing.assert_allclose(there.amplitude, here.amplitude, rtol=1e-6)
+
+
+def test_a_launch_is_stopped_in_its_middle() -> None:
+    """Threads hear a stop long before their member ends, which would take an hour."""
+    case = shaken(duration="1e6 s", method=rb.Newton(max_events=10**9))
+    task = SweepTask(case, Design.of(case, {"damper.gap": rb.linspace("0.5 mm", "1 mm", 1000)}), ["impacts"]).on_card()
+    begin = perf_counter()
+    assert task.run(0, 1000, cancelled=lambda _: perf_counter() > begin + 2) is None
+    assert np.all(rb.sweep(shaken(), {"damper.gap": ["1 mm"]}, ["impacts"], on="gpu").impacts > 0)
+    assert perf_counter() - begin < 60

@@ -25,6 +25,7 @@ SAMPLES, MANY_SAMPLES = 256, 2048
 MOST_BEDS = 8
 """Cavities of a case, at most, that a block finds room for."""
 
+_TOLD = np.dtype([("step", np.int64), ("status", np.int32), ("pause", np.int32)])  # as in core/gpu/dem.cpp
 _SPARE = 0.9  # of the free memory is taken at most
 _GRAIN = 256  # of addresses
 _PIECE = 0.1  # time of a launch [s]: a stop is heard soon
@@ -265,15 +266,6 @@ class _Blocks:
             for case, begin in zip(self.cases, self.begins, strict=False):
                 case._dem.absorb(images[int(begin) : int(begin) + case.memory])
 
-    def glance(self) -> list[tuple[int, int, int]]:
-        """Step, status and pause of each case."""
-        head = np.empty(core().DemWide.head(), np.uint8)
-        found = []
-        for begin in self.begins[:-1]:
-            self.card.download(self.block, head, int(begin))
-            found.append(core().DemWide.glance(head))
-        return found
-
 
 class _Kernel:
     """The kernel for cases like one."""
@@ -289,28 +281,28 @@ class _Kernel:
     def work(self, blocks: _Blocks, until: int, go_on: Callable[[list[int]], bool]) -> bool:
         """Launch until each case is done, or those that pause have waited long enough; False when it was stopped."""
         card, count, late = self._card, len(blocks.cases), 0.0
-        limits = [min(until, case.steps) for case in blocks.cases]
+        limits = np.array([min(until, case.steps) for case in blocks.cases])
         near = 0 if self._alone else card.allow_shared(self._kernel, max(int(case.near) for case in blocks.cases))
-        with card.room(8 * count) as offsets, card.room(8) as barrier:
+        told = np.empty(count, _TOLD)
+        with card.room(8 * count) as offsets, card.room(8) as barrier, card.room(told.nbytes) as board:
             card.upload(offsets, blocks.begins[:-1])
             card.fill(barrier, 0)
             at_work = [case.step for case in blocks.cases]
             while at_work and late <= _PATIENCE * blocks.seconds:
                 goal, begin = min(at_work) + self._steps - 1, perf_counter()
+                given: tuple[Any, ...]
                 if self._alone:
-                    card.launch(self._kernel, self._blocks, self._threads, blocks.block, barrier, goal, at_once=True)
+                    given = blocks.block, barrier, goal, board
+                    card.launch(self._kernel, self._blocks, self._threads, *given, at_once=True)
                 else:
-                    card.launch(self._kernel, count, self._threads, blocks.block, offsets, goal, near, shared=near)
-                found = blocks.glance()
+                    given = blocks.block, offsets, goal, near, board
+                    card.launch(self._kernel, count, self._threads, *given, shared=near)
+                card.download(board, told)
                 took = perf_counter() - begin
                 self._steps = max(1, int(self._steps * min(4.0, _PIECE / took)))
-                if not go_on([step for step, _, _ in found]):
+                if not go_on(told["step"].tolist()):
                     return False
-                going = [
-                    (step, pause)
-                    for (step, status, pause), limit in zip(found, limits, strict=True)
-                    if step <= limit and not status
-                ]
-                at_work = [step for step, pause in going if not pause]
-                late += took if len(at_work) < len(going) else 0.0
+                going = (told["step"] <= limits) & (told["status"] == 0)
+                at_work = told["step"][going & (told["pause"] == 0)].tolist()
+                late += took if len(at_work) < going.sum() else 0.0
         return True

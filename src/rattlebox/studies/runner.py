@@ -148,7 +148,7 @@ def run_task(
         Threads that share a block; default as many as this process may use cores, or one on a cluster.
     progress
         True or False for a bar, default a bar on a terminal; or a function of the number of variants that are there and
-        of all.
+        of all. A card tells of those under way, too.
     block
         Largest number of variants in a block; default so many as take about a second, or five on a cluster, or as keep
         a card busy.

@@ -103,12 +103,15 @@ class CardOfPaper:
         """Run a kernel, block by block."""
         self.launched.append(kernel)
         self.side_by_side.append(blocks if kernel == "block" else 1)
-        worlds, second, until, *_ = arguments
+        worlds, second, until, *_, board = arguments
         if kernel == "grid":
             assert at_once and shared == 0
-            self.library.grid(ctypes.c_void_p(worlds.handle), None, ctypes.c_size_t(until))
+            self.library.grid(
+                ctypes.c_void_p(worlds.handle), None, ctypes.c_size_t(until), ctypes.c_void_p(board.handle)
+            )
             return
         with self.room(shared) as near:
             given = [ctypes.c_void_p(block.handle) for block in (worlds, second)]
             sizes = [ctypes.c_size_t(n) for n in (blocks, until)]
-            self.library.block(*given, *sizes, ctypes.c_void_p(near.handle), ctypes.c_size_t(shared))
+            near_at, told = ctypes.c_void_p(near.handle), ctypes.c_void_p(board.handle)
+            self.library.block(*given, *sizes, near_at, ctypes.c_size_t(shared), told)

@@ -16,6 +16,7 @@ from rattlebox.results import GranularRun
 from rattlebox.studies import granular
 from rattlebox.studies.axes import Design
 from rattlebox.studies.runner import Stopped
+from rattlebox.studies.store import progress_of
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C++ compiler")
 
@@ -137,7 +138,7 @@ def test_a_stop_loses_no_finished_block(card: CardOfPaper, tmp_path: Path, monke
 
     def stopping(done: int, total: int) -> None:
         told.append((done, total))
-        if done == 2:
+        if progress_of(store).done == 2:
             raise KeyboardInterrupt
 
     with pytest.raises(Stopped, match="2 of 4 variants are in"):
