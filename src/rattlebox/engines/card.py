@@ -34,6 +34,8 @@ class Card:
         Architecture that kernels are compiled for, such as "sm_90".
     driver
         Version of CUDA that the driver has.
+    compiling
+        How long kernels have been compiled that were not in the cache [s].
     """
 
     def __init__(self) -> None:
@@ -71,12 +73,18 @@ class Card:
         self.arch = f"sm_{capability[0]}{capability[1]}"
         self._stream, self._beside = self._device.create_stream(), self._device.create_stream()
         self._loaded: dict[Any, tuple[Compiled, Any]] = {}
+        self.compiling = 0.0
 
     def describe(self) -> str:
         """Return its name, memory, architecture and driver."""
         _, total = self.memory()
         version = f"{self.driver[0]}.{self.driver[1]}"
         return f"{self.name}, {total / 2**30:.0f} GiB, {self.arch}, driver with CUDA {version}"
+
+    def told(self, compiling: float) -> str:
+        """Return what to tell of it, and of how long kernels were compiled [s]."""
+        took = f"kernels compiled in {compiling:.1f} s" if compiling else "kernels from the cache"
+        return f"{self.describe()}; {took}"
 
     def memory(self) -> tuple[int, int]:
         """Return the bytes of its memory that are free, and all of them."""
@@ -121,6 +129,7 @@ class Card:
         key = source, *macros.items()
         if key not in self._loaded:
             compiled = compile_kernels(source, self.arch, keep=True, **macros)
+            self.compiling += compiled.seconds
             loaded = self._core.ObjectCode.from_cubin(compiled.code, name=source)
             self._loaded[key] = compiled, loaded.get_kernel
         return self._loaded[key]

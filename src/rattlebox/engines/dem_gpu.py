@@ -153,14 +153,14 @@ class CardDem:
         self._dem.absorb(state)
 
 
-def ready() -> tuple[str, str]:
+def ready() -> str:
     """See to it that there is a card.
 
     Returns
     -------
-    tuple of str
-        What decides the last bits of a result, those of the processor included, on which beds settle; and what to tell of
-        card and driver. Kernels are compiled for the laws of a case when it is run.
+    str
+        What decides the last bits of a result, those of the processor included, on which beds settle. Kernels are compiled
+        for the laws of a case when it is run.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def ready() -> tuple[str, str]:
         When there is no card that can be used, naming what is missing.
     """
     card = Card()
-    return f"{card.arch}, NVRTC {'.'.join(map(str, nvrtc()))}, beds by {instructions()}", card.describe()
+    return f"{card.arch}, NVRTC {'.'.join(map(str, nvrtc()))}, beds by {instructions()}"
 
 
 def run_together(

@@ -118,8 +118,7 @@ def ready() -> tuple[str, str]:
     """
     card = Card()
     compiled, _ = card.kernels("impact.cpp", RATTLEBOX_THREADS=THREADS)
-    took = f"kernels compiled in {compiled.seconds:.1f} s" if compiled.seconds else "kernels from the cache"
-    return f"{card.arch}, NVRTC {'.'.join(map(str, nvrtc()))}", f"{card.describe()}; {took}"
+    return f"{card.arch}, NVRTC {'.'.join(map(str, nvrtc()))}", card.told(compiled.seconds)
 
 
 def run_members(

@@ -314,7 +314,7 @@ class FollowTask(Walks):
                 'on = "gpu": each value goes on from the one before, so there is nothing to run side by side',
                 'the processor, direction = "fresh", or rb.basins or rb.lyapunov, which have work for a card',
             )
-        given = {each.name: getattr(self, each.name) for each in fields(self)}
+        given = {each.name: getattr(self, each.name) for each in fields(self) if each.init}
         return FollowOnCard(**{**given, "gpu": True})
 
 

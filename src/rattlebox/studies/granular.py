@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
 from rattlebox.analysis import settling_time, shaken_cavity
+from rattlebox.engines import dem_gpu
 from rattlebox.engines.batch import Look
 from rattlebox.engines.card import Card
 from rattlebox.engines.dem import run_on_card, settled, simulate_dem
-from rattlebox.engines.dem_gpu import ready
 from rattlebox.engines.status import REFUSED, STATUSES
 from rattlebox.model.errors import CaseError, Hint
 from rattlebox.model.methods import Output
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 _BLOCKS = 2000
 _SIDE_BY_SIDE = 1024
+_PARTICLES = 2_000_000  # some kilobytes each
 _SUMS = ("load_work", "base_work", "viscous_loss", "normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
 _NUMBERS = {name: number for number, (name, _) in enumerate(STATUSES)}
 
@@ -223,6 +224,10 @@ def since(run: GranularRun, start: float) -> GranularRun:
     return GranularRun(replace(arrays, **cut), run.case_toml, run.provenance) if first else run
 
 
+def _particles(case: Case) -> int:
+    return sum(damper.contents.mass.size for damper in case.particle_dampers)
+
+
 def _frequency(case: Case) -> float:
     """Of the first harmonic load or motion [Hz], NaN without one."""
     for signal in (*case.loads, *case.base, *case.shaker_motion):
@@ -245,7 +250,7 @@ class GranularTask(Granular):
 
     def on_card(self) -> GranularOnCard:
         """Return the same work for the card of this machine."""
-        return GranularOnCard(**{each.name: getattr(self, each.name) for each in fields(Granular)})
+        return GranularOnCard(**{each.name: getattr(self, each.name) for each in fields(Granular) if each.init})
 
     def chains(self, blocks: Blocks) -> list[list[int]]:
         """Return the numbers of blocks, each by itself: they need nothing of each other, and take very different times."""
@@ -303,13 +308,23 @@ class GranularTask(Granular):
 class GranularOnCard(Granular):
     """On the graphics card, many side by side."""
 
-    def side_by_side(self, most: int) -> int:
-        """Return the largest number of variants in a block: about twice as many as a card holds at once."""
-        return max(_SIDE_BY_SIDE, math.ceil(self.size / _BLOCKS))
+    _compiling: float = field(default=0.0, init=False)
 
-    def ready(self) -> tuple[str, str]:
-        """See to it that there is a card; return what decides the last bits, and what to tell of it."""
-        return ready()
+    def side_by_side(self, most: int) -> int:
+        """Return the largest number of variants in a block: about twice as many as a card holds at once, or one large."""
+        counts = [_particles(self.case)]
+        for end in (0, self.size - 1):
+            with suppress(CaseError):
+                counts.append(_particles(self.variant(end)))
+        return max(1 if max(counts) > dem_gpu.SMALL else _SIDE_BY_SIDE, math.ceil(self.size / _BLOCKS))
+
+    def ready(self) -> str:
+        """See to it that there is a card, and return what decides the last bits."""
+        return dem_gpu.ready()
+
+    def told(self) -> str:
+        """Return what to tell of the card, once all is run."""
+        return Card().told(self._compiling)
 
     def run(
         self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[..., bool] | None = None
@@ -335,17 +350,32 @@ class GranularOnCard(Granular):
         CaseError
             When the card's memory is too small for one variant, with the number.
         """
+        rows: dict[int, dict[str, float]] = {}
+        card = Card()
+        for cases in self._portions(start, stop):
+            before = min(cases, default=start) - start
 
-        def go_on(part: float) -> bool:
-            return not (cancelled and cancelled(part * (stop - start)))
+            def go_on(part: float, before: int = before, count: int = len(cases)) -> bool:
+                return not (cancelled and cancelled(before + part * count))
 
-        cases = {}
+            runs = run_on_card(list(cases.values()), card, threads=threads, progress=go_on)
+            if runs is None:
+                return None
+            ended = zip(cases.items(), runs, strict=True)
+            rows |= {index: self.row(case, run) for (index, case), run in ended if isinstance(run, GranularRun)}
+        self._compiling += card.compiling
+        return self.columns(rows, start, stop)
+
+    def _portions(self, start: int, stop: int) -> Iterator[dict[int, Case]]:
+        """Variants by number, as many at once as this machine's memory is likely to hold."""
+        cases: dict[int, Case] = {}
+        particles = 0
         for index in range(start, stop):
             with suppress(CaseError):
-                cases[index] = self.variant(index)
-        runs = run_on_card(list(cases.values()), Card(), threads=threads, progress=go_on)
-        if runs is None:
-            return None
-        ended = zip(cases.items(), runs, strict=True)
-        rows = {index: self.row(case, run) for (index, case), run in ended if isinstance(run, GranularRun)}
-        return self.columns(rows, start, stop)
+                case = self.variant(index)
+                particles += _particles(case)
+                if cases and particles > _PARTICLES:
+                    yield cases
+                    cases, particles = {}, _particles(case)
+                cases[index] = case
+        yield cases

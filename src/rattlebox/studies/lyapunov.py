@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.engines import gpu_impact
 from rattlebox.model.errors import CaseError
 from rattlebox.model.units import parse
 
@@ -198,9 +197,13 @@ class LyapunovTask:
         """Return the largest number of variants in a block."""
         return max(1, min(most, _MOTIONS // (2 * self.pairs)))
 
-    def ready(self) -> tuple[str, str]:
-        """See to it that there is a card; return what decides the last bits there, and what to tell of it."""
-        return gpu_impact.ready()
+    def ready(self) -> str:
+        """See to it that there is a card with compiled kernels, and return what decides the last bits there."""
+        return self.sweep.ready()
+
+    def told(self) -> str:
+        """Return what to tell of the card."""
+        return self.sweep.told()
 
     # ---- as any study
 

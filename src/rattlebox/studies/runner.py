@@ -64,8 +64,11 @@ class CardTask(Task, Protocol):
     def side_by_side(self, most: int) -> int:
         """Return the number of variants in a block, which keep the card busy; it should hold at most so many."""
 
-    def ready(self) -> tuple[str, str]:
-        """See to it that there is a card; return what decides the last bits there, and what to tell of it."""
+    def ready(self) -> str:
+        """See to it that there is a card, and return what decides the last bits there."""
+
+    def told(self) -> str:
+        """Return what to tell of the card, once all is run."""
 
 
 @runtime_checkable
@@ -174,12 +177,10 @@ def run_task(
     from rattlebox import __version__
 
     bits = _core()
-    told: dict[str, str] = {}
     card: CardTask | None = None
     if isinstance(on, str):
         task = card = _on_card(task, on)
-        bits, about = card.ready()
-        on, told = None, {"gpu": about}
+        on, bits = None, card.ready()
     threads = threads or (1 if on else cores())
     plan = Plan(
         dims=tuple(design.dims),
@@ -219,7 +220,7 @@ def run_task(
             for (number, _, _), values in results:
                 _heard(keeper.submit(kept.write, number, values))
                 tell(kept.done)
-            return kept.result().assign_attrs(told)
+            return kept.result().assign_attrs({"gpu": card.told()} if card else {})
     except KeyboardInterrupt:
         raise Stopped(_how_to_go_on(sum(kept.done for kept in opened), task.size, store)) from None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from hashlib import sha256
 from inspect import getsource
@@ -69,6 +69,7 @@ class SweepTask:
     last: int = 0
     state: bool = False
     gpu: bool = False
+    _about: str = field(default="", init=False)
 
     def on_card(self) -> SweepTask:
         """Return the same work for the card of this machine.
@@ -85,9 +86,14 @@ class SweepTask:
             )
         return replace(self, gpu=True)
 
-    def ready(self) -> tuple[str, str]:
-        """See to it that there is a card; return what decides the last bits there, and what to tell of it."""
-        return gpu_impact.ready()
+    def ready(self) -> str:
+        """See to it that there is a card with compiled kernels, and return what decides the last bits there."""
+        bits, self._about = gpu_impact.ready()
+        return bits
+
+    def told(self) -> str:
+        """Return what to tell of the card."""
+        return self._about
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_prepared"}

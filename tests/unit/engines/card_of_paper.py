@@ -47,7 +47,7 @@ class Block:
 class CardOfPaper:
     """What rattlebox.engines.card.Card does, with this memory in bytes and so much of it shared by a block."""
 
-    arch = "sm_90"
+    arch, compiling = "sm_90", 3.0
 
     def __init__(self, library: ctypes.CDLL, *, free: int = 1 << 30, shared: int = 200_000) -> None:
         self.library, self.free, self.shared = library, free, shared
@@ -55,9 +55,9 @@ class CardOfPaper:
         self.side_by_side: list[int] = []
         self.macros: dict[str, int] = {}
 
-    def describe(self) -> str:
+    def told(self, compiling: float) -> str:
         """What it is."""
-        return "a card of paper"
+        return f"a card of paper, {compiling:.0f} s"
 
     def memory(self) -> tuple[int, int]:
         """Free, and all."""

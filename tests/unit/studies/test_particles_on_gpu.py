@@ -49,7 +49,7 @@ def turned(run: rb.Run) -> float:
 def test_variants_run_side_by_side(card: CardOfPaper) -> None:
     """Measures and functions of a run are those of each variant alone on the card, and the processor's but for rounding."""
     found = rb.sweep(case(), SPEEDS, [*SHARES, turned], on="gpu", progress=False)
-    assert set(card.side_by_side) == {4} and found.gpu == "a card of paper"
+    assert set(card.side_by_side) == {4} and found.gpu == "a card of paper, 3 s"
     for k, speed in enumerate(SPEEDS["structure.velocity"]):
         structure = case().structure.model_copy(update={"velocity": speed})
         alone = rb.simulate(case().model_copy(update={"structure": structure}), on="gpu")
@@ -76,14 +76,28 @@ def test_batches_fit_the_memory(card: CardOfPaper) -> None:
     assert not card.side_by_side
 
 
+def test_portions_fit_this_machine(card: CardOfPaper, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No more particles are brought to the card at once than fit the machine; large variants are blocks of their own."""
+    whole = rb.sweep(case(), SPEEDS, SHARES, on="gpu", progress=False)
+    card.side_by_side.clear()
+    monkeypatch.setattr(granular, "_PARTICLES", 130)
+    told: list[int] = []
+    found = rb.sweep(case(), SPEEDS, SHARES, on="gpu", progress=lambda done, _: told.append(done))
+    assert found.equals(whole) and card.side_by_side[0] == 3 and card.side_by_side[-1] == 1
+    assert told == sorted(told) and told[-1] == 4
+    monkeypatch.setattr(dem_gpu, "SMALL", 30)
+    task = granular.GranularTask(case(), Design.of(case(), SPEEDS), []).on_card()
+    assert task.side_by_side(4) == 1
+
+
 def test_unlike_variants_have_kernels_of_their_own(card: CardOfPaper, monkeypatch: pytest.MonkeyPatch) -> None:
     """Bits of a variant depend on itself alone: cases of other laws or sizes run beside their like, large ones alone."""
     monkeypatch.setattr(dem_gpu, "SMALL", 50)
-    axes = {"damper.friction": [0.0, 0.3], "damper.particles.count": [40, 41, 60]}
+    axes = {"damper.friction": [0.0, 0.3], "damper.particles.count": [40, 60, 41]}
     found = rb.sweep(case(friction=0.3), axes, ["peak", turned], on="gpu", progress=False)
     assert set(card.side_by_side) == {2, 1} and card.launched.count("grid") > 0
     assert (found.status == 0).all() and (found.turned > 0).values.tolist() == [[False] * 3, [True] * 3]
-    for k, count in ((1, 41), (2, 60)):
+    for k, count in ((1, 60), (2, 41)):
         other = {"damper.friction": [0.3], "damper.particles.count": [count]}
         one = rb.sweep(case(friction=0.3), other, ["peak", turned], on="gpu", progress=False).squeeze()
         there = found.isel({"damper.friction": 1, "damper.particles.count": k})
