@@ -36,9 +36,9 @@ public:
 
 struct Part {
     int begin = 0, end = 0; // among the chunks of all beds
-    std::vector<char>
-        early; // of each of them: has neighbours in higher parts, or particles that lower parts reach
-    std::vector<char> known;       // forces of it, in this step
+    // Of each of them: has neighbours in higher parts, or particles that lower parts reach; and whether its
+    // forces are known in this step.
+    std::vector<char> early, known;
     std::vector<Place> incoming;   // chunks of lower parts that reach here
     std::vector<int> first, until; // particles of each bed
     std::vector<Sums> sums;        // of each bed
@@ -53,8 +53,8 @@ class Division {
     // Nanoseconds, about: where the time goes was measured.
     static long cost(const Chunk& c) {
         const auto touching = [](const Contacts& list) { return static_cast<long>(list.memory.used()); };
-        return 7 * (c.end - c.begin) + 2 * (c.pairs.size() + c.walls.size()) +
-               20 * (touching(c.pairs) + touching(c.walls));
+        return 7 * (c.end - c.begin) + 2 * static_cast<long>(c.near_second.size()) +
+               18 * (touching(c.pairs) + touching(c.walls));
     }
 
     const Chunk& chunk(Place p) const { return at(at(*beds_, p.bed).chunks, p.chunk); }
