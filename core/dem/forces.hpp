@@ -50,22 +50,22 @@ struct PairView {
 
     template <bool spins> RATTLEBOX_INLINE Meeting<Lanes> meeting(const int* k) const {
         const auto apart = way(k);
-        const auto radius = [&](int i) __attribute__((always_inline)) { return at(bed.position, i)[3]; };
+        const auto place = [&](int i) __attribute__((always_inline)) { return at(bed.position, i); };
+        // With the smaller radius as the fourth number.
         const auto moving =
             both(bed.velocity, k, [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
-                Row relative = a - b;
-                relative[3] = smaller(radius(i), radius(j));
-                return relative;
+                const Row p = place(i), q = place(j);
+                return __builtin_shufflevector(a - b, p < q ? p : q, 0, 1, 2, 7);
             });
-        Facing<Lanes> f{apart.vector(), moving.vector(), {}, {}, apart.w, moving.w};
-        if constexpr (spins) {
-            const auto swirl = [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
-                return row(radius(i)) * a + row(radius(j)) * b;
-            };
-            const auto relative = [](Row a, Row b, int, int) __attribute__((always_inline)) { return a - b; };
-            f.swirl = both(bed.spin, k, swirl).vector(), f.spin = both(bed.spin, k, relative).vector();
-        }
-        return meet<spins>(f);
+        if constexpr (!spins)
+            return meet<false>(Facing<Lanes>{apart.vector(), moving.vector(), {}, {}, apart.w, moving.w});
+        const auto swirl = both(bed.spin, k, [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
+            return row(place(i)[3]) * a + row(place(j)[3]) * b;
+        });
+        const auto spin =
+            both(bed.spin, k, [](Row a, Row b, int, int) __attribute__((always_inline)) { return a - b; });
+        return meet<true>(
+            Facing<Lanes>{apart.vector(), moving.vector(), spin.vector(), swirl.vector(), apart.w, moving.w});
     }
 };
 
