@@ -27,9 +27,9 @@ def prepared(count: int, steps: int) -> dict[str, Any]:
     return {**packed, "steps": steps, "every": steps}
 
 
-def bytes_of_a_step(candidates: float, contacts: float, touching: float) -> float:
+def bytes_of_a_step(candidates: float, contacts: float, owners: float, touching: float) -> float:
     """Bytes that a particle-step of the grid kernel moves, as counted in docs/gpu.md."""
-    return 180 + 40 * candidates + 672 * contacts + 192 * touching
+    return 180 + 28 * candidates + 352 * contacts + 136 * owners + 192 * touching
 
 
 def first_impacts() -> Row:
@@ -82,7 +82,8 @@ def large(count: int, steps: int) -> Row:
     found = dem.contacts(0)
     pairs = found["second"] < count
     touching = np.unique(np.concatenate([found["first"], found["second"][pairs]])).size / count
-    each = bytes_of_a_step(3.0, found["first"].size / count, touching)
+    owners = np.unique(found["first"]).size / count
+    each = bytes_of_a_step(3.0, found["first"].size / count, owners, touching)
     most = next((speed for name, speed in BANDWIDTH.items() if name in card.name), float("nan"))
     share = f"{rate * each / most:.0%} of {most / 1e12:.1f} TB/s (goal: 50 %)"
     told = f"{each:.0f} B each, 3 candidates assumed: {share}"

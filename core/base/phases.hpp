@@ -36,9 +36,16 @@ inline int tree_room(int items) {
     return room;
 }
 
+// A sum is a structure of numbers only; T::join(k, a, b) says what the k-th of one and of another come to.
+template <class T> inline constexpr int numbers_of = sizeof(T) / sizeof(real);
+
 template <class T> const T& tree(T* leaves) {
     for (int half = tree_width / 2; half > 0; half /= 2)
-        for (int l = 0; l < half; ++l) leaves[l].add(leaves[l + half]);
+        for (int l = 0; l < half; ++l) {
+            real* own = reinterpret_cast<real*>(leaves + l);
+            const real* other = reinterpret_cast<const real*>(leaves + l + half);
+            for (int k = 0; k < numbers_of<T>; ++k) own[k] = T::join(k, own[k], other[k]);
+        }
     return leaves[0];
 }
 
@@ -55,6 +62,25 @@ template <class T> T total_of(int n, T* part) {
         part = above;
     }
     return part[0];
+}
+
+// Of more trees than these, all of a team make the next ones.
+inline constexpr int few_trees = 1024;
+
+// What a reduce has left for the leaders to sum up: trees of trees, until they are few. All of the team call
+// it.
+template <class T> struct Summed {
+    int items;
+    T* part;
+};
+template <class T, class Team> Summed<T> sum_up(Team& team, int n, T* part) {
+    while (trees(n) > few_trees) {
+        const T* below = part;
+        n = trees(n), part += n;
+        team.reduce(n, part, [&](int g) { return below[g]; });
+        team.sync();
+    }
+    return {n, part};
 }
 
 // A team of one.

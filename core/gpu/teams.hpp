@@ -5,27 +5,20 @@
 
 namespace rattlebox::gpu {
 
-inline constexpr int words_of_a_number = 2;
 inline constexpr unsigned all_lanes = 0xffffffffu;
 
-// The value that the lane `by` higher has.
-template <class T> __device__ T from_higher(const T& value, int by) {
-    constexpr int words = sizeof(T) / sizeof(real);
+// Of 32 lanes the first has the sum, in the order of tree(); number by number, which takes few registers.
+template <class T> __device__ T tree_of_lanes(const T& value) {
     static_assert(sizeof(T) % sizeof(real) == 0);
-    union Words {
-        T value;
-        real word[words];
-        __device__ Words() {}
-    } there, here;
-    here.value = value;
-    for (int k = 0; k < words; ++k) there.word[k] = __shfl_down_sync(all_lanes, here.word[k], by);
-    return there.value;
-}
-
-// Of 32 lanes the first has the sum, in the order of tree().
-template <class T> __device__ T tree_of_lanes(T value) {
-    for (int half = tree_width / 2; half > 0; half /= 2) value.add(from_higher(value, half));
-    return value;
+    union Numbers {
+        T sum;
+        real at[numbers_of<T>];
+        __device__ Numbers(const T& value) : sum(value) {}
+    } own(value);
+    for (int k = 0; k < numbers_of<T>; ++k)
+        for (int half = tree_width / 2; half > 0; half /= 2)
+            own.at[k] = T::join(k, own.at[k], __shfl_down_sync(all_lanes, own.at[k], half));
+    return own.sum;
 }
 
 // What both kinds share: `rank` of `size` threads, blocks being whole multiples of 32.

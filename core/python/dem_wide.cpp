@@ -88,7 +88,7 @@ public:
             for (int i = 0; i < b.particles; ++i) {
                 const Account& a = b.account[i];
                 for (int p = 0; p < 2; ++p) sum[p] += a.touches[p];
-                counts.deepest = std::fmax(counts.deepest, a.deepest);
+                counts.deepest = std::fmax(counts.deepest, b.deepest[i]);
                 counts.fastest = std::fmax(counts.fastest, a.fastest);
                 counts.extrapolated += a.extrapolated;
             }

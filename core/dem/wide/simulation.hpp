@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <stdexcept>
+#include <string>
 
 #include "base/threads.hpp"
 #include "dem/problem.hpp"
@@ -134,6 +135,11 @@ class Simulation {
         if (!from.empty()) std::memcpy(const_cast<T*>(to), from.data(), from.size() * sizeof(T));
     }
 
+    static std::length_error beyond(const char* who, int count, const char* what, int most) {
+        return std::length_error(std::string(who) + " has " + std::to_string(count) + " " + what + ", " +
+                                 std::to_string(most) + " at most can be followed");
+    }
+
     void describe(int slots, int sample_room) {
         World w;
         Control& c = w.control;
@@ -148,6 +154,8 @@ class Simulation {
         each_table(table);
         std::vector<Bed> beds;
         for (const Cavity& cavity : problem_.cavities) {
+            if (cavity.particles() > most_particles)
+                throw beyond("a cavity", cavity.particles(), "particles", most_particles);
             Bed b;
             b.particles = cavity.particles(), b.walls = static_cast<int>(cavity.walls.size());
             b.kinds = cavity.kinds, b.wall_kinds = cavity.wall_kinds, b.slots = slots;
@@ -240,7 +248,8 @@ public:
         if (w.control.pause != Pause::slots) return false;
         for (Bed& b : beds) {
             if (-b.short_of > most_slots)
-                throw std::length_error("a particle has more than 32 neighbours of its size or larger");
+                throw beyond("a particle", -b.short_of, "walls and particles of its size or larger about it",
+                             most_slots);
             b.slots = std::min(most_slots, std::max(b.slots, -b.short_of + (b.short_of < 0 ? 1 : 0)));
             b.short_of = 0;
         }
@@ -267,20 +276,21 @@ public:
             list(r.time, 1), list(r.q, s.modes), list(r.p, s.modes), list(r.load_work, s.loads);
             list(r.base_work, s.loads), list(r.viscous, s.modes);
             for (int b = 0; b < w.beds; ++b) {
-                StepSum step;
-                SampleSum before, now;
-                read(step), read(before), read(now);
+                LossSum before, now;
+                ContactSum contacts;
+                MotionSum motions;
+                read(before), read(now), read(contacts), read(motions);
                 r.take({.before = before.lost,
                         .now = now.lost,
-                        .kinetic = now.kinetic,
-                        .rotation = now.rotation,
-                        .stored = now.stored,
+                        .kinetic = motions.kinetic,
+                        .rotation = motions.rotation,
+                        .stored = contacts.stored,
                         .mass = w.bed[b].mass,
-                        .place = row(now.place),
-                        .momentum = row(step.momentum),
-                        .push = row(step.push),
-                        .twist = row(now.twist),
-                        .contacts = {std::llround(now.contacts[0]), std::llround(now.contacts[1])}},
+                        .place = row(motions.place),
+                        .momentum = row(motions.step.momentum),
+                        .push = row(motions.step.push),
+                        .twist = row(contacts.twist),
+                        .contacts = {std::llround(contacts.contacts[0]), std::llround(contacts.contacts[1])}},
                        s.gravity);
             }
         }

@@ -13,7 +13,7 @@ inline bool sampled(const Control& c) { return c.step % c.every == 0 || c.step =
 
 // ---- a particle
 
-// Adds up what acts on it, its own contacts first, then those of others by their names.
+// Adds up what acts on it, its own contacts first, then those of others as these lie in memory.
 inline bool gather(const Bed& bed, int i, Row& force, Row& turning, StepSum& sum) {
     const Kind pair = known(bed.pair), at_wall = known(bed.at_wall);
     const int n = bed.particles;
@@ -30,14 +30,15 @@ inline bool gather(const Bed& bed, int i, Row& force, Row& turning, StepSum& sum
     };
     for (unsigned rest = bed.touching[i]; rest != 0; rest &= rest - 1) add(lowest_bit(rest) * n + i, 1);
     for (int m = bed.incoming_begin[i]; m < bed.incoming_begin[i + 1]; ++m) {
-        const int s = bed.incoming[m];
-        if (bed.touching[s % n] >> (s / n) & 1u) add(s, -1);
+        const int owner = bed.incoming[m] >> slot_bits, k = bed.incoming[m] & (most_slots - 1);
+        if (bed.touching[owner] >> k & 1u) add(k * n + owner, -1);
     }
     return touches;
 }
 
-template <bool sampled> StepSum advance(Bed& bed, int i, const Verlet& step) {
+template <bool sampled> auto advance(Bed& bed, int i, const Verlet& step) {
     StepSum sum;
+    real rotation = 0;
     Row force{}, turning{};
     const bool spins = known(bed.pair).rough || known(bed.at_wall).rough;
     const bool before = bed.touched[i], touches = gather(bed, i, force, turning, sum);
@@ -50,25 +51,23 @@ template <bool sampled> StepSum advance(Bed& bed, int i, const Verlet& step) {
         Row w = bed.spin[i];
         const Row rate = turning * w[3];
         w = step.now(w, rate, before ? bed.spin_rate[i] : Row{});
-        if (sampled) bed.account[i].sum.rotation = 0.5 * dot(w, w) * x[3] / w[3];
+        if (sampled) rotation = 0.5 * dot(w, w) * x[3] / w[3];
         bed.spin[i] = step.next(w, rate);
         if (touches) bed.spin_rate[i] = rate;
     } else if (sampled) {
         const Row w = bed.spin[i];
-        bed.account[i].sum.rotation = 0.5 * dot(w, w) * x[3] / w[3];
+        rotation = 0.5 * dot(w, w) * x[3] / w[3];
     }
     const Row weighed = v / u[3], middle = step.middle(v, a);
-    if (sampled) {
-        SampleSum& s = bed.account[i].sum;
-        s.kinetic = 0.5 * dot(v, weighed);
-        for (int k = 0; k < 3; ++k) s.place[k] = x[k] / u[3];
-    }
     bed.position[i] = step.moved(x, middle);
     bed.velocity[i] = step.next(v, a);
     const Row moved = middle - bed.motion.velocity;
     for (int k = 0; k < 3; ++k) sum.momentum[k] = weighed[k];
     sum.drift = dot(moved, moved);
-    return sum;
+    if constexpr (sampled)
+        return MotionSum{sum, 0.5 * dot(v, weighed), rotation, {x[0] / u[3], x[1] / u[3], x[2] / u[3]}};
+    else
+        return sum;
 }
 
 // ---- the structure, by one of the team
@@ -107,7 +106,8 @@ inline void write_sample(World& w) {
     for (int m = 0; m < s.modes; ++m) *to++ = s.shown[m].q;
     for (int m = 0; m < s.modes; ++m) *to++ = s.shown[m].p;
     put(s.load_work, s.loads), put(s.base_work, s.loads), put(s.viscous, s.modes);
-    for (int b = 0; b < w.beds; ++b) all(w.bed[b].step), all(w.bed[b].before), all(w.bed[b].now);
+    for (int b = 0; b < w.beds; ++b)
+        all(w.bed[b].before), all(w.bed[b].now), all(w.bed[b].contacts), all(w.bed[b].motions);
 }
 
 inline void check(World& w) {
@@ -117,7 +117,7 @@ inline void check(World& w) {
         if (bed.stopped == nowhere) continue;
         int i = 0;
         while (bed.name[i] != bed.stopped) ++i;
-        const Account& why = bed.account[i];
+        const Account& why = bed.account[bed.stopped];
         const Row along = bed.velocity[i] - bed.motion.velocity;
         c.status = why.status, c.stopped_wall = why.wall;
         c.stopped_speed = why.status == Status::escaped ? std::sqrt(dot(along, along)) : why.speed;
@@ -166,39 +166,45 @@ RATTLEBOX_COLD inline void conclude(World& w) {
 
 // ---- all of it
 
-template <class Team, class F> void each_bed(Team& team, World& w, F&& f) {
-    for (int b = 0; b < w.beds; ++b) f(w.bed[b]);
-    team.sync();
-}
-
 template <bool sampled, class Team> RATTLEBOX_COLD void one_step(Team& team, World& w) {
-    const auto samples = [&](SampleSum Bed::* sum) {
-        each_bed(team, w, [&](Bed& bed) {
-            team.reduce(bed.particles, bed.sample_part, [&](int i) { return bed.account[i].sum; });
-        });
-        if (team.leads())
-            for (int b = 0; b < w.beds; ++b) {
-                Bed& bed = w.bed[b];
-                const SampleSum total = team.total(bed.particles, bed.sample_part);
-                if (team.first()) bed.*sum = total;
-            }
+    const auto beds = [&](auto&& f) {
+        for (int b = 0; b < w.beds; ++b) f(w.bed[b]);
     };
-    if constexpr (sampled) samples(&Bed::before);
-    each_bed(team, w, [&](Bed& bed) {
+    const auto find_losses = [&](Bed& bed) {
+        team.reduce(bed.particles, bed.loss_part, [&](int i) { return losses(bed, i); });
+    };
+    if (sampled) {
+        beds(find_losses);
+        team.sync();
+        beds([&](Bed& bed) { total(team, bed, &Bed::loss_part, &Bed::before); });
+    }
+    beds([&](Bed& bed) {
         team.each(bed.particles, [&](int i) { OwnContacts<sampled>(w, bed, i).step(team); });
     });
+    team.sync();
     const Verlet step(w.structure.dt, w.structure.body(), w.control.body_before, w.control.step == 0);
-    each_bed(team, w, [&](Bed& bed) {
-        team.reduce(bed.particles, bed.step_part, [&](int i) { return advance<sampled>(bed, i, step); });
-    });
-    if constexpr (sampled) samples(&Bed::now);
-    if (team.leads()) {
-        for (int b = 0; b < w.beds; ++b) {
-            const StepSum total = team.total(w.bed[b].particles, w.bed[b].step_part);
-            if (team.first()) w.bed[b].step = total;
+    beds([&](Bed& bed) {
+        const auto work = [&](int i) { return advance<sampled>(bed, i, step); };
+        if constexpr (sampled) {
+            find_losses(bed);
+            team.reduce(bed.particles, bed.contact_part, [&](int i) { return bed.seen[i]; });
+            team.reduce(bed.particles, bed.motion_part, work);
+        } else {
+            team.reduce(bed.particles, bed.step_part, work);
         }
-        if (team.first()) conclude(w), prepare(w);
-    }
+    });
+    team.sync();
+    beds([&](Bed& bed) {
+        if constexpr (sampled) {
+            total(team, bed, &Bed::loss_part, &Bed::now);
+            total(team, bed, &Bed::contact_part, &Bed::contacts);
+            total(team, bed, &Bed::motion_part, &Bed::motions);
+            if (team.leads() && team.first()) bed.step = bed.motions.step;
+        } else {
+            total(team, bed, &Bed::step_part, &Bed::step);
+        }
+    });
+    if (team.leads() && team.first()) conclude(w), prepare(w);
     team.sync();
 }
 

@@ -3,9 +3,10 @@
 // Whoever owns the block lays it out once (`lay`), for whatever address it will have: the same bytes serve on
 // the processor and on a device. Nothing in here grows; what does not fit is told with the size that would.
 //
-// A contact belongs to the smaller of two particles, of equals to the one with the lower number in the case,
-// and has a slot k of its owner i: what it remembers lies at k n + i. So it keeps its place as long as it
-// lasts.
+// Particles lie in the order of the cells they are in, which each build of neighbours finds anew; a
+// particle's name is its number in the case. A contact belongs to the smaller of two particles, of equals to
+// the one with the lower name, and keeps a slot k of its owner i as long as it lasts: what it remembers lies
+// at k n + i.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +19,14 @@
 
 namespace rattlebox::dem::wide {
 
-inline constexpr int most_slots = 32;  // of a particle: a bit each
-inline constexpr int nobody = -1 - 64; // in a slot; the wall w is -1 - w
+// Of a particle, a bit each. Enough for six walls and for as many spheres of its size or larger as there can
+// be within reach, 0.6 of its radius at most: seen from its centre, those that overlap by less than a
+// twentieth of their diameters are at least 42.8 degrees apart, and L. Fejes Toth's bound lets no more than
+// 26 be so.
+inline constexpr int most_slots = 32;
+inline constexpr int slot_bits = 5;
+inline constexpr int most_particles = (1 << (31 - slot_bits)) - 1; // of a cavity
+inline constexpr int nobody = -1 - 64;                             // in a slot; the wall w is -1 - w
 inline constexpr int nowhere = 2147483647;
 
 inline int cells_at_most(int particles) { return 4 * particles + 64; }
@@ -42,39 +49,41 @@ struct StepSum {
     real push[3] = {}, momentum[3] = {}; // of the particles on their cavity
     real drift = 0;                      // largest speed squared relative to the cavity
 
-    void add(const StepSum& other) {
-        for (int a = 0; a < 3; ++a) push[a] += other.push[a], momentum[a] += other.momentum[a];
-        drift = larger(drift, other.drift);
-    }
+    static real join(int k, real a, real b) { return k == 6 ? larger(a, b) : a + b; }
 };
 
-struct SampleSum {
-    Losses lost;
-    real kinetic = 0, rotation = 0, stored = 0;
-    real place[3] = {}, twist[3] = {}; // mass times position; moment on the cavity
+// At samples, of contacts.
+struct LossSum {
+    Losses lost; // from the start
+
+    static real join(int, real a, real b) { return a + b; }
+};
+struct ContactSum {
+    real stored = 0;
+    real twist[3] = {}; // moment on the cavity
     real contacts[2] = {};
 
-    void add(const SampleSum& other) {
-        lost.add(other.lost);
-        kinetic += other.kinetic, rotation += other.rotation, stored += other.stored;
-        for (int a = 0; a < 3; ++a) place[a] += other.place[a], twist[a] += other.twist[a];
-        for (int p = 0; p < 2; ++p) contacts[p] += other.contacts[p];
-    }
+    static real join(int, real a, real b) { return a + b; }
+};
+
+// At samples, of particles.
+struct MotionSum {
+    StepSum step;
+    real kinetic = 0, rotation = 0;
+    real place[3] = {}; // mass times position
+
+    static real join(int k, real a, real b) { return StepSum::join(k, a, b); }
 };
 
 struct Extent {
     real low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
 
-    void add(const Extent& other) {
-        for (int a = 0; a < 3; ++a)
-            low[a] = smaller(low[a], other.low[a]), high[a] = larger(high[a], other.high[a]);
-    }
+    static real join(int k, real a, real b) { return k < 3 ? smaller(a, b) : larger(a, b); }
 };
 
-// What the contacts of one particle come to: over the run, and at a sample.
+// What happens to a particle now and then.
 struct Account {
-    SampleSum sum;
-    real deepest = 0, fastest = 0; // overlap over the smaller radius, approach
+    real fastest = 0; // approach
     int touches[2] = {}, extrapolated = 0;
     Status status = Status::finished;
     int wall = -1;
@@ -98,25 +107,33 @@ struct Bed {
     int* touched = nullptr;       // in the step before
     unsigned* touching = nullptr; // slots, bit by bit
     int* used = nullptr;          // slots from which on all are empty
-    Account* account = nullptr;
+    // Lost by own contacts so far: in normal direction, to particles and walls, and by sliding; by yielding
+    // and rolling.
+    Row *lost = nullptr, *lost_more = nullptr;
+    real* deepest = nullptr;    // overlap of own contacts, over the smaller radius
+    ContactSum* seen = nullptr; // at a sample
+    Account* account = nullptr; // by name
 
     // Of slots.
     int* partner = nullptr;
     Kept* kept = nullptr;
     KeptRolling* rolling = nullptr;
-    Action* action = nullptr;
-    Row* torque = nullptr; // of rolling, on the first
+    Action* action = nullptr; // at builds, room for what is sorted
+    Row* torque = nullptr;    // of rolling, on the first
     Row* dent = nullptr;
-    // Slots of others that are about a particle, from its begin to that of the next.
+    // Slots of others that are about a particle, from its begin to that of the next: owner << slot_bits |
+    // slot.
     int *incoming_begin = nullptr, *incoming_count = nullptr, *incoming = nullptr;
 
-    // Cells.
-    int *cell = nullptr, *cell_begin = nullptr, *cell_count = nullptr, *member = nullptr,
-        *scan_part = nullptr;
+    // Cells, and who of the order before lies where.
+    int *cell = nullptr, *cell_begin = nullptr, *cell_count = nullptr, *member = nullptr, *order = nullptr,
+        *place = nullptr, *scan_part = nullptr;
 
     // Sums.
     StepSum* step_part = nullptr;
-    SampleSum* sample_part = nullptr;
+    LossSum* loss_part = nullptr;
+    ContactSum* contact_part = nullptr;
+    MotionSum* motion_part = nullptr;
     Extent* extent_part = nullptr;
 
     // The leader's.
@@ -125,12 +142,18 @@ struct Bed {
     Row shown{}; // displacement of the cavity at the last step whose forces are known
     real low[3] = {}, cell_size = 0;
     int cells[3] = {};
+    Extent extent;
     StepSum step;
-    SampleSum before, now;
+    LossSum before, now;
+    ContactSum contacts;
+    MotionSum motions;
 
     // Everyone's, as counts.
     int short_of = 0;      // - slots that would be needed
     int stopped = nowhere; // lowest name of a particle that cannot go on
+
+    bool rolls() const { return pair.rolls || at_wall.rolls; }
+    bool dents() const { return pair.normal == Kind::plastic || at_wall.normal == Kind::plastic; }
 };
 
 // What the step that is taken, and whoever called for it, must know.
@@ -163,10 +186,21 @@ struct World {
     real last = 0;
 
     int sample_width() const {
-        const int numbers = static_cast<int>((sizeof(StepSum) + 2 * sizeof(SampleSum)) / sizeof(real));
+        const int numbers =
+            static_cast<int>((2 * sizeof(LossSum) + sizeof(ContactSum) + sizeof(MotionSum)) / sizeof(real));
         return 1 + 3 * structure.modes + 2 * structure.loads + beds * numbers;
     }
 };
+
+// ---- totals
+
+// Of a reduce over the particles of a bed, after a sync: the leader has it.
+template <class T, class Team> void total(Team& team, Bed& bed, T* Bed::* part, T Bed::* whole) {
+    const Summed<T> left = sum_up(team, bed.particles, bed.*part);
+    if (!team.leads()) return;
+    const T sum = team.total(left.items, left.part);
+    if (team.first()) bed.*whole = sum;
+}
 
 // ---- layout
 
@@ -195,16 +229,17 @@ template <class Deal> void lay(Deal& deal, Bed& b) {
     const auto cells = static_cast<std::size_t>(cells_at_most(b.particles)) + 1;
     const auto rows = [&](auto&... array) { (deal(array, n), ...); };
     const auto slots = [&](auto&... array) { (deal(array, s), ...); };
-    rows(b.position, b.velocity, b.spin, b.acceleration, b.spin_rate, b.name, b.kind, b.touched, b.touching,
-         b.used, b.account, b.incoming_count, b.cell, b.member);
+    rows(b.position, b.velocity, b.spin, b.acceleration, b.spin_rate, b.lost, b.deepest, b.seen, b.name,
+         b.kind, b.touched, b.touching, b.used, b.account, b.incoming_count, b.cell, b.member, b.order,
+         b.place);
     slots(b.partner, b.kept, b.action, b.incoming);
-    const bool rolls = b.pair.rolls || b.at_wall.rolls;
-    const bool dents = b.pair.normal == Kind::plastic || b.at_wall.normal == Kind::plastic;
-    deal(b.rolling, rolls ? s : 0), deal(b.torque, rolls ? s : 0), deal(b.dent, dents ? s : 0);
+    deal(b.rolling, b.rolls() ? s : 0), deal(b.torque, b.rolls() ? s : 0), deal(b.dent, b.dents() ? s : 0);
+    deal(b.lost_more, b.rolls() || b.dents() ? n : 0);
     deal(b.incoming_begin, n + 1), deal(b.cell_begin, cells), deal(b.cell_count, cells);
     deal(b.scan_part, static_cast<std::size_t>(scan_parts(cells_at_most(b.particles))));
     const auto room = static_cast<std::size_t>(tree_room(b.particles));
-    deal(b.step_part, room), deal(b.sample_part, room), deal(b.extent_part, room);
+    deal(b.step_part, room), deal(b.loss_part, room), deal(b.contact_part, room), deal(b.motion_part, room),
+        deal(b.extent_part, room);
 }
 
 } // namespace rattlebox::dem::wide

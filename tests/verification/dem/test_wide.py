@@ -38,6 +38,79 @@ def test_any_team_gives_the_same_bits(law: str) -> None:
         assert differing(alone, told(wide(packed, until, threads=threads, order=order))) == [], (threads, order)
 
 
+def many(count: int) -> Any:
+    """Return a packed box of so many spheres that fly into each other."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=50.0, stiffness=2e6, damping_ratio=0.02, velocity=1.0),
+        damper=rb.ParticleDamper(
+            particles=rb.Particles(material="steel", radius="2 mm", count=count),
+            cavity=rb.Box(size=(0.0045 * count ** (1 / 3),) * 3),
+            contact=rb.Tsuji(restitution=0.7),
+            friction=rb.Mindlin(0.3),
+            softening=1000.0,
+            packing=rb.Lattice(noise=1.0, seed=2),
+        ),
+        duration="10 ms",
+        output=rb.Output(rate=20_000.0),
+    )
+    packed, _, _ = pack_dem(case)
+    packed["cavities"][0]["velocity"] = np.random.default_rng(1).normal(size=(count, 3))
+    return packed
+
+
+def renamed(packed: Any, names: Any) -> Any:
+    """Return a case whose particles of the first cavity have other numbers: the k-th was names[k]."""
+    first, *rest = packed["cavities"]
+    each = ("position", "velocity", "spin", "radius", "mass", "inertia", "kind")
+    return {
+        **packed,
+        "cavities": [{**first, **{name: np.ascontiguousarray(first[name][names]) for name in each}}, *rest],
+    }
+
+
+def test_totals_of_many_are_the_same_bits() -> None:
+    """Where trees are so many that all of a team sum them up, any team still agrees in every bit."""
+    packed = many(34_000)
+    alone = told(wide(packed, 200))
+    assert alone["first_touches"].sum() > 1000 and len(alone["time"]) > 3
+    for threads, order in [(3, "shuffled"), (2, "interleaved")]:
+        assert differing(alone, told(wide(packed, 200, threads=threads, order=order))) == [], (threads, order)
+
+
+def test_memory_follows_space() -> None:
+    """Particles that are near in space are so in memory, whatever their numbers are, and are told by their numbers."""
+    packed = many(3000)
+    names = np.random.default_rng(3).permutation(3000)
+    dem = wide(renamed(packed, names), 400)
+    assert dem.counters()["rebuilds"] > 3
+    contacts, place = dem.contacts(0), dem.state()["cavities"][0]["position"]
+    owners = contacts["first"]  # as they lie in memory
+    assert len(owners) > 300
+    steps = np.diff(place[owners], axis=0)
+    assert np.median(np.abs(steps[:, 2])) < 0.002 < np.median(np.abs(steps[:, 0])) < 0.03
+    pairs = contacts["second"] < 3000
+    apart = place[contacts["second"][pairs]] - place[owners[pairs]]
+    assert np.linalg.norm(apart, axis=1).max() < 0.0041
+
+
+def test_numbers_do_not_matter() -> None:
+    """With other numbers, and so other owners of contacts, particles do the same to rounding."""
+    packed, _, _ = pack_dem(shaken("Hertz", duration=0.02, count=150))
+    names = np.random.default_rng(5).permutation(len(packed["cavities"][0]["radius"]))
+    one, other = core().DemWide(packed), core().DemWide(renamed(packed, names))
+    for until in range(0, packed["steps"], packed["steps"] // 200):
+        for dem in (one, other):
+            dem.run(until)
+        if one.counters()["first_touches"].sum() >= 20:
+            break
+    assert one.counters()["rebuilds"] > 1
+    np.testing.assert_array_equal(other.counters()["first_touches"], one.counters()["first_touches"])
+    here, there = (dem.state()["cavities"][0] for dem in (one, other))
+    for key in ("position", "velocity", "spin"):
+        scale = np.max(np.abs(here[key]))
+        np.testing.assert_allclose(there[key], here[key][names], rtol=0, atol=1e-10 * scale, err_msg=key)
+
+
 def test_room_grows_and_changes_nothing() -> None:
     """A run that begins with too few slots and little room for samples is that which had enough from the start."""
     packed, _, _ = pack_dem(shaken("Hertz", duration=0.004))
@@ -153,3 +226,11 @@ def test_orders_have_names() -> None:
     packed, _, _ = pack_dem(pair({}))
     with pytest.raises(ValueError, match="forward, reverse, interleaved or shuffled"):
         core().DemWide(packed).run(10, 1, "sideways")
+
+
+def test_too_many_neighbours_are_told_with_their_number() -> None:
+    """Where spheres lie within each other so that slots do not suffice, the number that would is told."""
+    packed = many(60)
+    packed["cavities"][0]["position"] = np.random.default_rng(1).normal(scale=2e-4, size=(60, 3))
+    with pytest.raises(ValueError, match=r"a particle has 59 walls and particles .* 32 at most can be followed"):
+        core().DemWide(packed).run(10)
