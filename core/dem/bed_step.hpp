@@ -132,14 +132,19 @@ public:
         };
         const Contacts &list = next.pairs, &then = later.pairs;
         lines(then.first), lines(then.second), lines(then.slot), lines(then.active);
+        for (int i = later.begin; i < later.end; i += 64) fetch(at(bed_.touched, i));
         for (int k = 0; k < list.size(); ++k) {
             const int j = at(list.second, k), s = at(list.slot, k);
             fetch(at(bed_.position, j));
             if (s < 0) continue;
             fetch(at(bed_.velocity, j)), fetch(at(bed_.spin, j)), fetch(at(list.memory.kept, s));
         }
-        for (int i = next.begin; i < next.end; i += 2)
-            fetch(at(bed_.acceleration, i)), fetch(at(bed_.spin_rate, i));
+        for (int i = next.begin; i < next.end; i += 2) {
+            fetch(at(bed_.position, i)), fetch(at(bed_.velocity, i));
+            if (at(bed_.touched, i) | at(bed_.touched, std::min(i + 1, next.end - 1)))
+                for (const auto* rows : {&bed_.acceleration, &bed_.spin_rate, &bed_.spin})
+                    fetch(at(*rows, i));
+        }
     }
 
     // Candidates are those that may touch in this step.
