@@ -71,13 +71,15 @@ class Checkpoint:
         File, which need not exist.
     case
         What is run.
+    on
+        "gpu" for a run on a card, whose state goes on there only.
     """
 
-    def __init__(self, path: str | os.PathLike[str], case: Case) -> None:
+    def __init__(self, path: str | os.PathLike[str], case: Case, on: str | None = None) -> None:
         self.path = Path(path)
         self.time: float | None = None  # of what is in the file
         self._numbers = ""
-        self._about = {"case": _bare(case), "version": Provenance.now().version, "core": instructions()}
+        self._about = {"case": _bare(case), "version": Provenance.now().version, "core": on or instructions()}
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -171,7 +173,10 @@ class Checkpoint:
         if lines := differences(there, self._about):
             hint = "another file, or remove this one"
             if len(lines) == 1 and there["core"] != self._about["core"]:
-                hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another file"
+                began = f"RATTLEBOX_SIMD={there['core']} in the environment"
+                if "gpu" in (there["core"], self._about["core"]):
+                    began = 'on="gpu"' if there["core"] == "gpu" else "the processor, where it began"
+                hint = f"{began}, or another file"
             raise CaseError("\n".join([f"{self.path} holds another run", *lines, f"  try: {hint}"]))
 
 

@@ -88,7 +88,7 @@ def simulate_dem(
     """
     if checkpoint is None:
         return _simulated(case, threads, progress, None, snapshots, on)
-    file = Checkpoint(checkpoint, case)
+    file = Checkpoint(checkpoint, case, on)
     with file.held():
         return _simulated(case, threads, progress, file, snapshots, on)
 

@@ -148,6 +148,8 @@ def test_a_run_on_the_card_can_be_stopped_and_goes_on(card: CardOfPaper, tmp_pat
 
     part = rb.simulate(case(), on="gpu", checkpoint=tmp_path / "kept", progress=twice)
     assert part.status == "interrupted"
+    with pytest.raises(rb.CaseError, match=r'(?s)holds another run.*try: on="gpu", or another file'):
+        rb.simulate(case(), checkpoint=tmp_path / "kept")
     rest = rb.simulate(case(), on="gpu", checkpoint=tmp_path / "kept")
     assert rest.ok
     assert np.array_equal(rest.arrays.position, whole.arrays.position)
