@@ -22,7 +22,7 @@ struct Chunk {
     Contacts pairs, walls;
     Tally tally;
     Stopped stopped;
-    std::vector<std::pair<int, Late>> late; // of contacts that begin in this step, by slot
+    std::vector<std::pair<int, Late>> late; // of contacts that begin in this step, by candidate
 
     std::size_t memory() const {
         std::size_t bytes = pairs.bytes() + walls.bytes() + sizeof(Chunk);

@@ -1,8 +1,7 @@
 // One step of the particles of one cavity, chunk by chunk.
 //
-// Velocity Verlet. Forces that depend on the velocity take the one predicted from the last acceleration, v +
-// dt a, which keeps the second order:  v' = u + dt/2 (a' - a),  u' = v' + dt a',  x' = x + dt v' + dt^2/2 a',
-// u predicted, a the last. A particle adds up the forces on it in the order of its contacts, whoever does it.
+// Velocity Verlet (verlet.hpp). A particle adds up the forces on it in the order of its contacts, whoever
+// does it.
 //
 // Contacts belong to the lower of their partners, and their forces read no lower ones: in ascending order a
 // chunk can move on as soon as its own forces are known, while all it needs is near.
@@ -11,6 +10,7 @@
 #include "dem/division.hpp"
 #include "dem/forces.hpp"
 #include "dem/neighbours.hpp"
+#include "dem/verlet.hpp"
 
 namespace rattlebox::dem {
 
@@ -218,10 +218,8 @@ public:
     template <bool sampled> void advance(Sums& sums, Chunk& chunk, Row body, Row body_before, bool first) {
         Tally& tally = chunk.tally;
         const bool spins = pair_.rough || wall_.rough, rolls = pair_.rolls || wall_.rolls;
-        const real dt = problem_.dt, h = 0.5 * dt, ever = first ? 0 : h;
-        const Row back = row(ever, ever, ever), step = row(dt, dt, dt), half = row(h, h, h),
-                  space = row(1, 1, 1);
-        const Row evenly = back * (body - body_before), reference = bed_.reference;
+        const Verlet step(problem_.dt, body, body_before, first);
+        const Row evenly = step.now(Row{}, body, body_before), reference = bed_.reference;
         Row momentum{}, mass_moment{};
         real drift = 0, kinetic = 0, rotation = 0;
         for (int i = chunk.begin; i < chunk.end; ++i) {
@@ -232,7 +230,7 @@ public:
             const bool before = touched, now = sum.force[3] > 0;
             if (before || now) {
                 if (now) a = sum.force * u[3] + body;
-                v = u + back * (a - (before ? at(bed_.acceleration, i) : body_before));
+                v = step.now(u, a, before ? at(bed_.acceleration, i) : body_before);
                 at(bed_.acceleration, i) = a;
                 if (spins) {
                     Row &w = at(bed_.spin, i), rate = Row{},
@@ -245,9 +243,9 @@ public:
                         }
                         rate *= w[3];
                     }
-                    w += back * (rate - rate_before);
+                    w = step.now(w, rate, rate_before);
                     if constexpr (sampled) rotation += dot(w, w) * x[3] / w[3];
-                    w += step * rate;
+                    w = step.next(w, rate);
                     at(bed_.spin_rate, i) = rate;
                 } else if constexpr (sampled) {
                     rotation += turning(i);
@@ -257,20 +255,20 @@ public:
             } else if constexpr (sampled) {
                 rotation += turning(i);
             }
-            const Row middle = v + half * a, weighed = v / u[3];
+            const Row middle = step.middle(v, a), weighed = v / u[3];
             momentum += weighed;
             if constexpr (sampled) {
                 kinetic += dot(v, weighed);
-                mass_moment += x * space / u[3];
+                mass_moment += x / u[3];
             }
-            x += step * middle;
-            u = v + step * a;
+            x = step.moved(x, middle);
+            u = step.next(v, a);
             const Row moved = middle - reference;
             const real speed = dot(moved, moved);
             drift = drift > speed ? drift : speed;
         }
         Brief& brief = at(bed_.briefs, chunk.begin / Bed::chunk_size);
-        brief.moved = dt * std::sqrt(drift) * (1 + 1e-9);
+        brief.moved = problem_.dt * std::sqrt(drift) * (1 + 1e-9);
         for (int a = 0; a < 3; ++a) brief.momentum[a] = momentum[a];
         if constexpr (sampled) {
             tally.kinetic = 0.5 * kinetic;

@@ -72,7 +72,7 @@ template <bool sampled> auto advance(Bed& bed, int i, const Verlet& step) {
 
 // ---- the structure, by one of the team
 
-inline Row row(const real* v) { return rattlebox::row(v[0], v[1], v[2]); }
+using rattlebox::row;
 
 inline void place_cavities(World& w) {
     for (int b = 0; b < w.beds; ++b) w.bed[b].motion = w.structure.place(w.bed[b].shape);
