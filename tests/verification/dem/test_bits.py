@@ -142,3 +142,27 @@ def test_output_does_not_change_the_run(law: str) -> None:
         ends.append(flat(dem.state()) + flat([dem.contacts(k) for k in range(2)]))
         assert len(dem.records()["time"]) == step.count // every + 1
     assert ends[0] == ends[1]
+
+
+def test_contacts_of_a_stopped_run_are_not_told_in_part() -> None:
+    """Where a run was stopped in between, single contacts are refused; they are there where the next one is asked to end."""
+    at_rest = rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ParticleDamper(
+            particles=rb.Particles(material="steel", diameter="5 mm", count=50),
+            cavity=rb.Box(size=("30 mm", "30 mm", "40 mm")),
+            contact=rb.Tsuji(restitution=0.5),
+            friction=rb.Mindlin(0.3),
+            direction="z",
+            packing=rb.Settled(seed=1),
+            softening=1000,
+        ),
+        duration=100.0,
+        method=rb.Dem(),
+    )
+    dem, last = cases.dem_of(at_rest)
+    assert not dem.run(last, lambda _: False)
+    with pytest.raises(RuntimeError, match="asked to end"):
+        dem.contacts(0)
+    dem.run(dem.step + 1)
+    assert len(dem.contacts(0)["first"]) > 50
