@@ -8,10 +8,11 @@ left out together with the variables that need them, except `impact`, which is u
 
 from __future__ import annotations
 
+import io
 import os
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,13 +21,15 @@ from .datasets import columns, labels
 from .granular import GranularArrays, GranularRun
 from .provenance import Provenance
 from .schema import GRANULAR, IMPACT, IMPACT_VARIABLES, Form, Kind
-from .whole import whole
+from .whole import needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from .run import Run
 
 FORMAT = 1
 """Number of the layout; files with a higher one are refused."""
+
+_LOST = "make room and write the run again"
 
 _STORED: dict[Kind, str] = {"float": "f8", "int": "i4", "bool": "i1"}
 _LABELS = ("point", "ball", "damper", "source", "species")
@@ -77,12 +80,12 @@ def _write_coordinate(group: Any, dim: str, values: Any, units: str, long_name: 
     _describe(variable, long_name=long_name, units=units)
 
 
-def _write(run: Run, path: Path) -> None:
+def _write(run: Run, target: IO[bytes]) -> None:
     import h5netcdf  # type: ignore[import-untyped]
 
     arrays = run.arrays
     names = labels(arrays)
-    with h5netcdf.File(path, "w", invalid_netcdf=False) as file:
+    with h5netcdf.File(target, "w", invalid_netcdf=False) as file:
         _describe(file, title="Rattlebox run", status=arrays.status)
         file.attrs["rattlebox_format"] = np.int32(FORMAT)
         for name, value in asdict(run.provenance).items():
@@ -144,8 +147,11 @@ def save(run: Run, path: Path) -> Path:
     OSError
         When the file cannot be written.
     """
-    with whole(path) as name:
-        _write(run, name)
+    needs_folder(path)
+    content = io.BytesIO()  # HDF5 cannot be rid of what a full disk does not take, and takes the process with it
+    _write(run, content)
+    with telling(path, _LOST), whole(path) as name:
+        name.write_bytes(content.getbuffer())
     return path
 
 

@@ -7,6 +7,7 @@ process, the snapshots before are there.
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arrays import FloatArray, IntArray
-from .whole import telling, whole
+from .whole import reserve, telling, whole
 
 FORMAT = 1
 """Number of what is said beside the VTKHDF; files with a higher one are refused."""
@@ -25,6 +26,9 @@ FORMAT = 1
 _ROOT = "VTKHDF"
 _MOVING = {"velocity": (3,), "spin": (3,), "push": ()}
 _FIXED = ("radius", "mass", "cavity", "species")
+_OFFSETS, _LAYOUT = 25, 1 << 16
+"""Numbers of a snapshot that tell where it is; what names, places and sizes take at most [bytes]."""
+
 _LOST = "make room and give the same call again, with fewer snapshots or another folder"
 
 
@@ -102,47 +106,61 @@ class SnapshotFile:
         """
         import h5py  # type: ignore[import-untyped]
 
+        with telling(self.path, _LOST), whole(self.path) as name:
+            reserve(name, self._room())
+            with h5py.File(name, "w") as file:
+                self._lay_out(file)
+            reserve(name, name.stat().st_size)  # no holes that are to be filled when the disk may be full
+
+    def _room(self) -> int:
+        """How large the file is, or a little more [bytes]."""
         steps, count, cavities = self._times.size, self._fixed["radius"].size, len(self._places)
-        with telling(self.path, _LOST), whole(self.path) as name, h5py.File(name, "w") as file:
-            file.attrs["rattlebox_format"] = FORMAT
-            file.attrs["case"] = self._case
-            file.attrs["numbers"] = self._numbers
-            root = file.create_group(_ROOT)
-            root.attrs["Version"] = (2, 0)
-            root.attrs.create("Type", b"PolyData", dtype="S8")
-            root["NumberOfPoints"] = [count]
-            root.create_dataset("Points", (steps * count, 3), "f8")
-            for cells in ("Vertices", "Lines", "Polygons", "Strips"):
-                number = count if cells == "Vertices" else 0
-                root[f"{cells}/NumberOfCells"] = [number]
-                root[f"{cells}/NumberOfConnectivityIds"] = [number]
-                root[f"{cells}/Offsets"] = np.arange(number + 1)
-                root[f"{cells}/Connectivity"] = np.arange(number)
-            every, once = np.arange(steps), np.zeros(steps, np.int64)
-            kept = root.create_group("Steps")
-            kept.attrs["NSteps"] = 0
-            kept["Values"] = self._times
-            kept["NumberOfParts"] = np.ones(steps, np.int64)
-            kept["PartOffsets"] = once
-            kept["PointOffsets"] = every * count
-            kept["CellOffsets"] = np.zeros((steps, 4), np.int64)
-            kept["ConnectivityIdOffsets"] = np.zeros((steps, 4), np.int64)
-            for field, shape in _MOVING.items():
-                root.create_dataset(f"PointData/{field}", (steps * count, *shape), "f8")
-                kept[f"PointDataOffsets/{field}"] = every * count
-            for field in _FIXED:
-                root[f"PointData/{field}"] = self._fixed[field]
-                kept[f"PointDataOffsets/{field}"] = once
-            root.create_dataset("FieldData/displacement", (steps * cavities, 3), "f8")
-            kept["FieldDataOffsets/displacement"] = every * cavities
-            kept["FieldDataSizes/displacement"] = np.tile([3, cavities], (steps, 1))
-            root["FieldData/place"] = self._places
-            kept["FieldDataOffsets/place"] = once
-            kept["FieldDataSizes/place"] = np.tile([3, cavities], (steps, 1))
-            # Storage is given out with the first values, and nothing but numbers changes later.
-            for dataset in (root["Points"], *(root[f"PointData/{f}"] for f in _MOVING), root["FieldData/displacement"]):
-                if dataset.size:
-                    dataset[-1] = 0.0
+        moving = 3 + sum(math.prod(shape) for shape in _MOVING.values())
+        numbers = steps * (moving * count + 3 * cavities + _OFFSETS) + (2 + len(_FIXED)) * count + 3 * cavities
+        return 8 * numbers + len(self._case.encode()) + _LAYOUT
+
+    def _lay_out(self, file: Any) -> None:
+        """Make the places of all numbers, and write those that do not change."""
+        steps, count, cavities = self._times.size, self._fixed["radius"].size, len(self._places)
+        file.attrs["rattlebox_format"] = FORMAT
+        file.attrs["case"] = self._case
+        file.attrs["numbers"] = self._numbers
+        root = file.create_group(_ROOT)
+        root.attrs["Version"] = (2, 0)
+        root.attrs.create("Type", b"PolyData", dtype="S8")
+        root["NumberOfPoints"] = [count]
+        root.create_dataset("Points", (steps * count, 3), "f8")
+        for cells in ("Vertices", "Lines", "Polygons", "Strips"):
+            number = count if cells == "Vertices" else 0
+            root[f"{cells}/NumberOfCells"] = [number]
+            root[f"{cells}/NumberOfConnectivityIds"] = [number]
+            root[f"{cells}/Offsets"] = np.arange(number + 1)
+            root[f"{cells}/Connectivity"] = np.arange(number)
+        every, once = np.arange(steps), np.zeros(steps, np.int64)
+        kept = root.create_group("Steps")
+        kept.attrs["NSteps"] = 0
+        kept["Values"] = self._times
+        kept["NumberOfParts"] = np.ones(steps, np.int64)
+        kept["PartOffsets"] = once
+        kept["PointOffsets"] = every * count
+        kept["CellOffsets"] = np.zeros((steps, 4), np.int64)
+        kept["ConnectivityIdOffsets"] = np.zeros((steps, 4), np.int64)
+        for field, shape in _MOVING.items():
+            root.create_dataset(f"PointData/{field}", (steps * count, *shape), "f8")
+            kept[f"PointDataOffsets/{field}"] = every * count
+        for field in _FIXED:
+            root[f"PointData/{field}"] = self._fixed[field]
+            kept[f"PointDataOffsets/{field}"] = once
+        root.create_dataset("FieldData/displacement", (steps * cavities, 3), "f8")
+        kept["FieldDataOffsets/displacement"] = every * cavities
+        kept["FieldDataSizes/displacement"] = np.tile([3, cavities], (steps, 1))
+        root["FieldData/place"] = self._places
+        kept["FieldDataOffsets/place"] = once
+        kept["FieldDataSizes/place"] = np.tile([3, cavities], (steps, 1))
+        # Storage is given out with the first values, and nothing but numbers changes later.
+        for dataset in (root["Points"], *(root[f"PointData/{f}"] for f in _MOVING), root["FieldData/displacement"]):
+            if dataset.size:
+                dataset[-1] = 0.0
 
     @property
     def taken(self) -> int:

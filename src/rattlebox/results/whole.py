@@ -76,3 +76,26 @@ def telling(path: Path, lost: str) -> Iterator[None]:
             why = error.strerror or str(error).removeprefix(f"cannot write {path}: ")
             said = f"it cannot be written: {why}\n  try: another folder"
         raise OSError(error.errno or errno.EIO, said, str(path)) from error
+
+
+def reserve(path: Path, size: int) -> None:
+    """Take up the room that the first bytes of a file need, where the system can, and leave what they hold.
+
+    Libraries that keep part of a file in memory cannot be rid of it when the disk is full, and take the process with them.
+    They are therefore given files whose room is there.
+
+    Parameters
+    ----------
+    path
+        An existing file.
+    size
+        How many bytes.
+
+    Raises
+    ------
+    OSError
+        When there is no room.
+    """
+    if hasattr(os, "posix_fallocate"):
+        with path.open("r+b") as file:
+            os.posix_fallocate(file.fileno(), 0, size)

@@ -25,6 +25,8 @@ from ..mounts import needs_mounts, with_own_mounts
 from .long_run import bits, case
 
 SCRIPT = Path(__file__).with_name("long_run.py")
+FULL = ((16, "run.vtkhdf"), (64, "run.vtkhdf"), (160, "run.checkpoint"), (240, "run.checkpoint"))
+"""Sizes of disks [kB], and the file that they have no room for."""
 
 
 @pytest.fixture(scope="module")
@@ -316,18 +318,36 @@ def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
 
 @needs_mounts
 @pytest.mark.parametrize(
-    ("mount", "said"),
+    ("mount", "name", "said"),
     [
-        ("mount -t tmpfs -o size=200k none {0}", "no space is left on the disk"),
-        ("mount -t tmpfs -o ro none {0}", "cannot be written: Read-only file system"),
+        *((f"mount -t tmpfs -o size={size}k none {{0}}", name, "no space is left on the disk") for size, name in FULL),
+        ("mount -t tmpfs -o ro none {0}", "run.checkpoint", "cannot be written: Read-only file system"),
     ],
-    ids=["full", "read-only"],
+    ids=[*(f"{size} kB" for size, _ in FULL), "read-only"],
 )
-def test_real_disks_that_take_no_more(mount: str, said: str, tmp_path: Path) -> None:
-    """A file system that is really full or read-only ends the run with that message."""
+def test_real_disks_that_take_no_more(mount: str, name: str, said: str, tmp_path: Path) -> None:
+    """A file system that is really full or read-only ends the run with that message, and nothing else is said after it."""
     done = with_own_mounts(f"{mount.format(tmp_path)}; {sys.executable} {SCRIPT} {tmp_path} '20 s'")
-    assert done.returncode != 0
-    assert f"{said}\n  try: " in done.stderr
+    assert done.returncode == 1, done.stderr
+    assert "Exception ignored" not in done.stderr
+    happened, advice = done.stderr.splitlines()[-2:]
+    assert said in happened
+    assert advice.startswith("  try: ")
+    assert advice.endswith(f"{tmp_path / name}'")
+
+
+@needs_mounts
+def test_runs_that_find_no_room(tmp_path: Path) -> None:
+    """A run that is written to a full disk is told so in one line, and leaves nothing there."""
+    rb.simulate(case(output=rb.Output(rate="2 kHz"))).save(tmp_path / "run.nc")
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    code = f"import rattlebox as rb; rb.load('{tmp_path}/run.nc').save('{disk}/run.nc')"
+    full = f'mount -t tmpfs -o size=8k none {disk}; {sys.executable} -c "{code}" || echo ended $?; ls -A {disk}'
+    done = with_own_mounts(full)
+    assert done.stdout == "ended 1\n"
+    assert f"no space is left on the disk\n  try: make room and write the run again: '{disk}/run.nc'" in done.stderr
+    assert "Exception ignored" not in done.stderr
 
 
 def test_a_particle_that_leaves_is_told(tmp_path: Path) -> None:

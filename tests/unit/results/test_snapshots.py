@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.results.snapshots import Snapshots
+from rattlebox.results.snapshots import SnapshotFile, Snapshots
+from rattlebox.results.whole import reserve
 
 
 def case(**output: Any) -> rb.Case:
@@ -98,6 +100,24 @@ def test_vtk_reads_what_was_written(written: Any) -> None:
         moved = vtk_to_numpy(cloud.GetFieldData().GetArray("displacement"))
         np.testing.assert_array_equal(moved, frame.displacement)
         assert np.abs(moved[:, 1]).max() == 0
+
+
+@pytest.mark.parametrize(("steps", "count", "cavities"), [(2, 1, 1), (500, 3, 2), (2, 20_000, 1), (40, 200, 30)])
+def test_all_room_on_disk_is_taken_at_once(steps: int, count: int, cavities: int, tmp_path: Path) -> None:
+    """The room that is asked for is enough for the file, and the file has no holes that a full disk would not fill."""
+    fixed = {name: np.ones(count) for name in ("radius", "mass", "cavity", "species")}
+    text = "# ein längerer Fall\n" * 1000
+    file = SnapshotFile(tmp_path / "run.vtkhdf", np.arange(steps), np.zeros((cavities, 3)), fixed, text, "numbers")
+    asked: list[int] = []
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(
+            "rattlebox.results.snapshots.reserve", lambda path, size: (asked.append(size), reserve(path, size))
+        )
+        file.create()
+    size = (tmp_path / "run.vtkhdf").stat().st_size
+    assert asked[1] == size <= asked[0] < size + 100_000
+    if hasattr(os, "posix_fallocate"):
+        assert 512 * (tmp_path / "run.vtkhdf").stat().st_blocks >= size
 
 
 def test_times_are_chosen(tmp_path: Path) -> None:
