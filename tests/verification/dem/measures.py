@@ -138,7 +138,7 @@ def oblique_law(
 
 def oblique_impacts() -> Iterator[Line]:
     """Yield tangential restitution and spin of test 4 of Chung and Ooi, against the closed form and a fine integration."""
-    for degrees in printed.OBLIQUE:
+    for degrees in (10, 20, 30, 50, 70):
         angle = math.radians(degrees)
         before = OBLIQUE_SPEED * math.sin(angle)
         along, _, spin, _ = oblique_impact(angle, FINE)
