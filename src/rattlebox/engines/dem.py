@@ -19,7 +19,7 @@ from rattlebox.engines.dem_follow import Journey
 from rattlebox.engines.dem_gpu import CardDem, run_together
 from rattlebox.engines.dem_settle import settle
 from rattlebox.engines.dem_snapshots import snapshots_of
-from rattlebox.engines.dem_step import Step, choose_step, expected_speeds, outcome
+from rattlebox.engines.dem_step import Step, choose_step, expected_speeds, instants, outcome
 from rattlebox.engines.pack import pack, restitution
 from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
 from rattlebox.model.contacts import Linear
@@ -357,14 +357,14 @@ def _loads(case: Case) -> list[Packed]:
 
 
 def _without_particles(case: Case, loads: list[Packed]) -> Array:
-    """Modal velocities of the structure alone, (T, m)."""
+    """Modal velocities of the structure alone at the instants, (T, m)."""
     if not case.modes.decay.size:
         return np.zeros((0, 0))
     alone = case.model_copy(
         update={"dampers": (), "base": (), "loads": (), "method": EventDriven(), "output": Output()}
     )
     plain = [{key: value for key, value in load.items() if key != "direction"} for load in loads]
-    (raw,) = core().simulate([{**pack(alone), "loads": plain, "sample_times": _array(case.sample_times())}], 1)
+    (raw,) = core().simulate([{**pack(alone), "loads": plain, "sample_times": _array(instants(case))}], 1)
     return _array(raw["state"].reshape(raw["time"].size, -1)[:, 1::2])
 
 

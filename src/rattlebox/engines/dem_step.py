@@ -41,6 +41,11 @@ HERTZ_FREQUENCY = 1.5 * 1.25
 """Square of the largest frequency of a Hertz contact times the square of overlap by speed."""
 
 
+INSTANTS, GOLDEN = 4096, (math.sqrt(5) - 1) / 2
+"""At which speeds are looked at besides the samples, which may be as far apart as a period. Multiples of the golden ratio
+fall together with no other motion."""
+
+
 @dataclass(frozen=True)
 class Limit:
     """Something that a step must resolve.
@@ -153,6 +158,12 @@ def of_sizes(law: str, values: Mapping[str, Any], by_time: bool, radius: float, 
     return {**given, "mass": mass}
 
 
+def instants(case: Case) -> Any:
+    """Return times at which speeds are looked at, (T,) [s]: those of the samples, and others in step with nothing."""
+    others = case.duration * (np.arange(INSTANTS) * GOLDEN % 1.0)
+    return np.union1d(case.sample_times(), others)
+
+
 def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ...]:
     """Return the largest approach speed to expect in each damper [m/s].
 
@@ -164,9 +175,9 @@ def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ..
     case
         The case.
     cavity_velocities
-        Velocity of each cavity without particles, (T, 3) [m/s].
+        Velocity of each cavity without particles at the `instants`, (T, 3) [m/s].
     """
-    times = case.sample_times()
+    times = instants(case)
     base = np.zeros((times.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         base += np.outer(base_motion(acceleration, times)[1], direction_of_base(case, signal))
@@ -394,15 +405,7 @@ def outcome(
     assert isinstance(case.method, Dem)
     how = "limited by the" if case.method.dt == "auto" else "as given; an automatic one would be limited by the"
     notes = [f"step {_time(step.dt)}, {how} {step.limit.what}"]
-    for damper in case.particle_dampers:
-        if damper.softening > 1:
-            power = 0.5 if isinstance(damper.contact, Linear) else 0.4
-            factor = damper.softening**power
-            notes.append(
-                f"moduli are divided by {damper.softening:g}: contacts last {factor:.3g} times as long, and overlap "
-                f"{factor:.3g} times as much"
-            )
-            break
+    notes += _softened(case)
     if math.isfinite(steps) and steps < FEWEST_STEPS:
         notes.append(
             f"warning: only {steps:.3g} steps in the shortest contact, that of {shortest.what.removeprefix('contact of ')}; "
@@ -411,9 +414,23 @@ def outcome(
     if overlap > MOST_OVERLAP:
         notes.append(
             f"warning: overlaps reach {100 * overlap:.3g} % of the radius, and should stay below {100 * MOST_OVERLAP:g} %: "
-            "less softening or a stiffer contact"
+            + ("less softening or a stiffer contact" if _softened(case) else "a stiffer contact")
         )
     return figures, notes
+
+
+def _softened(case: Case) -> list[str]:
+    """What softening does, told once for all dampers that are alike."""
+    told: dict[str, list[str]] = {}
+    for index, damper in enumerate(case.particle_dampers):
+        linear = [isinstance(entry.contact, Linear) for entry in damper.contact_table.entries]
+        factors = {damper.softening ** (0.5 if each else 0.4) for each in linear}
+        many = " and ".join(f"{factor:.3g}" for factor in sorted(factors))
+        does = f"contacts last {many} times as long, and overlap {many} times as much"
+        what = f"moduli are divided by {damper.softening:g}: {does}" if damper.softening > 1 else ""
+        told.setdefault(what, []).append(damper.label(index))
+    whose = len(told) > 1
+    return [f"{', '.join(names)}: {what}" if whose else what for what, names in told.items() if what]
 
 
 def _time(seconds: float) -> str:

@@ -237,6 +237,8 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: 
             return "one table is needed, not a list", f"[{name}] in single brackets"
         inside = f'kind = "{kind}", ...' if kind and name in vocabulary else "..."
         return "a table is needed", f"{name} = {{ {inside} }}"
+    if what == "missing" and isinstance(location[-1], int):
+        return "one more is needed", ""
     if what == "literal_error" and isinstance(value, str):
         expected = str(context.get("expected", "")).replace(" or ", ", ").split(", ")
         close = difflib.get_close_matches(value, [word.strip("'") for word in expected], n=1)

@@ -108,13 +108,15 @@ def _numbers(file: Path, columns: Sequence[Column] | None, names: list[str]) -> 
     return places
 
 
-def read_table(file: Path) -> dict[str, Array]:
+def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
     """Read all columns of a text file with numbers.
 
     Parameters
     ----------
     file
         Path of an existing file: CSV and the like, as for `read_columns`.
+    known
+        Names that columns may have: a line of them tells how many columns there are.
 
     Returns
     -------
@@ -126,7 +128,10 @@ def read_table(file: Path) -> dict[str, Array]:
     Hint
         When the file cannot be read, naming the line that is wrong.
     """
-    lines, names = _data(file)
+    lines, names = _data(file, known)
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise Hint(f"{file} has two columns {twice!r}")
     return dict(zip(names, _rows(file, lines, list(range(len(names)))).T, strict=True))
 
 
@@ -136,13 +141,16 @@ def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[Array, Arr
     return table[:, 0], table[:, 1]
 
 
-def _data(file: Path) -> tuple[list[tuple[int, list[str]]], list[str]]:
+def _data(file: Path, known: Sequence[str] = ()) -> tuple[list[tuple[int, list[str]]], list[str]]:
     """Number and cells of the lines with data, and the names of the columns."""
     lines = _lines(file)
     start = next((k for k, (_, cells, marked) in enumerate(lines) if not marked and any(map(_is_number, cells))), None)
     if start is None:
         raise Hint(f"{file} holds no numbers")
     width = len(lines[start][1])
+    for number, cells, _ in lines[:start]:
+        if len(cells) != width and set(cells) <= set(known):
+            raise Hint(f"{file}, line {lines[start][0]}: {width} columns, but {len(cells)} in line {number}")
     heads = [cells for _, cells, _ in lines[:start] if len(cells) == width]
     data = [(number, cells) for number, cells, marked in lines[start:] if not marked]
     return data, heads[0] if heads else [str(k + 1) for k in range(width)]

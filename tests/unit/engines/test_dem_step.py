@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 import rattlebox as rb
+from rattlebox.engines.dem import pack_dem
 from rattlebox.engines.dem_settle import insert, push_apart
 from rattlebox.engines.dem_step import choose_step, contact_time, expected_speeds, limits, outcome
 from rattlebox.model.packing import check_packing
@@ -149,6 +150,44 @@ def test_expected_speeds_add_what_moves() -> None:
     )
     expected = 2 * 1e-3 * 100 * math.pi + math.sqrt(2 * 9.81 * 0.04)
     assert expected_speeds(shaken, [np.zeros((0, 3))])[0] == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("on", ["shaker", "structure"])
+def test_samples_a_period_apart_hide_no_speed(on: str) -> None:
+    """However rare the samples are, the step is that of the same case with many."""
+    swing = {"amplitude": (1000, "m/s^2"), "frequency": "50 Hz"}
+    where: dict[str, Any] = {
+        "shaker": {"structure": rb.Shaker(motion=rb.Harmonic(**swing))},
+        "structure": {
+            "structure": rb.SDOF(mass="2 kg", stiffness=2 * (100 * math.pi) ** 2),
+            "load": rb.Harmonic(amplitude="60 N", frequency="50 Hz"),
+        },
+    }
+    rare, frequent = (
+        pack_dem(case({"velocity": (0, 0, 0)}, output=rb.Output(rate=rate), duration=0.2, **where[on]))[1]
+        for rate in ("50 Hz", "5 kHz")
+    )
+    assert frequent.speeds[0] > 5
+    assert rare.speeds == pytest.approx(frequent.speeds, rel=1e-3)
+
+
+def test_each_softening_is_told_once() -> None:
+    """Dampers that are softened alike are told together, others by name; without any the advice is another one."""
+
+    def notes(*softening: float, **laws: Any) -> list[str]:
+        parts = [case({"softening": factor, "name": f"d{k}", **laws}).dampers[0] for k, factor in enumerate(softening)]
+        made = rb.Case(structure=rb.Fixed(), dampers=parts, duration=0.1)
+        step = choose_step(made, tables(made), (1.0,) * len(parts))
+        return outcome(made, tables(made), step, 0.05, 1.0)[1][1:]
+
+    hertz = "moduli are divided by {0:g}: contacts last {1} times as long, and overlap {1} times as much"
+    assert notes(100, 100)[:-1] == [hertz.format(100, 6.31)]
+    assert notes(100, 1, 10)[:-1] == ["d0: " + hertz.format(100, 6.31), "d2: " + hertz.format(10, 2.51)]
+    linear = rb.Linear(contact_time="0.1 ms", restitution=0.9)
+    assert notes(100, contact=linear)[:-1] == [hertz.format(100, 10)]
+    assert notes(100, wall_contact=linear)[:-1] == [hertz.format(100, "6.31 and 10")]
+    assert notes(100)[-1].endswith("less softening or a stiffer contact")
+    assert notes(1)[-1].endswith("should stay below 1 %: a stiffer contact")
 
 
 def test_outcomes_are_judged() -> None:

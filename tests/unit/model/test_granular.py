@@ -191,6 +191,35 @@ def test_positions_from_a_file(head: str, tmp_path: Path) -> None:
     assert again.radii == made.packing.radii
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x,y,z\n0,0,0\n0,0,abc\n", r"bed.csv, line 3: 'abc' is not a number"),
+        ("x,y,z\n0,0,0\n0,0\n", r"bed.csv, line 3: 2 columns, but 3 in line 2"),
+        ("a bed, settled\nx,y,z\n0,0\n", r"bed.csv, line 3: 2 columns, but 3 in line 2"),
+        ("x,y,z,radius,vz\n0,0,0,0.001\n", r"bed.csv, line 2: 4 columns, but 5 in line 1"),
+        ("x,y,z,x\n0,0,0,0\n", r"bed.csv has two columns 'x'"),
+        ("x,y,z\n0,nan,0\n", r"bed.csv, line 2: 0, nan, 0 is not finite"),
+        ("x,y,z\n", r"bed.csv holds no numbers"),
+        ("x,y,z,radius\n0,0,0,0.001\n0,0,0.001,0.001\n", r"packing.file = .*\n  particles 0 and 1 overlap by 1 mm"),
+        (
+            "x,y,z,radius\n0,0,0.02,0.001\n",
+            r"packing.file = .*\n  particle 0 at \(0, 0, 20\) mm sticks out of the cavity",
+        ),
+        ("x,y,z,radius\n0,0,0,-0.001\n", r"file = .*\n  radii must be greater than zero"),
+    ],
+)
+def test_bad_rows_of_positions_are_told(text: str, said: str, tmp_path: Path) -> None:
+    """A file of positions with a bad row is refused with the line, or the particle, and what is wrong with it."""
+    (tmp_path / "bed.csv").write_text(text, encoding="utf-8")
+    size = {} if "radius" in text else {"radius": "1 mm"}
+    with pytest.raises(rb.CaseError, match=said):
+        damper(
+            particles=rb.Particles(material="steel", **size),
+            packing=rb.Positions(file=tmp_path / "bed.csv"),
+        )
+
+
 def test_softening_keeps_restitution() -> None:
     """Softer moduli lower stiffness, but dashpots and limiting pressure such that yield speed and damping ratio stay."""
     for contact in (rb.Thornton(), rb.Linear(stiffness="1 MN/m", damping="3 N s/m")):
@@ -256,6 +285,7 @@ def test_walls_may_have_laws_of_another_kind() -> None:
 
 AT = rb.Positions(positions=[[0, 0, 0], [0, 0, 0.003]])
 REFUSED = {
+    r"pairs\[0\].between\n  one more is needed": lambda: damper(pairs=[{"between": ["wall"], "friction": 0.1}]),
     "an empty damper": lambda: damper(particles=[]),
     "there is nothing in it": lambda: balls(count=0),
     "their volume is 1.05 times that of the cavity": lambda: damper(particles=balls(2000)),
