@@ -216,7 +216,7 @@ def _main() -> None:
         typer.echo(f"error: {error.filename or ''}: {error.strerror or error}", err=True)
         sys.exit(2)
     except MemoryError:
-        typer.echo("error: there is not enough memory\n  try: a lower output rate", err=True)
+        typer.echo("error: there is not enough memory\n  try: a lower output rate, or fewer particles", err=True)
         sys.exit(2)
     except typer.Abort:
         typer.echo("stopped", err=True)

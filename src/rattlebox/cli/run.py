@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
-from rattlebox.model.errors import CaseError
+from rattlebox.model.errors import CaseError, Hint
 from rattlebox.results import GranularRun, Run
 
 
@@ -70,7 +70,10 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
         )
     make_folder(out)
     checkpoint = checkpoint or out / "run.checkpoint"
-    run = _simulated(case, out, checkpoint)
+    try:
+        run = _simulated(case, out, checkpoint)
+    except Hint as hint:
+        raise CaseError(f"{path}: {hint}") from None
     if run.status == "interrupted" and case.particle_dampers:
         typer.echo(run.message, err=True)
         sys.exit(130)

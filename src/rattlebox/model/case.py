@@ -35,7 +35,8 @@ _USUAL = "numbers of usual sizes"
 def _kind_of_damper(value: Any) -> str:
     """A damper with particles needs no kind in a file."""
     kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
-    return str(kind or ("granular" if isinstance(value, dict) and "particles" in value else "impact"))
+    in_space = isinstance(value, dict) and not value.keys().isdisjoint(("particles", "cavity", "packing"))
+    return str(kind or ("granular" if in_space else "impact"))
 
 
 AnyDamper = Annotated[

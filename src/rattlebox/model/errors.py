@@ -37,7 +37,8 @@ class Hint(CaseError):
     """
 
     def __init__(self, complaint: str, suggestion: str = "", place: Sequence[str | int] = ()) -> None:
-        super().__init__(_lines(complaint, suggestion))
+        where = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).removeprefix(".")
+        super().__init__(_lines(where, complaint, suggestion) if where else _lines(complaint, suggestion))
         self.complaint = complaint
         self.suggestion = suggestion
         self.place = tuple(place)

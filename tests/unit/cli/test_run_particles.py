@@ -51,12 +51,22 @@ def test_a_case_with_particles_runs_from_its_file(tmp_path: Path) -> None:
 
 
 def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
-    """Too many particles, and too long a step, are told on one screen with exit code 2."""
-    for old, new, said in (
-        ("fill_ratio = 0.3", "count = 4000", "do not fit"),
-        ("softening = 100", 'softening = 100\n[method]\nkind = "dem"\ndt = "1 ms"', "the bound is"),
+    """Too many particles, none, and too long a step, are told on one screen with file and field, and exit code 2."""
+    particles = 'particles = { material = "glass", diameter = "3 mm", fill_ratio = 0.3 }\n'
+    for old, new, field, said in (
+        ("fill_ratio = 0.3", "count = 4000", "damper.particles", "do not fit"),
+        (particles, "", "damper.particles", "this field is needed"),
+        (particles, "particles = []\n", "damper", "an empty damper damps nothing"),
+        ("softening = 100", 'softening = 100\n[method]\nkind = "dem"\ndt = "1 ms"', "method.dt", "the bound is"),
+        (
+            "fill_ratio = 0.3 }",
+            'fill_ratio = 0.6 }\npacking = { kind = "settled" }',
+            "dampers[0].packing",
+            "cannot be inserted at random",
+        ),
     ):
         done = run(tmp_path, case=CASE.replace(old, new))
         assert done.returncode == 2
+        assert f"case.toml: {field}\n" in done.stderr
         assert said in done.stderr
         assert "Traceback" not in done.stderr

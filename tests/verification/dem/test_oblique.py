@@ -1,5 +1,6 @@
 """Impacts askew, and of spinning balls: friction against closed forms and a fine integration."""
 
+import dataclasses
 import itertools
 import math
 from typing import Any
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.model.contacts import alpha_of_restitution
 
 from ..exact import oblique, printed
 from . import cases
@@ -35,6 +37,48 @@ def test_oblique_impacts_follow_the_law(degrees: float, e: float, damping: float
     # Measured: 4.4e-5 of the speed with 200 steps at e 0.5, about a quarter of it with 400.
     assert (along, up) == pytest.approx(expected[:2], abs=6e-5 * SPEED)
     assert spin == pytest.approx(expected[2], abs=2.5 * 6e-5 * SPEED / RADIUS)
+
+
+@pytest.mark.parametrize("e", [0.5, 0.98])
+@pytest.mark.parametrize("degrees", [5, 10, 20, 30, 60])
+def test_oblique_impacts_of_unlike_balls_follow_the_law(degrees: float, e: float) -> None:
+    """Balls of two sizes and materials that meet askew turn and slide on each other as a fine integration says."""
+    first, second = Ball(2e-3, material="steel"), Ball(5e-3, material="glass")
+    speed, angle, both = 1.0, math.radians(degrees), first.radius + second.radius
+    down, per_contact = speed * math.cos(angle), 200
+    dt = cases.contact_time(first, second, down) / per_contact
+    apart = both + 5.5 * dt * down
+    along = -speed * math.sin(angle)
+    balls = [
+        dataclasses.replace(first, velocity=(0.7 * down, 0.7 * along, 0)),
+        dataclasses.replace(second, position=(apart, 0, 0), velocity=(-0.3 * down, -0.3 * along, 0)),
+    ]
+    friction = 0.3
+    case = cases.case(
+        balls,
+        dt=dt,
+        steps=4 * per_contact,
+        cavity=rb.Box(size=(0.1,) * 3),
+        contact=rb.Tsuji(restitution=e),
+        friction=friction,
+    )
+    arrays = cases.run(case).arrays
+    mass = cases.reduced(first.mass, second.mass)
+    shear = 1 / sum((2 - m.poisson) * 2 * (1 + m.poisson) / m.young for m in (first.stuff, second.stuff))
+    stiffness = cases.stiffness(first, second)
+    law = oblique.Impact(  # of the relative motion; its unit of length is the distance of the centres at the touch
+        alpha=float(alpha_of_restitution(e)),
+        ratio=8 * shear * math.sqrt(cases.reduced(first.radius, second.radius)) / stiffness,
+        friction=friction,
+        damping=1.0,
+        stiffness=stiffness * both**2.5 / (mass * down**2),
+    )
+    slip, swirl, up = law.follow(math.tan(angle))
+    relative = arrays.particle_velocity[0] - arrays.particle_velocity[1]
+    turned = first.radius * arrays.spin[0, 2] + second.radius * arrays.spin[1, 2]
+    # The line between the centres turns during the contact, by some 1e-3, and what is along it with it.
+    assert relative == pytest.approx((-up * down, -slip * down, 0), abs=3e-3)
+    assert turned == pytest.approx(-swirl * down, abs=3e-3)
 
 
 def test_friction_converges_at_second_order() -> None:
