@@ -7,6 +7,7 @@
 // chunk can move on as soon as its own forces are known, while all it needs is near.
 #pragma once
 
+#include "dem/ahead.hpp"
 #include "dem/division.hpp"
 #include "dem/forces.hpp"
 #include "dem/neighbours.hpp"
@@ -20,7 +21,7 @@ class BedStep {
     Kind pair_, wall_;
     std::vector<real> pair_mu_, wall_mu_; // by kinds
     bool curved_ = false;
-    bool far_; // particles and contacts are more than caches hold
+    bool far_;
 
     const Encounter& between(int i, int j) const {
         const Cavity& c = *bed_.cavity;
@@ -50,7 +51,7 @@ class BedStep {
 
     template <class View>
     void visit(Contacts& list, const View& view, int candidates, std::vector<int>& slot_of, const Kind& kind,
-               Partner partner, bool sampled, Chunk& chunk) {
+               Partner partner, bool sampled, Chunk& chunk, const Ahead& ahead) {
         Tally& tally = chunk.tally;
         const auto begun = [&](int k) {
             const Touch t = touch(list, k, partner);
@@ -75,17 +76,18 @@ class BedStep {
             at(list.slot, k) = at(slot_of, at(list.origin, k)) = Contacts::none;
         };
         chunk.late.clear();
-        find_touching(list, view, candidates, begun, ended);
+        find_touching(list, view, candidates, begun, ended, ahead);
+        ahead.rest(candidates, list.actives);
         if (list.actives == 0) return list.actions.all.clear();
         const auto with_law = [&](auto law) {
             using Law = decltype(law);
             const auto settled = [&](int k) { settle(list, k, partner, tally); };
             if (kind.rolls)
-                collide<Law, true, true>(list, view, kind.how, sampled, partner, tally, settled);
+                collide<Law, true, true>(list, view, kind.how, sampled, partner, tally, settled, ahead);
             else if (kind.rough)
-                collide<Law, true, false>(list, view, kind.how, sampled, partner, tally, settled);
+                collide<Law, true, false>(list, view, kind.how, sampled, partner, tally, settled, ahead);
             else
-                collide<Law, false, false>(list, view, kind.how, sampled, partner, tally, settled);
+                collide<Law, false, false>(list, view, kind.how, sampled, partner, tally, settled, ahead);
         };
         if (kind.normal == Kind::hertz)
             with_law(HertzStep{});
@@ -121,31 +123,8 @@ public:
         for (const int e : bed.cavity->wall_entry) wall_mu_.push_back(at(problem.encounters, e).friction);
     }
 
-    // Asks memory for what the chunk after this will need, and for the lists of the one after that. Inlined:
-    // compilers take a call that only asks for one without effect.
-    RATTLEBOX_INLINE void fetch(const Chunk& next, const Chunk& later) const {
-        if (!far_) return;
-        const auto fetch = [](const auto& what)
-                               __attribute__((always_inline)) { __builtin_prefetch(&what, 1, 2); };
-        const auto lines = [&](const auto& values) __attribute__((always_inline)) {
-            for (std::size_t i = 0; i < values.size(); i += 64 / sizeof(values[0])) fetch(values[i]);
-        };
-        const Contacts &list = next.pairs, &then = later.pairs;
-        lines(then.first), lines(then.second), lines(then.slot), lines(then.active);
-        for (int i = later.begin; i < later.end; i += 64) fetch(at(bed_.touched, i));
-        for (int k = 0; k < list.size(); ++k) {
-            const int j = at(list.second, k), s = at(list.slot, k);
-            fetch(at(bed_.position, j));
-            if (s < 0) continue;
-            fetch(at(bed_.velocity, j)), fetch(at(bed_.spin, j)), fetch(at(list.memory.kept, s));
-        }
-        for (int i = next.begin; i < next.end; i += 2) {
-            fetch(at(bed_.position, i)), fetch(at(bed_.velocity, i));
-            if (at(bed_.touched, i) | at(bed_.touched, std::min(i + 1, next.end - 1)))
-                for (const auto* rows : {&bed_.acceleration, &bed_.spin_rate, &bed_.spin})
-                    fetch(at(*rows, i));
-        }
-    }
+    // Particles and contacts are more than caches hold.
+    bool is_far() const { return far_; }
 
     // Candidates are those that may touch in this step.
     void look_around(const Neighbours& neighbours, Chunk& chunk) {
@@ -162,14 +141,14 @@ public:
     }
 
     // Forces of all contacts that the chunk owns, and of its particles at the walls.
-    void forces(Chunk& chunk, bool sampled) {
+    void forces(Chunk& chunk, bool sampled, const Ahead& ahead) {
         // Those of tier t were at least t / tiers of the skin apart.
         const real closed = chunk.pairs.since / chunk.pairs.skin * Contacts::tiers;
         const int tier = std::min(static_cast<int>(closed), Contacts::tiers - 1);
         visit(chunk.pairs, PairView{bed_, chunk.pairs, pair_mu_}, chunk.pairs.tier_end[tier], chunk.near_slot,
-              pair_, particle, sampled, chunk);
+              pair_, particle, sampled, chunk, ahead);
         visit(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, chunk.walls.size(),
-              chunk.wall_slot, wall_, wall, sampled, chunk);
+              chunk.wall_slot, wall_, wall, sampled, chunk, Ahead());
         Row total{}, moment{};
         const Contacts& list = chunk.walls;
         for (int a = 0; a < list.actives; ++a) {
@@ -208,6 +187,18 @@ public:
             add(sums, walls.actions, a, at(walls.first, at(walls.active, a)), 1, wall_);
     }
 
+    void advance(Sums& sums, Chunk& chunk, Row body, Row body_before, bool first, bool sampled) {
+        const auto with = [&](auto sampled, auto far) {
+            advance<sampled.value, far.value>(sums, chunk, body, body_before, first);
+        };
+        constexpr std::true_type yes;
+        constexpr std::false_type no;
+        if (far_)
+            sampled ? with(yes, yes) : with(no, yes);
+        else
+            sampled ? with(yes, no) : with(no, no);
+    }
+
     real turning(int i) const { // twice the energy of spin
         const Row w = at(bed_.spin, i);
         return dot(w, w) * at(bed_.position, i)[3] / w[3];
@@ -215,7 +206,8 @@ public:
 
     // Velocities at this step, and on to the next. `body` is what accelerates all alike, `body_before` in the
     // step before; the first step has none before.
-    template <bool sampled> void advance(Sums& sums, Chunk& chunk, Row body, Row body_before, bool first) {
+    template <bool sampled, bool far>
+    void advance(Sums& sums, Chunk& chunk, Row body, Row body_before, bool first) {
         Tally& tally = chunk.tally;
         const bool spins = pair_.rough || wall_.rough, rolls = pair_.rolls || wall_.rolls;
         const Verlet step(problem_.dt, body, body_before, first);
@@ -223,6 +215,7 @@ public:
         Row momentum{}, mass_moment{};
         real drift = 0, kinetic = 0, rotation = 0;
         for (int i = chunk.begin; i < chunk.end; ++i) {
+            if constexpr (far) Ahead::moving(bed_, i);
             Row &x = at(bed_.position, i), &u = at(bed_.velocity, i);
             char& touched = at(bed_.touched, i);
             Action& sum = sums.of(i);

@@ -1,7 +1,7 @@
 // Which candidates of a chunk touch, and what those do to each other.
 #pragma once
 
-#include "dem/bed.hpp"
+#include "dem/ahead.hpp"
 #include "dem/contact_step.hpp"
 
 namespace rattlebox::dem {
@@ -132,11 +132,12 @@ RATTLEBOX_INLINE Columns<8> lay(const Four<Lanes>& f) { return {f.x, f.y, f.z, f
 // Lists the candidates up to `to` that touch; calls begun(k) and ended(k) for those that have just begun or
 // ended to.
 template <class View, class Begun, class Ended>
-void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ended&& ended) {
+void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ended&& ended, const Ahead& ahead) {
     int* active = list.active.data();
     const int* slot = list.slot.data();
     int count = 0;
     for (int base = 0; base < to; base += lane_count) {
+        ahead.looking(base);
         int k[lane_count];
         for (int l = 0; l < lane_count; ++l) k[l] = base + l;
         alignas(64) real room[lane_count];
@@ -160,7 +161,7 @@ void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ende
 
 template <class Law, bool rough, bool rolls, class View, class Settle>
 void collide(Contacts& list, const View& view, const Contacting& how, bool sampled, Partner partner,
-             Tally& tally, Settle&& settle) {
+             Tally& tally, Settle&& settle, const Ahead& ahead) {
     const int count = list.actives;
     const int* active = list.active.data();
     const Lanes zero = Lanes::all(0), dt = Lanes::all(how.dt);
@@ -169,6 +170,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
     if constexpr (rolls) actions.torque.resize(static_cast<std::size_t>(count));
     alignas(64) real used[lane_count];
     for (int base = 0; base < count; base += lane_count) {
+        ahead.colliding(base);
         int a[lane_count], k[lane_count], s[lane_count];
         for (int l = 0; l < lane_count; ++l) {
             a[l] = std::min(base + l, count - 1);

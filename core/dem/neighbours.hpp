@@ -46,11 +46,13 @@ class Neighbours {
     std::vector<real> along_[4];   // places and radii once more, axis by axis: searched in lanes
     std::vector<Leaving> leaving_; // by chunk before the sort
     real largest_ = 0, low_[3] = {}, size_ = 0;
-    int cells_[3] = {};
+    // Along lines of cells, across them in a plane, across planes. Short axes come first, so that neighbours
+    // in other lines and planes are near in memory too.
+    int axis_[3] = {}, cells_[3] = {};
 
-    int cell_along(real x, int axis) const {
-        const int c = static_cast<int>((x - low_[axis]) / size_);
-        return std::clamp(c, 0, cells_[axis] - 1);
+    int cell_along(const Row& p, int a) const {
+        const int c = static_cast<int>((p[axis_[a]] - low_[a]) / size_);
+        return std::clamp(c, 0, cells_[a] - 1);
     }
 
     // For some steps, if they go on as since the last scan.
@@ -62,21 +64,26 @@ class Neighbours {
     }
 
     void lay_cells(const Bed& bed) {
-        real high[3];
-        for (int a = 0; a < 3; ++a) low_[a] = infinity, high[a] = -infinity;
-        for (const Row& p : bed.position)
-            for (int a = 0; a < 3; ++a) {
-                low_[a] = smaller(low_[a], p[a]);
-                high[a] = larger(high[a], p[a]);
-            }
+        Row low = row(infinity, infinity, infinity), high = -low;
+        for (const Row& p : bed.position) low = p < low ? p : low, high = p > high ? p : high;
+        const Row span = high - low;
+        const auto order = [&](int& inner, int& outer) {
+            if (span[inner] > 1.5 * span[outer]) std::swap(inner, outer);
+        };
+        auto& [line, plane, rest] = axis_;
+        line = 0, plane = 1, rest = 2;
+        order(line, plane), order(plane, rest), order(line, plane);
         size_ = (2 * largest_ + bed.reach) * (1 + 1e-12);
         for (;;
              size_ *= 1.25) { // few particles in a large cavity need no more cells than there are particles
             real total = 1;
-            for (int a = 0; a < 3; ++a) total *= std::floor((high[a] - low_[a]) / size_) + 1;
+            for (int a = 0; a < 3; ++a) total *= std::floor(span[a] / size_) + 1;
             if (total <= 4.0 * bed.particles() + 64) break;
         }
-        for (int a = 0; a < 3; ++a) cells_[a] = static_cast<int>((high[a] - low_[a]) / size_) + 1;
+        for (int a = 0; a < 3; ++a) {
+            low_[a] = low[axis_[a]];
+            cells_[a] = static_cast<int>(span[axis_[a]] / size_) + 1;
+        }
     }
 
 public:
@@ -127,7 +134,7 @@ public:
         for (int i = 0; i < n; ++i) {
             const Row& p = at(bed.position, i);
             at(cell_, i) =
-                (cell_along(p[2], 2) * cells_[1] + cell_along(p[1], 1)) * cells_[0] + cell_along(p[0], 0);
+                (cell_along(p, 2) * cells_[1] + cell_along(p, 1)) * cells_[0] + cell_along(p, 0);
             ++at(cell_start_, at(cell_, i) + 1);
         }
         for (std::size_t c = 1; c < cell_start_.size(); ++c) cell_start_[c] += cell_start_[c - 1];
@@ -163,7 +170,7 @@ public:
             const Row& p = at(bed.position, i);
             const Vector<Lanes> place = {Lanes::all(p[0]), Lanes::all(p[1]), Lanes::all(p[2])};
             const Lanes around = Lanes::all(p[3] + bed.reach);
-            const int cx = cell_along(p[0], 0), cy = cell_along(p[1], 1), cz = cell_along(p[2], 2);
+            const int cx = cell_along(p, 0), cy = cell_along(p, 1), cz = cell_along(p, 2);
             const auto range = [&](int y, int z, bool own) {
                 if (y < 0 || y >= cells_[1] || z >= cells_[2]) return;
                 const int line = (z * cells_[1] + y) * cells_[0];

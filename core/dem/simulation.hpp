@@ -175,10 +175,15 @@ class Simulation {
 
     // ---- steps
 
-    // The chunk some places on, if it is of the same bed and part; or else the same.
-    Place after(const Part& part, int k, int on) const {
-        const Place here = division_.place(k), there = division_.place(std::min(k + on, part.end - 1));
-        return there.bed == here.bed ? there : here;
+    // What to ask memory for at a chunk: for what those after it need, of the same bed and part.
+    Ahead ahead(const Part& part, int k) const {
+        const Place here = division_.place(k);
+        if (!at(steps_, here.bed).is_far()) return {};
+        const auto after = [&](int places) -> const Chunk& {
+            const Place there = division_.place(std::min(k + places, part.end - 1));
+            return at(at(beds_, here.bed).chunks, there.bed == here.bed ? there.chunk : here.chunk);
+        };
+        return {at(beds_, here.bed), after(1), after(2), after(3)};
     }
 
     // In the last step forces of single contacts are kept; else only what others need.
@@ -187,10 +192,10 @@ class Simulation {
         const Row all = structure().body();
         std::vector<char>& known = part.known;
         known.assign(part.early.begin(), part.early.end());
-        const auto forces = [&](Place p) {
+        const auto forces = [&](Place p, const Ahead& ahead = {}) {
             BedStep& step = at(steps_, p.bed);
             step.look_around(at(neighbours_, p.bed), chunk(p));
-            step.forces(chunk(p), sample);
+            step.forces(chunk(p), sample, ahead);
         };
         for (int k = part.begin; k < part.end; ++k)
             if (at(known, k - part.begin)) forces(division_.place(k));
@@ -211,19 +216,15 @@ class Simulation {
             Chunk& own = chunk(p);
             Sums& sums = at(part.sums, p.bed);
             BedStep& step = at(steps_, p.bed);
-            step.fetch(chunk(after(part, k, 1)), chunk(after(part, k, 2)));
             const bool is_known = at(known, k - part.begin), lends = !is_known && !last;
             const auto lend = [&] {
                 if (lends) own.pairs.actions.swap(part.at_pairs), own.walls.actions.swap(part.at_walls);
             };
             lend();
-            if (!is_known) forces(p);
+            if (!is_known) forces(p, ahead(part, k));
             step.add_own(sums, own, at(part.until, p.bed));
             lend();
-            if (sample)
-                step.advance<true>(sums, own, all, body_before_, first);
-            else
-                step.advance<false>(sums, own, all, body_before_, first);
+            step.advance(sums, own, all, body_before_, first, sample);
         }
     }
 

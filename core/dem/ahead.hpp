@@ -1,0 +1,63 @@
+// What the chunks to come will need, asked of memory little by little while one is at work: requests made all
+// at once would have to be waited for. All is inlined: compilers take a call that only asks for one without
+// effect.
+#pragma once
+
+#include "dem/bed.hpp"
+
+namespace rattlebox::dem {
+
+class Ahead {
+    const Bed* bed_ = nullptr;
+    const Contacts *next_ = nullptr, *later_ = nullptr;
+
+    static RATTLEBOX_INLINE void ask(const void* what) { __builtin_prefetch(what, 0, 2); }
+
+public:
+    Ahead() = default; // asks for nothing
+
+    // The chunks one, two and three places on.
+    RATTLEBOX_INLINE Ahead(const Bed& bed, const Chunk& next, const Chunk& later, const Chunk& last)
+        : bed_(&bed), next_(&next.pairs), later_(&later.pairs) {
+        for (std::size_t b = 0; b < sizeof(Chunk); b += 64) ask(reinterpret_cast<const char*>(&last) + b);
+    }
+
+    // While eight candidates from `base` on are looked at: lists, and where the partners in them are.
+    RATTLEBOX_INLINE void looking(int base) const {
+        if (!bed_) return;
+        if (base < later_->size())
+            for (const auto* list : {&later_->first, &later_->second, &later_->slot}) ask(&at(*list, base));
+        if (base < next_->size())
+            for (int k = base; k < base + lane_count; ++k) ask(&at(bed_->position, at(next_->second, k)));
+    }
+
+    // While eight that touch are worked on: what those have that touched in the step before.
+    RATTLEBOX_INLINE void colliding(int base) const {
+        if (!bed_) return;
+        if (base < later_->actives) ask(&at(later_->active, base));
+        for (int a = base; a < std::min(base + lane_count, next_->actives); ++a) {
+            const int k = at(next_->active, a), j = at(next_->second, k);
+            ask(&at(bed_->velocity, j)), ask(&at(bed_->spin, j));
+            ask(&at(next_->memory.kept, at(next_->slot, k)));
+        }
+    }
+
+    // Once those of the chunk at work are all looked at: what the next one has more of.
+    RATTLEBOX_INLINE void rest(int looked, int collided) const {
+        if (!bed_) return;
+        for (int k = looked; k < std::max(next_->size(), later_->size()); ++k)
+            if (k % lane_count == 0) looking(k);
+        for (int a = collided; a < next_->actives; ++a)
+            if (a % lane_count == 0) colliding(a);
+    }
+
+    // While a particle is moved: what moves the one a chunk on.
+    static RATTLEBOX_INLINE void moving(const Bed& bed, int i) {
+        const int j = std::min(i + Bed::chunk_size, bed.particles() - 1);
+        const bool touched = at(bed.touched, j);
+        for (const auto* rows : {&bed.acceleration, &bed.spin_rate, &bed.spin})
+            ask(&at(touched ? *rows : bed.velocity, j));
+    }
+};
+
+} // namespace rattlebox::dem
