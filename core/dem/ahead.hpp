@@ -45,10 +45,9 @@ public:
     // Once those of the chunk at work are all looked at: what the next one has more of.
     RATTLEBOX_INLINE void rest(int looked, int collided) const {
         if (!bed_) return;
-        for (int k = looked; k < std::max(next_->size(), later_->size()); ++k)
-            if (k % lane_count == 0) looking(k);
-        for (int a = collided; a < next_->actives; ++a)
-            if (a % lane_count == 0) colliding(a);
+        const auto up = [](int n) { return (n + lane_count - 1) / lane_count * lane_count; };
+        for (int k = up(looked); k < std::max(next_->size(), later_->size()); k += lane_count) looking(k);
+        for (int a = up(collided); a < next_->actives; a += lane_count) colliding(a);
     }
 
     // While a particle is moved: what moves the one a chunk on.

@@ -132,7 +132,8 @@ RATTLEBOX_INLINE Columns<8> lay(const Four<Lanes>& f) { return {f.x, f.y, f.z, f
 // Lists the candidates up to `to` that touch; calls begun(k) and ended(k) for those that have just begun or
 // ended to.
 template <class View, class Begun, class Ended>
-void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ended&& ended, const Ahead& ahead) {
+void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ended&& ended,
+                   const Ahead& ahead) {
     int* active = list.active.data();
     const int* slot = list.slot.data();
     int count = 0;

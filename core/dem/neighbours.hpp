@@ -133,8 +133,7 @@ public:
         cell_start_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2] + 1), 0);
         for (int i = 0; i < n; ++i) {
             const Row& p = at(bed.position, i);
-            at(cell_, i) =
-                (cell_along(p, 2) * cells_[1] + cell_along(p, 1)) * cells_[0] + cell_along(p, 0);
+            at(cell_, i) = (cell_along(p, 2) * cells_[1] + cell_along(p, 1)) * cells_[0] + cell_along(p, 0);
             ++at(cell_start_, at(cell_, i) + 1);
         }
         for (std::size_t c = 1; c < cell_start_.size(); ++c) cell_start_[c] += cell_start_[c - 1];

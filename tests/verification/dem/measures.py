@@ -309,7 +309,7 @@ def settled(name: str) -> tuple[Any, float]:
         rolling=rb.Rolling(0.05, damping=0.3),
         packing=rb.Settled(seed=1),
     )
-    arrays = cases.run(rb.Case(structure=rb.Fixed(), damper=damper, duration=0.3, output=rb.Output(rate=100.0))).arrays
+    arrays = cases.run(rb.Case(structure=rb.Fixed(), damper=damper, duration=0.6, output=rb.Output(rate=100.0))).arrays
     return arrays.cavity_force[-1, 0], float(arrays.mass.sum() * GRAVITY)
 
 
@@ -317,7 +317,7 @@ def hydrostatic() -> Iterator[Line]:
     """Yield the load of a settled fill on its cavity."""
     for name in FILLED:
         force, weight = settled(name)
-        # A bed comes to rest by and by: a tenth of a second after it was settled some balls still roll.
+        # A bed comes to rest by and by: some tenths of a second after it was settled a ball may still roll.
         yield Line("dem", f"two hundred spheres settled in a {name}: load over weight", 1.0, -force[2] / weight, 1e-6)
 
 
