@@ -44,7 +44,8 @@ _ADVICE: dict[str, dict[str, str]] = {
     "step_too_small": {"": "Loosen the tolerance. " + _SIZES},
     "no_rebound": {
         "": "Check the law (yield stress, table, extrapolation), use a contact that yields (Thornton), or the Newton "
-        "method, whose impacts may be fully plastic."
+        "method, whose impacts may be fully plastic.",
+        "dem": "Check the law (yield stress, table, extrapolation), or use a contact that yields (Thornton).",
     },
     "not_finite": {
         "": _SIZES,

@@ -95,6 +95,19 @@ def test_settling_is_reproducible() -> None:
     assert beds[0][:, 2].max() < 0.0
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize(
+    "cavity", [rb.SphericalCavity(diameter="24 mm"), rb.Cylinder(radius="12 mm", length="9 mm", axis="x")]
+)
+def test_one_ball_settles_in_a_round_cavity(cavity: Any, friction: float) -> None:
+    """A ball that rolls, or slides without friction, in a round cavity comes to rest at its lowest point all the same."""
+    from rattlebox.engines.dem_settle import settle
+
+    (place,) = settle(damper(particles=balls(1), packing=rb.Settled(seed=1), cavity=cavity, friction=friction))
+    assert place[2] == pytest.approx(-0.010, abs=2e-6)
+    assert abs(place[1]) < 3e-4
+
+
 def test_bits_do_not_depend_on_threads() -> None:
     """A run on two threads is the run on one, to the last bit."""
     one, two = (simulate(method=rb.Dem(threads=threads), duration=0.02) for threads in (1, 2))
