@@ -115,7 +115,7 @@ def row_places(arrays: RunArrays, damper: int) -> Any:
 
 
 def draw_structure(axes: Axes, arrays: RunArrays | GranularArrays, shown: slice, time: Scale, length: Scale) -> None:
-    """Draw the displacement of the structure's points.
+    """Draw the displacement of the structure's points, of many those that move most.
 
     Parameters
     ----------
@@ -128,15 +128,16 @@ def draw_structure(axes: Axes, arrays: RunArrays | GranularArrays, shown: slice,
     time, length
         Scales of the axes.
     """
-    x = arrays.displacement[shown, :MOST_SERIES]
+    x = arrays.displacement[shown]
+    most = np.sort(np.argsort(-np.abs(x).max(axis=0), kind="stable")[:MOST_SERIES])
     axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
-    for k in range(x.shape[1]):
+    for k, point in enumerate(most):
         axes.plot(
             arrays.time[shown] / time.divisor,
-            x[:, k] / length.divisor,
+            x[:, point] / length.divisor,
             color=SERIES_COLOURS[k],
             linestyle=SERIES_STYLES[k],
-            label=arrays.points[k] if x.shape[1] > 1 else None,
+            label=arrays.points[point] if most.size > 1 else None,
         )
     label(axes, "y", "Displacement", length.unit)
     legend_above(axes)

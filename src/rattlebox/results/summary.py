@@ -153,7 +153,9 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
     ]
     peaks = dict.fromkeys(key for values in all_values for key in values if key.startswith("peak_displacement["))
     points = [key.partition("[")[2][:-1] for key in peaks]
-    for point in points[:_MOST_POINTS]:
+    highest = [max(float(values.get(key, 0.0)) for values in all_values) for key in peaks]
+    most = set(sorted(range(len(points)), key=lambda k: -highest[k])[:_MOST_POINTS])
+    for point in (point for k, point in enumerate(points) if k in most):
         where = f", {point}" if len(points) > 1 else ""
         rows.append(_Row(f"peak_displacement[{point}]", f"peak displacement{where}", "m"))
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))

@@ -120,3 +120,38 @@ def test_force_on_the_cavity_is_the_change_of_momentum(law: str) -> None:
     assert mean == pytest.approx(
         weight - rate, abs=1e-9 * np.abs(mean).max() + 1e-13 * np.abs(arrays.momentum).max() / dt
     )
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(
+    "cavity", [rb.Box(size=(0.04,) * 3), rb.Cylinder(radius=0.027, length=0.041)], ids=["box", "can"]
+)
+def test_moment_on_the_cavity_is_the_change_of_angular_momentum(law: str, cavity: Any) -> None:
+    """In each step the mean moment on a cavity is that of the weight in it less what angular momentum its particles gain."""
+    gravity, dt, steps = np.array([1.0, 2.0, -9.81]), 4e-6, 600
+    case = cloud(
+        law,
+        random=1.0,
+        inwards=-1.0,
+        cavity=cavity,
+        gravity=tuple(gravity),
+        duration=steps * dt,
+        rate=1 / dt,
+        method=rb.Dem(dt=dt * (1 + 1e-9)),
+    )
+    contents = case.dampers[0].contents
+    dem, _ = cases.dem_of(case)
+    moments, turning, weighing = [], [], []
+    for k in range(steps):
+        dem.run(k)
+        now = dem.state()["cavities"][0]
+        moments.append(dem.records()["moment"][-1, 0])
+        turning.append(momenta(now, contents)[1].sum(axis=0))
+        weighing.append(np.cross(contents.mass @ now["position"], gravity))
+    half = [0.5 * (np.array(each)[1:] + np.array(each)[:-1]) for each in (moments, weighing)]
+    rate = np.diff(turning, axis=0) / dt
+    assert dem.counters()["first_touches"][0][1] > 10
+    assert np.abs(half[0]).max() > 1e-3
+    assert half[0] == pytest.approx(
+        half[1] - rate, abs=1e-8 * np.abs(half[0]).max() + 1e-13 * np.abs(turning).max() / dt
+    )
