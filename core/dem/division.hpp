@@ -1,4 +1,5 @@
-// Which chunks each member of a team works on: parts of about the same cost, of all beds together.
+// Which chunks each member of a team works on: parts of about the same cost, of all beds together, which is
+// reckoned and then corrected by the time that the members took. Results do not depend on it.
 //
 // Contacts belong to the chunk of their first partner, and act on particles of their own part or a higher
 // one. Where they reach into another part, forces of both sides come early: before any of these particles
@@ -6,6 +7,7 @@
 #pragma once
 
 #include <bit>
+#include <numeric>
 
 #include "dem/bed.hpp"
 
@@ -36,6 +38,7 @@ public:
 
 struct Part {
     int begin = 0, end = 0; // among the chunks of all beds
+    real reckoned = 0, busy = 0; // cost, and time that it took since
     // Of each of them: has neighbours in higher parts, or particles that lower parts reach; and whether its
     // forces are known in this step.
     std::vector<char> early, known;
@@ -51,10 +54,9 @@ class Division {
     std::vector<Part> parts_;
 
     // Nanoseconds, about: where the time goes was measured.
-    static long cost(const Chunk& c) {
-        const auto touching = [](const Contacts& list) { return static_cast<long>(list.memory.used()); };
-        return 7 * (c.end - c.begin) + 2 * static_cast<long>(c.near_second.size()) +
-               18 * (touching(c.pairs) + touching(c.walls));
+    static real cost(const Chunk& c) {
+        const int touching = c.pairs.memory.used() + c.walls.memory.used();
+        return 7.0 * (c.end - c.begin) + 2.0 * static_cast<real>(c.near_second.size()) + 18.0 * touching;
     }
 
     const Chunk& chunk(Place p) const { return at(at(*beds_, p.bed).chunks, p.chunk); }
@@ -76,18 +78,26 @@ public:
     }
 
     void divide(int members) {
-        long total = 0, sum = 0;
-        for (const Place p : all_) total += cost(chunk(p));
+        std::vector<real> costs;
+        for (const Place p : all_) costs.push_back(cost(chunk(p)));
+        for (const Part& part : parts_)
+            if (static_cast<int>(parts_.size()) == members && part.busy > 0 && part.reckoned > 0)
+                for (int k = part.begin; k < part.end; ++k) at(costs, k) *= part.busy / part.reckoned;
+        const real share = std::accumulate(costs.begin(), costs.end(), real{}) / members;
         parts_.resize(static_cast<std::size_t>(members));
-        int rank = 0;
-        for (int k = 0; k < chunks(); ++k) {
+        real sum = 0;
+        int k = 0;
+        for (int rank = 0; rank < members; ++rank) {
+            Part& part = at(parts_, rank);
+            part.begin = k;
+            part.reckoned = part.busy = 0;
             // A chunk belongs where its middle lies.
-            const long own = cost(chunk(at(all_, k)));
-            for (; (2 * sum + own) * members >= 2 * total * (rank + 1); ++rank) at(parts_, rank).end = k;
-            sum += own;
+            for (; k < chunks() && (rank == members - 1 || sum + at(costs, k) / 2 < share * (rank + 1)); ++k) {
+                sum += at(costs, k);
+                part.reckoned += cost(chunk(at(all_, k)));
+            }
+            part.end = k;
         }
-        for (; rank < members; ++rank) at(parts_, rank).end = chunks();
-        for (int r = 0; r < members; ++r) at(parts_, r).begin = r == 0 ? 0 : at(parts_, r - 1).end;
     }
 
     // What a member needs to know of its part, once all neighbours are known.

@@ -189,6 +189,7 @@ class Simulation {
     // In the last step forces of single contacts are kept; else only what others need.
     template <class Team> void advance(Team& team, bool first, bool sample, bool last) {
         Part& part = division_.part(team.rank());
+        real* const busy = team.size() > 1 ? &part.busy : nullptr;
         const Row all = structure().body();
         std::vector<char>& known = part.known;
         known.assign(part.early.begin(), part.early.end());
@@ -197,16 +198,21 @@ class Simulation {
             step.look_around(at(neighbours_, p.bed), chunk(p));
             step.forces(chunk(p), sample, ahead);
         };
-        for (int k = part.begin; k < part.end; ++k)
-            if (at(known, k - part.begin)) forces(division_.place(k));
+        {
+            const Timed timed(busy);
+            for (int k = part.begin; k < part.end; ++k)
+                if (at(known, k - part.begin)) forces(division_.place(k));
+        }
         team.report();
         team.await_lower([&, k = part.begin]() mutable {
             while (k < part.end && at(known, k - part.begin)) ++k;
             if (k == part.end) return false;
             at(known, k - part.begin) = true;
+            const Timed timed(busy);
             forces(division_.place(k));
             return true;
         });
+        const Timed timed(busy);
         for (const Place in : part.incoming)
             at(steps_, in.bed)
                 .add_incoming(at(part.sums, in.bed), chunk(in), at(part.first, in.bed),
