@@ -37,7 +37,7 @@ public:
 };
 
 struct Part {
-    int begin = 0, end = 0; // among the chunks of all beds
+    int begin = 0, end = 0;      // among the chunks of all beds
     real reckoned = 0, busy = 0; // cost, and time that it took since
     // Of each of them: has neighbours in higher parts, or particles that lower parts reach; and whether its
     // forces are known in this step.
@@ -80,9 +80,15 @@ public:
     void divide(int members) {
         std::vector<real> costs;
         for (const Place p : all_) costs.push_back(cost(chunk(p)));
-        for (const Part& part : parts_)
-            if (static_cast<int>(parts_.size()) == members && part.busy > 0 && part.reckoned > 0)
-                for (int k = part.begin; k < part.end; ++k) at(costs, k) *= part.busy / part.reckoned;
+        real busy = 0, reckoned = 0;
+        bool timed = static_cast<int>(parts_.size()) == members;
+        for (const Part& part : parts_) busy += part.busy, reckoned += part.reckoned, timed &= part.busy > 0;
+        if (timed)
+            for (const Part& part : parts_) {
+                // Within bounds: a member may have been kept waiting for a core.
+                const real took = std::clamp(part.busy / busy * reckoned / part.reckoned, 0.5, 2.0);
+                for (int k = part.begin; k < part.end; ++k) at(costs, k) *= took;
+            }
         const real share = std::accumulate(costs.begin(), costs.end(), real{}) / members;
         parts_.resize(static_cast<std::size_t>(members));
         real sum = 0;
@@ -92,7 +98,8 @@ public:
             part.begin = k;
             part.reckoned = part.busy = 0;
             // A chunk belongs where its middle lies.
-            for (; k < chunks() && (rank == members - 1 || sum + at(costs, k) / 2 < share * (rank + 1)); ++k) {
+            for (; k < chunks() && (rank == members - 1 || sum + at(costs, k) / 2 < share * (rank + 1));
+                 ++k) {
                 sum += at(costs, k);
                 part.reckoned += cost(chunk(at(all_, k)));
             }
