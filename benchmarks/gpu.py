@@ -1,6 +1,7 @@
 """Measures a graphics card against one core: `python benchmarks/gpu.py [--wheels FOLDER]` prints one table.
 
 --wheels    installs the packages of rattlebox[gpu] from files in a folder, without a network, before anything else
+--short     the same table from a thousandth of the work, to see that all is there: its rates mean nothing
 --small     only a little work, for compute-sanitizer, which this script starts by itself where it is installed
 
 Nothing here takes long: what has not begun after eight minutes is left out, and the table says so.
@@ -64,10 +65,10 @@ def first_impacts() -> Row:
     return "first impacts, largest relative difference", "", f"{off:.1e}", "ok" if off < CLOSE else f"not below {CLOSE}"
 
 
-def statistics() -> Row:
-    """Mean impacts and loss of an ensemble of 4096 over 5 s, in standard errors of the difference."""
+def statistics(count: int) -> Row:
+    """Mean impacts and loss of an ensemble over 5 s, in standard errors of the difference."""
     names = ["impacts", "impact_share", "largest_approach_speed"]
-    (here, _), (there, _) = (run(4096, 5.0, Look(measures=names), gpu=gpu) for gpu in (False, True))
+    (here, _), (there, _) = (run(count, 5.0, Look(measures=names), gpu=gpu) for gpu in (False, True))
     apart = []
     for name in names:
         a, b = here[name], there[name]
@@ -77,23 +78,23 @@ def statistics() -> Row:
     return "means of an ensemble, standard errors apart", "", f"{worst:.2f}", "ok" if worst < 4 else "too far"
 
 
-def rate() -> Row:
+def rate(most: int) -> Row:
     """Impacts a second, the best of three, against one core."""
     look = Look(measures=["impacts"])
-    few, slow = run(2000, 5.0, look, gpu=False)
+    few, slow = run(min(most, 2000), 5.0, look, gpu=False)
     one = np.nansum(few["impacts"]) / slow
-    run(1000, 0.1, look, gpu=True)
+    run(min(most, 1000), 0.1, look, gpu=True)
     best = 0.0
-    for count in (100_000, 300_000, 300_000):
+    for count in (most // 3, most, most):
         found, took = run(count, 5.0, look, gpu=True)
         best = max(best, float(np.nansum(found["impacts"])) / took)
     return "impacts a second", f"{one:.3g}", f"{best:.3g}", f"{best / one:.0f} times one core (goal: 300)"
 
 
-def same_bits() -> Row:
+def same_bits(count: int) -> Row:
     """The same bits twice."""
     look = Look(measures=["impacts", "impact_share"])
-    (one, _), (other, _) = (run(20_000, 2.0, look, gpu=True) for _ in range(2))
+    (one, _), (other, _) = (run(count, 2.0, look, gpu=True) for _ in range(2))
     same = all(np.array_equal(one[name], other[name], equal_nan=True) for name in one)
     return "the same bits twice", "", "yes" if same else "no", "ok" if same else "not deterministic"
 
@@ -114,28 +115,32 @@ def sanitized(tool: str) -> Row:
     return name, "", summary, "error" if ended.returncode else "ok"
 
 
-JOBS: dict[str, Callable[[], Row]] = {
-    "card": compilation,
-    "first impacts": first_impacts,
-    "statistics": statistics,
-    "the same bits": same_bits,
-    "rate": rate,
-    **gpu_particles.JOBS,
-    "memory check": lambda: sanitized("memcheck"),
-    "race check": lambda: sanitized("racecheck"),
-}
+def jobs(short: bool) -> dict[str, Callable[[], Row]]:
+    """Return what to measure, by name."""
+    return {
+        "card": compilation,
+        "first impacts": first_impacts,
+        "statistics": lambda: statistics(256 if short else 4096),
+        "the same bits": lambda: same_bits(300 if short else 20_000),
+        "rate": lambda: rate(300 if short else 300_000),
+        **gpu_particles.jobs(short),
+        "memory check": lambda: sanitized("memcheck"),
+        "race check": lambda: sanitized("racecheck"),
+    }
 
 
 def main() -> int:
     """Run all jobs and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--wheels", type=Path)
+    parser.add_argument("--short", action="store_true")
     parser.add_argument("--small", action="store_true")
     given = parser.parse_args()
     if given.wheels:
         install = [sys.executable, "-m", "pip", "install", "--no-index", "--find-links", str(given.wheels), *PACKAGES]
         subprocess.run(install, check=True)
-        os.execv(sys.executable, [sys.executable, __file__, *(["--small"] if given.small else [])])
+        how = [option for option, wanted in (("--short", given.short), ("--small", given.small)) if wanted]
+        os.execv(sys.executable, [sys.executable, __file__, *how])
     begin = time.perf_counter()
     try:
         ready()
@@ -147,7 +152,7 @@ def main() -> int:
         gpu_particles.little()
         return 0
     rows: list[Row] = [("", "one core", "card", "")]
-    for name, job in JOBS.items():
+    for name, job in jobs(given.short).items():
         if time.perf_counter() - begin > ENOUGH:
             rows.append((name, "", "left out: no time", ""))
             continue

@@ -6,6 +6,7 @@ The shaken box of particles.py. Rates count steps of particles in launches, with
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -108,10 +109,12 @@ def little() -> None:
     dem.run(400)
 
 
-JOBS = {
-    "particles: first impacts": first_impacts,
-    "particles: the same bits": same_bits,
-    "particles: 100": lambda: batch(100, 2048, 20_000),
-    "particles: 1000": lambda: batch(1000, 512, 5_000),
-    "particles: a million": lambda: large(1_000_000, 500),
-}
+def jobs(short: bool) -> dict[str, Callable[[], Row]]:
+    """Return what to measure, by name."""
+    return {
+        "particles: first impacts": first_impacts,
+        "particles: the same bits": same_bits,
+        "particles: 100": lambda: batch(100, *((4, 400) if short else (2048, 20_000))),
+        "particles: 1000": lambda: batch(1000, *((2, 200) if short else (512, 5_000))),
+        "particles: a million": lambda: large(*((3_000, 40) if short else (1_000_000, 500))),
+    }

@@ -8,10 +8,6 @@
 
 #include "base/real.hpp"
 
-#ifndef __CUDACC__
-extern "C" void abort();
-#endif
-
 namespace rattlebox::gpu {
 
 struct Stretch {
@@ -33,7 +29,6 @@ struct Stretch {
 struct Arena {
     static constexpr std::size_t grain = 64; // all begin at a multiple of it
     Stretch near, far;
-    std::size_t most_near = 0, most_far = 0; // so far
 
     static std::size_t rounded(std::size_t bytes) { return (bytes + grain - 1) / grain * grain; }
 
@@ -44,8 +39,6 @@ struct Arena {
         void* p = large ? far.take(bytes) : near.take(bytes);
         if (!p) p = large ? near.take(bytes) : far.take(bytes);
         if (!p) exhausted();
-        most_near = larger(most_near, near.next - near.first);
-        most_far = larger(most_far, far.next - far.first);
         return p;
     }
     RATTLEBOX_CALL void give_back(void* p, std::size_t bytes) {
@@ -54,27 +47,12 @@ struct Arena {
     }
 
 private:
-    static std::size_t larger(std::size_t most, std::ptrdiff_t now) {
-        return static_cast<std::size_t>(now) > most ? static_cast<std::size_t>(now) : most;
-    }
     // The need was reckoned before: an error of ours, and no trajectory may go on with it.
-    static void exhausted() {
-#ifdef __CUDACC__
-        __trap();
-#else
-        abort();
-#endif
-    }
+    static void exhausted() { __trap(); }
 };
 
-#ifdef __CUDACC__
 inline __shared__ Arena* arenas[RATTLEBOX_THREADS]; // of the threads of a block
 inline Arena& arena() { return *arenas[threadIdx.x]; }
 inline void use(Arena& mine) { arenas[threadIdx.x] = &mine; }
-#else
-inline Arena* current = nullptr;
-inline Arena& arena() { return *current; }
-inline void use(Arena& mine) { current = &mine; }
-#endif
 
 } // namespace rattlebox::gpu

@@ -1,9 +1,9 @@
 // Spheres in cavities: many small simulations, one a block and many steps a launch, or one large by all
 // blocks.
 //
-// Worlds (dem/wide/world.hpp) come laid out for the address at which they lie. Under a compiler of the
-// processor the same sources make functions with a team of one.
+// Worlds (dem/wide/world.hpp) come laid out for the address at which they lie.
 #include "dem/wide/near.hpp"
+#include "gpu/teams.hpp"
 
 using namespace rattlebox;
 using dem::wide::World;
@@ -27,10 +27,6 @@ struct Told {
 
 } // namespace
 
-#ifdef __CUDACC__
-
-#include "gpu/teams.hpp"
-
 // Of all worlds, each of which begins so many bytes after the first; `size` bytes of shared memory are at
 // hand.
 extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS,
@@ -53,25 +49,3 @@ extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS,
     dem::wide::run(team, *world, static_cast<long>(until));
     if (team.first()) *told = world->control;
 }
-
-#else
-
-extern "C" void block(char* worlds, const std::size_t* begin, std::size_t blocks, std::size_t until,
-                      char* near, std::size_t size, Told* told) {
-    One team;
-    for (std::size_t b = 0; b < blocks; ++b) {
-        World& world = *reinterpret_cast<World*>(worlds + begin[b]);
-        World own;
-        Beds beds;
-        dem::wide::run_near(team, world, own, beds, near, static_cast<int>(size), static_cast<long>(until));
-        told[b] = world.control;
-    }
-}
-
-extern "C" void grid(World* world, unsigned*, std::size_t until, Told* told) {
-    One team;
-    dem::wide::run(team, *world, static_cast<long>(until));
-    *told = world->control;
-}
-
-#endif

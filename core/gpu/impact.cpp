@@ -1,6 +1,4 @@
 // Trajectories of a batch, one a thread at a time.
-//
-// The card's kernels, and under a compiler of the processor a function that does the same thread by thread.
 #include "impact/image.hpp"
 
 using namespace rattlebox;
@@ -31,8 +29,6 @@ void work_off(const char* image, const Kept& kept, std::size_t members, char* fa
 
 } // namespace
 
-#ifdef __CUDACC__
-
 extern "C" __global__ void prepare() {
     new (&room<GaussRule>) GaussRule;
     new (&room<PhaseGrid::Rule>) PhaseGrid::Rule;
@@ -51,19 +47,3 @@ extern "C" __global__ __launch_bounds__(RATTLEBOX_THREADS) void impact(const cha
         image, kept, members, far + thread * far_bytes, far_bytes, *desk,
         [&] { return static_cast<std::size_t>(atomicAdd(&desk->begun, 1ull)); }, arena);
 }
-
-#else
-
-// The most memory that a member took comes back in `most`: in local memory, and beyond it.
-extern "C" void impact(const char* image, std::int8_t* status, real* numbers, std::size_t members, char* far,
-                       std::size_t far_bytes, Desk* desk, std::size_t* most) {
-    gpu::Arena arena;
-    Kept kept;
-    kept.status = status;
-    kept.numbers = numbers;
-    work_off(image, kept, members, far, far_bytes, *desk, [&] { return desk->begun++; }, arena);
-    most[0] = arena.most_near;
-    most[1] = arena.most_far;
-}
-
-#endif

@@ -50,7 +50,8 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
     counts = statuses(result)
     told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
     told = f"{sum(counts.values()):,} variants: {told}\n" if counts else ""
-    console.print(f"{told}written to {out}", soft_wrap=True, highlight=False)
+    card = f"{result.attrs['gpu']}\n" if "gpu" in result.attrs else ""
+    console.print(f"{told}{card}written to {out}", soft_wrap=True, highlight=False)
 
 
 @contextmanager

@@ -87,7 +87,9 @@ class Card:
         return f"{self.describe()}; {took}"
 
     def memory(self) -> tuple[int, int]:
-        """Return the bytes of its memory that are free, and all of them."""
+        """Return the bytes of its memory that are free, and all of them, once all that was asked of it is done."""
+        self._stream.sync()
+        self._check(*self._driver.cuMemPoolTrimTo(self._device.memory_resource.handle, 0))  # or it keeps what was used
         free, total = self._answer(self._driver.cuMemGetInfo())
         return int(free), int(total)
 
@@ -148,10 +150,13 @@ class Card:
         buffer.fill(byte, stream=self._stream)
 
     def upload(self, buffer: Any, data: bytes | NDArray[Any]) -> None:
-        """Copy bytes to the card."""
+        """Copy bytes to the card, once all that was asked of it is done."""
         host = np.frombuffer(data, np.uint8)
+        # In the kernels' stream: they would not wait for a copy in the default one, which may end after the call for it.
+        self._check(
+            *self._driver.cuMemcpyHtoDAsync(int(buffer.handle), host.ctypes.data, host.nbytes, self._stream.handle)
+        )
         self._stream.sync()
-        self._check(*self._driver.cuMemcpyHtoD(int(buffer.handle), host.ctypes.data, host.nbytes))
 
     def download(self, buffer: Any, array: NDArray[Any], begin: int = 0) -> None:
         """Copy from the card, from a byte of a block on, into an array, once all that was asked of the card is done."""

@@ -289,7 +289,7 @@ class _Kernel:
             card.fill(barrier, 0)
             at_work = [case.step for case in blocks.cases]
             while at_work and late <= _PATIENCE * blocks.seconds:
-                goal, begin = min(at_work) + self._steps - 1, perf_counter()
+                goal, begin = min(until, min(at_work) + self._steps - 1), perf_counter()
                 given: tuple[Any, ...]
                 if self._alone:
                     given = blocks.block, barrier, goal, board

@@ -131,6 +131,26 @@ CASES: dict[str, dict[str, Variants]] = {
     },
 }
 
+
+def bed(speed: float = 1.0, **options: Any) -> Any:
+    """Return 40 balls in a box on a structure that is hit."""
+    usual: dict[str, Any] = {
+        "particles": rb.Particles(material="steel", radius="2 mm", count=40),
+        "cavity": rb.Box(size=("22 mm",) * 3),
+        "contact": rb.Tsuji(restitution=0.7),
+        "friction": rb.Mindlin(0.3),
+        "softening": 1000.0,
+        "velocity": (0.3, 0.1, -speed),
+        "packing": rb.Lattice(noise=1.0, seed=2),
+    }
+    return rb.Case(
+        structure=rb.SDOF(mass=0.5, stiffness=2e4, damping_ratio=0.02, velocity=0.5),
+        damper=rb.ParticleDamper(**{**usual, **options}),
+        duration="3 ms",
+        output=rb.Output(rate=10_000.0),
+    )
+
+
 MISSING: dict[str, dict[str, str]] = {
     "output": {
         "functions of a Run": "a card makes no Run; use measures by name",

@@ -1,14 +1,12 @@
-"""Studies of particles in space on a graphics card: its kernels, compiled for the processor, and all that leads to them."""
+"""Studies of particles in space on a graphics card."""
 
 from __future__ import annotations
 
-import ctypes
 from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.unit.engines.card_of_paper import COMPILER, CardOfPaper, built
-from tests.unit.engines.test_gpu_dem import case
+from tests.unit.engines.gpu_cases import bed
 
 import rattlebox as rb
 from rattlebox.engines import dem, dem_gpu
@@ -18,26 +16,11 @@ from rattlebox.studies.axes import Design
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.store import progress_of
 
-pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C++ compiler")
+from .conftest import Watched
 
-DOCS = Path(__file__).parents[3] / "docs/gpu.md"
+DOCS = Path(__file__).parents[2] / "docs/gpu.md"
 SPEEDS = {"structure.velocity": [0.1, 0.3, 0.5, 0.7]}
 SHARES = ["impact_share", "viscous_share", "peak", "closure"]
-
-
-@pytest.fixture(scope="module")
-def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
-    """The kernels of any contacts."""
-    return built(tmp_path_factory.mktemp("kernels"))
-
-
-@pytest.fixture
-def card(library: ctypes.CDLL, monkeypatch: pytest.MonkeyPatch) -> CardOfPaper:
-    """A card that every study and run finds."""
-    made = CardOfPaper(library)
-    for module in (dem, dem_gpu, granular):
-        monkeypatch.setattr(module, "Card", lambda: made)
-    return made
 
 
 def turned(run: rb.Run) -> float:
@@ -46,60 +29,60 @@ def turned(run: rb.Run) -> float:
     return float(run.arrays.rotation_energy[-1].sum())
 
 
-def test_variants_run_side_by_side(card: CardOfPaper) -> None:
+def test_variants_run_side_by_side(watched: Watched) -> None:
     """Measures and functions of a run are those of each variant alone on the card, and the processor's but for rounding."""
-    found = rb.sweep(case(), SPEEDS, [*SHARES, turned], on="gpu", progress=False)
-    assert set(card.side_by_side) == {4} and found.gpu == "a card of paper, 3 s"
+    found = rb.sweep(bed(), SPEEDS, [*SHARES, turned], on="gpu", progress=False)
+    assert set(watched.blocks) == {4} and "sm_" in found.gpu
     for k, speed in enumerate(SPEEDS["structure.velocity"]):
-        structure = case().structure.model_copy(update={"velocity": speed})
-        alone = rb.simulate(case().model_copy(update={"structure": structure}), on="gpu")
+        structure = bed().structure.model_copy(update={"velocity": speed})
+        alone = rb.simulate(bed().model_copy(update={"structure": structure}), on="gpu")
         one = found.isel({"structure.velocity": k})
         assert float(one.turned) == turned(alone) > 0
         assert float(one.closure) == alone.closure
         assert float(one.viscous_share) == alone.ledger.shares["viscous"]
         assert float(one.peak) == np.abs(alone.arrays.displacement).max()
-    here = rb.sweep(case(), SPEEDS, [*SHARES, turned], progress=False)
+    here = rb.sweep(bed(), SPEEDS, [*SHARES, turned], progress=False)
     for name in ("status", "impact_share", "viscous_share", "peak", "turned"):
         np.testing.assert_allclose(found[name], here[name], rtol=1e-5)
 
 
-def test_batches_fit_the_memory(card: CardOfPaper) -> None:
+def test_batches_fit_the_memory(watched: Watched) -> None:
     """As many variants run at once as fit, to the same bits; where one does not, the study is refused with the number."""
-    whole = rb.sweep(case(), SPEEDS, SHARES, on="gpu", progress=False)
-    each = dem_gpu._room(dem_gpu.CardDem(dem.pack_dem(case())[0]))
-    card.free, card.side_by_side = int(2.5 * each / 0.9), []
-    assert rb.sweep(case(), SPEEDS, SHARES, on="gpu", progress=False).equals(whole)
-    assert set(card.side_by_side) == {2}
-    card.free, card.side_by_side = each // 2, []
+    whole = rb.sweep(bed(), SPEEDS, SHARES, on="gpu", progress=False)
+    each = dem_gpu._room(dem_gpu.CardDem(dem.pack_dem(bed())[0]))
+    watched.free, watched.blocks = int(2.5 * each / 0.9), []
+    assert rb.sweep(bed(), SPEEDS, SHARES, on="gpu", progress=False).equals(whole)
+    assert set(watched.blocks) == {2}
+    watched.free, watched.blocks = each // 2, []
     with pytest.raises(rb.CaseError, match=r"40 particles need .* GiB on the card, .* GiB are free"):
-        rb.sweep(case(), SPEEDS, SHARES, on="gpu", progress=False)
-    assert not card.side_by_side
+        rb.sweep(bed(), SPEEDS, SHARES, on="gpu", progress=False)
+    assert not watched.blocks
 
 
-def test_portions_fit_this_machine(card: CardOfPaper, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_portions_fit_this_machine(watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
     """No more particles are brought to the card at once than fit the machine; large variants are blocks of their own."""
-    whole = rb.sweep(case(), SPEEDS, SHARES, on="gpu", progress=False)
-    card.side_by_side.clear()
+    whole = rb.sweep(bed(), SPEEDS, SHARES, on="gpu", progress=False)
+    watched.blocks.clear()
     monkeypatch.setattr(granular, "_PARTICLES", 130)
     told: list[int] = []
-    found = rb.sweep(case(), SPEEDS, SHARES, on="gpu", progress=lambda done, _: told.append(done))
-    assert found.equals(whole) and card.side_by_side[0] == 3 and card.side_by_side[-1] == 1
+    found = rb.sweep(bed(), SPEEDS, SHARES, on="gpu", progress=lambda done, _: told.append(done))
+    assert found.equals(whole) and watched.blocks[0] == 3 and watched.blocks[-1] == 1
     assert told == sorted(told) and told[-1] == 4
     monkeypatch.setattr(dem_gpu, "SMALL", 30)
-    task = granular.GranularTask(case(), Design.of(case(), SPEEDS), []).on_card()
+    task = granular.GranularTask(bed(), Design.of(bed(), SPEEDS), []).on_card()
     assert task.side_by_side(4) == 1
 
 
-def test_unlike_variants_have_kernels_of_their_own(card: CardOfPaper, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unlike_variants_have_kernels_of_their_own(watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
     """Bits of a variant depend on itself alone: cases of other laws or sizes run beside their like, large ones alone."""
     monkeypatch.setattr(dem_gpu, "SMALL", 50)
     axes = {"damper.friction": [0.0, 0.3], "damper.particles.count": [40, 60, 41]}
-    found = rb.sweep(case(friction=0.3), axes, ["peak", turned], on="gpu", progress=False)
-    assert set(card.side_by_side) == {2, 1} and card.launched.count("grid") > 0
+    found = rb.sweep(bed(friction=0.3), axes, ["peak", turned], on="gpu", progress=False)
+    assert set(watched.blocks) == {2, 0}
     assert (found.status == 0).all() and (found.turned > 0).values.tolist() == [[False] * 3, [True] * 3]
     for k, count in ((1, 60), (2, 41)):
         other = {"damper.friction": [0.3], "damper.particles.count": [count]}
-        one = rb.sweep(case(friction=0.3), other, ["peak", turned], on="gpu", progress=False).squeeze()
+        one = rb.sweep(bed(friction=0.3), other, ["peak", turned], on="gpu", progress=False).squeeze()
         there = found.isel({"damper.friction": 1, "damper.particles.count": k})
         assert float(one.turned) == float(there.turned) and float(one.peak) == float(there.peak)
 
@@ -112,9 +95,9 @@ class _Full:
         raise ValueError("a particle has more than 32 neighbours of its size or larger")
 
 
-def test_corners_that_cannot_be_run_do_not_stop_the_others(card: CardOfPaper, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_corners_that_cannot_be_run_do_not_stop_the_others(watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
     """Steps that are too long, motion beyond all numbers and full slots have a status, the first two the processor's."""
-    given = case().model_copy(update={"method": rb.Dem(dt="10 us")})
+    given = bed().model_copy(update={"method": rb.Dem(dt="10 us")})
     softening = {"damper.softening": [1e5, 1.0, 2e4]}
     found, here = (rb.sweep(given, softening, "peak", on=on, progress=False) for on in ("gpu", None))
     names = found.status.attrs["flag_meanings"].split()
@@ -122,7 +105,7 @@ def test_corners_that_cannot_be_run_do_not_stop_the_others(card: CardOfPaper, mo
     assert np.array_equal(found.status, here.status)
     assert np.isfinite(found.peak).values.tolist() == [True, False, True]
 
-    given = case(softening=1e5).model_copy(update={"method": rb.Dem(dt="10 us")})
+    given = bed(softening=1e5).model_copy(update={"method": rb.Dem(dt="10 us")})
     fast = {"structure.velocity": [0.5, 1e3, 0.7]}
     found, here = (rb.sweep(given, fast, "peak", on=on, progress=False) for on in ("gpu", None))
     assert [names[k] for k in found.status.values] == ["finished", "escaped", "finished"]
@@ -139,13 +122,13 @@ def test_corners_that_cannot_be_run_do_not_stop_the_others(card: CardOfPaper, mo
 
     monkeypatch.setattr(dem_gpu.CardDem, "make_room", full)
     counts = {"damper.particles.count": [40, 41, 42]}
-    found = rb.sweep(case(), counts, "peak", on="gpu", progress=False)
+    found = rb.sweep(bed(), counts, "peak", on="gpu", progress=False)
     assert [names[k] for k in found.status.values] == ["finished", "refused", "finished"]
     with pytest.raises(rb.CaseError, match=r"(?s)on a card, a particle has more.*try: the processor"):
-        rb.simulate(case(particles=rb.Particles(material="steel", radius="2 mm", count=41)), on="gpu")
+        rb.simulate(bed(particles=rb.Particles(material="steel", radius="2 mm", count=41)), on="gpu")
 
 
-def test_a_stop_loses_no_finished_block(card: CardOfPaper, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stop_loses_no_finished_block(watched: Watched, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ctrl-C is heard between launches; the same call goes on to the same bits, on a card only."""
     monkeypatch.setattr(granular, "_SIDE_BY_SIDE", 2)
     store, told = tmp_path / "study.zarr", []
@@ -156,43 +139,46 @@ def test_a_stop_loses_no_finished_block(card: CardOfPaper, tmp_path: Path, monke
             raise KeyboardInterrupt
 
     with pytest.raises(Stopped, match="2 of 4 variants are in"):
-        rb.sweep(case(), SPEEDS, SHARES, on="gpu", store=store, progress=stopping)
+        rb.sweep(bed(), SPEEDS, SHARES, on="gpu", store=store, progress=stopping)
     assert told[0] == (0, 4)
-    card.side_by_side.clear()
+    watched.blocks.clear()
     with pytest.raises(rb.CaseError, match="another study"):
-        rb.sweep(case(), SPEEDS, SHARES, store=store, progress=False)
-    found = rb.sweep(case(), SPEEDS, SHARES, on="gpu", store=store, progress=False)
-    assert set(card.side_by_side) == {2}
-    launches = len(card.side_by_side)
-    assert rb.sweep(case(), SPEEDS, SHARES, on="gpu", store=store, progress=False).equals(found)
-    assert len(card.side_by_side) == launches
-    assert rb.sweep(case(), SPEEDS, SHARES, on="gpu", progress=False).equals(found.load())
+        rb.sweep(bed(), SPEEDS, SHARES, store=store, progress=False)
+    found = rb.sweep(bed(), SPEEDS, SHARES, on="gpu", store=store, progress=False)
+    assert set(watched.blocks) == {2}
+    launches = len(watched.blocks)
+    assert rb.sweep(bed(), SPEEDS, SHARES, on="gpu", store=store, progress=False).equals(found)
+    assert len(watched.blocks) == launches
+    assert rb.sweep(bed(), SPEEDS, SHARES, on="gpu", progress=False).equals(found.load())
 
 
-def test_a_block_tells_how_far_it_is_and_stops(card: CardOfPaper) -> None:
+def test_a_block_tells_how_far_it_is_and_stops(watched: Watched) -> None:
     """Between launches a block is asked whether to stop, with how many of its variants are done, parts included."""
-    task = granular.GranularTask(case(), Design.of(case(), SPEEDS), ["peak"]).on_card()
+    task = granular.GranularTask(bed(), Design.of(bed(), SPEEDS), ["peak"]).on_card()
     parts: list[float] = []
     assert task.run(0, 4, cancelled=lambda done: parts.append(done)) is not None
     assert parts == sorted(parts) and parts[-1] == 4.0 and any(0 < part < 4 for part in parts)
     assert task.run(0, 4, cancelled=lambda done: done > 0) is None
-    bed = case(packing=rb.Settled(seed=5))
-    assert granular.GranularTask(bed, Design.of(bed, SPEEDS), []).on_card().run(0, 4, cancelled=lambda _: True) is None
+    settled = bed(packing=rb.Settled(seed=5))
+    assert (
+        granular.GranularTask(settled, Design.of(settled, SPEEDS), []).on_card().run(0, 4, cancelled=lambda _: True)
+        is None
+    )
 
 
-def test_ready_maps_take_particles_on_a_card(card: CardOfPaper) -> None:
+def test_ready_maps_take_particles_on_a_card(watched: Watched) -> None:
     """A loss map and a sensitivity run there as a sweep does, and the page about cards says so."""
     assert "| study: sweep, loss_map, sensitivity; functions of a Run as measures | yes | yes |" in DOCS.read_text(
         "utf-8"
     )
     motion = rb.Harmonic(amplitude="1 m/s^2", frequency="500 Hz", direction="z")
-    shaken = case().model_copy(update={"structure": rb.Shaker(motion=motion)})
+    shaken = bed().model_copy(update={"structure": rb.Shaker(motion=motion)})
     amplitudes, frequencies = ["50 m/s^2", "90 m/s^2"], ["400 Hz", "600 Hz"]
     here, there = (
         rb.loss_map(shaken, amplitudes, frequencies, cycles=(1, 2), on=on, progress=False) for on in (None, "gpu")
     )
-    assert set(card.side_by_side) == {4}
+    assert set(watched.blocks) == {4}
     np.testing.assert_allclose(there.loss_per_cycle, here.loss_per_cycle, rtol=1e-4)
     bounds = {"damper.contact.restitution": (0.4, 0.9), "structure.velocity": (0.2, 0.6)}
-    found = rb.sensitivity(case(), bounds, "peak", 8, on="gpu", progress=False)
-    assert np.isfinite(found.total).all() and max(card.side_by_side) == 32
+    found = rb.sensitivity(bed(), bounds, "peak", 8, on="gpu", progress=False)
+    assert np.isfinite(found.total).all() and max(watched.blocks) == 32
