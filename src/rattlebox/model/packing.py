@@ -71,8 +71,8 @@ class Lattice(Packing):
 class Settled(Packing):
     """Particles inserted at random, then settled under gravity until they rest.
 
-    The fall is computed beforehand with soft, sticky contacts and the largest friction of the damper. In the end particles
-    almost touch, without overlap.
+    The fall is computed beforehand with soft, sticky contacts and the largest friction of the damper. What nothing slows,
+    such as one ball in a round cavity, is stopped. In the end particles almost touch, without overlap.
 
     Parameters
     ----------
