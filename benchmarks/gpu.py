@@ -1,7 +1,6 @@
-"""Measures a graphics card against one core: `python benchmarks/gpu.py [--wheels FOLDER]` prints one table.
+"""Measures a graphics card against one core: `python benchmarks/gpu.py` prints one table.
 
---wheels    installs the packages of rattlebox[gpu] from files in a folder, without a network, before anything else
---short     the same table from a thousandth of the work, to see that all is there: its rates mean nothing
+--short     the same table from little work, to see that all is there: its rates mean nothing
 --small     only a little work, for compute-sanitizer, which this script starts by itself where it is installed
 
 Nothing here takes long: what has not begun after eight minutes is left out, and the table says so.
@@ -10,13 +9,11 @@ Nothing here takes long: what has not begun after eight minutes is left out, and
 from __future__ import annotations
 
 import argparse
-import os
 import shutil
 import subprocess
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import gpu_particles
@@ -31,7 +28,6 @@ from rattlebox.paper.seed import seed_case
 
 ENOUGH = 480.0
 CLOSE = 1e-10
-PACKAGES = ("cuda-core", "cuda-bindings", "nvidia-cuda-nvrtc")
 Row = tuple[str, str, str, str]
 
 
@@ -120,9 +116,9 @@ def jobs(short: bool) -> dict[str, Callable[[], Row]]:
     return {
         "card": compilation,
         "first impacts": first_impacts,
-        "statistics": lambda: statistics(256 if short else 4096),
-        "the same bits": lambda: same_bits(300 if short else 20_000),
-        "rate": lambda: rate(300 if short else 300_000),
+        "statistics": lambda: statistics(60 if short else 4096),
+        "the same bits": lambda: same_bits(150 if short else 20_000),
+        "rate": lambda: rate(90 if short else 300_000),
         **gpu_particles.jobs(short),
         "memory check": lambda: sanitized("memcheck"),
         "race check": lambda: sanitized("racecheck"),
@@ -132,15 +128,9 @@ def jobs(short: bool) -> dict[str, Callable[[], Row]]:
 def main() -> int:
     """Run all jobs and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--wheels", type=Path)
     parser.add_argument("--short", action="store_true")
     parser.add_argument("--small", action="store_true")
     given = parser.parse_args()
-    if given.wheels:
-        install = [sys.executable, "-m", "pip", "install", "--no-index", "--find-links", str(given.wheels), *PACKAGES]
-        subprocess.run(install, check=True)
-        how = [option for option, wanted in (("--short", given.short), ("--small", given.small)) if wanted]
-        os.execv(sys.executable, [sys.executable, __file__, *how])
     begin = time.perf_counter()
     try:
         ready()

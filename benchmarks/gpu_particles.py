@@ -71,14 +71,13 @@ def batch(count: int, cases: int, steps: int) -> Row:
     return f"particle-steps/s, {cases} x {count}", f"{one:.3g}", f"{rate:.3g}", "goal: 2e9"
 
 
-def large(count: int, steps: int) -> Row:
+def large(count: int, before: int, steps: int) -> Row:
     """One large box, and the share of the memory's bandwidth that it uses by the count of bytes."""
-    card, packed = Card(), prepared(count, 10 * steps)
-    packed["every"] = 10 * steps
+    card, packed = Card(), prepared(count, 10 * (before + steps))
     dem = CardDem(packed, card)
-    dem.run(steps)
+    dem.run(before)  # until the particles lie on each other
     begin = time.perf_counter()
-    dem.run(2 * steps)
+    dem.run(before + steps)
     rate = count * steps / (time.perf_counter() - begin)
     found = dem.contacts(0)
     pairs = found["second"] < count
@@ -91,13 +90,13 @@ def large(count: int, steps: int) -> Row:
     return f"particle-steps/s, one of {count:,}", "", f"{rate:.3g}", told
 
 
-def same_bits() -> Row:
-    """One block, all blocks, and twice."""
-    packed = prepared(1500, 600)
+def same_bits(steps: int) -> Row:
+    """The same bits twice."""
+    packed = prepared(1500, steps)
     ends = []
     for _ in range(2):
         dem = CardDem(packed)
-        dem.run(600)
+        dem.run(steps)
         ends.append(dem.state()["cavities"][0]["position"])
     same = np.array_equal(*ends)
     return "particles: the same bits twice", "", "yes" if same else "no", "ok" if same else "not deterministic"
@@ -113,8 +112,8 @@ def jobs(short: bool) -> dict[str, Callable[[], Row]]:
     """Return what to measure, by name."""
     return {
         "particles: first impacts": first_impacts,
-        "particles: the same bits": same_bits,
-        "particles: 100": lambda: batch(100, *((4, 400) if short else (2048, 20_000))),
-        "particles: 1000": lambda: batch(1000, *((2, 200) if short else (512, 5_000))),
-        "particles: a million": lambda: large(*((3_000, 40) if short else (1_000_000, 500))),
+        "particles: the same bits": lambda: same_bits(60 if short else 4000),
+        "particles: 100": lambda: batch(100, *((4, 150) if short else (2048, 20_000))),
+        "particles: 1000": lambda: batch(1000, *((2, 100) if short else (512, 5_000))),
+        "particles: a million": lambda: large(*((2_500, 10, 10) if short else (1_000_000, 4000, 1000))),
     }

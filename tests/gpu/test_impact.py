@@ -127,3 +127,13 @@ def test_memory_is_given_back(card: Card) -> None:
     with card.room(free // 2):
         assert card.memory()[0] <= free - free // 2
     assert card.memory()[0] == free
+
+
+def test_memory_that_another_program_took_is_told(card: Card) -> None:
+    """More than there is at the moment is refused with both numbers."""
+    free, total = card.memory()
+    with pytest.raises(
+        rb.CaseError, match=r"GiB are needed on the card at once, .* GiB are free[\s\S]*try: nvidia-smi"
+    ):
+        card.room(2 * total).__enter__()
+    assert card.memory()[0] == free

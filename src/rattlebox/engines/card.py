@@ -139,7 +139,15 @@ class Card:
     @contextmanager
     def room(self, size: int) -> Iterator[Any]:
         """Hold a block of its memory, of `size` bytes."""
-        buffer = self._device.allocate(max(size, 1), stream=self._stream)
+        try:
+            buffer = self._device.allocate(max(size, 1), stream=self._stream)
+        except Exception as error:
+            if "OUT_OF_MEMORY" not in str(error):
+                raise
+            raise CaseError(
+                f"{size / 2**30:.3g} GiB are needed on the card at once, {self.memory()[0] / 2**30:.3g} GiB are free\n"
+                "  try: nvidia-smi, which tells what other programs use; a card with more memory"
+            ) from None
         try:
             yield buffer
         finally:
