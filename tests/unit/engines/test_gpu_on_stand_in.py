@@ -103,6 +103,15 @@ def test_commands_find_the_card(around: dict[str, str], tmp_path: Path) -> None:
         assert ended.returncode == 0 and "2 finished\nstand-in of the tests, no card" in ended.stdout, ended.stderr
 
 
+def test_the_table_of_measurements_is_whole(around: dict[str, str]) -> None:
+    """All that is to be measured on a card is, and what is compared agrees: first impacts, statistics, bits."""
+    table = run(around, "benchmarks/gpu.py", "--short").stdout
+    print(table)
+    rows = [line for line in table.splitlines() if not line.startswith(("Rattlebox", "  ", "compute-sanitizer"))]
+    assert len(rows) == 10 and sum(row.endswith(" ok") for row in rows) == 5
+    assert not [word for word in ("failed", "left out", "Error") if word in table]
+
+
 def test_a_launch_is_stopped_by_ctrl_c(around: dict[str, str], tmp_path: Path) -> None:
     """A study whose variants would take days ends at once, with what to do to go on."""
     case = CASES["method"]["EventDriven"].case.model_copy(
