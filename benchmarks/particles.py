@@ -41,6 +41,8 @@ DIAMETER, DENSITY, FILL = 3e-3, 7850.0, 0.36
 MATERIAL = rb.Material(name="soft steel", density=DENSITY, young=1e8, poisson=0.3)
 WINDOWS = {100: (5, 50), 1000: (5, 10), 10_000: (5, 5), 100_000: (1, 1)}
 """Periods before the clock starts, and while it runs."""
+WIDE = {"shaken": ((0.2, 0.3), (1, 1)), "rest": ((0.2, 0.5),)}
+"""The same for beds beside their mirror images: packed by the floor, and thin in flight."""
 LOOKS = 101
 """At contacts, at all phases of the shaking."""
 AMPLITUDES = {"shaken": 98.1, "rest": 0.0}
@@ -124,7 +126,7 @@ def one(kind: str, count: str, cores: str, start: str = "") -> None:
     print(json.dumps(timed(packed, steps_of(warm), steps_of(window), int(cores))))
 
 
-def one_wide(kind: str, bed: str, across: str) -> None:
+def one_wide(kind: str, bed: str, across: str, window: str) -> None:
     """Print the JSON line of a bed beside its mirror images, with no walls between them; what `apart` runs."""
     columns, n = np.loadtxt(bed, delimiter=",", ndmin=2), int(across)
     edge = edge_of(len(columns))
@@ -137,7 +139,7 @@ def one_wide(kind: str, bed: str, across: str) -> None:
         parts.append(part)
     packed, _, _ = pack_dem(shaken(len(columns) * n**2, AMPLITUDES[kind], n))
     put(packed, np.concatenate(parts))
-    warm, steps = (steps_of(periods) for periods in WINDOWS[100_000])
+    warm, steps = (steps_of(periods) for periods in WIDE[kind][int(window)])
     print(json.dumps(timed(packed, warm, steps, threads=1)))
 
 
@@ -156,13 +158,15 @@ def scaling(kind: str = "shaken", turns: int = 3) -> Iterator[tuple[str, str]]:
 def wide(bed: str, turns: int) -> Iterator[tuple[str, str]]:
     """Cost of a bed, and of wide ones that are put together from it."""
     kind, count = Path(bed).stem.split("_")
-    found: dict[int, list[dict[str, float]]] = {1: [], 3: [], 10: []}
+    found: dict[tuple[int, int], list[dict[str, float]]] = {
+        (w, a): [] for w in range(len(WIDE[kind])) for a in (1, 3, 10)
+    }
     for _ in range(turns):
-        for across, each in found.items():
-            each.append(apart("one_wide", kind, bed, str(across), cores=1))
-    for across, each in found.items():
+        for (window, across), each in found.items():
+            each.append(apart("one_wide", kind, bed, str(across), str(window), cores=1))
+    for (window, across), each in found.items():
         cost = statistics.median(1e9 / a["rate"] for a in each)
-        ratio = statistics.median(b["rate"] / a["rate"] for a, b in zip(each, found[1], strict=True))
+        ratio = statistics.median(b["rate"] / a["rate"] for a, b in zip(each, found[window, 1], strict=True))
         told = f"{cost:.1f} ns a particle and step, x {ratio:.2f}, "
         told += f"{each[0]['contacts']:.2f} contacts, {each[0]['candidates']:.2f} candidates"
         yield f"{int(count) * across**2:,} particles, {kind}, as deep as {int(count):,}", told
