@@ -12,6 +12,7 @@ from . import brute, cases
 CAVITIES = {
     "box": rb.Box(size=("40 mm", "30 mm", "60 mm")),
     "long box": rb.Box(size=("20 mm", "20 mm", "400 mm")),
+    "flat box": rb.Box(size=("90 mm", "16 mm", "45 mm")),
     "upright can": rb.Cylinder(diameter="40 mm", length="50 mm"),
     "lying can": rb.Cylinder(diameter="40 mm", length="50 mm", axis="y"),
     "can askew": rb.Cylinder(diameter="40 mm", length="50 mm", axis=(1, 2, -1)),
