@@ -62,8 +62,8 @@ class BedStep {
             ++tally.first_touches[partner];
             tally.extrapolated += b.extrapolated;
             tally.fastest = std::fmax(tally.fastest, t.speed);
-            if (b.outside && chunk.stopped.status == Status::finished)
-                chunk.stopped = {Status::law_domain, at(list.first, k), -1, t.speed};
+            if (b.status != Status::finished && chunk.stopped.status == Status::finished)
+                chunk.stopped = {b.status, at(list.first, k), -1, t.speed};
         };
         const auto ended = [&](int k) {
             const int s = at(list.slot, k);

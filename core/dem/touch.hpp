@@ -2,6 +2,7 @@
 // part.
 #pragma once
 
+#include "base/status.hpp"
 #include "dem/walls.hpp"
 
 namespace rattlebox::dem {
@@ -125,14 +126,19 @@ struct Begun {
     Row dent{};
     Late late;
     real lost = 0; // in the dashpot, on top of what the first step counts
-    bool extrapolated = false, outside = false;
+    bool extrapolated = false;
+    Status status = Status::finished;
 };
 
 inline Begun begin(const Touch& t, real dt) {
     const Encounter& e = *t.encounter;
-    const Rebound r = rebound(e, t);
+    Rebound r = rebound(e, t);
     Begun b;
-    b.extrapolated = r.extrapolated, b.outside = r.outside;
+    b.extrapolated = r.extrapolated;
+    if (r.outside)
+        b.status = Status::law_domain;
+    else if (!possible(e.normal, r))
+        b.status = Status::no_rebound, r.e = 1; // any number will do: the run ends here
     // Since the touch, at this speed; of what overlaps from the start nothing is known.
     const bool comes_late = t.speed > 0 && t.overlap < 1.01 * t.speed * dt;
     const real since = comes_late ? t.overlap / t.speed : 0.5 * dt;

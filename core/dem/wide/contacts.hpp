@@ -78,7 +78,7 @@ template <class Team> RATTLEBOX_COLD First begin(Team& team, Owner own, int s, i
     ++account.touches[partner < 0 ? wall : particle];
     account.extrapolated += b.extrapolated;
     account.fastest = larger(account.fastest, t.speed);
-    if (b.outside) stop(team, own, Status::law_domain, -1, t.speed);
+    if (b.status != Status::finished) stop(team, own, b.status, -1, t.speed);
     return {b.late, b.lost};
 }
 

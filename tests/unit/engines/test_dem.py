@@ -234,6 +234,18 @@ def test_laws_are_not_used_beyond_their_domain() -> None:
     assert "was struck at" in run.message
 
 
+@pytest.mark.parametrize("ending", ["zero_force", "zero_overlap"])
+def test_laws_that_give_no_rebound_are_told(ending: str) -> None:
+    """An impact so fast that its extrapolated law gives no rebound ends the run with a status, whichever ending it has."""
+    law = rb.Tsuji(restitution=rb.JacksonGreen(extrapolate=True), ending=ending)
+    lead = rb.Particles(material="lead", diameter="4 mm", count=1)
+    fast = damper(particles=lead, contact=law, velocity=(20, 0, 0), gravity=(0, 0, 0), softening=1)
+    run = simulate(fast, structure=rb.Fixed(), duration=2e-3, output=rb.Output())
+    assert run.status == "no_rebound"
+    assert "Particle 0 of 'damper' was struck at 20 m/s" in run.message
+    assert np.isfinite(run.arrays.position).all()
+
+
 @pytest.mark.parametrize("how", ["ctrl-c", "false"])
 def test_a_stopped_run_keeps_what_it_has(how: str) -> None:
     """Ctrl-C and a progress that returns False end the run with a status; samples until then are kept."""
