@@ -56,6 +56,7 @@ def test_kernels_do_what_the_processor_does(watched: Watched) -> None:
     case = bed().model_copy(update={"duration": 6e-3})
     here, there = rb.simulate(case), rb.simulate(case, on="gpu")
     assert there.ok and set(watched.blocks) == {1} and set(watched.threads) == {128}
+    assert "driver with CUDA" in there.provenance.gpu and "kernels" in there.provenance.gpu and not here.provenance.gpu
     assert there.arrays.counts["first_touches_particle"] >= 20
     for name in ("displacement", "cavity_force", "kinetic_energy", "sliding_loss", "normal_loss", "position", "spin"):
         wanted, found = (getattr(run.arrays, name) for run in (here, there))

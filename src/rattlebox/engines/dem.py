@@ -134,7 +134,8 @@ def _run(
 ) -> GranularRun:
     raw = journey.records()
     arrays = _arrays(case, packed, raw, dem, status, step, tables, journey)
-    run = GranularRun(arrays, case.to_toml, Provenance.now(method=case.method.kind, seed=case.seed))
+    card = dem.told() if isinstance(dem, CardDem) else ""
+    run = GranularRun(arrays, case.to_toml, Provenance.now(method=case.method.kind, seed=case.seed, gpu=card))
     if run.ok and not run.ledger.closes(CLOSES):
         end = NOT_FINITE if np.isnan(run.closure) else LEDGER_OPEN
         name, message = describe(end, case.duration, "", run.closure, case.method.kind)

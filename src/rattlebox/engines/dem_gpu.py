@@ -144,6 +144,10 @@ class CardDem:
         """As of the core."""
         return {**self._dem.counters(), "seconds": self._seconds}
 
+    def told(self) -> str:
+        """Return what to tell of the card, and of how long its kernels were compiled."""
+        return self._card.told(self._card.compiling)
+
     def save(self) -> Bytes:
         """All that a bitwise restart on a card needs."""
         return np.asarray(self._dem.image(0))

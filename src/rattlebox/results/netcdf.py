@@ -199,7 +199,9 @@ def load(path: str | os.PathLike[str]) -> Run:
         if int(layout) > FORMAT:
             version = _text_attribute(file.attrs.get("version", "?"))
             raise ValueError(f"{path} was written by a later Rattlebox ({version}); update to read it")
-        texts: dict[str, Any] = {f.name: _text_attribute(file.attrs[f.name]) for f in fields(Provenance)}
+        texts: dict[str, Any] = {
+            f.name: _text_attribute(file.attrs[f.name]) for f in fields(Provenance) if f.name in file.attrs
+        }
         provenance = Provenance(**texts | {"seed": int(file.attrs["seed"])})
         if _text_attribute(file.attrs.get("rattlebox_kind", b" ")) == GRANULAR.name:
             return GranularRun(_read_granular(file), _read_text(file, "case"), provenance)
