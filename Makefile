@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*.hpp' -o -name '*.cpp')
 
-.PHONY: setup demo test verify lint docs bench gpu-test gpu-bench format clean
+.PHONY: setup demo test verify lint docs bench gpu-test gpu-bench from-wheels format clean
 
 setup: $(VENV)/.installed
 
@@ -30,8 +30,13 @@ bench: setup
 gpu-test: setup
 	$(BIN)/python -m pytest tests/gpu
 
-gpu-bench: setup
-	$(BIN)/python benchmarks/gpu.py
+# With WHEELS=FOLDER nothing is fetched: all packages come from the files in that folder.
+gpu-bench: $(if $(WHEELS),from-wheels,setup)
+	$(BIN)/python benchmarks/gpu.py $(if $(SHORT),--short)
+
+from-wheels:
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --no-index --find-links $(WHEELS) 'rattlebox[gpu]'
 
 lint: setup
 	$(BIN)/ruff check .
