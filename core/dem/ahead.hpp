@@ -50,9 +50,10 @@ public:
         for (int a = up(collided); a < next_->actives; a += lane_count) colliding(a);
     }
 
-    // While a particle is moved: what moves the one a chunk on.
-    static RATTLEBOX_INLINE void moving(const Bed& bed, int i) {
-        const int j = std::min(i + Bed::chunk_size, bed.particles() - 1);
+    // While a particle is moved: what moves the one a chunk on, if it is below `until`, and so of the same
+    // part.
+    static RATTLEBOX_INLINE void moving(const Bed& bed, int i, int until) {
+        const int j = std::min(i + Bed::chunk_size, until - 1);
         const bool touched = at(bed.touched, j);
         for (const auto* rows : {&bed.acceleration, &bed.spin_rate, &bed.spin})
             ask(&at(touched ? *rows : bed.velocity, j));

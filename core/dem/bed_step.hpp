@@ -187,9 +187,9 @@ public:
             add(sums, walls.actions, a, at(walls.first, at(walls.active, a)), 1, wall_);
     }
 
-    void advance(Sums& sums, Chunk& chunk, Row body, Row body_before, bool first, bool sampled) {
+    void advance(Sums& sums, Chunk& chunk, int until, Row body, Row body_before, bool first, bool sampled) {
         const auto with = [&](auto sampled, auto far) {
-            advance<sampled.value, far.value>(sums, chunk, body, body_before, first);
+            advance<sampled.value, far.value>(sums, chunk, until, body, body_before, first);
         };
         constexpr std::true_type yes;
         constexpr std::false_type no;
@@ -205,9 +205,9 @@ public:
     }
 
     // Velocities at this step, and on to the next. `body` is what accelerates all alike, `body_before` in the
-    // step before; the first step has none before.
+    // step before; the first step has none before. The part ends at particle `until`.
     template <bool sampled, bool far>
-    void advance(Sums& sums, Chunk& chunk, Row body, Row body_before, bool first) {
+    void advance(Sums& sums, Chunk& chunk, int until, Row body, Row body_before, bool first) {
         Tally& tally = chunk.tally;
         const bool spins = pair_.rough || wall_.rough, rolls = pair_.rolls || wall_.rolls;
         const Verlet step(problem_.dt, body, body_before, first);
@@ -215,7 +215,7 @@ public:
         Row momentum{}, mass_moment{};
         real drift = 0, kinetic = 0, rotation = 0;
         for (int i = chunk.begin; i < chunk.end; ++i) {
-            if constexpr (far) Ahead::moving(bed_, i);
+            if constexpr (far) Ahead::moving(bed_, i, until);
             Row &x = at(bed_.position, i), &u = at(bed_.velocity, i);
             char& touched = at(bed_.touched, i);
             Action& sum = sums.of(i);

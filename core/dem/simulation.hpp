@@ -228,9 +228,10 @@ class Simulation {
             };
             lend();
             if (!is_known) forces(p, ahead(part, k));
-            step.add_own(sums, own, at(part.until, p.bed));
+            const int until = at(part.until, p.bed);
+            step.add_own(sums, own, until);
             lend();
-            step.advance(sums, own, all, body_before_, first, sample);
+            step.advance(sums, own, until, all, body_before_, first, sample);
         }
     }
 
