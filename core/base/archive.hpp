@@ -12,7 +12,7 @@ namespace rattlebox {
 // How many bytes a Writer will need, so that it need not move them.
 class Sizer {
     template <class T> void one(const T&) { bytes += sizeof(T); }
-    template <class T> void one(const std::vector<T>& values) {
+    template <class T, class A> void one(const std::vector<T, A>& values) {
         bytes += sizeof(std::size_t) + values.size() * sizeof(T);
     }
 
@@ -30,7 +30,7 @@ class Writer {
         bytes.insert(bytes.end(), from, from + count * sizeof(T));
     }
     template <class T> void one(const T& value) { put(&value, 1); }
-    template <class T> void one(const std::vector<T>& values) {
+    template <class T, class A> void one(const std::vector<T, A>& values) {
         one(values.size());
         put(values.data(), values.size());
     }
@@ -56,7 +56,7 @@ class BackReader {
         next_ += count * sizeof(T);
     }
     template <class T> void one(T& value) { get(&value, 1); }
-    template <class T> void one(std::vector<T>& values) {
+    template <class T, class A> void one(std::vector<T, A>& values) {
         std::size_t count;
         one(count);
         if (count > static_cast<std::size_t>(end_ - next_) / sizeof(T))

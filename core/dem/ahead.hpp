@@ -55,8 +55,8 @@ public:
     static RATTLEBOX_INLINE void moving(const Bed& bed, int i, int until) {
         const int j = std::min(i + Bed::chunk_size, until - 1);
         const bool touched = at(bed.touched, j);
-        for (const auto* rows : {&bed.acceleration, &bed.spin_rate, &bed.spin})
-            ask(&at(touched ? *rows : bed.velocity, j));
+        ask(&at(bed.position, j)), ask(&at(bed.velocity, j));
+        if (touched) ask(&at(bed.rates, j)), ask(&at(bed.spin, j));
     }
 };
 

@@ -16,13 +16,17 @@ namespace rattlebox::dem {
 struct Chunk {
     int begin = 0, end = 0;
     int highest = 0; // particle that the chunk's particles have as a neighbour
-    std::vector<int> near_first, near_second,
-        near_slot;              // neighbours within reach, and memory of those that touch
-    std::vector<int> wall_slot; // of each particle at each wall
+    Paged<int> near_first, near_second,
+        near_slot;        // neighbours within reach, and memory of those that touch
+    Paged<int> wall_slot; // of each particle at each wall
     Contacts pairs, walls;
     Tally tally;
     Stopped stopped;
     std::vector<std::pair<int, Late>> late; // of contacts that begin in this step, by candidate
+
+    explicit Chunk(Pages* pages)
+        : near_first(pages), near_second(pages), near_slot(pages), wall_slot(pages), pairs(pages),
+          walls(pages) {}
 
     std::size_t memory() const {
         std::size_t bytes = pairs.bytes() + walls.bytes() + sizeof(Chunk);
@@ -45,18 +49,24 @@ struct alignas(64) Brief {
          closed = 0; // and how much nearer to each other any two may have come since the build
 };
 
+// How velocity and spin change: a line of memory.
+struct alignas(64) Rates {
+    Row velocity, spin;
+};
+
 struct Bed {
     static constexpr int chunk_size = 128;
+    static constexpr int cached = 20'000; // of more particles caches hold only a part
 
     const Cavity* cavity = nullptr;
-    std::vector<Row> position; // and radius
-    std::vector<Row> velocity; // predicted for the end of the step, and 1 / mass
-    std::vector<Row> spin;     // predicted, and radius / inertia
+    Paged<Row> position; // and radius
+    Paged<Row> velocity; // predicted for the end of the step, and 1 / mass
+    Paged<Row> spin;     // predicted, and radius / inertia
     // Of those that touched something in the step before: others were accelerated as all are, and turned
     // evenly.
-    std::vector<Row> acceleration, spin_rate;
-    std::vector<char> touched;   // something in the step before
-    std::vector<int> name, kind; // number in the case, material
+    Paged<Rates> rates;
+    Paged<char> touched;   // something in the step before
+    Paged<int> name, kind; // number in the case, material
     std::vector<Chunk> chunks;
     std::vector<Brief> briefs; // of the chunks
 
@@ -69,20 +79,24 @@ struct Bed {
     CavityMotion motion;
     Row shown{}; // displacement of the cavity at the last step whose forces are known
 
+    // A large one takes its memory from `pages`.
+    explicit Bed(Pages* pages)
+        : position(pages), velocity(pages), spin(pages), rates(pages), touched(pages), name(pages),
+          kind(pages) {}
+
     int particles() const { return static_cast<int>(position.size()); }
     int chunk_count() const { return static_cast<int>(chunks.size()); }
 
     std::size_t memory() const {
         std::size_t bytes = touched.capacity() + (name.capacity() + kind.capacity()) * sizeof(int);
-        for (const auto* v : {&position, &velocity, &acceleration, &spin, &spin_rate})
-            bytes += v->capacity() * sizeof(Row);
+        for (const auto* v : {&position, &velocity, &spin}) bytes += v->capacity() * sizeof(Row);
+        bytes += rates.capacity() * sizeof(Rates);
         for (const Chunk& c : chunks) bytes += c.memory();
         return bytes;
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(position, velocity, acceleration, spin, spin_rate, touched, name, kind, briefs, reach, reference,
-          apart, shown);
+        a(position, velocity, spin, rates, touched, name, kind, briefs, reach, reference, apart, shown);
         for (Chunk& c : chunks) c.keep(a);
     }
 };

@@ -50,7 +50,7 @@ class BedStep {
     }
 
     template <class View>
-    void visit(Contacts& list, const View& view, int candidates, std::vector<int>& slot_of, const Kind& kind,
+    void visit(Contacts& list, const View& view, int candidates, Paged<int>& slot_of, const Kind& kind,
                Partner partner, bool sampled, Chunk& chunk, const Ahead& ahead) {
         Tally& tally = chunk.tally;
         const auto begun = [&](int k) {
@@ -117,7 +117,7 @@ class BedStep {
 
 public:
     BedStep(Bed& bed, const Problem& problem, const Kind& pair, const Kind& wall)
-        : bed_(bed), problem_(problem), pair_(pair), wall_(wall), far_(bed.particles() > 20'000) {
+        : bed_(bed), problem_(problem), pair_(pair), wall_(wall), far_(bed.particles() > Bed::cached) {
         for (const Wall& w : bed.cavity->walls) curved_ |= w.form != Wall::plane;
         for (const int e : bed.cavity->particle_entry) pair_mu_.push_back(at(problem.encounters, e).friction);
         for (const int e : bed.cavity->wall_entry) wall_mu_.push_back(at(problem.encounters, e).friction);
@@ -223,11 +223,11 @@ public:
             const bool before = touched, now = sum.force[3] > 0;
             if (before || now) {
                 if (now) a = sum.force * u[3] + body;
-                v = step.now(u, a, before ? at(bed_.acceleration, i) : body_before);
-                at(bed_.acceleration, i) = a;
+                v = step.now(u, a, before ? at(bed_.rates, i).velocity : body_before);
+                at(bed_.rates, i).velocity = a;
                 if (spins) {
                     Row &w = at(bed_.spin, i), rate = Row{},
-                        rate_before = before ? at(bed_.spin_rate, i) : Row{};
+                        rate_before = before ? at(bed_.rates, i).spin : Row{};
                     if (now) {
                         rate = sum.couple;
                         if (rolls) {
@@ -239,7 +239,7 @@ public:
                     w = step.now(w, rate, rate_before);
                     if constexpr (sampled) rotation += dot(w, w) * x[3] / w[3];
                     w = step.next(w, rate);
-                    at(bed_.spin_rate, i) = rate;
+                    at(bed_.rates, i).spin = rate;
                 } else if constexpr (sampled) {
                     rotation += turning(i);
                 }

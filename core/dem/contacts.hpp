@@ -5,21 +5,26 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/pages.hpp"
 #include "dem/touch.hpp"
 
 namespace rattlebox::dem {
 
-template <class T> T& at(std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
-template <class T> const T& at(const std::vector<T>& v, int i) { return v[static_cast<std::size_t>(i)]; }
+template <class T, class A> T& at(std::vector<T, A>& v, int i) { return v[static_cast<std::size_t>(i)]; }
+template <class T, class A> const T& at(const std::vector<T, A>& v, int i) {
+    return v[static_cast<std::size_t>(i)];
+}
 
 // What contacts remember, by slot.
 struct Memory {
-    std::vector<Kept> kept;
-    std::vector<KeptRolling> rolling; // with rolling resistance only
-    std::vector<Row> dent; // of a plastic law: deepest overlap, stiffness and origin of the curve that
-                           // unloads, and the deepest overlap that this curve is for
-    std::vector<int> free;
+    Paged<Kept> kept;
+    Paged<KeptRolling> rolling; // with rolling resistance only
+    Paged<Row> dent;            // of a plastic law: deepest overlap, stiffness and origin of the curve that
+                                // unloads, and the deepest overlap that this curve is for
+    Paged<int> free;
     bool rolls = false, dents = false;
+
+    explicit Memory(Pages* pages = nullptr) : kept(pages), rolling(pages), dent(pages), free(pages) {}
 
     int used() const { return static_cast<int>(kept.size() - free.size()); }
 
@@ -86,21 +91,27 @@ struct Contacts {
     real rate = 0;         // nearer in a step, between the last two scans
 
     // Candidates, tier by tier; lanes may read a few past the end.
-    std::vector<int> first, second; // numbers of particles; of a wall for the second at a wall
-    std::vector<int> origin;        // which of the neighbours it is
-    std::vector<int> slot;          // where its memory is, or none
+    Paged<int> first, second; // numbers of particles; of a wall for the second at a wall
+    Paged<int> origin;        // which of the neighbours it is
+    Paged<int> slot;          // where its memory is, or none
     int tier_end[tiers] = {};
-    std::vector<int> active; // candidates that touch
+    Paged<int> active; // candidates that touch
     int actives = 0;
     Actions actions;
 
     Memory memory;
+
+    explicit Contacts(Pages* pages)
+        : first(pages), second(pages), origin(pages), slot(pages), active(pages), memory(pages) {}
 
     int size() const { return tier_end[tiers - 1]; }
     bool is_stale() const { return !(since < skin); }
 
     void resize(int candidates) {
         const auto n = static_cast<std::size_t>(candidates);
+        if (n > origin.capacity())
+            for (auto* numbers : {&first, &second, &slot, &origin, &active})
+                numbers->reserve(n + n / 8 + lane_count);
         for (auto* numbers : {&first, &second}) numbers->resize(n + lane_count);
         slot.resize(n + lane_count, none);
         for (auto* numbers : {&origin, &active}) numbers->resize(n);
@@ -116,7 +127,7 @@ struct Contacts {
     void leave(Memory& leaving) {
         const bool rolls = memory.rolls, dents = memory.dents;
         leaving = std::move(memory);
-        memory = {};
+        memory = Memory(first.get_allocator().pages);
         memory.rolls = rolls, memory.dents = dents;
         memory.reserve(static_cast<std::size_t>(leaving.used()));
         actives = 0, since = infinity;

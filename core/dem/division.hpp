@@ -36,7 +36,7 @@ public:
     }
 };
 
-struct Part {
+struct alignas(64) Part {
     int begin = 0, end = 0;      // among the chunks of all beds
     real reckoned = 0, busy = 0; // cost, and time that it took since
     // Of each of them: has neighbours in higher parts, or particles that lower parts reach; and whether its

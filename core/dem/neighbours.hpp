@@ -29,21 +29,13 @@ class Neighbours {
         Memory pairs, walls;
     };
 
-    // All of a bed that is sorted.
-    struct Order {
-        std::vector<Row> position, velocity, acceleration, spin, spin_rate;
-        std::vector<char> touched;
-        std::vector<int> name, kind;
-
-        template <class F> void each(Bed& bed, F&& f) {
-            f(bed.position, position), f(bed.velocity, velocity), f(bed.acceleration, acceleration);
-            f(bed.spin, spin), f(bed.spin_rate, spin_rate);
-            f(bed.touched, touched), f(bed.name, name), f(bed.kind, kind);
-        }
-    } sorted_;
+    // Where the lists of a bed are sorted, one at a time.
+    Paged<Row> rows_;
+    Paged<int> numbers_;
+    Paged<char> flags_;
 
     std::vector<int> order_, place_, cell_, cell_start_;
-    std::vector<real> along_[4];   // places and radii once more, axis by axis: searched in lanes
+    Paged<real> along_[4];         // places and radii once more, axis by axis: searched in lanes
     std::vector<Leaving> leaving_; // by chunk before the sort
     real largest_ = 0, low_[3] = {}, size_ = 0;
     // Along lines of cells, across them in a plane, across planes. Short axes come first, so that neighbours
@@ -91,20 +83,17 @@ public:
         largest_ = 0;
         leaving_.resize(bed.chunks.size());
         const auto n = static_cast<std::size_t>(bed.particles());
-        sorted_.each(bed, [&](const auto&, auto& sorted) { sorted.resize(n); });
-        for (auto& values : along_) values.resize(n + lane_count);
+        const auto pages = bed.position.get_allocator();
+        rows_ = Paged<Row>(n, pages), numbers_ = Paged<int>(n, pages), flags_ = Paged<char>(n, pages);
+        for (auto& values : along_) values = Paged<real>(n + lane_count, pages);
         for (const Row& p : bed.position) largest_ = larger(largest_, p[3]);
     }
 
     std::size_t memory() const {
-        std::size_t bytes = sorted_.touched.capacity();
-        for (const auto* v :
-             {&sorted_.position, &sorted_.velocity, &sorted_.acceleration, &sorted_.spin, &sorted_.spin_rate})
-            bytes += v->capacity() * sizeof(Row);
-        for (const auto* v : {&order_, &place_, &cell_, &cell_start_, &sorted_.name, &sorted_.kind})
-            bytes += v->capacity() * sizeof(int);
+        std::size_t bytes =
+            rows_.capacity() * sizeof(Row) + numbers_.capacity() * sizeof(int) + flags_.capacity();
+        for (const auto* v : {&order_, &place_, &cell_, &cell_start_}) bytes += v->capacity() * sizeof(int);
         for (const auto& values : along_) bytes += values.capacity() * sizeof(real);
-        for (const auto& from : leaving_) bytes += from.moving.capacity() * sizeof(Moving);
         return bytes;
     }
 
@@ -114,7 +103,8 @@ public:
     void pack_up(const Bed& bed, Chunk& chunk) {
         Leaving& leaving = at(leaving_, chunk.begin / Bed::chunk_size);
         const int walls = static_cast<int>(bed.cavity->walls.size());
-        leaving.moving.clear();
+        leaving.moving.reserve(
+            static_cast<std::size_t>(chunk.pairs.memory.used() + chunk.walls.memory.used()));
         for (std::size_t p = 0; p < chunk.near_slot.size(); ++p)
             if (chunk.near_slot[p] != none)
                 leaving.moving.push_back(
@@ -143,17 +133,42 @@ public:
         for (int i = 0; i < n; ++i) at(order_, at(place_, i)) = i;
     }
 
-    // The particles that come to lie from `first` to `until`.
-    void sort(Bed& bed, int first, int until) {
-        sorted_.each(bed, [&](const auto& values, auto& sorted) {
-            for (int i = first; i < until; ++i) at(sorted, i) = at(values, at(order_, i));
-        });
-        for (int i = first; i < until; ++i)
-            for (int a = 0; a < 4; ++a) at(along_[a], i) = at(sorted_.position, i)[a];
+    static constexpr int turns = 6;
+
+    // The particles that come to lie from `first` to `until`: in each turn one of their rows is laid in
+    // order, all wait for each other, and it is put in its place.
+    void sort(Bed& bed, int turn, int first, int until) {
+        const auto lay = [&](auto& list, auto&& from) {
+            for (int i = first; i < until; ++i) at(list, i) = from(at(order_, i));
+        };
+        const auto put = [&](Row Rates::* part) {
+            for (int i = first; i < until; ++i) at(bed.rates, i).*part = at(rows_, i);
+        };
+        if (turn == 0) {
+            lay(rows_, [&](int i) { return at(bed.position, i); });
+            lay(numbers_, [&](int i) { return at(bed.name, i); });
+            lay(flags_, [&](int i) { return at(bed.touched, i); });
+        } else if (turn == 1) {
+            lay(rows_, [&](int i) { return at(bed.velocity, i); });
+            lay(numbers_, [&](int i) { return at(bed.kind, i); });
+            for (int i = first; i < until; ++i)
+                for (int a = 0; a < 4; ++a) at(along_[a], i) = at(bed.position, i)[a];
+        } else if (turn == 2) {
+            lay(rows_, [&](int i) { return at(bed.spin, i); });
+        } else if (turn == 3) {
+            lay(rows_, [&](int i) { return at(bed.rates, i).velocity; });
+        } else if (turn == 4) {
+            put(&Rates::velocity);
+            lay(rows_, [&](int i) { return at(bed.rates, i).spin; });
+        } else {
+            put(&Rates::spin);
+        }
     }
 
-    void exchange(Bed& bed) {
-        sorted_.each(bed, [](auto& values, auto& sorted) { values.swap(sorted); });
+    void exchange(Bed& bed, int turn) {
+        if (turn == 0) bed.position.swap(rows_), bed.name.swap(numbers_), bed.touched.swap(flags_);
+        if (turn == 1) bed.velocity.swap(rows_), bed.kind.swap(numbers_);
+        if (turn == 2) bed.spin.swap(rows_);
     }
 
     void search(const Bed& bed, Chunk& chunk) const {
@@ -225,10 +240,7 @@ public:
             }
     }
 
-    void forget(const Chunk& chunk) {
-        Leaving& leaving = at(leaving_, chunk.begin / Bed::chunk_size);
-        leaving.pairs = leaving.walls = Memory{};
-    }
+    void forget(const Chunk& chunk) { at(leaving_, chunk.begin / Bed::chunk_size) = {}; }
 
     // ---- a scan of a chunk: candidates among the neighbours, and walls
 

@@ -15,6 +15,7 @@
 namespace rattlebox::dem {
 
 class Simulation {
+    Pages pages_; // of large beds
     Problem problem_;
     std::vector<Bed> beds_;
     std::vector<Neighbours> neighbours_;
@@ -42,10 +43,11 @@ class Simulation {
     bool sampled() const { return step_ % problem_.every == 0 || step_ == problem_.steps; }
 
     // Takes the particles over from the cavity.
-    void fill_bed(Bed& bed, Cavity& cavity, bool rolls) {
+    void fill_bed(Bed& bed, Cavity& cavity, bool rolls, Pages* pages) {
         bed.cavity = &cavity;
         const int n = cavity.particles();
         const auto size = static_cast<std::size_t>(n);
+        bed.velocity.reserve(size), bed.spin.reserve(size), bed.name.reserve(size);
         for (int i = 0; i < n; ++i) {
             const real m = at(cavity.mass, i), radius = at(cavity.position, i)[3];
             Row u = at(cavity.velocity, i), w = at(cavity.spin, i);
@@ -57,15 +59,16 @@ class Simulation {
             bed.spin.push_back(w);
             bed.name.push_back(i);
         }
-        bed.position = std::move(cavity.position);
-        bed.kind = std::move(cavity.kind);
-        for (auto* rows : {&cavity.velocity, &cavity.spin}) std::vector<Row>().swap(*rows);
+        bed.position.assign(cavity.position.begin(), cavity.position.end());
+        bed.kind.assign(cavity.kind.begin(), cavity.kind.end());
+        for (auto* rows : {&cavity.position, &cavity.velocity, &cavity.spin}) std::vector<Row>().swap(*rows);
         for (auto* numbers : {&cavity.mass, &cavity.inertia}) std::vector<real>().swap(*numbers);
+        std::vector<int>().swap(cavity.kind);
         bed.touched.assign(size, 0);
-        for (auto* rows : {&bed.acceleration, &bed.spin_rate}) rows->assign(size, Row{});
+        bed.rates.assign(size, Rates{});
         bed.rolls = rolls;
         for (int from = 0; from < n; from += Bed::chunk_size) {
-            Chunk& chunk = bed.chunks.emplace_back();
+            Chunk& chunk = bed.chunks.emplace_back(pages);
             chunk.begin = from, chunk.end = std::min(from + Bed::chunk_size, n);
         }
         bed.briefs.assign(bed.chunks.size(), Brief{.closed = infinity});
@@ -156,12 +159,13 @@ class Simulation {
             for (int b = 0; b < static_cast<int>(beds_.size()); ++b)
                 f(at(neighbours_, b), at(beds_, b), at(part.first, b), at(part.until, b));
         };
-        each_bed([](Neighbours& n, Bed& bed, int first, int until) { n.sort(bed, first, until); });
-        team.sync([&] {
-            for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].exchange(beds_[b]);
-            ++builds_;
-            steps_since_ = 0;
-        });
+        for (int turn = 0; turn < Neighbours::turns; ++turn) {
+            each_bed(
+                [turn](Neighbours& n, Bed& bed, int first, int until) { n.sort(bed, turn, first, until); });
+            team.sync([&] {
+                for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].exchange(beds_[b], turn);
+            });
+        }
         each_chunk([](const Neighbours& n, Bed& bed, int c) {
             n.search(bed, at(bed.chunks, c));
             at(bed.briefs, c) = Brief{};
@@ -169,7 +173,11 @@ class Simulation {
         each_bed([](Neighbours& n, Bed& bed, int first, int until) { n.unpack(bed, first, until); });
         team.sync();
         each_chunk([](Neighbours& n, Bed& bed, int c) { n.forget(at(bed.chunks, c)); });
-        team.sync([&] { division_.divide(team.size()); });
+        team.sync([&] {
+            division_.divide(team.size());
+            ++builds_;
+            steps_since_ = 0;
+        });
         division_.look_around(team.rank());
     }
 
@@ -320,13 +328,14 @@ public:
         for (Encounter& e : problem_.encounters) e.constant_zeta = constant_zeta(e);
         prepare_structure();
         const std::size_t count = problem_.cavities.size();
-        beds_.resize(count), neighbours_.resize(count);
+        beds_.reserve(count), neighbours_.resize(count);
         for (std::size_t b = 0; b < count; ++b) {
             Cavity& cavity = problem_.cavities[b];
             const Kind pair = kind_of(problem_, cavity.particle_entry),
                        wall = kind_of(problem_, cavity.wall_entry);
-            Bed& bed = beds_[b];
-            fill_bed(bed, cavity, pair.rolls || wall.rolls);
+            Pages* const pages = cavity.particles() > Bed::cached ? &pages_ : nullptr;
+            Bed& bed = beds_.emplace_back(pages);
+            fill_bed(bed, cavity, pair.rolls || wall.rolls, pages);
             const auto prepare = [](Contacts& list, const Kind& kind) {
                 list.memory.rolls = kind.rolls, list.memory.dents = kind.normal == Kind::plastic;
                 list.resize(0);
@@ -372,7 +381,7 @@ public:
     Row body_shown() const { return body_before_; }
     int stopped_cavity() const { return stopped_cavity_; }
     std::size_t memory() const {
-        std::size_t bytes = 0;
+        std::size_t bytes = pages_.idle();
         for (std::size_t b = 0; b < beds_.size(); ++b) bytes += beds_[b].memory() + neighbours_[b].memory();
         return bytes;
     }

@@ -53,8 +53,10 @@ public:
         const real dt = simulation_->problem().dt, passed = simulation_->step() > 0 ? dt : 0;
         nb::list cavities;
         for (const Bed& b : simulation_->beds()) {
-            const auto touched = [&](int i) { return at(b.touched, i) != 0; };
-            cavities.append(write_bed(b, b.particles(), b.name, touched, simulation_->body_shown(), passed));
+            const auto rates = [&](int i) {
+                return at(b.touched, i) ? at(b.rates, i) : Rates{simulation_->body_shown(), {}};
+            };
+            cavities.append(write_bed(b, b.particles(), b.name, rates, passed));
         }
         const auto& modes = simulation_->modes();
         return write_state(simulation_->step(), dt, modes, modes.size(), cavities);

@@ -162,17 +162,16 @@ struct Touching {
 };
 
 // Places, velocities and spins at the last step whose forces are known: taken back from where particles are
-// going to. Those that did not touch anything in that step were accelerated as `body` is.
-template <class Bed, class N, class T>
-nb::dict write_bed(const Bed& b, int n, const N& name, const T& touched, Row body, real dt) {
-    const auto pull = [&](int i) { return touched(i) ? b.acceleration[i] : body; };
+// going to.
+template <class Bed, class N, class R>
+nb::dict write_bed(const Bed& b, int n, const N& name, const R& rates, real dt) {
     const auto number = [&](int i) { return name[i]; };
     nb::dict one;
-    one["position"] = by_name(
-        n, 3, number, [&](int i) { return b.position[i] - (b.velocity[i] - pull(i) * (0.5 * dt)) * dt; });
-    one["velocity"] = by_name(n, 3, number, [&](int i) { return b.velocity[i] - pull(i) * dt; });
-    one["spin"] = by_name(n, 3, number,
-                          [&](int i) { return touched(i) ? b.spin[i] - b.spin_rate[i] * dt : b.spin[i]; });
+    one["position"] = by_name(n, 3, number, [&](int i) {
+        return b.position[i] - (b.velocity[i] - rates(i).velocity * (0.5 * dt)) * dt;
+    });
+    one["velocity"] = by_name(n, 3, number, [&](int i) { return b.velocity[i] - rates(i).velocity * dt; });
+    one["spin"] = by_name(n, 3, number, [&](int i) { return b.spin[i] - rates(i).spin * dt; });
     one["displacement"] = array(std::vector<real>{b.shown[0], b.shown[1], b.shown[2]});
     return one;
 }

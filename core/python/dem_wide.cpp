@@ -58,9 +58,11 @@ public:
         nb::list cavities;
         for (std::size_t k = 0; k < beds(); ++k) {
             const wide::Bed& b = w.bed[k];
-            cavities.append(write_bed(
-                b, b.particles, b.name, [&](int i) { return b.touched[i] != 0; }, w.control.body_before,
-                step() > 0 ? w.structure.dt : 0));
+            const auto rates = [&](int i) {
+                return b.touched[i] ? Rates{b.acceleration[i], b.spin_rate[i]}
+                                    : Rates{w.control.body_before, {}};
+            };
+            cavities.append(write_bed(b, b.particles, b.name, rates, step() > 0 ? w.structure.dt : 0));
         }
         return write_state(step(), w.structure.dt, w.structure.shown,
                            static_cast<std::size_t>(w.structure.modes), cavities);
