@@ -214,20 +214,24 @@ public:
         const Row evenly = step.now(Row{}, body, body_before), reference = bed_.reference;
         Row momentum{}, mass_moment{};
         real drift = 0, kinetic = 0, rotation = 0;
+        // Where the rows are is looked up once: what is written to `touched` might be anything to a compiler.
+        Row *const position = bed_.position.data(), *const velocity = bed_.velocity.data(),
+                   *const spin = bed_.spin.data();
+        Rates* const rates = bed_.rates.data();
+        char* const marks = bed_.touched.data();
         for (int i = chunk.begin; i < chunk.end; ++i) {
             if constexpr (far) Ahead::moving(bed_, i, until);
-            Row &x = at(bed_.position, i), &u = at(bed_.velocity, i);
-            char& touched = at(bed_.touched, i);
+            Row &x = position[i], &u = velocity[i];
+            char& touched = marks[i];
             Action& sum = sums.of(i);
             Row a = body, v = u + evenly;
             const bool before = touched, now = sum.force[3] > 0;
             if (before || now) {
                 if (now) a = sum.force * u[3] + body;
-                v = step.now(u, a, before ? at(bed_.rates, i).velocity : body_before);
-                at(bed_.rates, i).velocity = a;
+                v = step.now(u, a, before ? rates[i].velocity : body_before);
+                rates[i].velocity = a;
                 if (spins) {
-                    Row &w = at(bed_.spin, i), rate = Row{},
-                        rate_before = before ? at(bed_.rates, i).spin : Row{};
+                    Row &w = spin[i], rate = Row{}, rate_before = before ? rates[i].spin : Row{};
                     if (now) {
                         rate = sum.couple;
                         if (rolls) {
@@ -239,7 +243,7 @@ public:
                     w = step.now(w, rate, rate_before);
                     if constexpr (sampled) rotation += dot(w, w) * x[3] / w[3];
                     w = step.next(w, rate);
-                    at(bed_.rates, i).spin = rate;
+                    rates[i].spin = rate;
                 } else if constexpr (sampled) {
                     rotation += turning(i);
                 }

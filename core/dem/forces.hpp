@@ -169,6 +169,9 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
     Actions& actions = list.actions;
     actions.all.resize(static_cast<std::size_t>(count));
     if constexpr (rolls) actions.torque.resize(static_cast<std::size_t>(count));
+    const int* const slot = list.slot.data();
+    Kept* const remembered = list.memory.kept.data();
+    Action* const acts = actions.all.data();
     alignas(64) real used[lane_count];
     for (int base = 0; base < count; base += lane_count) {
         ahead.colliding(base);
@@ -176,17 +179,17 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
         for (int l = 0; l < lane_count; ++l) {
             a[l] = std::min(base + l, count - 1);
             k[l] = active[a[l]];
-            s[l] = at(list.slot, k[l]);
+            s[l] = slot[k[l]];
             used[l] = base + l < count;
         }
         const auto kept = [&](Row Kept::* part) {
-            return [&, part](int l) { return &(at(list.memory.kept, s[l]).*part); };
+            return [&, part](int l) { return &(remembered[s[l]].*part); };
         };
         const auto rolling = [&](Row KeptRolling::* part) {
             return [&, part](int l) { return &(at(list.memory.rolling, s[l]).*part); };
         };
         const auto acting = [&](Row Action::* part) {
-            return [&, part](int l) { return &(at(actions.all, a[l]).*part); };
+            return [&, part](int l) { return &(acts[a[l]].*part); };
         };
         const auto dents = [&](int l) { return &at(list.memory.dent, s[l]); };
         const Lanes weight = lanes(used);
