@@ -240,7 +240,7 @@ public:
             }
     }
 
-    void forget(const Chunk& chunk) { at(leaving_, chunk.begin / Bed::chunk_size) = {}; }
+    void forget(const Chunk& chunk) { at(leaving_, chunk.begin / Bed::chunk_size) = Leaving(); }
 
     // ---- a scan of a chunk: candidates among the neighbours, and walls
 
