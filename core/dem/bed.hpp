@@ -67,7 +67,7 @@ struct Bed {
     Paged<Rates> rates;
     Paged<char> touched;   // something in the step before
     Paged<int> name, kind; // number in the case, material
-    std::vector<Chunk> chunks;
+    Paged<Chunk> chunks;
     std::vector<Brief> briefs; // of the chunks
 
     real smallest = infinity; // radius
@@ -82,7 +82,7 @@ struct Bed {
     // A large one takes its memory from `pages`.
     explicit Bed(Pages* pages)
         : position(pages), velocity(pages), spin(pages), rates(pages), touched(pages), name(pages),
-          kind(pages) {}
+          kind(pages), chunks(pages) {}
 
     int particles() const { return static_cast<int>(position.size()); }
     int chunk_count() const { return static_cast<int>(chunks.size()); }

@@ -67,6 +67,7 @@ class Simulation {
         bed.touched.assign(size, 0);
         bed.rates.assign(size, Rates{});
         bed.rolls = rolls;
+        bed.chunks.reserve((size + Bed::chunk_size - 1) / Bed::chunk_size);
         for (int from = 0; from < n; from += Bed::chunk_size) {
             Chunk& chunk = bed.chunks.emplace_back(pages);
             chunk.begin = from, chunk.end = std::min(from + Bed::chunk_size, n);
