@@ -105,6 +105,39 @@ def test_restart_gives_the_same_bits(law: str) -> None:
     assert len(early["time"]) < len(unbroken.records()["time"])
 
 
+def test_large_beds_give_the_same_bits() -> None:
+    """Beds beyond the caches, which take their memory from a store of their own, do not depend on threads or stops."""
+    soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25)
+    count, edge = 21_000, 0.11
+    case = rb.Case(
+        structure=rb.SDOF(mass=5.0, stiffness=2e5, velocity=1.0),
+        damper=rb.ParticleDamper(
+            particles=rb.Particles(material=soft, radius="1.5 mm", count=count),
+            cavity=rb.Box(size=(edge, edge, edge)),
+            contact=rb.Tsuji(restitution=0.7),
+            friction=rb.Mindlin(0.3),
+            packing=rb.Lattice(noise=0.9, seed=2),
+            velocity=(0.5, 0.2, -1.0),
+        ),
+        duration=0.008,
+        output=rb.Output(rate=1000.0),
+    )
+    one, last = cases.dem_of(case)
+    one.run(last // 2)
+    kept = one.save()
+    two, _ = cases.dem_of(case, threads=2)
+    two.restore(kept)
+    for dem in (one, two):
+        dem.run(last)
+        assert dem.status == 0
+    whole, _ = cases.dem_of(case, threads=3)
+    whole.run(last)
+    ends = [flat(dem.state()) + flat(dem.contacts(0)) + flat(dem.counters()) for dem in (one, two, whole)]
+    assert len(set(ends)) == 1
+    assert whole.counters()["rebuilds"] > 5 and len(whole.contacts(0)["first"]) > 500
+    assert whole.counters()["memory_bytes"] < 1000 * count
+
+
 def test_restart_in_another_process_gives_the_same_bits(tmp_path: Path) -> None:
     """Another process that goes on from a file of the state ends with the bits of this one."""
     case = shaken("Hertz", duration=0.01)
