@@ -36,6 +36,7 @@ public:
     }
 };
 
+// What one member works on; in lines of memory of its own, since it writes there in each step.
 struct alignas(64) Part {
     int begin = 0, end = 0;      // among the chunks of all beds
     real reckoned = 0, busy = 0; // cost, and time that it took since
