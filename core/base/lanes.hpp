@@ -79,8 +79,8 @@ template <> struct __attribute__((may_alias)) Pack<register_width> {
 
 using Lanes = Pack<lane_count>;
 
-inline Lanes operator*(real a, const Lanes& b) { return Lanes::all(a) * b; }
-inline Lanes& operator+=(Lanes& a, const Lanes& b) { return a = a + b; }
+template <int n> Pack<n> operator*(real a, const Pack<n>& b) { return Pack<n>::all(a) * b; }
+template <int n> Pack<n>& operator+=(Pack<n>& a, const Pack<n>& b) { return a = a + b; }
 
 // Neighbours in memory, at an address that is a multiple of their size.
 template <int n> const Pack<n>& pack(const real* p) { return *reinterpret_cast<const Pack<n>*>(p); }
@@ -102,6 +102,13 @@ template <int n> Pack<n> unaligned(const real* p) {
         return {unaligned<n / 2>(p), unaligned<n / 2>(p + n / 2)};
     }
 }
+
+// What a register holds of eight: laws that take many numbers do not fit the registers otherwise.
+inline constexpr int group = register_width;
+using Group = Pack<group>;
+
+inline Group& group_of(Lanes& all, int first) { return pack<group>(reinterpret_cast<real*>(&all) + first); }
+
 inline const Lanes& lanes(const real* p) { return pack<lane_count>(p); }
 inline Lanes& lanes(real* p) { return pack<lane_count>(p); }
 

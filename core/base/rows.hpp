@@ -32,7 +32,7 @@ typedef real Row __attribute__((vector_size(4 * sizeof(real))));
 #endif
 
 inline Row row(real x, real y, real z, real w = 0) { return Row{x, y, z, w}; }
-inline Row row(real all) { return Row{} + all; }
+inline Row row(real all) { return Row{all, all, all, all}; }
 inline Row row(const real* v) { return Row{v[0], v[1], v[2], 0}; }
 inline real dot(Row a, Row b) {
     const Row c = a * b;
@@ -78,12 +78,21 @@ template <int n> RATTLEBOX_INLINE Pack<n> choose(const Pack<n>& c, const Pack<n>
         return {c.v > 0 ? a.v : b.v};
 }
 
-inline Lanes operator-(const Lanes& a) { return Lanes::all(0) - a; }
+template <int n> Pack<n> operator-(const Pack<n>& a) { return Pack<n>::all(0) - a; }
 
 // ---- a vector in space of each lane
 
 template <class T> struct Vector {
     T x, y, z;
+
+    Vector() = default;
+    RATTLEBOX_INLINE Vector(const T& x, const T& y, const T& z) : x(x), y(y), z(z) {}
+    // By numbers: compilers copy a struct in smaller pieces, which then wait for each other.
+    RATTLEBOX_INLINE Vector(const Vector& v) : x(v.x), y(v.y), z(v.z) {}
+    RATTLEBOX_INLINE Vector& operator=(const Vector& v) {
+        x = v.x, y = v.y, z = v.z;
+        return *this;
+    }
 
     RATTLEBOX_INLINE friend Vector operator+(const Vector& a, const Vector& b) {
         return {a.x + b.x, a.y + b.y, a.z + b.z};
@@ -186,6 +195,15 @@ template <int n, class At> RATTLEBOX_INLINE void store(const Columns<n>& c, At&&
         put(2, __builtin_shufflevector(zx, wy, 0, 8, 2, 10, 4, 12, 6, 14));
         put(3, __builtin_shufflevector(zx, wy, 1, 9, 3, 11, 5, 13, 7, 15));
 #endif
+    } else if constexpr (n == 4) {
+        const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 4, 5),
+                   yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 4, 5);
+        const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 6, 7),
+                   wy = __builtin_shufflevector(c.y.v, c.w.v, 2, 3, 6, 7);
+        *at(0) = __builtin_shufflevector(xz, yw, 0, 4, 2, 6);
+        *at(1) = __builtin_shufflevector(xz, yw, 1, 5, 3, 7);
+        *at(2) = __builtin_shufflevector(zx, wy, 0, 4, 2, 6);
+        *at(3) = __builtin_shufflevector(zx, wy, 1, 5, 3, 7);
     } else {
         for (int l = 0; l < n; ++l) *at(l) = Row{c.x.v[l], c.y.v[l], c.z.v[l], c.w.v[l]};
     }

@@ -14,29 +14,25 @@ namespace rattlebox::dem {
 
 // Some hundred particles that follow each other, and the contacts whose first partners they are.
 struct Chunk {
-    int begin = 0, end = 0;
-    int highest = 0; // particle that the chunk's particles have as a neighbour
-    Paged<int> near_first, near_second,
-        near_slot;        // neighbours within reach, and memory of those that touch
-    Paged<int> wall_slot; // of each particle at each wall
+    int begin, end;
+    int highest = 0;                // particle that the chunk's particles have as a neighbour
+    Paged<std::uint8_t> near_first; // neighbours within reach: which of the chunk's particles,
+    Paged<int> near_second;         // and the number of the other
     Contacts pairs, walls;
     Tally tally;
     Stopped stopped;
     std::vector<std::pair<int, Late>> late; // of contacts that begin in this step, by candidate
 
-    explicit Chunk(Pages* pages)
-        : near_first(pages), near_second(pages), near_slot(pages), wall_slot(pages), pairs(pages),
-          walls(pages) {}
+    Chunk(int begin, int end, Pages* pages)
+        : begin(begin), end(end), near_first(pages), near_second(pages), pairs(pages), walls(pages) {}
 
     std::size_t memory() const {
-        std::size_t bytes = pairs.bytes() + walls.bytes() + sizeof(Chunk);
-        for (const auto* v : {&near_first, &near_second, &near_slot, &wall_slot})
-            bytes += v->capacity() * sizeof(int);
-        return bytes;
+        return pairs.bytes() + walls.bytes() + sizeof(Chunk) + near_first.capacity() +
+               near_second.capacity() * sizeof(int);
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(highest, near_first, near_second, near_slot, wall_slot, tally, stopped);
+        a(highest, near_first, near_second, tally, stopped);
         pairs.keep(a);
         walls.keep(a);
     }
@@ -55,8 +51,8 @@ struct alignas(64) Rates {
 };
 
 struct Bed {
-    static constexpr int chunk_size = 128;
-    static constexpr int cached = 20'000; // of more particles caches hold only a part
+    static constexpr int chunk_size = 128; // numbers of particles in their chunk fit a byte
+    static constexpr int cached = 20'000;  // of more particles caches hold only a part
 
     const Cavity* cavity = nullptr;
     Paged<Row> position; // and radius

@@ -50,13 +50,13 @@ class BedStep {
     }
 
     template <class View>
-    void visit(Contacts& list, const View& view, int candidates, Paged<int>& slot_of, const Kind& kind,
-               Partner partner, bool sampled, Chunk& chunk, const Ahead& ahead) {
+    void visit(Contacts& list, const View& view, int candidates, const Kind& kind, Partner partner,
+               bool sampled, Chunk& chunk, const Ahead& ahead) {
         Tally& tally = chunk.tally;
         const auto begun = [&](int k) {
             const Touch t = touch(list, k, partner);
             const Begun b = begin(t, problem_.dt);
-            at(list.slot, k) = at(slot_of, at(list.origin, k)) = list.memory.begin(b);
+            at(list.slot, k) = list.memory.begin(b);
             if (b.late.share != 0) chunk.late.push_back({k, b.late});
             if (b.lost != 0) tally.normal[partner] += first_lane(b.lost);
             ++tally.first_touches[partner];
@@ -73,7 +73,7 @@ class BedStep {
             if (kind.rough) tally.sliding[partner] += first_lane(held(at(list.memory.kept, s).friction));
             if (kind.rolls) tally.rolling[partner] += first_lane(held(at(list.memory.rolling, s).spring));
             list.memory.free.push_back(s);
-            at(list.slot, k) = at(slot_of, at(list.origin, k)) = Contacts::none;
+            at(list.slot, k) = Contacts::none;
         };
         chunk.late.clear();
         find_touching(list, view, candidates, begun, ended, ahead);
@@ -145,10 +145,10 @@ public:
         // Those of tier t were at least t / tiers of the skin apart.
         const real closed = chunk.pairs.since / chunk.pairs.skin * Contacts::tiers;
         const int tier = std::min(static_cast<int>(closed), Contacts::tiers - 1);
-        visit(chunk.pairs, PairView{bed_, chunk.pairs, pair_mu_}, chunk.pairs.tier_end[tier], chunk.near_slot,
-              pair_, particle, sampled, chunk, ahead);
-        visit(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, chunk.walls.size(),
-              chunk.wall_slot, wall_, wall, sampled, chunk, Ahead());
+        visit(chunk.pairs, PairView{bed_, chunk.pairs, pair_mu_}, chunk.pairs.tier_end[tier], pair_, particle,
+              sampled, chunk, ahead);
+        visit(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, chunk.walls.size(), wall_, wall,
+              sampled, chunk, Ahead());
         Row total{}, moment{};
         const Contacts& list = chunk.walls;
         for (int a = 0; a < list.actives; ++a) {

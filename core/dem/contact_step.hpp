@@ -131,15 +131,15 @@ inline Four<real> four(Row r) { return {r[0], r[1], r[2], r[3]}; }
 
 template <class T> struct Push {
     T force, elastic; // total, and without the dashpot
-    T root;           // sqrt(d)
+    T root, fourth;   // d^(1/2), d^(1/4)
 };
 
 struct HertzStep {
     static constexpr bool plastic = false;
     template <class T, class Row>
     RATTLEBOX_INLINE static Push<T> push(const Row& law, const Row&, const T& overlap, const T& rate) {
-        const T s = root(overlap), elastic = law.x * overlap * s;
-        return {elastic + law.y * root(s) * rate, elastic, s};
+        const T s = root(overlap), x = root(s), elastic = law.x * overlap * s;
+        return {elastic + law.y * x * rate, elastic, s, x};
     }
     template <class T, class Row>
     RATTLEBOX_INLINE static T stored(const Row& law, const Row&, const T& overlap) {
@@ -151,8 +151,8 @@ struct LinearStep {
     static constexpr bool plastic = false;
     template <class T, class Row>
     RATTLEBOX_INLINE static Push<T> push(const Row& law, const Row&, const T& overlap, const T& rate) {
-        const T elastic = law.x * overlap;
-        return {elastic + law.y * rate, elastic, root(overlap)};
+        const T elastic = law.x * overlap, s = root(overlap);
+        return {elastic + law.y * rate, elastic, s, root(s)};
     }
     template <class T, class Row>
     RATTLEBOX_INLINE static T stored(const Row& law, const Row&, const T& overlap) {
@@ -174,7 +174,8 @@ struct PlasticStep {
         const T first = choose(overlap - law.w, yielding, curve(law.x, overlap));
         const T again = curve(dent.y, overlap - dent.z);
         const T force = choose(dent.x - overlap, again, first);
-        return {force, force, root(overlap)};
+        const T s = root(overlap);
+        return {force, force, s, root(s)};
     }
     template <class T, class Row>
     RATTLEBOX_INLINE static T stored(const Row&, const Row& dent, const T& overlap) {
@@ -197,7 +198,7 @@ RATTLEBOX_INLINE Tangential<T> rub(const Meeting<T>& m, const Push<T>& push, con
                                    const T& friction, const Row& history, bool dashpots, bool mindlin,
                                    const T& dt) {
     const T zero = all(rate, 0), one = all(rate, 1);
-    const T firm = mindlin ? push.root : one, drag = mindlin ? root(push.root) : one;
+    const T firm = mindlin ? push.root : one, drag = mindlin ? push.fourth : one;
     const T pressed = larger(push.force, zero), stiffness = law.z * firm;
     const Vector<T> slip = m.velocity - rate * m.normal + cross(m.swirl, m.normal);
     const T dashpot = dashpots ? law.w * drag : zero;
@@ -222,7 +223,7 @@ template <class T, class Row>
 RATTLEBOX_INLINE Rolling<T> roll(const Meeting<T>& m, const Push<T>& push, const T& stiffness, const Row& law,
                                  const Row& past, bool mindlin, const T& dt) {
     const T zero = all(stiffness, 0), one = all(stiffness, 1);
-    const T drag = mindlin ? root(push.root) : one, pressed = larger(push.force, zero);
+    const T drag = mindlin ? push.fourth : one, pressed = larger(push.force, zero);
     const Vector<T> turning = m.spin - dot(m.spin, m.normal) * m.normal;
     const T spring = law.y * stiffness;
     const auto r = hold(past.vector(), past.w, m.normal, spring, law.z * drag, turning, law.x * pressed, dt);

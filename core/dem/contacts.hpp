@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "base/pages.hpp"
@@ -117,10 +118,23 @@ struct Contacts {
         for (auto* numbers : {&origin, &active}) numbers->resize(n);
     }
 
+    void put(int k, int one, int other, int from, int memory) {
+        at(first, k) = one, at(second, k) = other, at(origin, k) = from, at(slot, k) = memory;
+    }
+
     // Lanes past the end look at a particle that is at hand.
     void pad(int first_at_hand, int second_at_hand) {
         std::fill(first.begin() + size(), first.end(), first_at_hand);
         std::fill(second.begin() + size(), second.end(), second_at_hand);
+    }
+
+    // A contact that comes with its memory, before there are any candidates.
+    void arrive(int one, int other, int from, int memory) {
+        const int k = actives++;
+        resize(actives);
+        put(k, one, other, from, memory);
+        at(active, k) = k;
+        for (int& end : tier_end) end = actives;
     }
 
     // Nobody is a candidate any more; what they remember goes to `leaving`.

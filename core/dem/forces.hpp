@@ -6,20 +6,20 @@
 
 namespace rattlebox::dem {
 
-template <class Entry> RATTLEBOX_INLINE Lanes of_kinds(const std::vector<real>& value, Entry&& entry) {
-    if (value.size() == 1) return Lanes::all(value[0]);
-    alignas(64) real of[lane_count];
-    for (int l = 0; l < lane_count; ++l) of[l] = at(value, entry(l));
-    return lanes(of);
+template <class Entry> RATTLEBOX_INLINE Group of_kinds(const std::vector<real>& value, Entry&& entry) {
+    if (value.size() == 1) return Group::all(value[0]);
+    alignas(64) real of[group];
+    for (int l = 0; l < group; ++l) of[l] = at(value, entry(l));
+    return pack<group>(of);
 }
 
-// A pair of particles, and a particle at a wall, in lanes.
+// A pair of particles, and a particle at a wall, as many at once as a register holds.
 struct PairView {
     const Bed& bed;
     const Contacts& list;
     const std::vector<real>& mu; // by kinds
 
-    RATTLEBOX_INLINE Lanes friction(const int* k) const {
+    RATTLEBOX_INLINE Group friction(const int* k) const {
         return of_kinds(mu, [&](int l) {
             return at(bed.kind, at(list.first, k[l])) * bed.cavity->kinds +
                    at(bed.kind, at(list.second, k[l]));
@@ -28,27 +28,27 @@ struct PairView {
 
     // Rows are combined before they are turned into lanes, which costs more.
     template <class Combine>
-    RATTLEBOX_INLINE Columns<8> both(const Paged<Row>& rows, const int* k, Combine&& combine) const {
-        return columns_of([&](int l) __attribute__((always_inline)) {
+    RATTLEBOX_INLINE Columns<group> both(const Paged<Row>& rows, const int* k, Combine&& combine) const {
+        return columns_of<group>([&](int l) __attribute__((always_inline)) {
             const int i = at(list.first, k[l]), j = at(list.second, k[l]);
             return combine(at(rows, i), at(rows, j), i, j);
         });
     }
 
     // From the first centre to the second, and the sum of the radii.
-    RATTLEBOX_INLINE Columns<8> way(const int* k) const {
+    RATTLEBOX_INLINE Columns<group> way(const int* k) const {
         return both(bed.position, k, [](Row a, Row b, int, int) __attribute__((always_inline)) {
             return b + row(-1, -1, -1, 1) * a;
         });
     }
 
     // Positive where the pair touches.
-    RATTLEBOX_INLINE Lanes room(const int* k) const {
+    RATTLEBOX_INLINE Group room(const int* k) const {
         const auto apart = way(k);
         return apart.w * apart.w - dot(apart.vector(), apart.vector());
     }
 
-    template <bool spins> RATTLEBOX_INLINE Meeting<Lanes> meeting(const int* k) const {
+    template <bool spins> RATTLEBOX_INLINE Meeting<Group> meeting(const int* k) const {
         const auto apart = way(k);
         const auto place = [&](int i) __attribute__((always_inline)) { return at(bed.position, i); };
         // With the smaller radius as the fourth number.
@@ -58,14 +58,14 @@ struct PairView {
                 return __builtin_shufflevector(a - b, p < q ? p : q, 0, 1, 2, 7);
             });
         if constexpr (!spins)
-            return meet<false>(Facing<Lanes>{apart.vector(), moving.vector(), {}, {}, apart.w, moving.w});
+            return meet<false>(Facing<Group>{apart.vector(), moving.vector(), {}, {}, apart.w, moving.w});
         const auto swirl = both(bed.spin, k, [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
             return row(place(i)[3]) * a + row(place(j)[3]) * b;
         });
         const auto spin =
             both(bed.spin, k, [](Row a, Row b, int, int) __attribute__((always_inline)) { return a - b; });
         return meet<true>(
-            Facing<Lanes>{apart.vector(), moving.vector(), spin.vector(), swirl.vector(), apart.w, moving.w});
+            Facing<Group>{apart.vector(), moving.vector(), spin.vector(), swirl.vector(), apart.w, moving.w});
     }
 };
 
@@ -75,59 +75,59 @@ struct WallView {
     const std::vector<real>& mu;
     bool curved;
 
-    RATTLEBOX_INLINE Lanes friction(const int* k) const {
+    RATTLEBOX_INLINE Group friction(const int* k) const {
         return of_kinds(mu, [&](int l) {
             return at(bed.kind, at(list.first, k[l])) * bed.cavity->wall_kinds + wall(k[l]).kind;
         });
     }
 
-    RATTLEBOX_INLINE Columns<8> first(const Paged<Row>& rows, const int* k) const {
-        return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
+    RATTLEBOX_INLINE Columns<group> first(const Paged<Row>& rows, const int* k) const {
+        return columns<group>([&](int l) { return &at(rows, at(list.first, k[l])); });
     }
     const Wall& wall(int k) const { return at(bed.cavity->walls, at(list.second, k)); }
-    static Vector<Lanes> same(Row r) { return {Lanes::all(r[0]), Lanes::all(r[1]), Lanes::all(r[2])}; }
+    static Vector<Group> same(Row r) { return {Group::all(r[0]), Group::all(r[1]), Group::all(r[2])}; }
 
-    RATTLEBOX_INLINE void near(const int* k, const Columns<8>& a, Vector<Lanes>& normal,
-                               Lanes& distance) const {
-        const Vector<Lanes> place = a.vector() - same(bed.motion.displacement);
-        const auto axis = columns([&](int l) { return &wall(k[l]).axis; });
-        const Lanes along = dot(axis.vector(), place);
+    RATTLEBOX_INLINE void near(const int* k, const Columns<group>& a, Vector<Group>& normal,
+                               Group& distance) const {
+        const Vector<Group> place = a.vector() - same(bed.motion.displacement);
+        const auto axis = columns<group>([&](int l) { return &wall(k[l]).axis; });
+        const Group along = dot(axis.vector(), place);
         normal = axis.vector();
         distance = axis.w - along;
         if (!curved) return;
-        alignas(64) real bent[8], straight[8];
-        for (int l = 0; l < 8; ++l) {
+        alignas(64) real bent[group], straight[group];
+        for (int l = 0; l < group; ++l) {
             bent[l] = wall(k[l]).form != Wall::plane;
             straight[l] = wall(k[l]).form == Wall::cylinder;
         }
-        const Vector<Lanes> q = place - (lanes(straight) * along) * axis.vector();
-        const Lanes out = root(dot(q, q)), one_over = Lanes::all(1) / (out + Lanes::all(1e-290));
-        distance = choose(lanes(bent), axis.w - out, distance);
-        normal = {choose(lanes(bent), one_over * q.x, normal.x),
-                  choose(lanes(bent), one_over * q.y, normal.y),
-                  choose(lanes(bent), one_over * q.z, normal.z)};
+        const Vector<Group> q = place - (pack<group>(straight) * along) * axis.vector();
+        const Group out = root(dot(q, q)), one_over = Group::all(1) / (out + Group::all(1e-290));
+        distance = choose(pack<group>(bent), axis.w - out, distance);
+        normal = {choose(pack<group>(bent), one_over * q.x, normal.x),
+                  choose(pack<group>(bent), one_over * q.y, normal.y),
+                  choose(pack<group>(bent), one_over * q.z, normal.z)};
     }
 
-    RATTLEBOX_INLINE Lanes room(const int* k) const {
-        Vector<Lanes> normal;
-        Lanes distance;
+    RATTLEBOX_INLINE Group room(const int* k) const {
+        Vector<Group> normal;
+        Group distance;
         const auto a = first(bed.position, k);
         near(k, a, normal, distance);
         return a.w - distance;
     }
 
-    template <bool spins> RATTLEBOX_INLINE Meeting<Lanes> meeting(const int* k) const {
-        Vector<Lanes> normal;
-        Lanes distance;
+    template <bool spins> RATTLEBOX_INLINE Meeting<Group> meeting(const int* k) const {
+        Vector<Group> normal;
+        Group distance;
         const auto a = first(bed.position, k);
         near(k, a, normal, distance);
-        Ball<Lanes> ball{a.vector(), first(bed.velocity, k).vector(), {}, a.w};
+        Ball<Group> ball{a.vector(), first(bed.velocity, k).vector(), {}, a.w};
         if constexpr (spins) ball.spin = first(bed.spin, k).vector();
         return meet<spins>(ball, normal, distance, same(bed.motion.velocity));
     }
 };
 
-RATTLEBOX_INLINE Columns<8> lay(const Four<Lanes>& f) { return {f.x, f.y, f.z, f.w}; }
+RATTLEBOX_INLINE Columns<group> lay(const Four<Group>& f) { return {f.x, f.y, f.z, f.w}; }
 
 // Lists the candidates up to `to` that touch; calls begun(k) and ended(k) for those that have just begun or
 // ended to.
@@ -139,11 +139,13 @@ void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ende
     int count = 0;
     for (int base = 0; base < to; base += lane_count) {
         ahead.looking(base);
-        int k[lane_count];
-        for (int l = 0; l < lane_count; ++l) k[l] = base + l;
         alignas(64) real room[lane_count];
-        lanes(room) = view.room(k);
         const int used = std::min(lane_count, to - base);
+        for (int part = 0; part < used; part += group) {
+            int k[group];
+            for (int l = 0; l < group; ++l) k[l] = base + part + l;
+            pack<group>(room + part) = view.room(k);
+        }
         int changed = 0;
         for (int l = 0; l < used; ++l) {
             const int touches = room[l] > 0;
@@ -165,18 +167,19 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
              Tally& tally, Settle&& settle, const Ahead& ahead) {
     const int count = list.actives;
     const int* active = list.active.data();
-    const Lanes zero = Lanes::all(0), dt = Lanes::all(how.dt);
+    const Group zero = Group::all(0), dt = Group::all(how.dt);
     Actions& actions = list.actions;
     actions.all.resize(static_cast<std::size_t>(count));
     if constexpr (rolls) actions.torque.resize(static_cast<std::size_t>(count));
     const int* const slot = list.slot.data();
     Kept* const remembered = list.memory.kept.data();
     Action* const acts = actions.all.data();
-    alignas(64) real used[lane_count];
-    for (int base = 0; base < count; base += lane_count) {
-        ahead.colliding(base);
-        int a[lane_count], k[lane_count], s[lane_count];
-        for (int l = 0; l < lane_count; ++l) {
+    alignas(64) real used[group];
+    for (int base = 0; base < count; base += group) {
+        const int part = base % lane_count; // of the sums, which have the same order on every machine
+        if (part == 0) ahead.colliding(base);
+        int a[group], k[group], s[group];
+        for (int l = 0; l < group; ++l) {
             a[l] = std::min(base + l, count - 1);
             k[l] = active[a[l]];
             s[l] = slot[k[l]];
@@ -192,51 +195,51 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             return [&, part](int l) { return &(acts[a[l]].*part); };
         };
         const auto dents = [&](int l) { return &at(list.memory.dent, s[l]); };
-        const Lanes weight = lanes(used);
+        const Group weight = pack<group>(used);
         const auto m = view.template meeting<rough>(k);
-        const auto law = columns(kept(&Kept::law));
-        Columns<8> dent{};
+        const auto law = columns<group>(kept(&Kept::law));
+        Columns<group> dent{};
         if constexpr (Law::plastic) {
-            alignas(64) real overlap[lane_count];
-            lanes(overlap) = m.overlap;
-            for (int l = 0; l < lane_count; ++l) {
+            alignas(64) real overlap[group];
+            pack<group>(overlap) = m.overlap;
+            for (int l = 0; l < group; ++l) {
                 Row& d = at(list.memory.dent, s[l]);
                 if (sampled) d[0] = std::fmax(d[0], overlap[l]);
                 if (d[3] != d[0] && (overlap[l] < d[0] || sampled)) settle(k[l]);
             }
-            dent = columns(dents);
+            dent = columns<group>(dents);
         }
-        const Lanes rate = dot(m.velocity, m.normal);
+        const Group rate = dot(m.velocity, m.normal);
         auto push = Law::push(law, dent, m.overlap, rate);
         if (how.never_pulls) push.force = larger(push.force, zero);
-        tally.normal[partner] += weight * dt * (push.force - push.elastic) * rate;
-        tally.deepest.see(m.overlap, m.radius);
-        Vector<Lanes> force = (zero - push.force) * m.normal;
-        if (sampled) tally.stored += weight * Law::stored(law, dent, m.overlap);
+        group_of(tally.normal[partner], part) += weight * dt * (push.force - push.elastic) * rate;
+        tally.deepest.see(m.overlap, m.radius, part);
+        Vector<Group> force = (zero - push.force) * m.normal;
+        if (sampled) group_of(tally.stored, part) += weight * Law::stored(law, dent, m.overlap);
         if constexpr (Law::plastic) {
             dent.x = larger(dent.x, m.overlap);
             store(dent, dents);
         }
         if constexpr (rough) {
-            const auto h = rub(m, push, rate, law, view.friction(k), columns(kept(&Kept::friction)),
+            const auto h = rub(m, push, rate, law, view.friction(k), columns<group>(kept(&Kept::friction)),
                                !Law::plastic, how.mindlin, dt);
             store(lay(h.friction), kept(&Kept::friction));
-            tally.sliding[partner] += weight * h.lost;
+            group_of(tally.sliding[partner], part) += weight * h.lost;
             force = force + h.force;
-            store(Columns<8>{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&Action::couple));
-            if (sampled) tally.stored += weight * h.stored;
+            store(Columns<group>{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&Action::couple));
+            if (sampled) group_of(tally.stored, part) += weight * h.stored;
             if constexpr (rolls) {
-                const auto r = roll(m, push, h.stiffness, columns(rolling(&KeptRolling::law)),
-                                    columns(rolling(&KeptRolling::spring)), how.mindlin, dt);
+                const auto r = roll(m, push, h.stiffness, columns<group>(rolling(&KeptRolling::law)),
+                                    columns<group>(rolling(&KeptRolling::spring)), how.mindlin, dt);
                 store(lay(r.rolling), rolling(&KeptRolling::spring));
-                store(Columns<8>{r.torque.x, r.torque.y, r.torque.z, zero},
+                store(Columns<group>{r.torque.x, r.torque.y, r.torque.z, zero},
                       [&](int l) { return &at(actions.torque, a[l]); });
-                tally.rolling[partner] += weight * r.lost;
-                if (sampled) tally.stored += weight * r.stored;
+                group_of(tally.rolling[partner], part) += weight * r.lost;
+                if (sampled) group_of(tally.stored, part) += weight * r.stored;
             }
         } else
-            store(Columns<8>{zero, zero, zero, zero}, acting(&Action::couple));
-        store(Columns<8>{force.x, force.y, force.z, Lanes::all(1)}, acting(&Action::force));
+            store(Columns<group>{zero, zero, zero, zero}, acting(&Action::couple));
+        store(Columns<group>{force.x, force.y, force.z, Group::all(1)}, acting(&Action::force));
     }
     if (sampled) tally.contacts[partner] += count;
 }

@@ -100,18 +100,15 @@ public:
     // ---- a build: contacts leave their chunks, particles are sorted, each chunk is searched, contacts
     // arrive
 
-    void pack_up(const Bed& bed, Chunk& chunk) {
+    void pack_up(Chunk& chunk) {
         Leaving& leaving = at(leaving_, chunk.begin / Bed::chunk_size);
-        const int walls = static_cast<int>(bed.cavity->walls.size());
-        leaving.moving.reserve(
-            static_cast<std::size_t>(chunk.pairs.memory.used() + chunk.walls.memory.used()));
-        for (std::size_t p = 0; p < chunk.near_slot.size(); ++p)
-            if (chunk.near_slot[p] != none)
-                leaving.moving.push_back(
-                    {chunk.near_first[p], chunk.near_second[p], none, chunk.near_slot[p]});
-        for (int p = 0; p < static_cast<int>(chunk.wall_slot.size()); ++p)
-            if (const int slot = at(chunk.wall_slot, p); slot != none)
-                leaving.moving.push_back({chunk.begin + p / walls, none, p % walls, slot});
+        leaving.moving.reserve(static_cast<std::size_t>(chunk.pairs.actives + chunk.walls.actives));
+        for (const Contacts* list : {&chunk.pairs, &chunk.walls})
+            for (int a = 0; a < list->actives; ++a) {
+                const int k = at(list->active, a), i = at(list->first, k), j = at(list->second, k);
+                const bool at_wall = list == &chunk.walls;
+                leaving.moving.push_back({i, at_wall ? none : j, at_wall ? j : none, at(list->slot, k)});
+            }
         chunk.pairs.leave(leaving.pairs), chunk.walls.leave(leaving.walls);
     }
 
@@ -175,30 +172,30 @@ public:
         thread_local std::vector<int> firsts, seconds;
         int count = 0, *first = firsts.data(), *second = seconds.data();
         const auto make_room = [&] {
-            const auto room = static_cast<std::size_t>(count + lane_count);
+            const auto room = static_cast<std::size_t>(count + group);
             if (room <= firsts.size()) return;
             firsts.resize(2 * room), seconds.resize(2 * room);
             first = firsts.data(), second = seconds.data();
         };
         for (int i = chunk.begin; i < chunk.end; ++i) {
             const Row& p = at(bed.position, i);
-            const Vector<Lanes> place = {Lanes::all(p[0]), Lanes::all(p[1]), Lanes::all(p[2])};
-            const Lanes around = Lanes::all(p[3] + bed.reach);
+            const Vector<Group> place = {Group::all(p[0]), Group::all(p[1]), Group::all(p[2])};
+            const Group around = Group::all(p[3] + bed.reach);
             const int cx = cell_along(p, 0), cy = cell_along(p, 1), cz = cell_along(p, 2);
             const auto range = [&](int y, int z, bool own) {
                 if (y < 0 || y >= cells_[1] || z >= cells_[2]) return;
                 const int line = (z * cells_[1] + y) * cells_[0];
                 const int from = own ? i + 1 : at(cell_start_, line + std::max(cx - 1, 0));
                 const int to = at(cell_start_, line + std::min(cx + 1, cells_[0] - 1) + 1);
-                for (int j = from; j < to; j += lane_count) {
+                for (int j = from; j < to; j += group) {
                     make_room();
-                    const auto others = [&](int a) { return unaligned<lane_count>(&at(along_[a], j)); };
-                    const Vector<Lanes> apart = place - Vector<Lanes>{others(0), others(1), others(2)};
-                    const Lanes near = around + others(3);
-                    alignas(64) real room[lane_count];
-                    lanes(room) = near * near - dot(apart, apart);
-                    for (int l = 0; l < lane_count; ++l) {
-                        first[count] = i, second[count] = j + l;
+                    const auto others = [&](int a) { return unaligned<group>(&at(along_[a], j)); };
+                    const Vector<Group> apart = place - Vector<Group>{others(0), others(1), others(2)};
+                    const Group near = around + others(3);
+                    alignas(64) real room[group];
+                    pack<group>(room) = near * near - dot(apart, apart);
+                    for (int l = 0; l < group; ++l) {
+                        first[count] = i - chunk.begin, second[count] = j + l;
                         count += static_cast<int>(room[l] > 0) & static_cast<int>(j + l < to);
                     }
                 }
@@ -207,13 +204,12 @@ public:
             range(cy + 1, cz, false);
             for (int y = cy - 1; y <= cy + 1; ++y) range(y, cz + 1, false);
         }
-        chunk.near_first.assign(first, first + count);
+        chunk.near_first.resize(static_cast<std::size_t>(count));
+        std::transform(first, first + count, chunk.near_first.begin(),
+                       [](int own) { return static_cast<std::uint8_t>(own); });
         chunk.near_second.assign(second, second + count);
         chunk.highest = chunk.end - 1;
         for (const int j : chunk.near_second) chunk.highest = std::max(chunk.highest, j);
-        chunk.near_slot.assign(chunk.near_first.size(), none);
-        chunk.wall_slot.assign(static_cast<std::size_t>(chunk.end - chunk.begin) * bed.cavity->walls.size(),
-                               none);
     }
 
     // Contacts arrive where their first partner is now, if that is from `first` to `until`.
@@ -226,17 +222,16 @@ public:
                 if (turned) std::swap(i, j);
                 if (i < first || i >= until) continue;
                 Chunk& chunk = at(bed.chunks, i / Bed::chunk_size);
+                const auto own = static_cast<std::uint8_t>(i - chunk.begin);
                 if (m.wall != none) {
-                    at(chunk.wall_slot, (i - chunk.begin) * walls + m.wall) =
-                        chunk.walls.memory.begin(from.walls, m.slot, 1);
+                    chunk.walls.arrive(i, m.wall, own * walls + m.wall,
+                                       chunk.walls.memory.begin(from.walls, m.slot, 1));
                     continue;
                 }
-                auto p = std::lower_bound(chunk.near_first.begin(), chunk.near_first.end(), i) -
-                         chunk.near_first.begin();
-                while (chunk.near_second[static_cast<std::size_t>(p)] != j)
-                    ++p; // touching, so among the neighbours
-                chunk.near_slot[static_cast<std::size_t>(p)] =
-                    chunk.pairs.memory.begin(from.pairs, m.slot, turned ? -1 : 1);
+                const auto& firsts = chunk.near_first;
+                auto p = static_cast<int>(std::ranges::lower_bound(firsts, own) - firsts.begin());
+                while (at(chunk.near_second, p) != j) ++p; // touching, so among the neighbours
+                chunk.pairs.arrive(i, j, p, chunk.pairs.memory.begin(from.pairs, m.slot, turned ? -1 : 1));
             }
     }
 
@@ -244,32 +239,43 @@ public:
 
     // ---- a scan of a chunk: candidates among the neighbours, and walls
 
+    // Memory of those that touch, by origin.
+    static const std::vector<int>& slots(const Contacts& list, int origins) {
+        thread_local std::vector<int> slots;
+        slots.assign(static_cast<std::size_t>(origins), none);
+        for (int a = 0; a < list.actives; ++a) {
+            const int k = at(list.active, a);
+            at(slots, at(list.origin, k)) = at(list.slot, k);
+        }
+        return slots;
+    }
+
     void scan_pairs(const Bed& bed, Chunk& chunk) const {
         choose_skin(chunk.pairs, bed.smallest, 0.4 * bed.reach);
         const real skin = chunk.pairs.skin;
         thread_local std::vector<int> found_pairs;
         thread_local std::vector<real> found_tiers;
-        const int count = static_cast<int>(chunk.near_slot.size());
-        found_pairs.resize(static_cast<std::size_t>(count) + lane_count);
+        const int count = static_cast<int>(chunk.near_second.size());
+        found_pairs.resize(static_cast<std::size_t>(count) + group);
         found_tiers.resize(found_pairs.size());
         int* const found_pair = found_pairs.data();
         real* const found_tier = found_tiers.data();
         int found = 0;
-        for (int p = 0; p < count; p += lane_count) {
-            const auto apart = columns_of([&](int l) __attribute__((always_inline)) {
+        for (int p = 0; p < count; p += group) {
+            const auto apart = columns_of<group>([&](int l) __attribute__((always_inline)) {
                 const int q = std::min(p + l, count - 1);
-                const Row a = at(bed.position, at(chunk.near_first, q));
+                const Row a = at(bed.position, chunk.begin + at(chunk.near_first, q));
                 return at(bed.position, at(chunk.near_second, q)) + row(-1, -1, -1, 1) * a;
             });
-            const Lanes near = apart.w, distance = dot(apart.vector(), apart.vector());
-            Lanes tier = Lanes::all(0);
+            const Group near = apart.w, distance = dot(apart.vector(), apart.vector());
+            Group tier = Group::all(0);
             for (int t = 1; t <= Contacts::tiers; ++t) {
-                const Lanes limit = near + Lanes::all(skin * t / Contacts::tiers);
-                tier += choose(limit * limit - distance, Lanes::all(0), Lanes::all(1));
+                const Group limit = near + Group::all(skin * t / Contacts::tiers);
+                tier += choose(limit * limit - distance, Group::all(0), Group::all(1));
             }
-            alignas(64) real number[lane_count];
-            lanes(number) = tier;
-            for (int l = 0; l < std::min(lane_count, count - p); ++l) {
+            alignas(64) real number[group];
+            pack<group>(number) = tier;
+            for (int l = 0; l < std::min(group, count - p); ++l) {
                 found_pair[found] = p + l, found_tier[found] = number[l];
                 found += number[l] < Contacts::tiers;
             }
@@ -281,13 +287,11 @@ public:
             next[t] = sum;
             pairs.tier_end[t] = sum += numbers[t];
         }
+        const std::vector<int>& slot = slots(pairs, count);
         pairs.resize(sum);
         for (int n = 0; n < found; ++n) {
             const int p = found_pair[n], k = next[static_cast<int>(found_tier[n])]++;
-            at(pairs.first, k) = at(chunk.near_first, p);
-            at(pairs.second, k) = at(chunk.near_second, p);
-            at(pairs.origin, k) = p;
-            at(pairs.slot, k) = at(chunk.near_slot, p);
+            pairs.put(k, chunk.begin + at(chunk.near_first, p), at(chunk.near_second, p), p, at(slot, p));
         }
         pairs.pad(chunk.begin, chunk.begin);
     }
@@ -299,19 +303,19 @@ public:
         const int walls = static_cast<int>(all_walls.size()), last = bed.particles() - 1;
         const Row c = bed.motion.displacement;
         thread_local std::vector<std::uint32_t> masks;
-        masks.assign(static_cast<std::size_t>(chunk.end - chunk.begin) + lane_count, 0);
+        masks.assign(static_cast<std::size_t>(chunk.end - chunk.begin) + group, 0);
         int count = 0;
-        for (int i = chunk.begin; i < chunk.end; i += lane_count) {
-            const auto a = columns([&](int l) { return &at(bed.position, std::min(i + l, last)); });
-            const Vector<Lanes> place = {a.x - Lanes::all(c[0]), a.y - Lanes::all(c[1]),
-                                         a.z - Lanes::all(c[2])};
-            const int used = std::min(lane_count, chunk.end - i);
+        for (int i = chunk.begin; i < chunk.end; i += group) {
+            const auto a = columns<group>([&](int l) { return &at(bed.position, std::min(i + l, last)); });
+            const Vector<Group> place = {a.x - Group::all(c[0]), a.y - Group::all(c[1]),
+                                         a.z - Group::all(c[2])};
+            const int used = std::min(group, chunk.end - i);
             std::uint32_t* mask = &at(masks, i - chunk.begin);
             for (int w = 0; w < walls; ++w) {
-                alignas(64) real room[lane_count];
-                lanes(room) = Lanes::all(skin) + a.w - distance(at(all_walls, w), place);
-                for (int l = 0; l < lane_count; ++l) mask[l] |= static_cast<std::uint32_t>(room[l] > 0) << w;
-                if (largest(lanes(room) - a.w) > skin) [[unlikely]] // a centre is outside
+                alignas(64) real room[group];
+                pack<group>(room) = Group::all(skin) + a.w - distance(at(all_walls, w), place);
+                for (int l = 0; l < group; ++l) mask[l] |= static_cast<std::uint32_t>(room[l] > 0) << w;
+                if (largest(pack<group>(room) - a.w) > skin) [[unlikely]] // a centre is outside
                     for (int l = 0; l < used; ++l)
                         if (room[l] - at(bed.position, i + l)[3] > skin)
                             chunk.stopped = {Status::escaped, i + l, w, 0};
@@ -319,15 +323,13 @@ public:
             for (int l = 0; l < used; ++l) count += __builtin_popcount(mask[l]);
         }
         Contacts& list = chunk.walls;
+        const std::vector<int>& slot = slots(list, (chunk.end - chunk.begin) * walls);
         list.resize(count);
         for (int& end : list.tier_end) end = count;
         for (int i = chunk.begin, k = 0; i < chunk.end; ++i)
             for (std::uint32_t rest = at(masks, i - chunk.begin); rest != 0; rest &= rest - 1, ++k) {
-                const int w = __builtin_ctz(rest);
-                at(list.first, k) = i;
-                at(list.second, k) = w;
-                at(list.origin, k) = (i - chunk.begin) * walls + w;
-                at(list.slot, k) = at(chunk.wall_slot, at(list.origin, k));
+                const int w = __builtin_ctz(rest), own = i - chunk.begin, origin = own * walls + w;
+                list.put(k, i, w, origin, at(slot, origin));
             }
         list.pad(chunk.begin, 0);
     }

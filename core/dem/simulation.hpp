@@ -68,10 +68,8 @@ class Simulation {
         bed.rates.assign(size, Rates{});
         bed.rolls = rolls;
         bed.chunks.reserve((size + Bed::chunk_size - 1) / Bed::chunk_size);
-        for (int from = 0; from < n; from += Bed::chunk_size) {
-            Chunk& chunk = bed.chunks.emplace_back(pages);
-            chunk.begin = from, chunk.end = std::min(from + Bed::chunk_size, n);
-        }
+        for (int from = 0; from < n; from += Bed::chunk_size)
+            bed.chunks.emplace_back(from, std::min(from + Bed::chunk_size, n), pages);
         bed.briefs.assign(bed.chunks.size(), Brief{.closed = infinity});
     }
 
@@ -150,7 +148,7 @@ class Simulation {
             division_.each_chunk(team.rank(),
                                  [&](Place p) { f(at(neighbours_, p.bed), at(beds_, p.bed), p.chunk); });
         };
-        each_chunk([](Neighbours& n, Bed& bed, int c) { n.pack_up(bed, at(bed.chunks, c)); });
+        each_chunk([](Neighbours& n, Bed& bed, int c) { n.pack_up(at(bed.chunks, c)); });
         team.sync([&] {
             for (std::size_t b = 0; b < beds_.size(); ++b)
                 choose_reach(beds_[b]), neighbours_[b].find_order(beds_[b]);

@@ -24,9 +24,11 @@ inline Lanes first_lane(real v) {
 struct Deepest {
     Lanes overlap{}, radius = Lanes::all(1);
 
-    RATTLEBOX_INLINE void see(const Lanes& other, const Lanes& its_radius) {
-        const Lanes deeper = other * radius - overlap * its_radius;
-        overlap = choose(deeper, other, overlap), radius = choose(deeper, its_radius, radius);
+    // In the lanes of a group.
+    RATTLEBOX_INLINE void see(const Group& other, const Group& its_radius, int part) {
+        Group &own = group_of(overlap, part), &own_radius = group_of(radius, part);
+        const Group deeper = other * own_radius - own * its_radius;
+        own = choose(deeper, other, own), own_radius = choose(deeper, its_radius, own_radius);
     }
     real ratio() const { return largest(overlap / radius); }
 };

@@ -23,11 +23,11 @@ inline Near nearest(const Wall& wall, Row place) {
 }
 
 // Of many places at once.
-RATTLEBOX_INLINE Lanes distance(const Wall& wall, const Vector<Lanes>& place) {
-    const Vector<Lanes> axis = {Lanes::all(wall.axis[0]), Lanes::all(wall.axis[1]), Lanes::all(wall.axis[2])};
-    const Lanes along = dot(axis, place), offset = Lanes::all(wall.axis[3]);
+RATTLEBOX_INLINE Group distance(const Wall& wall, const Vector<Group>& place) {
+    const Vector<Group> axis = {Group::all(wall.axis[0]), Group::all(wall.axis[1]), Group::all(wall.axis[2])};
+    const Group along = dot(axis, place), offset = Group::all(wall.axis[3]);
     if (wall.form == Wall::plane) return offset - along;
-    const Vector<Lanes> q = wall.form == Wall::cylinder ? place - along * axis : place;
+    const Vector<Group> q = wall.form == Wall::cylinder ? place - along * axis : place;
     return offset - root(dot(q, q));
 }
 
