@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/cores.hpp"
+
 namespace rattlebox {
 
 struct Alone {
@@ -46,7 +48,9 @@ class Meetingpoint {
     alignas(64) std::atomic<unsigned> round_{0};
     alignas(64) std::vector<Mark> marks_;
 
-    static constexpr int patience = 100'000; // a phase lasts microseconds, worth spinning for
+    // A phase lasts microseconds, worth spinning for. Who waits longer lets others have the core, since what
+    // it waits for may be among them, and sleeps in the end, to be woken where a core is free.
+    static constexpr int spins = 2000, yields = 1000;
 
 public:
     explicit Meetingpoint(int size) : marks_(static_cast<std::size_t>(size)) {}
@@ -60,9 +64,12 @@ public:
             round_.notify_all();
             return;
         }
-        // Who waits longer sleeps: others get the core, and the sleeper is woken where one is free.
-        for (int spins = 0; round_.load(std::memory_order_acquire) == round; ++spins)
-            if (spins > patience) round_.wait(round, std::memory_order_acquire);
+        for (int looks = 0; round_.load(std::memory_order_acquire) == round; ++looks) {
+            if (looks > spins + yields)
+                round_.wait(round, std::memory_order_acquire);
+            else if (looks > spins)
+                std::this_thread::yield();
+        }
     }
 
     void report(int rank) {
@@ -76,8 +83,8 @@ public:
         const unsigned own = marks_[static_cast<std::size_t>(rank)].reports.load(std::memory_order_relaxed);
         for (int r = 0; r < rank; ++r) {
             const std::atomic<unsigned>& theirs = marks_[static_cast<std::size_t>(r)].reports;
-            for (int spins = 0; static_cast<int>(theirs.load(std::memory_order_acquire) - own) < 0;)
-                if (!other() && ++spins > patience) std::this_thread::yield();
+            for (int looks = 0; static_cast<int>(theirs.load(std::memory_order_acquire) - own) < 0;)
+                if (!other() && ++looks > spins) std::this_thread::yield();
         }
     }
 };
@@ -104,9 +111,13 @@ public:
 template <class Work> void together(int threads, Work&& work) {
     if (threads <= 1) return work(Alone{});
     Meetingpoint point(threads);
+    const Cores cores;
     std::vector<std::thread> others;
     for (int rank = 1; rank < threads; ++rank)
-        others.emplace_back([&, rank] { work(Member(point, rank, threads)); });
+        others.emplace_back([&, rank] {
+            cores.begin(rank);
+            work(Member(point, rank, threads));
+        });
     work(Member(point, 0, threads));
     for (std::thread& t : others) t.join();
 }

@@ -1,5 +1,6 @@
 """The same bits: for any number of threads, after a stop and a restart, for any output."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -103,6 +104,23 @@ def test_restart_gives_the_same_bits(law: str) -> None:
     unbroken.run(last)
     assert end(unbroken) == end(whole)
     assert len(early["time"]) < len(unbroken.records()["time"])
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="cores of a process can be chosen on Linux only")
+def test_teams_on_one_core_give_the_same_bits() -> None:
+    """Members who wait for each other on a single core let each other have it, compute the same bits, and keep to it."""
+    before = os.sched_getaffinity(0)
+    told = []
+    try:
+        os.sched_setaffinity(0, {min(before)})
+        for threads in (1, 3):
+            dem, last = cases.dem_of(shaken("Hertz", duration=0.005), threads)
+            dem.run(last)
+            assert os.sched_getaffinity(0) == {min(before)}
+            told.append(flat(dem.records()) + end(dem))
+    finally:
+        os.sched_setaffinity(0, before)
+    assert len(set(told)) == 1
 
 
 def test_large_beds_give_the_same_bits() -> None:
