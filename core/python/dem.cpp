@@ -85,16 +85,12 @@ public:
         Counts counts;
         std::int64_t candidates = 0;
         for (const Bed& b : simulation_->beds()) {
-            std::int64_t sum[2] = {};
+            counts.begin();
             for (const Chunk& c : b.chunks) {
                 candidates += c.pairs.size() + c.walls.size();
-                const Tally& t = c.tally;
-                for (int k = 0; k < 2; ++k) sum[k] += t.first_touches[k];
-                counts.deepest = std::fmax(counts.deepest, t.deepest.ratio());
-                counts.fastest = std::fmax(counts.fastest, t.fastest);
-                counts.extrapolated += t.extrapolated;
+                counts.see(c.tally.first_touches, c.tally.deepest.ratio(), c.tally.fastest);
+                counts.extrapolated += c.tally.extrapolated;
             }
-            counts.touches.insert(counts.touches.end(), sum, sum + 2);
         }
         nb::dict d = counts.write(simulation_->beds().size(), simulation_->step(), simulation_->builds(),
                                   simulation_->scans(), simulation_->memory(), seconds_);

@@ -188,18 +188,30 @@ nb::dict write_state(long step, real dt, const Modes& modes, std::size_t count, 
     return d;
 }
 
-// What the contacts of a cavity have come to.
+// What the contacts of each cavity have come to.
 struct Counts {
     std::vector<std::int64_t> touches;
-    real deepest = 0, fastest = 0;
+    std::vector<real> deepest, fastest;
     std::int64_t extrapolated = 0;
+
+    // One cavity after the other.
+    void begin() {
+        touches.insert(touches.end(), 2, 0);
+        deepest.push_back(0), fastest.push_back(0);
+    }
+    void see(const auto first_touches[2], real overlap, real speed) {
+        for (std::size_t p = 0; p < 2; ++p) touches[touches.size() - 2 + p] += first_touches[p];
+        deepest.back() = std::fmax(deepest.back(), overlap),
+        fastest.back() = std::fmax(fastest.back(), speed);
+    }
 
     nb::dict write(std::size_t cavities, long step, long rebuilds, long refreshes, std::size_t memory,
                    double seconds) {
         nb::dict d;
         d["steps"] = step, d["rebuilds"] = rebuilds, d["refreshes"] = refreshes;
         d["first_touches"] = array(std::move(touches), {cavities, 2});
-        d["largest_overlap"] = deepest, d["largest_approach_speed"] = fastest;
+        d["largest_overlap"] = array(std::move(deepest));
+        d["largest_approach_speed"] = array(std::move(fastest));
         d["extrapolated"] = extrapolated, d["memory_bytes"] = memory, d["seconds"] = seconds;
         return d;
     }

@@ -86,15 +86,12 @@ public:
         Counts counts;
         for (std::size_t k = 0; k < beds(); ++k) {
             const wide::Bed& b = world().bed[k];
-            std::int64_t sum[2] = {};
+            counts.begin();
             for (int i = 0; i < b.particles; ++i) {
                 const Account& a = b.account[i];
-                for (int p = 0; p < 2; ++p) sum[p] += a.touches[p];
-                counts.deepest = std::fmax(counts.deepest, b.deepest[i]);
-                counts.fastest = std::fmax(counts.fastest, a.fastest);
+                counts.see(a.touches, b.deepest[i], a.fastest);
                 counts.extrapolated += a.extrapolated;
             }
-            counts.touches.insert(counts.touches.end(), sum, sum + 2);
         }
         nb::dict d = counts.write(beds(), step(), world().control.builds, 0, simulation_.memory(), seconds_);
         std::vector<std::int64_t> slots;

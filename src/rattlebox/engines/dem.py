@@ -431,7 +431,8 @@ def _arrays(
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         base += np.multiply.outer(base_motion(acceleration, times), direction_of_base(case, signal))
     counters = dem.counters()
-    figures, notes = outcome(case, tables, step, counters["largest_overlap"], counters["largest_approach_speed"])
+    overlaps, speeds = (counters[name].tolist() for name in ("largest_overlap", "largest_approach_speed"))
+    figures, notes = outcome(case, tables, step, overlaps, speeds)
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     name, message = _told(case, names, dem, status, step, journey.checkpoint)
     ends = dem.state()["cavities"]

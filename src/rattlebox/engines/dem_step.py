@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -372,7 +372,7 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
 
 
 def outcome(
-    case: Case, tables: list[ContactTable], step: Step, overlap: float, speed: float
+    case: Case, tables: list[ContactTable], step: Step, overlaps: Sequence[float], speeds: Sequence[float]
 ) -> tuple[dict[str, float], list[str]]:
     """Return figures and notes on a step, after the run.
 
@@ -380,15 +380,16 @@ def outcome(
     ----------
     case, tables, step
         As for `choose_step`, and what it returned.
-    overlap
-        Largest overlap over the smaller radius.
-    speed
-        Largest approach speed at a first touch [m/s].
+    overlaps
+        Largest overlap over the smaller radius, in each damper.
+    speeds
+        Largest approach speed at a first touch, in each damper [m/s].
     """
+    dampers = case.particle_dampers
     shortest = min(
         (
             limit
-            for damper, table in zip(case.particle_dampers, tables, strict=True)
+            for damper, table, speed in zip(dampers, tables, speeds, strict=True)
             for limit in contact_limits(damper, table, speed, 1.0)
         ),
         key=lambda limit: limit.duration,
@@ -398,9 +399,9 @@ def outcome(
         "step": step.dt,
         "longest_automatic_step": step.limit.step,
         "expected_approach_speed": max(step.speeds),
-        "largest_approach_speed": speed,
+        "largest_approach_speed": max(speeds),
         "steps_per_contact": steps,
-        "largest_overlap": overlap,
+        "largest_overlap": max(overlaps),
     }
     assert isinstance(case.method, Dem)
     how = "limited by the" if case.method.dt == "auto" else "as given; an automatic one would be limited by the"
@@ -411,11 +412,14 @@ def outcome(
             f"warning: only {steps:.3g} steps in the shortest contact, that of {shortest.what.removeprefix('contact of ')}; "
             f"at least {FEWEST_STEPS:g} are good"
         )
-    if overlap > MOST_OVERLAP:
-        notes.append(
-            f"warning: overlaps reach {100 * overlap:.3g} % of the radius, and should stay below {100 * MOST_OVERLAP:g} %: "
-            + ("less softening or a stiffer contact" if _softened(case) else "a stiffer contact")
-        )
+    for index, (damper, overlap) in enumerate(zip(dampers, overlaps, strict=True)):
+        if overlap > MOST_OVERLAP:
+            where = f" in {damper.label(index)}" if len(dampers) > 1 else ""
+            notes.append(
+                f"warning: overlaps{where} reach {100 * overlap:.3g} % of the radius, and should stay below "
+                f"{100 * MOST_OVERLAP:g} %: "
+                + ("less softening or a stiffer contact" if damper.softening > 1 else "a stiffer contact")
+            )
     return figures, notes
 
 

@@ -178,11 +178,11 @@ def test_each_softening_is_told_once() -> None:
         parts = [case({"softening": factor, "name": f"d{k}", **laws}).dampers[0] for k, factor in enumerate(softening)]
         made = rb.Case(structure=rb.Fixed(), dampers=parts, duration=0.1)
         step = choose_step(made, tables(made), (1.0,) * len(parts))
-        return outcome(made, tables(made), step, 0.05, 1.0)[1][1:]
+        return outcome(made, tables(made), step, (0.05,) * len(parts), (1.0,) * len(parts))[1][1:]
 
     hertz = "moduli are divided by {0:g}: contacts last {1} times as long, and overlap {1} times as much"
-    assert notes(100, 100)[:-1] == [hertz.format(100, 6.31)]
-    assert notes(100, 1, 10)[:-1] == ["d0: " + hertz.format(100, 6.31), "d2: " + hertz.format(10, 2.51)]
+    assert notes(100, 100)[:-2] == [hertz.format(100, 6.31)]
+    assert notes(100, 1, 10)[:-3] == ["d0: " + hertz.format(100, 6.31), "d2: " + hertz.format(10, 2.51)]
     linear = rb.Linear(contact_time="0.1 ms", restitution=0.9)
     assert notes(100, contact=linear)[:-1] == [hertz.format(100, 10)]
     assert notes(100, wall_contact=linear)[:-1] == [hertz.format(100, "6.31 and 10")]
@@ -194,12 +194,34 @@ def test_outcomes_are_judged() -> None:
     """Too few steps in the shortest contact and too large overlaps are told, softening with what it does."""
     made = case({"softening": 100})
     step = choose_step(made, tables(made), (1.0,))
-    _, quiet = outcome(made, tables(made), step, 1e-3, 1.0)
+    _, quiet = outcome(made, tables(made), step, (1e-3,), (1.0,))
     assert not any("warning" in note for note in quiet)
     assert any("contacts last 6.31 times as long" in note for note in quiet)
-    figures, loud = outcome(made, tables(made), step, 0.05, 100.0)
+    figures, loud = outcome(made, tables(made), step, (0.05,), (100.0,))
     assert sum("warning" in note for note in loud) == 2
     assert figures["steps_per_contact"] == pytest.approx(step.shortest.duration / step.dt * 100**-0.2, rel=1e-6)
+
+
+def test_the_damper_that_overlaps_too_much_is_named() -> None:
+    """Of several dampers each is judged by its own overlap, speed and softening, and named."""
+    parts = [case({"name": name, "softening": factor}).dampers[0] for name, factor in (("box", 1), ("can", 100))]
+    made = rb.Case(structure=rb.Fixed(), dampers=parts, duration=0.1)
+    step = choose_step(made, tables(made), (1.0, 1.0))
+
+    def warnings(*overlaps: float) -> list[str]:
+        return [note for note in outcome(made, tables(made), step, overlaps, (1.0, 1.0))[1] if "overlaps" in note]
+
+    assert warnings(1e-3, 1e-3) == []
+    (box,) = warnings(0.02, 1e-3)
+    assert box == "warning: overlaps in box reach 2 % of the radius, and should stay below 1 %: a stiffer contact"
+    assert [note.split(" reach")[0] for note in warnings(0.02, 0.03)] == [
+        "warning: overlaps in box",
+        "warning: overlaps in can",
+    ]
+    assert warnings(1e-3, 0.03)[0].endswith("less softening or a stiffer contact")
+    stiff, soft = (outcome(made, tables(made), step, (0, 0), speeds)[0] for speeds in ((10.0, 1.0), (1.0, 10.0)))
+    assert stiff["steps_per_contact"] < soft["steps_per_contact"]
+    assert stiff["largest_approach_speed"] == soft["largest_approach_speed"] == 10.0
 
 
 @pytest.mark.parametrize("filled", [0.2, 0.55])

@@ -51,7 +51,7 @@ def elastic_impact(ball: Ball, plane: bool, speed: float) -> tuple[float, float,
     x = dem.state()["cavities"][0]["position"][:, 0]
     gap = 0.5 * case.dampers[0].cavity.size[0] - x[0] - ball.radius if plane else x[1] - x[0] - 2 * ball.radius
     left = dem.state()["time"] - gap / speed
-    return max(forces), dem.counters()["largest_overlap"] * ball.radius, left - 5.5 * dt
+    return max(forces), dem.counters()["largest_overlap"][0] * ball.radius, left - 5.5 * dt
 
 
 def elastic_impacts() -> Iterator[Line]:
