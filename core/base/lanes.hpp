@@ -102,6 +102,7 @@ template <int n> Pack<n> unaligned(const real* p) {
         return {unaligned<n / 2>(p), unaligned<n / 2>(p + n / 2)};
     }
 }
+template <int n> void put(const Pack<n>& value, real* p) { __builtin_memcpy(p, &value, sizeof(value)); }
 
 // What a register holds of eight: laws that take many numbers do not fit the registers otherwise.
 inline constexpr int group = register_width;

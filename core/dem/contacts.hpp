@@ -115,7 +115,7 @@ struct Contacts {
                 numbers->reserve(n + n / 8 + lane_count);
         for (auto* numbers : {&first, &second}) numbers->resize(n + lane_count);
         slot.resize(n + lane_count, none);
-        for (auto* numbers : {&origin, &active}) numbers->resize(n);
+        origin.resize(n), active.resize(n + lane_count); // more are written than touch
     }
 
     void put(int k, int one, int other, int from, int memory) {

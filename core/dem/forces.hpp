@@ -1,6 +1,7 @@
 // Which candidates of a chunk touch, and what those do to each other.
 #pragma once
 
+#include "base/masks.hpp"
 #include "dem/ahead.hpp"
 #include "dem/contact_step.hpp"
 
@@ -139,25 +140,17 @@ void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ende
     int count = 0;
     for (int base = 0; base < to; base += lane_count) {
         ahead.looking(base);
-        alignas(64) real room[lane_count];
         const int used = std::min(lane_count, to - base);
+        unsigned touching = 0;
         for (int part = 0; part < used; part += group) {
             int k[group];
             for (int l = 0; l < group; ++l) k[l] = base + part + l;
-            pack<group>(room + part) = view.room(k);
+            touching |= positive(view.room(k)) << part;
         }
-        int changed = 0;
-        for (int l = 0; l < used; ++l) {
-            const int touches = room[l] > 0;
-            active[count] = base + l;
-            count += touches;
-            changed |= touches ^ (slot[base + l] >= 0);
-        }
-        if (changed) [[unlikely]]
-            for (int l = 0; l < used; ++l) {
-                const bool touches = room[l] > 0;
-                if (touches != (slot[base + l] >= 0)) touches ? begun(base + l) : ended(base + l);
-            }
+        touching &= first_lanes(used);
+        count += list_lanes(touching, base, active + count);
+        const unsigned touched = ~negative(slot + base) & first_lanes(used);
+        each_lane(touching ^ touched, [&](int l) { touching >> l & 1 ? begun(base + l) : ended(base + l); });
     }
     list.actives = count;
 }

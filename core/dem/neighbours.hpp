@@ -12,6 +12,7 @@
 
 #include <cstdint>
 
+#include "base/masks.hpp"
 #include "dem/bed.hpp"
 #include "dem/walls.hpp"
 
@@ -172,7 +173,7 @@ public:
         thread_local std::vector<int> firsts, seconds;
         int count = 0, *first = firsts.data(), *second = seconds.data();
         const auto make_room = [&] {
-            const auto room = static_cast<std::size_t>(count + group);
+            const auto room = static_cast<std::size_t>(count + lane_count);
             if (room <= firsts.size()) return;
             firsts.resize(2 * room), seconds.resize(2 * room);
             first = firsts.data(), second = seconds.data();
@@ -192,12 +193,9 @@ public:
                     const auto others = [&](int a) { return unaligned<group>(&at(along_[a], j)); };
                     const Vector<Group> apart = place - Vector<Group>{others(0), others(1), others(2)};
                     const Group near = around + others(3);
-                    alignas(64) real room[group];
-                    pack<group>(room) = near * near - dot(apart, apart);
-                    for (int l = 0; l < group; ++l) {
-                        first[count] = i - chunk.begin, second[count] = j + l;
-                        count += static_cast<int>(room[l] > 0) & static_cast<int>(j + l < to);
-                    }
+                    const unsigned found = positive(near * near - dot(apart, apart));
+                    for (int l = 0; l < lane_count; ++l) first[count + l] = i - chunk.begin;
+                    count += list_lanes(found & first_lanes(std::min(group, to - j)), j, second + count);
                 }
             };
             range(cy, cz, true);
@@ -254,12 +252,12 @@ public:
         choose_skin(chunk.pairs, bed.smallest, 0.4 * bed.reach);
         const real skin = chunk.pairs.skin;
         thread_local std::vector<int> found_pairs;
-        thread_local std::vector<real> found_tiers;
+        thread_local std::vector<real> tiers;
         const int count = static_cast<int>(chunk.near_second.size());
-        found_pairs.resize(static_cast<std::size_t>(count) + group);
-        found_tiers.resize(found_pairs.size());
+        found_pairs.resize(static_cast<std::size_t>(count) + lane_count);
+        tiers.resize(found_pairs.size());
         int* const found_pair = found_pairs.data();
-        real* const found_tier = found_tiers.data();
+        real* const tier_of = tiers.data();
         int found = 0;
         for (int p = 0; p < count; p += group) {
             const auto apart = columns_of<group>([&](int l) __attribute__((always_inline)) {
@@ -273,16 +271,13 @@ public:
                 const Group limit = near + Group::all(skin * t / Contacts::tiers);
                 tier += choose(limit * limit - distance, Group::all(0), Group::all(1));
             }
-            alignas(64) real number[group];
-            pack<group>(number) = tier;
-            for (int l = 0; l < std::min(group, count - p); ++l) {
-                found_pair[found] = p + l, found_tier[found] = number[l];
-                found += number[l] < Contacts::tiers;
-            }
+            put<group>(tier, tier_of + p);
+            const unsigned within = positive(Group::all(Contacts::tiers) - tier);
+            found += list_lanes(within & first_lanes(std::min(group, count - p)), p, found_pair + found);
         }
         Contacts& pairs = chunk.pairs;
         int numbers[Contacts::tiers] = {}, next[Contacts::tiers], sum = 0;
-        for (int n = 0; n < found; ++n) ++numbers[static_cast<int>(found_tier[n])];
+        for (int n = 0; n < found; ++n) ++numbers[static_cast<int>(tier_of[found_pair[n]])];
         for (int t = 0; t < Contacts::tiers; ++t) {
             next[t] = sum;
             pairs.tier_end[t] = sum += numbers[t];
@@ -290,7 +285,7 @@ public:
         const std::vector<int>& slot = slots(pairs, count);
         pairs.resize(sum);
         for (int n = 0; n < found; ++n) {
-            const int p = found_pair[n], k = next[static_cast<int>(found_tier[n])]++;
+            const int p = found_pair[n], k = next[static_cast<int>(tier_of[p])]++;
             pairs.put(k, chunk.begin + at(chunk.near_first, p), at(chunk.near_second, p), p, at(slot, p));
         }
         pairs.pad(chunk.begin, chunk.begin);
@@ -312,13 +307,10 @@ public:
             const int used = std::min(group, chunk.end - i);
             std::uint32_t* mask = &at(masks, i - chunk.begin);
             for (int w = 0; w < walls; ++w) {
-                alignas(64) real room[group];
-                pack<group>(room) = Group::all(skin) + a.w - distance(at(all_walls, w), place);
-                for (int l = 0; l < group; ++l) mask[l] |= static_cast<std::uint32_t>(room[l] > 0) << w;
-                if (largest(pack<group>(room) - a.w) > skin) [[unlikely]] // a centre is outside
-                    for (int l = 0; l < used; ++l)
-                        if (room[l] - at(bed.position, i + l)[3] > skin)
-                            chunk.stopped = {Status::escaped, i + l, w, 0};
+                const Group far = distance(at(all_walls, w), place);
+                each_lane(positive(Group::all(skin) + a.w - far), [&](int l) { mask[l] |= 1u << w; });
+                each_lane(positive(Group::all(0) - far) & first_lanes(used), // a centre is outside
+                          [&](int l) { chunk.stopped = {Status::escaped, i + l, w, 0}; });
             }
             for (int l = 0; l < used; ++l) count += __builtin_popcount(mask[l]);
         }
