@@ -1,7 +1,7 @@
-// Rows of four numbers, as vectors in space with one number beside them, and eight rows turned into lanes.
+// Rows of four numbers, as vectors in space with one number beside them, and rows turned into lanes.
 //
 // A particle's or a contact's data lie together, so that a contact fetches a few whole rows from memory and
-// not a dozen scattered numbers; turned into lanes, eight contacts are computed at once.
+// not a dozen scattered numbers; turned into lanes, several contacts are computed at once.
 #pragma once
 
 #include "base/lanes.hpp"

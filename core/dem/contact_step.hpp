@@ -1,8 +1,9 @@
-// What two bodies that touch do to each other: of a number, or of eight in lanes.
+// What two bodies that touch do to each other: of a number, or of as many as a register holds.
 //
 //     normal       the laws of core/contact, with x = d^(1/4)
-//     tangential   spring and dashpot, |F_t| <= mu N:  dF = -k_t v_t dt, k_t = B sqrt(d) (Mindlin: B = 8 G*
-//     sqrt(R*)) rolling      the same with torques and relative spin, |M| <= mu_r R* N, k_r = (k_r / k_t) k_t
+//     tangential   spring and dashpot, |F_t| <= mu N:  dF = -k_t v_t dt, k_t = B sqrt(d)
+//                  (Mindlin: B = 8 G* sqrt(R*))
+//     rolling      the same with torques and relative spin, |M| <= mu_r R* N, k_r = (k_r / k_t) k_t
 //
 // The springs keep their force, not their stretch: when the normal force falls, so does k_t, and the spring's
 // force with it; when it rises, the force stays. Either way the energy F^2 / (2 k_t) never grows by itself,
