@@ -92,21 +92,17 @@ template <int n> Pack<n> read(const real* p) {
     else
         return {read<n / 2>(p), read<n / 2>(p + n / 2)};
 }
-// At any address.
-template <int n> Pack<n> unaligned(const real* p) {
-    if constexpr (n == register_width) {
-        Pack<n> value;
-        __builtin_memcpy(&value, p, sizeof(value));
-        return value;
-    } else {
-        return {unaligned<n / 2>(p), unaligned<n / 2>(p + n / 2)};
-    }
-}
-template <int n> void put(const Pack<n>& value, real* p) { __builtin_memcpy(p, &value, sizeof(value)); }
-
 // What a register holds of eight: laws that take many numbers do not fit the registers otherwise.
 inline constexpr int group = register_width;
 using Group = Pack<group>;
+
+// At any address.
+inline Group unaligned(const real* p) {
+    Group value;
+    __builtin_memcpy(&value, p, sizeof(value));
+    return value;
+}
+inline void put(const Group& value, real* p) { __builtin_memcpy(p, &value, sizeof(value)); }
 
 inline Group& group_of(Lanes& all, int first) { return pack<group>(reinterpret_cast<real*>(&all) + first); }
 

@@ -111,26 +111,16 @@ template <class T> struct Vector {
     }
 };
 
+#ifndef RATTLEBOX_GPU
 template <int n> struct Columns {
     Pack<n> x, y, z, w;
     Vector<Pack<n>> vector() const { return {x, y, z}; }
 };
 
 // The rows of(0), of(1), ... as lanes.
-template <int n = lane_count, class Of> RATTLEBOX_INLINE Columns<n> columns_of(Of&& of) {
-    if constexpr (n > register_width) {
-        const auto low = columns_of<n / 2>(of);
-        const auto high =
-            columns_of<n / 2>([&](int l) __attribute__((always_inline)) { return of(l + n / 2); });
-        return {{low.x, high.x}, {low.y, high.y}, {low.z, high.z}, {low.w, high.w}};
-#ifdef RATTLEBOX_GPU
-    } else {
-        const Row a = of(0);
-        return {{a[0]}, {a[1]}, {a[2]}, {a[3]}};
-    }
-#else
+template <int n = group, class Of> RATTLEBOX_INLINE Columns<n> columns_of(Of&& of) {
 #if defined(__AVX512F__)
-    } else if constexpr (n == 8) {
+    if constexpr (n == 8) {
         const auto two = [&](int l) __attribute__((always_inline)) {
             return __builtin_shufflevector(of(l), of(l + 4), 0, 1, 2, 3, 4, 5, 6, 7);
         };
@@ -143,8 +133,9 @@ template <int n = lane_count, class Of> RATTLEBOX_INLINE Columns<n> columns_of(O
                 {__builtin_shufflevector(yw, wy, 0, 1, 8, 9, 4, 5, 12, 13)},
                 {__builtin_shufflevector(xz, zx, 2, 3, 10, 11, 6, 7, 14, 15)},
                 {__builtin_shufflevector(yw, wy, 2, 3, 10, 11, 6, 7, 14, 15)}};
+    } else
 #endif
-    } else if constexpr (n == 4) {
+        if constexpr (n == 4) {
         const Row a = of(0), b = of(1), c = of(2), d = of(3);
         const Row xz = __builtin_shufflevector(a, b, 0, 4, 2, 6),
                   yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
@@ -162,26 +153,17 @@ template <int n = lane_count, class Of> RATTLEBOX_INLINE Columns<n> columns_of(O
         };
         return {both(0), both(1), both(2), both(3)};
     }
-#endif
 }
 
 // The rows that at(0), at(1), ... point to.
-template <int n = lane_count, class At> RATTLEBOX_INLINE Columns<n> columns(At&& at) {
+template <int n = group, class At> RATTLEBOX_INLINE Columns<n> columns(At&& at) {
     return columns_of<n>([&](int l) __attribute__((always_inline)) { return *at(l); });
 }
 
 // The other way: lane l becomes the row that at(l) points to. Where lanes share a row, one of them stays.
 template <int n, class At> RATTLEBOX_INLINE void store(const Columns<n>& c, At&& at) {
-    if constexpr (n > register_width) {
-        store(Columns<n / 2>{c.x.low, c.y.low, c.z.low, c.w.low}, at);
-        store(Columns<n / 2>{c.x.high, c.y.high, c.z.high, c.w.high}, [&](int l) { return at(l + n / 2); });
-#ifdef RATTLEBOX_GPU
-    } else {
-        *at(0) = Row{c.x.v, c.y.v, c.z.v, c.w.v};
-    }
-#else
 #if defined(__AVX512F__)
-    } else if constexpr (n == 8) {
+    if constexpr (n == 8) {
         const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 8, 9, 4, 5, 12, 13);
         const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 8, 9, 4, 5, 12, 13);
         const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 10, 11, 6, 7, 14, 15);
@@ -194,8 +176,9 @@ template <int n, class At> RATTLEBOX_INLINE void store(const Columns<n>& c, At&&
         put(1, __builtin_shufflevector(xz, yw, 1, 9, 3, 11, 5, 13, 7, 15));
         put(2, __builtin_shufflevector(zx, wy, 0, 8, 2, 10, 4, 12, 6, 14));
         put(3, __builtin_shufflevector(zx, wy, 1, 9, 3, 11, 5, 13, 7, 15));
+    } else
 #endif
-    } else if constexpr (n == 4) {
+        if constexpr (n == 4) {
         const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 4, 5),
                    yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 4, 5);
         const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 6, 7),
@@ -207,7 +190,7 @@ template <int n, class At> RATTLEBOX_INLINE void store(const Columns<n>& c, At&&
     } else {
         for (int l = 0; l < n; ++l) *at(l) = Row{c.x.v[l], c.y.v[l], c.z.v[l], c.w.v[l]};
     }
-#endif
 }
+#endif
 
 } // namespace rattlebox

@@ -30,7 +30,7 @@ struct PairView {
     // Rows are combined before they are turned into lanes, which costs more.
     template <class Combine>
     RATTLEBOX_INLINE Columns<group> both(const Paged<Row>& rows, const int* k, Combine&& combine) const {
-        return columns_of<group>([&](int l) __attribute__((always_inline)) {
+        return columns_of([&](int l) __attribute__((always_inline)) {
             const int i = at(list.first, k[l]), j = at(list.second, k[l]);
             return combine(at(rows, i), at(rows, j), i, j);
         });
@@ -83,7 +83,7 @@ struct WallView {
     }
 
     RATTLEBOX_INLINE Columns<group> first(const Paged<Row>& rows, const int* k) const {
-        return columns<group>([&](int l) { return &at(rows, at(list.first, k[l])); });
+        return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
     }
     const Wall& wall(int k) const { return at(bed.cavity->walls, at(list.second, k)); }
     static Vector<Group> same(Row r) { return {Group::all(r[0]), Group::all(r[1]), Group::all(r[2])}; }
@@ -91,7 +91,7 @@ struct WallView {
     RATTLEBOX_INLINE void near(const int* k, const Columns<group>& a, Vector<Group>& normal,
                                Group& distance) const {
         const Vector<Group> place = a.vector() - same(bed.motion.displacement);
-        const auto axis = columns<group>([&](int l) { return &wall(k[l]).axis; });
+        const auto axis = columns([&](int l) { return &wall(k[l]).axis; });
         const Group along = dot(axis.vector(), place);
         normal = axis.vector();
         distance = axis.w - along;
@@ -190,7 +190,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
         const auto dents = [&](int l) { return &at(list.memory.dent, s[l]); };
         const Group weight = pack<group>(used);
         const auto m = view.template meeting<rough>(k);
-        const auto law = columns<group>(kept(&Kept::law));
+        const auto law = columns(kept(&Kept::law));
         Columns<group> dent{};
         if constexpr (Law::plastic) {
             alignas(64) real overlap[group];
@@ -200,7 +200,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
                 if (sampled) d[0] = std::fmax(d[0], overlap[l]);
                 if (d[3] != d[0] && (overlap[l] < d[0] || sampled)) settle(k[l]);
             }
-            dent = columns<group>(dents);
+            dent = columns(dents);
         }
         const Group rate = dot(m.velocity, m.normal);
         auto push = Law::push(law, dent, m.overlap, rate);
@@ -214,7 +214,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             store(dent, dents);
         }
         if constexpr (rough) {
-            const auto h = rub(m, push, rate, law, view.friction(k), columns<group>(kept(&Kept::friction)),
+            const auto h = rub(m, push, rate, law, view.friction(k), columns(kept(&Kept::friction)),
                                !Law::plastic, how.mindlin, dt);
             store(lay(h.friction), kept(&Kept::friction));
             group_of(tally.sliding[partner], part) += weight * h.lost;
@@ -222,8 +222,8 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             store(Columns<group>{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&Action::couple));
             if (sampled) group_of(tally.stored, part) += weight * h.stored;
             if constexpr (rolls) {
-                const auto r = roll(m, push, h.stiffness, columns<group>(rolling(&KeptRolling::law)),
-                                    columns<group>(rolling(&KeptRolling::spring)), how.mindlin, dt);
+                const auto r = roll(m, push, h.stiffness, columns(rolling(&KeptRolling::law)),
+                                    columns(rolling(&KeptRolling::spring)), how.mindlin, dt);
                 store(lay(r.rolling), rolling(&KeptRolling::spring));
                 store(Columns<group>{r.torque.x, r.torque.y, r.torque.z, zero},
                       [&](int l) { return &at(actions.torque, a[l]); });

@@ -190,7 +190,7 @@ public:
                 const int to = at(cell_start_, line + std::min(cx + 1, cells_[0] - 1) + 1);
                 for (int j = from; j < to; j += group) {
                     make_room();
-                    const auto others = [&](int a) { return unaligned<group>(&at(along_[a], j)); };
+                    const auto others = [&](int a) { return unaligned(&at(along_[a], j)); };
                     const Vector<Group> apart = place - Vector<Group>{others(0), others(1), others(2)};
                     const Group near = around + others(3);
                     const unsigned found = positive(near * near - dot(apart, apart));
@@ -260,7 +260,7 @@ public:
         real* const tier_of = tiers.data();
         int found = 0;
         for (int p = 0; p < count; p += group) {
-            const auto apart = columns_of<group>([&](int l) __attribute__((always_inline)) {
+            const auto apart = columns_of([&](int l) __attribute__((always_inline)) {
                 const int q = std::min(p + l, count - 1);
                 const Row a = at(bed.position, chunk.begin + at(chunk.near_first, q));
                 return at(bed.position, at(chunk.near_second, q)) + row(-1, -1, -1, 1) * a;
@@ -271,7 +271,7 @@ public:
                 const Group limit = near + Group::all(skin * t / Contacts::tiers);
                 tier += choose(limit * limit - distance, Group::all(0), Group::all(1));
             }
-            put<group>(tier, tier_of + p);
+            put(tier, tier_of + p);
             const unsigned within = positive(Group::all(Contacts::tiers) - tier);
             found += list_lanes(within & first_lanes(std::min(group, count - p)), p, found_pair + found);
         }
@@ -301,7 +301,7 @@ public:
         masks.assign(static_cast<std::size_t>(chunk.end - chunk.begin) + group, 0);
         int count = 0;
         for (int i = chunk.begin; i < chunk.end; i += group) {
-            const auto a = columns<group>([&](int l) { return &at(bed.position, std::min(i + l, last)); });
+            const auto a = columns([&](int l) { return &at(bed.position, std::min(i + l, last)); });
             const Vector<Group> place = {a.x - Group::all(c[0]), a.y - Group::all(c[1]),
                                          a.z - Group::all(c[2])};
             const int used = std::min(group, chunk.end - i);
