@@ -96,6 +96,7 @@ template <int n> Pack<n> read(const real* p) {
 inline constexpr int group = register_width;
 using Group = Pack<group>;
 
+#ifndef RATTLEBOX_GPU
 // At any address.
 inline Group unaligned(const real* p) {
     Group value;
@@ -103,6 +104,7 @@ inline Group unaligned(const real* p) {
     return value;
 }
 inline void put(const Group& value, real* p) { __builtin_memcpy(p, &value, sizeof(value)); }
+#endif
 
 inline Group& group_of(Lanes& all, int first) { return pack<group>(reinterpret_cast<real*>(&all) + first); }
 

@@ -112,84 +112,74 @@ template <class T> struct Vector {
 };
 
 #ifndef RATTLEBOX_GPU
-template <int n> struct Columns {
-    Pack<n> x, y, z, w;
-    Vector<Pack<n>> vector() const { return {x, y, z}; }
+struct Columns {
+    Group x, y, z, w;
+    Vector<Group> vector() const { return {x, y, z}; }
 };
 
 // The rows of(0), of(1), ... as lanes.
-template <int n = group, class Of> RATTLEBOX_INLINE Columns<n> columns_of(Of&& of) {
+template <class Of> RATTLEBOX_INLINE Columns columns_of(Of&& of) {
 #if defined(__AVX512F__)
-    if constexpr (n == 8) {
-        const auto two = [&](int l) __attribute__((always_inline)) {
-            return __builtin_shufflevector(of(l), of(l + 4), 0, 1, 2, 3, 4, 5, 6, 7);
-        };
-        const auto a = two(0), b = two(1), c = two(2), d = two(3);
-        const auto xz = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
-        const auto yw = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-        const auto zx = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
-        const auto wy = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
-        return {{__builtin_shufflevector(xz, zx, 0, 1, 8, 9, 4, 5, 12, 13)},
-                {__builtin_shufflevector(yw, wy, 0, 1, 8, 9, 4, 5, 12, 13)},
-                {__builtin_shufflevector(xz, zx, 2, 3, 10, 11, 6, 7, 14, 15)},
-                {__builtin_shufflevector(yw, wy, 2, 3, 10, 11, 6, 7, 14, 15)}};
-    } else
+    const auto two = [&](int l) __attribute__((always_inline)) {
+        return __builtin_shufflevector(of(l), of(l + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+    };
+    const auto a = two(0), b = two(1), c = two(2), d = two(3);
+    const auto xz = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto yw = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    const auto zx = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto wy = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+    return {{__builtin_shufflevector(xz, zx, 0, 1, 8, 9, 4, 5, 12, 13)},
+            {__builtin_shufflevector(yw, wy, 0, 1, 8, 9, 4, 5, 12, 13)},
+            {__builtin_shufflevector(xz, zx, 2, 3, 10, 11, 6, 7, 14, 15)},
+            {__builtin_shufflevector(yw, wy, 2, 3, 10, 11, 6, 7, 14, 15)}};
+#elif defined(__AVX__)
+    const Row a = of(0), b = of(1), c = of(2), d = of(3);
+    const Row xz = __builtin_shufflevector(a, b, 0, 4, 2, 6), yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const Row zx = __builtin_shufflevector(c, d, 0, 4, 2, 6), wy = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    return {{__builtin_shufflevector(xz, zx, 0, 1, 4, 5)},
+            {__builtin_shufflevector(yw, wy, 0, 1, 4, 5)},
+            {__builtin_shufflevector(xz, zx, 2, 3, 6, 7)},
+            {__builtin_shufflevector(yw, wy, 2, 3, 6, 7)}};
+#else
+    const Row a = of(0), b = of(1);
+    const auto both = [&](int k)
+                          __attribute__((always_inline)) { return Group{Group::Register{a[k], b[k]}}; };
+    return {both(0), both(1), both(2), both(3)};
 #endif
-        if constexpr (n == 4) {
-        const Row a = of(0), b = of(1), c = of(2), d = of(3);
-        const Row xz = __builtin_shufflevector(a, b, 0, 4, 2, 6),
-                  yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-        const Row zx = __builtin_shufflevector(c, d, 0, 4, 2, 6),
-                  wy = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-        return {{__builtin_shufflevector(xz, zx, 0, 1, 4, 5)},
-                {__builtin_shufflevector(yw, wy, 0, 1, 4, 5)},
-                {__builtin_shufflevector(xz, zx, 2, 3, 6, 7)},
-                {__builtin_shufflevector(yw, wy, 2, 3, 6, 7)}};
-    } else {
-        static_assert(n == 2);
-        const Row a = of(0), b = of(1);
-        const auto both = [&](int k) __attribute__((always_inline)) {
-            return Pack<n>{typename Pack<n>::Register{a[k], b[k]}};
-        };
-        return {both(0), both(1), both(2), both(3)};
-    }
 }
 
 // The rows that at(0), at(1), ... point to.
-template <int n = group, class At> RATTLEBOX_INLINE Columns<n> columns(At&& at) {
-    return columns_of<n>([&](int l) __attribute__((always_inline)) { return *at(l); });
+template <class At> RATTLEBOX_INLINE Columns columns(At&& at) {
+    return columns_of([&](int l) __attribute__((always_inline)) { return *at(l); });
 }
 
 // The other way: lane l becomes the row that at(l) points to. Where lanes share a row, one of them stays.
-template <int n, class At> RATTLEBOX_INLINE void store(const Columns<n>& c, At&& at) {
+template <class At> RATTLEBOX_INLINE void store(const Columns& c, At&& at) {
 #if defined(__AVX512F__)
-    if constexpr (n == 8) {
-        const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 8, 9, 4, 5, 12, 13);
-        const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 8, 9, 4, 5, 12, 13);
-        const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 10, 11, 6, 7, 14, 15);
-        const auto wy = __builtin_shufflevector(c.y.v, c.w.v, 2, 3, 10, 11, 6, 7, 14, 15);
-        const auto put = [&](int l, auto both) __attribute__((always_inline)) {
-            *at(l) = __builtin_shufflevector(both, both, 0, 1, 2, 3);
-            *at(l + 4) = __builtin_shufflevector(both, both, 4, 5, 6, 7);
-        };
-        put(0, __builtin_shufflevector(xz, yw, 0, 8, 2, 10, 4, 12, 6, 14));
-        put(1, __builtin_shufflevector(xz, yw, 1, 9, 3, 11, 5, 13, 7, 15));
-        put(2, __builtin_shufflevector(zx, wy, 0, 8, 2, 10, 4, 12, 6, 14));
-        put(3, __builtin_shufflevector(zx, wy, 1, 9, 3, 11, 5, 13, 7, 15));
-    } else
+    const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 8, 9, 4, 5, 12, 13);
+    const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 8, 9, 4, 5, 12, 13);
+    const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 10, 11, 6, 7, 14, 15);
+    const auto wy = __builtin_shufflevector(c.y.v, c.w.v, 2, 3, 10, 11, 6, 7, 14, 15);
+    const auto put = [&](int l, auto both) __attribute__((always_inline)) {
+        *at(l) = __builtin_shufflevector(both, both, 0, 1, 2, 3);
+        *at(l + 4) = __builtin_shufflevector(both, both, 4, 5, 6, 7);
+    };
+    put(0, __builtin_shufflevector(xz, yw, 0, 8, 2, 10, 4, 12, 6, 14));
+    put(1, __builtin_shufflevector(xz, yw, 1, 9, 3, 11, 5, 13, 7, 15));
+    put(2, __builtin_shufflevector(zx, wy, 0, 8, 2, 10, 4, 12, 6, 14));
+    put(3, __builtin_shufflevector(zx, wy, 1, 9, 3, 11, 5, 13, 7, 15));
+#elif defined(__AVX__)
+    const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 4, 5);
+    const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 4, 5);
+    const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 6, 7);
+    const auto wy = __builtin_shufflevector(c.y.v, c.w.v, 2, 3, 6, 7);
+    *at(0) = __builtin_shufflevector(xz, yw, 0, 4, 2, 6);
+    *at(1) = __builtin_shufflevector(xz, yw, 1, 5, 3, 7);
+    *at(2) = __builtin_shufflevector(zx, wy, 0, 4, 2, 6);
+    *at(3) = __builtin_shufflevector(zx, wy, 1, 5, 3, 7);
+#else
+    for (int l = 0; l < group; ++l) *at(l) = Row{c.x.v[l], c.y.v[l], c.z.v[l], c.w.v[l]};
 #endif
-        if constexpr (n == 4) {
-        const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 4, 5),
-                   yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 4, 5);
-        const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 6, 7),
-                   wy = __builtin_shufflevector(c.y.v, c.w.v, 2, 3, 6, 7);
-        *at(0) = __builtin_shufflevector(xz, yw, 0, 4, 2, 6);
-        *at(1) = __builtin_shufflevector(xz, yw, 1, 5, 3, 7);
-        *at(2) = __builtin_shufflevector(zx, wy, 0, 4, 2, 6);
-        *at(3) = __builtin_shufflevector(zx, wy, 1, 5, 3, 7);
-    } else {
-        for (int l = 0; l < n; ++l) *at(l) = Row{c.x.v[l], c.y.v[l], c.z.v[l], c.w.v[l]};
-    }
 }
 #endif
 

@@ -29,7 +29,7 @@ struct PairView {
 
     // Rows are combined before they are turned into lanes, which costs more.
     template <class Combine>
-    RATTLEBOX_INLINE Columns<group> both(const Paged<Row>& rows, const int* k, Combine&& combine) const {
+    RATTLEBOX_INLINE Columns both(const Paged<Row>& rows, const int* k, Combine&& combine) const {
         return columns_of([&](int l) __attribute__((always_inline)) {
             const int i = at(list.first, k[l]), j = at(list.second, k[l]);
             return combine(at(rows, i), at(rows, j), i, j);
@@ -37,7 +37,7 @@ struct PairView {
     }
 
     // From the first centre to the second, and the sum of the radii.
-    RATTLEBOX_INLINE Columns<group> way(const int* k) const {
+    RATTLEBOX_INLINE Columns way(const int* k) const {
         return both(bed.position, k, [](Row a, Row b, int, int) __attribute__((always_inline)) {
             return b + row(-1, -1, -1, 1) * a;
         });
@@ -82,14 +82,13 @@ struct WallView {
         });
     }
 
-    RATTLEBOX_INLINE Columns<group> first(const Paged<Row>& rows, const int* k) const {
+    RATTLEBOX_INLINE Columns first(const Paged<Row>& rows, const int* k) const {
         return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
     }
     const Wall& wall(int k) const { return at(bed.cavity->walls, at(list.second, k)); }
     static Vector<Group> same(Row r) { return {Group::all(r[0]), Group::all(r[1]), Group::all(r[2])}; }
 
-    RATTLEBOX_INLINE void near(const int* k, const Columns<group>& a, Vector<Group>& normal,
-                               Group& distance) const {
+    RATTLEBOX_INLINE void near(const int* k, const Columns& a, Vector<Group>& normal, Group& distance) const {
         const Vector<Group> place = a.vector() - same(bed.motion.displacement);
         const auto axis = columns([&](int l) { return &wall(k[l]).axis; });
         const Group along = dot(axis.vector(), place);
@@ -128,7 +127,7 @@ struct WallView {
     }
 };
 
-RATTLEBOX_INLINE Columns<group> lay(const Four<Group>& f) { return {f.x, f.y, f.z, f.w}; }
+RATTLEBOX_INLINE Columns lay(const Four<Group>& f) { return {f.x, f.y, f.z, f.w}; }
 
 // Lists the candidates up to `to` that touch; calls begun(k) and ended(k) for those that have just begun or
 // ended to.
@@ -191,7 +190,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
         const Group weight = pack<group>(used);
         const auto m = view.template meeting<rough>(k);
         const auto law = columns(kept(&Kept::law));
-        Columns<group> dent{};
+        Columns dent{};
         if constexpr (Law::plastic) {
             alignas(64) real overlap[group];
             pack<group>(overlap) = m.overlap;
@@ -219,20 +218,20 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             store(lay(h.friction), kept(&Kept::friction));
             group_of(tally.sliding[partner], part) += weight * h.lost;
             force = force + h.force;
-            store(Columns<group>{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&Action::couple));
+            store(Columns{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&Action::couple));
             if (sampled) group_of(tally.stored, part) += weight * h.stored;
             if constexpr (rolls) {
                 const auto r = roll(m, push, h.stiffness, columns(rolling(&KeptRolling::law)),
                                     columns(rolling(&KeptRolling::spring)), how.mindlin, dt);
                 store(lay(r.rolling), rolling(&KeptRolling::spring));
-                store(Columns<group>{r.torque.x, r.torque.y, r.torque.z, zero},
+                store(Columns{r.torque.x, r.torque.y, r.torque.z, zero},
                       [&](int l) { return &at(actions.torque, a[l]); });
                 group_of(tally.rolling[partner], part) += weight * r.lost;
                 if (sampled) group_of(tally.stored, part) += weight * r.stored;
             }
         } else
-            store(Columns<group>{zero, zero, zero, zero}, acting(&Action::couple));
-        store(Columns<group>{force.x, force.y, force.z, Group::all(1)}, acting(&Action::force));
+            store(Columns{zero, zero, zero, zero}, acting(&Action::couple));
+        store(Columns{force.x, force.y, force.z, Group::all(1)}, acting(&Action::force));
     }
     if (sampled) tally.contacts[partner] += count;
 }
