@@ -57,7 +57,7 @@ template <bool spins, class T> RATTLEBOX_INLINE Meeting<T> meet(const Facing<T>&
     const T per_both = all(distance, 1) / (distance * f.near); // one division for two
     Meeting<T> m;
     m.normal = (f.near * per_both) * f.way;
-    m.overlap = f.near - distance;
+    m.overlap = overlap(f.near, distance);
     m.radius = f.radius;
     m.velocity = f.velocity;
     if constexpr (spins) {
@@ -74,7 +74,7 @@ RATTLEBOX_INLINE Meeting<T> meet(const Ball<T>& a, const Vector<T>& normal, cons
                                  const Vector<T>& velocity) {
     Meeting<T> m;
     m.normal = normal;
-    m.overlap = a.radius - distance;
+    m.overlap = overlap(a.radius, distance);
     m.velocity = a.velocity - velocity;
     m.radius = a.radius;
     if constexpr (spins) {

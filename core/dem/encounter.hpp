@@ -40,6 +40,12 @@ struct Contacting {
     bool never_pulls = true; // normal force
 };
 
+// How deep those are in each other that were found to touch: not less than rounding leaves, which may find
+// otherwise by another way. With none at all Mindlin's spring would have no stiffness.
+template <class T> RATTLEBOX_INLINE T overlap(const T& reach, const T& distance) {
+    return larger(reach - distance, all(reach, 0x1p-53) * reach);
+}
+
 struct Kind {
     enum Normal : int { hertz, linear, plastic } normal = hertz;
     bool rough = false, rolls = false;

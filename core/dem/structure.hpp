@@ -46,7 +46,7 @@ struct Structure {
     real* base_work = nullptr;
 
     void load_values(real t) {
-        for (int l = 0; l < loads; ++l) value[l] = signal[l].piece(t).value(t);
+        for (int l = 0; l < loads; ++l) value[l] = signal[l].around(t, dt);
     }
 
     // What accelerates all particles alike.

@@ -35,7 +35,7 @@ inline Touch touch(const Encounter& e, const Body& a, const Body& b) {
     const real speed = dot(velocity, normal);
     return {&e,     radius,
             mass,   1 / (1 / moment_at_edge(a) + 1 / moment_at_edge(b)),
-            speed,  a.place[3] + b.place[3] - distance,
+            speed,  overlap(a.place[3] + b.place[3], distance),
             normal, velocity * row(1, 1, 1) - normal * speed + cross(swirl, normal)};
 }
 
@@ -48,7 +48,7 @@ inline Touch touch(const Encounter& e, const Body& a, const Near& near, Row cavi
             1 / mobility,
             moment_at_edge(a),
             speed,
-            a.place[3] - near.distance,
+            overlap(a.place[3], near.distance),
             near.normal,
             velocity * row(1, 1, 1) - near.normal * speed + cross(a.spin * near.distance, near.normal)};
 }
