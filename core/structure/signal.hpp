@@ -74,6 +74,23 @@ struct Signal {
         return p;
     }
 
+    // What acts in a step of this length around t: of a record its mean, as far as it is given, since its
+    // knots may lie closer than steps and no push between two may be lost.
+    real around(real t, real dt) const {
+        real from = t, to = t;
+        if (kind == Kind::record) {
+            from = std::max(t - 0.5 * dt, std::max(times[0], real{}));
+            to = std::min(t + 0.5 * dt, times[times.size - 1]);
+        }
+        if (!(from < to)) return piece(t).value(t);
+        real sum = 0;
+        for (real begin = from, end; begin < to; begin = end) {
+            end = std::min(next_knot(begin), to);
+            sum += (end - begin) * piece(begin).value(0.5 * (begin + end));
+        }
+        return sum / (to - from);
+    }
+
     // The first knot after t.
     real next_knot(real t) const {
         if (kind == Kind::record) {
