@@ -167,8 +167,8 @@ def instants(case: Case) -> Any:
 def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ...]:
     """Return the largest approach speed to expect in each damper [m/s].
 
-    The sum of what a free particle and its cavity may differ by: the span of the cavity's velocity without particles, that
-    of the base's, the speed of a fall through the cavity, and twice the largest speed at the start.
+    The sum of what a free particle and its cavity may differ by: the span of the cavity's velocity without particles, with
+    rest in it, that of the base's, the speed of a fall through the cavity, and twice the largest speed at the start.
 
     Parameters
     ----------
@@ -187,12 +187,13 @@ def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ..
         size = float(np.linalg.norm(gravity))
         fall = math.sqrt(2 * size * damper.cavity.extent(gravity / size)) if size else 0.0
         start = 2 * float(np.linalg.norm(damper.start.velocity, axis=1).max())
-        speeds.append(_span(velocity) + _span(base) + fall + start)
+        rest = np.zeros((1, 3))  # particles without a speed of their own
+        speeds.append(_span(np.vstack([rest, velocity])) + _span(base) + fall + start)
     return tuple(speeds)
 
 
 def _span(velocity: Any) -> float:
-    return float(np.linalg.norm(np.ptp(velocity, axis=0))) if len(velocity) else 0.0
+    return float(np.linalg.norm(np.ptp(velocity, axis=0)))
 
 
 def contact_limits(damper: ParticleDamper, table: ContactTable, speed: float, fraction: float) -> Iterator[Limit]:
@@ -320,17 +321,17 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
             found.append(Limit(time, RAYLEIGH * time, math.inf, told))
     for k, stiffness in enumerate(case.modes.stiffness):
         if stiffness > 0:
-            period = 2 * math.pi / math.sqrt(stiffness)
-            found.append(Limit(period, fraction * period, BOUND * period, f"period of mode {k + 1}, {_time(period)}"))
+            found.append(_of_motion(2 * math.pi / math.sqrt(stiffness), fraction, f"period of mode {k + 1}"))
     for signal in (*case.loads, *case.base_acceleration()):
         if isinstance(signal, HalfSine):
-            found.append(
-                Limit(signal.duration, fraction * signal.duration, math.inf, f"pulse, {_time(signal.duration)}")
-            )
+            found.append(_of_motion(signal.duration, fraction, "pulse"))
         elif isinstance(signal, Harmonic):
-            period = 1 / signal.frequency
-            found.append(Limit(period, fraction * period, math.inf, f"period of a harmonic, {_time(period)}"))
+            found.append(_of_motion(1 / signal.frequency, fraction, "period of a harmonic"))
     return found
+
+
+def _of_motion(duration: float, fraction: float, what: str) -> Limit:
+    return Limit(duration, fraction * duration, BOUND * duration, f"{what}, {_time(duration)}")
 
 
 def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> Step:
@@ -348,7 +349,7 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
     Raises
     ------
     Hint
-        When the step that is given is too long to be stable.
+        When the step that is given is too long to be stable, or to follow a load.
     """
     assert isinstance(case.method, Dem)
     found = limits(case, tables, speeds)
@@ -361,8 +362,7 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
         refusing = min(found, key=lambda limit: limit.bound)
         if longest > refusing.bound:
             raise Hint(
-                f"dt = {_time(longest)} is too long to be stable: the bound is {_time(refusing.bound)}, for the "
-                f"{refusing.what}",
+                f"dt = {_time(longest)} is too long: the bound is {_time(refusing.bound)}, for the {refusing.what}",
                 f'dt = "auto", or dt = "{0.99e6 * refusing.bound:.3g} us"',
             )
     interval = case.duration / samples
