@@ -18,6 +18,7 @@ from .elementwise import Vector
 from .errors import Hint, at
 from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
 from .materials import AnyWall, Material
+from .mixing import Mixing, mixed
 from .packing import AnyPacking, Lattice, Positions, Settled, check_packing, check_size
 from .pairs import Body, Pair
 from .particles import Particles, as_species
@@ -154,6 +155,9 @@ class ParticleDamper(Part):
         Resistance to rolling, or its coefficient; none if left out.
     pairs
         Exceptions for pairs of species, or of a species and the wall.
+    mixing
+        How two unlike species meet that `pairs` does not tell: with the "arithmetic", "geometric" or "harmonic" mean of the
+        numbers in the laws that each has among its own kind, or the "smaller" or "larger" ones. Left out, as all do.
     gravity
         [m/s^2], along x, y and z.
     point
@@ -181,6 +185,7 @@ class ParticleDamper(Part):
     wall_friction: AnyFriction | None = None
     rolling: AnyRolling | None = None
     pairs: tuple[PairLaws, ...] = ()
+    mixing: Mixing | None = None
     gravity: Accelerations = (0.0, 0.0, -9.81)
     point: str | None = None
     direction: Direction = "x"
@@ -350,6 +355,16 @@ class ParticleDamper(Part):
             law = getattr(pair, field)
             if law is not None and frozenset(pair.between) == frozenset((first, second)):
                 return law, ("pairs", index, field)
+        if self.mixing is not None and first != second and second != WALL:
+            one, other = (self._law(field, name, name)[0] for name in (first, second))
+            try:
+                return mixed(one, other, self.mixing), ("mixing",)
+            except TypeError:
+                raise Hint(
+                    f"the laws of {field} of {first} and of {second} differ in more than numbers, and cannot be mixed",
+                    f'pairs = [{{ between = ["{first}", "{second}"], {field} = ... }}]',
+                    ["mixing"],
+                ) from None
         wall = getattr(self, f"wall_{field}", None) if second == WALL else None
         return (wall, (f"wall_{field}",)) if wall is not None else (getattr(self, field), (field,))
 

@@ -149,6 +149,7 @@ def test_walls_are_the_cavity(name: str) -> None:
         damper(
             particles=[balls(10), rb.Particles(name="fine", material="steel", distribution=SIZES["sieve"], mass="3 g")],
             pairs=[rb.PairLaws(between=("fine", "wall"), friction=rb.LinearSpring(0.5, stiffness=1e5))],
+            mixing="smaller",
             wall_friction=rb.LinearSpring(0.3, stiffness=1e5),
             cavity=CAVITIES["can askew"],
             gravity=(0, "-1 g_0", 0),

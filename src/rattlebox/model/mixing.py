@@ -1,0 +1,52 @@
+"""Laws of two unlike species from those that each has among its own kind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Literal
+
+from .base import Part
+from .friction import Friction, Rolling
+
+Mixing = Literal["arithmetic", "geometric", "harmonic", "smaller", "larger"]
+
+_MEANS: dict[Mixing, Callable[[float, float], float]] = {
+    "arithmetic": lambda a, b: (a + b) / 2,
+    "geometric": lambda a, b: math.sqrt(a) * math.sqrt(b),
+    "harmonic": lambda a, b: 2 * a * b / (a + b) if a + b else 0.0,
+    "smaller": min,
+    "larger": max,
+}
+
+
+def mixed(one: Any, other: Any, rule: Mixing) -> Any:
+    """Return a law whose numbers lie between those of two laws of the same kind.
+
+    Parameters
+    ----------
+    one, other
+        Laws of contact, friction or rolling resistance; None stands for a coefficient of zero.
+    rule
+        Which mean is taken.
+
+    Raises
+    ------
+    TypeError
+        When the laws differ in more than numbers.
+    """
+    if one is None or other is None:
+        law = other if one is None else one
+        assert law is None or isinstance(law, (Friction, Rolling))
+        if law is None:
+            return None
+        one, other = law, law.model_copy(update={"coefficient": 0.0})
+    if one == other:
+        return one
+    if isinstance(one, float) and isinstance(other, float):
+        return _MEANS[rule](one, other)
+    if isinstance(one, Part) and type(one) is type(other):
+        return one.model_copy(
+            update={name: mixed(getattr(one, name), getattr(other, name), rule) for name in type(one).model_fields}
+        )
+    raise TypeError(f"{one!r} and {other!r} differ in more than numbers")
