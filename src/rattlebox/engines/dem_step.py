@@ -196,13 +196,15 @@ def _span(velocity: Any) -> float:
     return float(np.linalg.norm(np.ptp(velocity, axis=0)))
 
 
-def contact_limits(damper: ParticleDamper, table: ContactTable, speed: float, fraction: float) -> Iterator[Limit]:
+def contact_limits(
+    case: Case, damper: ParticleDamper, table: ContactTable, speed: float, fraction: float
+) -> Iterator[Limit]:
     """Yield a limit for each kind of pair in a damper: its shortest contact at a speed.
 
     Parameters
     ----------
-    damper
-        The damper.
+    case, damper
+        The case, and one of its dampers.
     table
         Its pairs.
     speed
@@ -211,6 +213,7 @@ def contact_limits(damper: ParticleDamper, table: ContactTable, speed: float, fr
         Of a contact, for a step.
     """
     labels = [species.label for species in damper.particles]
+    wall_mass = _wall_mass(case, damper)
     numbers = np.bincount(damper.contents.species, minlength=len(labels))
     for entry in table.entries:
         if entry.names[0] == entry.names[1] and numbers[labels.index(entry.names[0])] < 2:
@@ -219,7 +222,7 @@ def contact_limits(damper: ParticleDamper, table: ContactTable, speed: float, fr
         by_time = isinstance(entry.contact, Linear) and entry.contact.contact_time is not None
         damped = max(1.0, 2 * _ratio(entry, values))
         duration, bound, sizes = math.inf, math.inf, ""
-        for pair_radius, pair_mass, told in _sizes(damper, entry):
+        for pair_radius, pair_mass, told in _sizes(damper, entry, wall_mass):
             reference = {**values, "radius": entry.pair.radius} if law == "hertz_tsuji" else values
             own = of_sizes(law, reference, by_time, pair_radius, pair_mass)
             lasts = contact_time(law, own, speed)
@@ -262,13 +265,19 @@ def _sideways(damper: ParticleDamper, entry: Entry, values: Mapping[str, Any], s
     )
 
 
-def _sizes(damper: ParticleDamper, entry: Entry) -> Iterator[tuple[float, float, str]]:
+def _wall_mass(case: Case, damper: ParticleDamper) -> float:
+    """Of the structure, where an impact on a wall meets the least of it [kg]."""
+    mobility = np.linalg.norm(case.modes.space_shape(damper.point, damper.direction), 2) ** 2
+    return float(1 / mobility) if mobility else math.inf
+
+
+def _sizes(damper: ParticleDamper, entry: Entry, wall_mass: float) -> Iterator[tuple[float, float, str]]:
     """R*, m* and a description of the smallest and largest pairs of an entry."""
     labels = [species.label for species in damper.particles]
     extremes = []
-    for name, body in zip(entry.names, (entry.pair.below, entry.pair.above), strict=True):
+    for name in entry.names:
         if name not in labels:
-            extremes.append([(math.inf, float(body.mass))])
+            extremes.append([(math.inf, wall_mass)])
             continue
         own = damper.contents.species == labels.index(name)
         radii, masses = damper.contents.radius[own], damper.contents.mass[own]
@@ -308,7 +317,7 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
     fraction = case.method.fraction
     found: list[Limit] = []
     for damper, table, speed in zip(case.particle_dampers, tables, speeds, strict=True):
-        found += contact_limits(damper, table, speed, fraction)
+        found += contact_limits(case, damper, table, speed, fraction)
         for index, species in enumerate(damper.particles):
             if all(isinstance(entry.contact, Linear) for entry in table.entries if species.label in entry.names):
                 continue
@@ -390,7 +399,7 @@ def outcome(
         (
             limit
             for damper, table, speed in zip(dampers, tables, speeds, strict=True)
-            for limit in contact_limits(damper, table, speed, 1.0)
+            for limit in contact_limits(case, damper, table, speed, 1.0)
         ),
         key=lambda limit: limit.duration,
     )

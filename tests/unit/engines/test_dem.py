@@ -364,3 +364,15 @@ def test_no_push_of_a_record_is_lost_between_two_steps(width: float) -> None:
     moved = simulate(lone, structure=rb.Fixed(), base=rb.Record(**signal, direction="x"), **usual)
     mass = moved.arrays.particle_mass[0]
     assert moved.arrays.momentum[-1, 0, 0] == pytest.approx(-mass * impulse, rel=1e-12)
+
+
+@pytest.mark.parametrize("mass", [1.0, 1e-4, 1e-8])
+def test_a_structure_lighter_than_its_particle_gives_it_back_what_it_should(mass: float) -> None:
+    """The step follows how short an impact on a light structure is: restitution stays, however light it is."""
+    one = damper(particles=balls(1), gravity=(0, 0, 0), velocity=(1.0, 0, 0), softening=100)
+    free = rb.SDOF(mass=mass, stiffness=0)
+    run = simulate(one, structure=free, duration=11e-3, output=rb.Output(rate="2 kHz"))
+    apart = run.arrays.velocity[-1, 0] - run.arrays.momentum[-1, 0, 0] / run.arrays.particle_mass[0]
+    assert run.arrays.counts["first_touches_wall"] == 1
+    assert run.arrays.figures["steps_per_contact"] >= 40
+    assert apart == pytest.approx(0.7, abs=1e-3)
