@@ -165,7 +165,7 @@ class Output(Part):
     rate
         Samples per second [Hz].
     times
-        Instead: the times themselves [s].
+        Instead: the times themselves [s]; with particles in space evenly spaced, together with 0 and the end.
     snapshots
         Of particles in space: how many snapshots, evenly spaced from 0 to the end, go to the file that is given for them, or
         their times [s]; default 101.
@@ -206,7 +206,7 @@ class Output(Part):
             Highest frequency in it [Hz], which matters where the user has made no choice.
         """
         if self.times is not None:
-            inside = [t for t in self.times if 0 < t < duration]
+            inside = [t for t in self.times if 0 < t < duration * (1 - 1e-12)]  # 8 x 0.1 may be a little less than 0.8
             return np.array([0.0, *inside, duration])
         if self.rate is None:
             return np.linspace(0.0, duration, 1 + int(np.clip(20 * duration * fastest, 2000, 100_000)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -171,8 +172,25 @@ def test_samples_are_where_they_are_asked_for() -> None:
     """The step divides the time between samples, so that samples are at their times."""
     run = simulate(output=rb.Output(rate="3 kHz"), duration=0.02)
     assert run.arrays.time == pytest.approx(np.arange(61) / 3000, rel=1e-12)
-    run = simulate(output=rb.Output(times=np.linspace(0, 0.02, 7)), duration=0.02)
-    assert run.arrays.time == pytest.approx(np.linspace(0, 0.02, 7), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("duration", "times", "samples"),
+    [
+        (0.02, np.linspace(0, 0.02, 7), 7),
+        (0.01, [0.0025, 0.005, 0.0075, 0.01], 5),
+        (0.01, [0.0025, 0.005, 0.0075], 5),
+        (0.02, [0.005, 0.01, 0.015], 5),
+        (0.01, [0.005, 0.01, 0.015], 3),
+        (0.021, np.cumsum(np.full(7, 0.003)), 8),
+        (0.01, [0.01], 2),
+        (0.01, [], 2),
+    ],
+)
+def test_times_even_with_both_ends_are_recorded(duration: float, times: Sequence[float], samples: int) -> None:
+    """Times that are evenly spaced together with 0 and the end are those of the samples, with or without these two."""
+    run = simulate(output=rb.Output(times=times), duration=duration)
+    assert run.arrays.time == pytest.approx(np.linspace(0, duration, samples), rel=1e-12)
 
 
 def test_force_on_the_cavity_is_what_changes_momentum() -> None:
