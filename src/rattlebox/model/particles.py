@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -15,7 +16,7 @@ from .errors import Hint, at
 from .materials import AnyMaterial
 from .units import SI, PositiveLength, PositiveMass, parse, radius_of_diameter
 
-_MANY = 4096  # sizes from which the mean volume is taken
+_MANY = 4096  # sizes from which the mean volume is guessed
 
 
 class Distribution(Part):
@@ -240,16 +241,32 @@ class Particles(Part):
         """
         if self.count is not None:
             return self.count
-        each = float(np.mean(math.pi / 6 * self.diameters(_MANY if self.distribution else 1) ** 3))
         filled = self.mass / self.material.density if self.mass is not None else (self.fill_ratio or 0.0) * volume
-        count = round(filled / each)
+        count = self._closest(filled)
         if count < 1:
             raise Hint(
-                f"this is less than one particle, of {1e3 * each * self.material.density:.4g} g",
+                f"this is less than one particle, of {1e3 * self._volume(1) * self.material.density:.4g} g",
                 "more of them, or smaller ones",
                 ["mass" if self.mass is not None else "fill_ratio"],
             )
         return count
+
+    def _volume(self, count: int) -> float:
+        """The volume of so many [m^3]."""
+        return float(np.sum(math.pi / 6 * self.diameters(count) ** 3))
+
+    def _closest(self, filled: float) -> int:
+        """How many have the volume that is closest to one [m^3]."""
+        if self.distribution is None:
+            return round(filled / self._volume(1))
+        from scipy.optimize import brentq
+
+        volume = cache(self._volume)  # rises with the number: of n + 1 quantiles each but the first is above one of n
+        most = max(1, round(filled * _MANY / volume(_MANY)))
+        while volume(most) < filled:
+            most *= 2
+        about = round(brentq(lambda count: volume(round(count)) - filled, 0, most, xtol=0.5))
+        return min((max(about - 1, 0), about, about + 1), key=lambda count: abs(volume(count) - filled))
 
 
 def as_species(value: Any) -> Any:

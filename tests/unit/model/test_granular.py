@@ -106,6 +106,25 @@ def test_the_mass_that_is_asked_for_is_filled_in(name: str) -> None:
     assert 1e-3 <= filled.radius.min() < filled.radius.max() <= 3e-3
 
 
+WIDE = {
+    "sieve": rb.Sieve(sizes=["0.2 mm", "1 mm", "10 mm"], passing=[0, 0.2, 1]),
+    "sieve with a gap": rb.Sieve(sizes=["0.5 mm", "0.6 mm", "9.9 mm", "10 mm"], passing=[0, 0.5, 0.5, 1]),
+    "log-normal": rb.LogNormal(median="1 mm", spread=2, smallest="0.01 mm", largest="50 mm"),
+}
+
+
+@pytest.mark.parametrize("mass", [5e-3, 50e-3, 0.4])
+@pytest.mark.parametrize("name", WIDE)
+def test_wide_distributions_meet_the_mass_as_closely_as_they_can(name: str, mass: float) -> None:
+    """With one particle more or less the mass would be further from what is asked for, and a fill ratio is the same."""
+    kind = rb.Particles(material="steel", distribution=WIDE[name], mass=mass)
+    number = kind.number(1.0)
+    filled = [STEEL.density * math.pi / 6 * np.sum(kind.diameters(number + more) ** 3) for more in (-1, 0, 1)]
+    assert np.abs(np.array(filled) - mass).argmin() == 1
+    by_volume = rb.Particles(material="steel", distribution=WIDE[name], fill_ratio=mass / STEEL.density)
+    assert by_volume.number(1.0) == number
+
+
 def test_sieve_shares_are_shares_of_mass() -> None:
     """Of a sieve table, the share of the mass below each mesh is what passes."""
     diameters = SIZES["sieve"].diameters((np.arange(100_000) + 0.5) / 100_000)
