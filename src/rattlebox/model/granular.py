@@ -269,8 +269,7 @@ class ParticleDamper(Part):
             )
 
     def _check_filling(self) -> None:
-        with at("particles"):
-            contents = self.contents
+        contents = self.contents
         with at("particles"):
             check_size(self.cavity, float(contents.radius.max()))
         filled = float(contents.radius @ contents.radius**2) * 4 / 3 * math.pi / self.cavity.volume
@@ -319,7 +318,7 @@ class ParticleDamper(Part):
         if not species.has_amount:
             assert isinstance(self.packing, Positions)
             return len(self.packing.positions)
-        with at(*([index] if len(self.particles) > 1 else [])):
+        with at("particles", *([index] if len(self.particles) > 1 else [])):
             return species.number(self.cavity.volume)
 
     @cached_property

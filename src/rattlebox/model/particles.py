@@ -16,6 +16,7 @@ from .errors import Hint, at
 from .materials import AnyMaterial
 from .units import SI, PositiveLength, PositiveMass, parse, radius_of_diameter
 
+_MOST = 100_000_000  # of one kind
 _MANY = 4096  # sizes from which the mean volume is guessed
 
 
@@ -180,7 +181,7 @@ class Particles(Part):
     radius: PositiveLength | None = None
     diameter: PositiveLength | None = Field(default=None, exclude=True)
     distribution: AnyDistribution | None = None
-    count: Annotated[int, Field(ge=0, le=100_000_000)] | None = None
+    count: Annotated[int, Field(ge=0, le=_MOST)] | None = None
     mass: PositiveMass | None = None
     fill_ratio: float | None = None
 
@@ -237,18 +238,18 @@ class Particles(Part):
         Raises
         ------
         Hint
-            When mass or fill ratio amount to less than one.
+            When mass or fill ratio amount to less than one, or to more than a hundred million.
         """
         if self.count is not None:
             return self.count
         filled = self.mass / self.material.density if self.mass is not None else (self.fill_ratio or 0.0) * volume
-        count = self._closest(filled)
-        if count < 1:
-            raise Hint(
-                f"this is less than one particle, of {1e3 * self._volume(1) * self.material.density:.4g} g",
-                "more of them, or smaller ones",
-                ["mass" if self.mass is not None else "fill_ratio"],
-            )
+        with at("mass" if self.mass is not None else "fill_ratio"):
+            count = self._closest(filled)
+            if count < 1:
+                raise Hint(
+                    f"this is less than one particle, of {1e3 * self._volume(1) * self.material.density:.4g} g",
+                    "more of them, or smaller ones",
+                )
         return count
 
     def _volume(self, count: int) -> float:
@@ -257,12 +258,16 @@ class Particles(Part):
 
     def _closest(self, filled: float) -> int:
         """How many have the volume that is closest to one [m^3]."""
+        some = 1 if self.distribution is None else _MANY
+        guess = filled * some / self._volume(some)
+        if guess > _MOST:
+            raise Hint(f"this is {guess:.3g} particles; {_MOST:.0e} at most", "less of them, or larger ones")
         if self.distribution is None:
-            return round(filled / self._volume(1))
+            return round(guess)
         from scipy.optimize import brentq
 
         volume = cache(self._volume)  # rises with the number: of n + 1 quantiles each but the first is above one of n
-        most = max(1, round(filled * _MANY / volume(_MANY)))
+        most = max(1, round(guess))
         while volume(most) < filled:
             most *= 2
         about = round(brentq(lambda count: volume(round(count)) - filled, 0, most, xtol=0.5))

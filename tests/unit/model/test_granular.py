@@ -336,6 +336,17 @@ REFUSED = {
     "nothing settles without gravity": lambda: damper(packing=rb.Settled(), gravity=(0, 0, 0)),
     "there are no particles 'wood' here": lambda: damper(pairs=[rb.PairLaws(between=("wood", "wall"))]),
     "this is less than one particle": lambda: damper(particles=balls(count=None, mass="1 mg")),
+    r"particles.mass = .*\n  this is 7.64e\+11 particles; 1e\+08 at most": lambda: damper(
+        particles=rb.Particles(material="glass", diameter="1 um", mass="1 g")
+    ),
+    r"particles.fill_ratio = 0.3\n  this is 3.67e\+22 particles; 1e\+08 at most": lambda: damper(
+        particles=rb.Particles(material="glass", diameter="1 nm", fill_ratio=0.3)
+    ),
+    "this is .* particles; .* at most": lambda: damper(
+        particles=rb.Particles(
+            material="glass", distribution=rb.Sieve(sizes=["1 nm", "2 nm"], passing=[0, 1]), mass="1 g"
+        )
+    ),
     "count, mass or fill_ratio is needed": lambda: damper(particles=balls(count=None)),
     "radius, diameter or distribution is needed": lambda: damper(particles=balls(diameter=None)),
     "cannot be in one case": lambda: case(
