@@ -72,6 +72,11 @@ class Cavity(Part):
         raise NotImplementedError
 
     @property
+    def inside(self) -> Vector:
+        """Edges of a box inside it along its own axes, (3,) [m]."""
+        raise NotImplementedError
+
+    @property
     def frame(self) -> Vector:
         """Its own axes, (3, 3), one a row."""
         return np.eye(3)
@@ -123,6 +128,11 @@ class Box(Cavity):
     def lengths(self) -> Vector:
         """Its edges, (3,) [m]."""
         return np.array(self.size)
+
+    @property
+    def inside(self) -> Vector:
+        """Its edges, (3,) [m]."""
+        return self.lengths
 
 
 class _Round(Cavity):
@@ -180,6 +190,11 @@ class Cylinder(_Round):
         return np.array([2 * self.radius, 2 * self.radius, self.length])
 
     @property
+    def inside(self) -> Vector:
+        """Edges of a square in its cross-section, and length, (3,) [m]."""
+        return np.array([math.sqrt(2) * self.radius, math.sqrt(2) * self.radius, self.length])
+
+    @property
     def frame(self) -> Vector:
         """Two directions across, and the axis, (3, 3)."""
         along = unit_vector(self.axis)
@@ -212,6 +227,11 @@ class SphericalCavity(_Round):
     def lengths(self) -> Vector:
         """The diameter three times, (3,) [m]."""
         return np.full(3, 2 * self.radius)
+
+    @property
+    def inside(self) -> Vector:
+        """Edges of a cube in it, (3,) [m]."""
+        return np.full(3, 2 * self.radius / math.sqrt(3))
 
 
 AnyCavity = Annotated[Box | Cylinder | SphericalCavity, Field(discriminator="kind")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -220,18 +221,24 @@ def _from_arrays(file: Path, arrays: dict[str, Vector]) -> dict[str, Vector]:
 
 @dataclass(frozen=True)
 class _Grid:
-    """A lattice of sites at least one cell apart: cubic, or face-centred."""
+    """A lattice of sites at least one cell apart: cubic, or face-centred; so many along an axis at most."""
 
     centred: bool
+    most: int
 
-    def __call__(self, cavity: AnyCavity, cell: float) -> Vector:
-        """Sites around which a sphere as large as the cell lies wholly inside, (n, 3) [m]."""
+    def axes(self, cavity: AnyCavity, cell: float) -> list[Vector]:
+        """Places along the axes of the cavity [m]."""
         step = cell / np.sqrt(2) if self.centred else cell
         axes = []
         for length in cavity.lengths:
             count = int(np.floor((length - cell) / step * (1 + 1e-12) + 1e-9)) + 1
             half = (length - cell) / 2 if count > 1 else 0.0
-            axes.append(np.linspace(-half, half, count))
+            axes.append(np.linspace(-half, half, min(count, self.most)))
+        return axes
+
+    def __call__(self, cavity: AnyCavity, cell: float) -> Vector:
+        """Sites around which a sphere as large as the cell lies wholly inside, (n, 3) [m]."""
+        axes = self.axes(cavity, cell)
         index = np.indices([axis.size for axis in axes]).reshape(3, -1)
         if self.centred:
             index = index[:, index.sum(axis=0) % 2 == 0]
@@ -239,38 +246,50 @@ class _Grid:
         sites = local @ cavity.frame
         return sites if isinstance(cavity, Box) else sites[cavity.depth(sites) >= cell / 2 * (1 - 1e-12)]
 
+    def at_least(self, cavity: AnyCavity, cell: float) -> int:
+        """How many sites there surely are, without making them: those in a box inside the cavity."""
+        reach = (cavity.inside - cell) / 2
+        axes = zip(self.axes(cavity, cell), reach, strict=True)
+        number = math.prod(int(np.sum(np.abs(axis) <= end)) for axis, end in axes)
+        return number // 2 if self.centred else number
 
-def _candidates(cavity: AnyCavity, count: int, least: float) -> Iterator[tuple[float, Vector]]:
-    """The coarsest lattices of both kinds that have enough sites."""
+
+def _coarsest(cavity: AnyCavity, count: int, least: float) -> Iterator[tuple[float, _Grid]]:
+    """The coarsest lattices of both kinds that have enough sites, and their cells."""
     widest = float(cavity.lengths.min()) * (1 + 1e-12)
-    for grid in (_Grid(False), _Grid(True)):
+    plenty = 1.01 * count
+
+    def size(grid: _Grid, cell: float) -> int:
+        sure = grid.at_least(cavity, cell)  # where it is plenty, the sites are too many to be made
+        return sure if sure >= plenty else len(grid(cavity, cell))
+
+    for centred in (False, True):
+        grid = _Grid(centred, max(1000, 4 * count))
         low, high = least, min(widest, 2 * max((cavity.volume / count) ** (1 / 3), least))
-        sites = grid(cavity, low)
-        if len(sites) < count:
+        number = size(grid, low)
+        if number < count:
             continue
-        best = low, sites
-        while high - low > 1e-3 * low and not (count > 1000 and len(best[1]) < 1.01 * count):
+        while high - low > 1e-3 * low and not (count > 1000 and number < plenty):
             middle = (low * high) ** 0.5
-            sites = grid(cavity, middle)
-            if len(sites) < count:
+            there = size(grid, middle)
+            if there < count:
                 high = middle
             else:
-                low = middle
-                best = low, sites
-        yield best
+                low, number = middle, there
+        yield low, grid
 
 
 def _sites(cavity: AnyCavity, count: int, radius: float) -> tuple[Vector, float]:
     """Places for spheres up to a radius, at least `count`, and the size of the cell that each has for itself."""
-    found = list(_candidates(cavity, count, 2 * radius))
+    found = list(_coarsest(cavity, count, 2 * radius))
     if not found:
-        most = max(len(_Grid(centred)(cavity, 2 * radius)) for centred in (False, True))
+        most = max(len(_Grid(centred, count)(cavity, 2 * radius)) for centred in (False, True))
         raise Hint(
             f"{count} particles do not fit: a lattice of spheres of {2e3 * radius:.4g} mm holds {most} in this cavity",
             f"{most} particles or fewer, smaller ones, or a larger cavity",
         )
-    cell, sites = max(found, key=lambda pair: pair[0])
-    return sites, cell
+    cell, grid = max(found, key=lambda pair: pair[0])
+    return grid(cavity, cell), cell
 
 
 def check_size(cavity: AnyCavity, radius: float) -> None:

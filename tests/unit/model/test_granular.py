@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +72,21 @@ def test_lattices_use_the_whole_cavity(name: str) -> None:
     assert cavity.volume == pytest.approx(0.08**3 * np.mean(depth > 0), rel=0.02)
     reached = anywhere[depth > 0.5 * (cavity.volume / 4000) ** (1 / 3)]
     assert 0.97 * np.mean(reached**2) < np.mean(positions**2) < 1.03 * np.mean(anywhere[depth > 0] ** 2)
+
+
+@pytest.mark.parametrize(
+    "cavity",
+    [rb.Box(size=(24, 24, 24)), rb.SphericalCavity(radius=24), rb.Box(size=(24, 24, 5e-3)), rb.Box(size=(0.25,) * 3)],
+)
+def test_few_particles_take_little_memory_in_a_wide_cavity(cavity: Any) -> None:
+    """A lattice is as large as its particles are many, not as the cavity is wide, also where it is wide and flat."""
+    radii = np.full(20, 5e-4)
+    tracemalloc.start()
+    positions = rb.Lattice().place(cavity, radii)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 2e8
+    check_packing(cavity, positions, radii)
 
 
 def test_a_lattice_reaches_close_packing() -> None:
