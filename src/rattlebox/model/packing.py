@@ -6,6 +6,7 @@ import math
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -221,19 +222,26 @@ def _from_arrays(file: Path, arrays: dict[str, Vector]) -> dict[str, Vector]:
 
 @dataclass(frozen=True)
 class _Grid:
-    """A lattice of sites at least one cell apart: cubic, or face-centred; so many along an axis at most."""
+    """A lattice of sites for so many particles, at least one cell apart: cubic, or face-centred.
 
+    Where there are two across a round cavity, all are outside; there may be one in the middle instead.
+    """
+
+    count: int
     centred: bool
-    most: int
+    middle: bool
 
     def axes(self, cavity: AnyCavity, cell: float) -> list[Vector]:
         """Places along the axes of the cavity [m]."""
         step = cell / np.sqrt(2) if self.centred else cell
+        most = max(1000, 4 * self.count)  # in cavities far wider than high there would be too many
         axes = []
-        for length in cavity.lengths:
+        for length, inside in zip(cavity.lengths, cavity.inside, strict=True):
             count = int(np.floor((length - cell) / step * (1 + 1e-12) + 1e-9)) + 1
+            if self.middle and count == 2 and inside < length:
+                count = 1
             half = (length - cell) / 2 if count > 1 else 0.0
-            axes.append(np.linspace(-half, half, min(count, self.most)))
+            axes.append(np.linspace(-half, half, min(count, most)))
         return axes
 
     def __call__(self, cavity: AnyCavity, cell: float) -> Vector:
@@ -254,7 +262,7 @@ class _Grid:
         return number // 2 if self.centred else number
 
 
-def _coarsest(cavity: AnyCavity, count: int, least: float) -> Iterator[tuple[float, _Grid]]:
+def _coarsest(cavity: AnyCavity, count: int, least: float, middle: bool) -> Iterator[tuple[float, _Grid]]:
     """The coarsest lattices of both kinds that have enough sites, and their cells."""
     widest = float(cavity.lengths.min()) * (1 + 1e-12)
     plenty = 1.01 * count
@@ -264,32 +272,33 @@ def _coarsest(cavity: AnyCavity, count: int, least: float) -> Iterator[tuple[flo
         return sure if sure >= plenty else len(grid(cavity, cell))
 
     for centred in (False, True):
-        grid = _Grid(centred, max(1000, 4 * count))
+        grid = _Grid(count, centred, middle)
         low, high = least, min(widest, 2 * max((cavity.volume / count) ** (1 / 3), least))
         number = size(grid, low)
         if number < count:
             continue
         while high - low > 1e-3 * low and not (count > 1000 and number < plenty):
-            middle = (low * high) ** 0.5
-            there = size(grid, middle)
+            between = (low * high) ** 0.5
+            there = size(grid, between)
             if there < count:
-                high = middle
+                high = between
             else:
-                low, number = middle, there
+                low, number = between, there
         yield low, grid
 
 
 def _sites(cavity: AnyCavity, count: int, radius: float) -> tuple[Vector, float]:
     """Places for spheres up to a radius, at least `count`, and the size of the cell that each has for itself."""
-    found = list(_coarsest(cavity, count, 2 * radius))
-    if not found:
-        most = max(len(_Grid(centred, count)(cavity, 2 * radius)) for centred in (False, True))
-        raise Hint(
-            f"{count} particles do not fit: a lattice of spheres of {2e3 * radius:.4g} mm holds {most} in this cavity",
-            f"{most} particles or fewer, smaller ones, or a larger cavity",
-        )
-    cell, grid = max(found, key=lambda pair: pair[0])
-    return grid(cavity, cell), cell
+    for middle in (False, True):
+        found = list(_coarsest(cavity, count, 2 * radius, middle))
+        if found:
+            cell, grid = max(found, key=lambda pair: pair[0])
+            return grid(cavity, cell), cell
+    most = max(len(_Grid(count, *kind)(cavity, 2 * radius)) for kind in product((False, True), repeat=2))
+    raise Hint(
+        f"{count} particles do not fit: a lattice of spheres of {2e3 * radius:.4g} mm holds {most} in this cavity",
+        f"{most} particles or fewer, smaller ones, or a larger cavity",
+    )
 
 
 def check_size(cavity: AnyCavity, radius: float) -> None:

@@ -75,6 +75,21 @@ def test_lattices_use_the_whole_cavity(name: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("cavity", "count"),
+    [
+        (rb.SphericalCavity(diameter="8.8 mm"), 1),
+        (rb.Cylinder(diameter="8.8 mm", length="4.2 mm"), 1),
+        (rb.Cylinder(diameter="8.8 mm", length="8.8 mm"), 2),
+        (rb.Cylinder(diameter="8.8 mm", length="40 mm", axis="x"), 9),
+    ],
+)
+def test_particles_lie_along_the_middle_of_a_narrow_round_cavity(cavity: Any, count: int) -> None:
+    """Where two rows side by side would stick out of a round cavity, there is one."""
+    radii = np.full(count, 2e-3)
+    check_packing(cavity, rb.Lattice().place(cavity, radii), radii)
+
+
+@pytest.mark.parametrize(
     "cavity",
     [rb.Box(size=(24, 24, 24)), rb.SphericalCavity(radius=24), rb.Box(size=(24, 24, 5e-3)), rb.Box(size=(0.25,) * 3)],
 )
