@@ -19,7 +19,7 @@ from .elementwise import Vector
 from .errors import Hint, at
 from .files import BINARY, absolute, check_finite, existing, read_arrays
 from .records import read_table
-from .units import SI, numbers
+from .units import SI, in_si, numbers
 
 TOUCHING = 1e-9  # overlap, in parts of a radius, that rounding may make
 
@@ -93,12 +93,14 @@ def _table(columns: int, unit: str, what: str) -> Any:
     def read(value: Any) -> Any:
         if value is None:
             return None
-        array = np.atleast_2d(numbers(value)) if columns > 1 else numbers(value)
+        array = numbers(in_si(value, unit))
+        array = np.atleast_2d(array) if columns > 1 else array
         if array.ndim != (2 if columns > 1 else 1) or (columns > 1 and array.shape[1] != columns):
             raise Hint(f"rows of {columns} numbers are needed" if columns > 1 else "a list of numbers is needed")
         return tuple(map(tuple, array.tolist())) if columns > 1 else tuple(array.tolist())
 
-    return SI(unit), BeforeValidator(read), WithJsonSchema({"type": "array", "description": f"{what}, in {unit}"})
+    schema = {"type": "array", "description": f"{what}, in {unit} or with units"}
+    return SI(unit), BeforeValidator(read), WithJsonSchema(schema)
 
 
 Row = tuple[float, float, float]

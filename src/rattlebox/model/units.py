@@ -37,18 +37,19 @@ _COMMON: dict[str, dict[str, tuple[float, float]]] = {
     "Pa": {"Pa": (1, 1), "kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1)},
     "kg/m^3": {"kg/m^3": (1, 1), "g/cm^3": (1e3, 1)},
     "rad": {"rad": (1, 1)},
+    "rad/s": {"rad/s": (1, 1)},
     "kg^-0.5": {"kg^-0.5": (1, 1)},
 }
 
 _NAMES = {
     "m": "length", "s": "time", "kg": "mass", "N": "force", "N/m": "stiffness", "N s/m": "damping coefficient",
     "m/s": "velocity", "m/s^2": "acceleration", "Hz": "frequency", "Pa": "pressure or modulus", "kg/m^3": "density",
-    "rad": "angle", "kg^-0.5": "mass-normalised mode shape",
+    "rad": "angle", "kg^-0.5": "mass-normalised mode shape", "rad/s": "angular velocity",
 }  # fmt: skip
 
 _EXAMPLES = {
     "m": "0.4 mm", "s": "1 ms", "kg": "20 kg", "N": "5 kN", "N/m": "80 kN/m", "N s/m": "25.3 N s/m", "m/s": "0.1 m/s",
-    "m/s^2": "9.81 m/s^2", "Hz": "10 Hz", "Pa": "200 GPa", "kg/m^3": "7850 kg/m^3", "rad": "90 deg",
+    "m/s^2": "9.81 m/s^2", "Hz": "10 Hz", "Pa": "200 GPa", "kg/m^3": "7850 kg/m^3", "rad": "90 deg", "rad/s": "10 rad/s",
 }  # fmt: skip
 
 
@@ -119,8 +120,11 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     if hasattr(value, "is_compatible_with") and hasattr(value, "to"):
         for unit in units:
             if value.is_compatible_with(_pint_unit(unit)) and (unit == "rad" or not value.dimensionless):
-                if unit == "Hz" and any(word in str(value.units) for word in ("radian", "rev", "turn", "degree")):
+                angular = any(word in str(value.units) for word in ("radian", "rev", "turn", "degree"))
+                if unit == "Hz" and angular:
                     return _finite(float(value.to("rad/s").magnitude) / (2 * math.pi)), unit
+                if unit == "rad/s" and not angular:
+                    return _finite(float(value.to("Hz").magnitude) * (2 * math.pi)), unit
                 return _finite(float(value.to(_pint_unit(unit)).magnitude)), unit
         raise Hint(f"{_wanted(units)}, not {_described(value)}", _example(units))
     try:
@@ -189,6 +193,27 @@ def numbers(value: Any) -> NDArray[np.float64]:
         fault = f"more than {LARGEST:g}" if np.isfinite(array.flat[bad[0]]) else "not finite"
         raise Hint(f"number {int(bad[0]) + 1} of {array.size} is {fault}")
     return array
+
+
+def in_si(value: Any, unit: str) -> Any:
+    """Return nested lists with numbers in an SI unit in place of quantities; arrays of numbers stay as they are.
+
+    Raises
+    ------
+    Hint
+        When something in it is no quantity of this dimension.
+    """
+    if isinstance(value, np.ndarray):
+        return value if value.dtype.kind in "iuf" else in_si(value.tolist(), unit)
+    if not isinstance(value, (list, tuple)) and not np.ndim(getattr(value, "magnitude", 0)):
+        return parse(value, (unit,))[0]
+    plain = []
+    for index, item in enumerate(value):
+        if type(item) is not float:
+            with at(index):
+                item = in_si(item, unit)
+        plain.append(item)
+    return plain
 
 
 def _find_what_is_no_number(value: Any) -> None:

@@ -13,6 +13,7 @@ import scipy.linalg
 
 import rattlebox as rb
 from rattlebox.model.packing import check_packing
+from rattlebox.model.units import registry
 
 STEEL = rb.materials()["steel"]
 CAVITIES = {
@@ -269,6 +270,23 @@ def test_bad_rows_of_positions_are_told(text: str, said: str, tmp_path: Path) ->
             particles=rb.Particles(material="steel", **size),
             packing=rb.Positions(file=tmp_path / "bed.csv"),
         )
+
+
+def test_positions_have_units() -> None:
+    """Rows of positions, radii, velocities and spins take quantities, as text and of pint, and plain numbers in SI."""
+    quantity = registry().Quantity
+    rows = [["1 mm", 0, "-0.2 cm"], [0.01, "0.02", 0]]
+    made = rb.Positions(
+        positions=rows,
+        radii=["1 mm", "2 mm"],
+        velocities=quantity([[1, 2, 3], [0, 0, 4]], "mm/s"),
+        spins=[["60 rpm", "360 deg/s", "1 Hz"], ["1 rad/s", 0, 0]],
+    )
+    assert np.array(made.positions) == pytest.approx(np.array([[1e-3, 0, -2e-3], [0.01, 0.02, 0]]))
+    assert made.radii == pytest.approx([1e-3, 2e-3])
+    assert np.array(made.velocities) == pytest.approx(1e-3 * np.array([[1, 2, 3], [0, 0, 4]]))
+    assert np.array(made.spins) == pytest.approx(np.array([[2 * math.pi] * 3, [1, 0, 0]]))
+    assert rb.Positions(positions=np.array(rows, dtype=object)).positions == made.positions
 
 
 def test_softening_keeps_restitution() -> None:
