@@ -53,6 +53,11 @@ def at(*place: str | int) -> Iterator[None]:
         raise Hint(hint.complaint, hint.suggestion, (*place, *hint.place)) from None
 
 
+def several(number: int, thing: str) -> str:
+    """Return "1 particle", "2 particles"."""
+    return f"{number} {thing}" + "s" * (number != 1)
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return "did you mean ...?" for the closest known names, or the list of them."""
     known = sorted(known)

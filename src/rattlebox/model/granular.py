@@ -15,7 +15,7 @@ from .base import AlsoTakes, Part
 from .cavities import AnyCavity
 from .contacts import AnyContact, Linear, Thornton
 from .elementwise import Vector
-from .errors import Hint, at
+from .errors import Hint, at, several
 from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
@@ -276,13 +276,13 @@ class ParticleDamper(Part):
         if filled >= 1:
             raise Hint(
                 f"{contents.radius.size} particles do not fit: their volume is {filled:.3g} times that of the cavity",
-                f"{math.floor(0.58 * contents.radius.size / filled)} of them, or a larger cavity",
+                f"{max(1, math.floor(0.58 * contents.radius.size / filled))} of them, or a larger cavity",
                 ["particles"],
             )
         if isinstance(self.packing, Settled):
             if not any(self.gravity):
                 raise Hint("nothing settles without gravity", 'packing = { kind = "lattice" }', ["packing"])
-            if filled > 0.64:
+            if filled > 0.64 and contents.radius.size > 1:
                 raise Hint(
                     f"{contents.radius.size} particles fill {100 * filled:.3g} % of the cavity; "
                     "inserted at random they fill 60 % or a little more",
@@ -308,7 +308,12 @@ class ParticleDamper(Part):
             sizes = [each.diameters(n) / 2 for each, n in zip(self.particles, numbers, strict=True)]
             radius = np.concatenate(sizes)
         if isinstance(self.packing, Positions) and radius.size != len(self.packing.positions):
-            raise Hint(f"{radius.size} particles, but {len(self.packing.positions)} positions", "as many of both")
+            rows = len(self.packing.positions)
+            raise Hint(
+                f"{several(radius.size, 'particle')}, but {several(rows, 'position')}",
+                f"a row for each particle, or count = {rows}",
+                ["packing", self.packing.where],
+            )
         density = np.array([each.material.density for each in self.particles])
         mass = 4 / 3 * math.pi * radius**3 * density[species]
         return Contents(radius, mass, 0.4 * mass * radius**2, species)

@@ -16,7 +16,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, m
 from .base import Part
 from .cavities import AnyCavity, Box
 from .elementwise import Vector
-from .errors import Hint, at
+from .errors import Hint, at, several
 from .files import BINARY, absolute, check_finite, existing, read_arrays
 from .records import read_table
 from .units import SI, in_si, numbers
@@ -149,7 +149,8 @@ class Positions(Packing):
         for name in ("radii", "velocities", "spins"):
             rows = getattr(self, name)
             if rows is not None and len(rows) != len(self.positions):
-                raise Hint(f"{len(rows)} {name}, but {len(self.positions)} positions", "as many of both", [name])
+                positions = several(len(self.positions), "position")
+                raise Hint(f"{several(len(rows), 'row')} of {name}, but {positions}", "as many of both", [name])
         if self.radii is not None and not min(self.radii) > 0:
             raise Hint("radii must be greater than zero", place=["file" if self.file else "radii"])
         return self
@@ -299,16 +300,17 @@ def _sites(cavity: AnyCavity, count: int, radius: float) -> tuple[Vector, float]
     most = max(len(_Grid(count, *kind)(cavity, 2 * radius)) for kind in product((False, True), repeat=2))
     raise Hint(
         f"{count} particles do not fit: a lattice of spheres of {2e3 * radius:.4g} mm holds {most} in this cavity",
-        f"{most} particles or fewer, smaller ones, or a larger cavity",
+        f"{most} of them, smaller ones, or a larger cavity",
     )
 
 
 def check_size(cavity: AnyCavity, radius: float) -> None:
-    """Refuse a sphere that is larger than the cavity."""
+    """Refuse a sphere that is larger than the cavity, or fills it."""
     widest = float(cavity.lengths.min())
-    if 2 * radius > widest:
+    if 2 * radius > widest or 4 / 3 * math.pi * radius**3 >= cavity.volume:
+        large = "larger than" if 2 * radius > widest else "as large as"
         raise Hint(
-            f"a particle of {2e3 * radius:.4g} mm is larger than the cavity, which is {1e3 * widest:.4g} mm wide",
+            f"a particle of {2e3 * radius:.4g} mm is {large} the cavity, which is {1e3 * widest:.4g} mm wide",
             "smaller particles, or a larger cavity",
         )
 

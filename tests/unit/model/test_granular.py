@@ -289,6 +289,14 @@ def test_positions_have_units() -> None:
     assert rb.Positions(positions=np.array(rows, dtype=object)).positions == made.positions
 
 
+def test_one_ball_may_fill_most_of_its_cavity() -> None:
+    """What is too dense for many particles inserted at random is not for one alone."""
+    alone = damper(
+        particles=balls(1, diameter="24 mm"), cavity=rb.SphericalCavity(radius="12.5 mm"), packing=rb.Settled()
+    )
+    assert alone.contents.radius.size == 1
+
+
 def test_softening_keeps_restitution() -> None:
     """Softer moduli lower stiffness, but dashpots and limiting pressure such that yield speed and damping ratio stay."""
     for contact in (rb.Thornton(), rb.Linear(stiffness="1 MN/m", damping="3 N s/m")):
@@ -367,7 +375,23 @@ REFUSED = {
     "particle 1 at .* mm sticks out of the cavity by 1 mm": lambda: damper(
         particles=balls(2), packing=rb.Positions(positions=[[0, 0, 0], [0, 0.019, 0]])
     ),
-    "3 particles, but 2 positions": lambda: damper(particles=balls(3), packing=AT),
+    r"Damper: packing\n  3 particles, but 2 positions\n  try: a row for each particle, or count = 2": lambda: damper(
+        particles=balls(3), packing=AT
+    ),
+    "packing\n  1 particle, but 2 positions": lambda: damper(particles=balls(1), packing=AT),
+    "  1 row of spins, but 2 positions": lambda: rb.Positions(positions=np.zeros((2, 3)), spins=np.zeros((1, 3))),
+    r"positions\[0\]\[2\] = '2 s'\n  a length \(m\) is needed, not a time": lambda: rb.Positions(
+        positions=[[0, 0, "2 s"]]
+    ),
+    "a particle of 50 mm is as large as the cavity": lambda: damper(
+        particles=balls(1, diameter="50 mm"), cavity=CAVITIES["sphere"]
+    ),
+    "holds 1 in this cavity\n  try: 1 of them": lambda: damper(
+        particles=balls(2, diameter="30 mm"), cavity=CAVITIES["sphere"]
+    ),
+    "their volume is 1.88 times that of the cavity\n  try: 1 of them": lambda: damper(
+        particles=balls(2, diameter="49 mm"), cavity=CAVITIES["sphere"]
+    ),
     "rolling resistance needs friction": lambda: damper(friction=0, rolling=0.1),
     "Mindlin's stiffness belongs to Hertz contacts": lambda: damper(contact=rb.Linear(stiffness=1e6, restitution=0.9)),
     "thornton beside tsuji: one kind of law is needed": lambda: two_kinds(
