@@ -20,6 +20,8 @@ struct Alone {
     template <class Last> static void sync(Last&& last) { last(); }
     static void report() {}
     template <class Other> static void await_lower(Other&&) {}
+    static bool is_held_up() { return false; }
+    static void forget_waits() {}
 };
 
 // Adds the time from its making to its end to a sum, if there is one [s].
@@ -41,21 +43,43 @@ public:
 
 // Where the members of a team wait for each other.
 class Meetingpoint {
+    using Clock = std::chrono::steady_clock;
     struct alignas(64) Mark {
         std::atomic<unsigned> reports{0};
+        std::atomic<long> waited{0}; // beyond the first moments [ns]
     };
     alignas(64) std::atomic<int> waiting_{0};
     alignas(64) std::atomic<unsigned> round_{0};
     alignas(64) std::vector<Mark> marks_;
+    Clock::time_point since_ = Clock::now();
 
     // A phase lasts microseconds, worth spinning for. Who waits longer lets others have the core, since what
     // it waits for may be among them, and sleeps in the end, to be woken where a core is free.
     static constexpr int spins = 2000, yields = 1000;
 
+    static long nanoseconds(Clock::duration d) {
+        return std::chrono::duration_cast<std::chrono::nanoseconds>(d).count();
+    }
+
+    // Until is_over() or sleep() has brought what is waited for.
+    template <class IsOver, class Sleep> void wait(int rank, IsOver&& is_over, Sleep&& sleep) {
+        for (int looks = 0; looks < spins; ++looks)
+            if (is_over()) return;
+        const auto begun = Clock::now();
+        for (int looks = 0; !is_over(); ++looks)
+            if (looks < yields)
+                std::this_thread::yield();
+            else
+                sleep();
+        waits(rank).fetch_add(nanoseconds(Clock::now() - begun), std::memory_order_relaxed);
+    }
+
+    std::atomic<long>& waits(int rank) { return marks_[static_cast<std::size_t>(rank)].waited; }
+
 public:
     explicit Meetingpoint(int size) : marks_(static_cast<std::size_t>(size)) {}
 
-    template <class Last> void sync(Last&& last) {
+    template <class Last> void sync(int rank, Last&& last) {
         const unsigned round = round_.load(std::memory_order_relaxed);
         if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == static_cast<int>(marks_.size())) {
             last();
@@ -64,17 +88,15 @@ public:
             round_.notify_all();
             return;
         }
-        for (int looks = 0; round_.load(std::memory_order_acquire) == round; ++looks) {
-            if (looks > spins + yields)
-                round_.wait(round, std::memory_order_acquire);
-            else if (looks > spins)
-                std::this_thread::yield();
-        }
+        wait(
+            rank, [&] { return round_.load(std::memory_order_acquire) != round; },
+            [&] { round_.wait(round, std::memory_order_acquire); });
     }
 
     void report(int rank) {
         std::atomic<unsigned>& own = marks_[static_cast<std::size_t>(rank)].reports;
         own.store(own.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+        own.notify_all();
     }
 
     // All lower members have reported as often as this one; until then it works on something other, while
@@ -83,9 +105,33 @@ public:
         const unsigned own = marks_[static_cast<std::size_t>(rank)].reports.load(std::memory_order_relaxed);
         for (int r = 0; r < rank; ++r) {
             const std::atomic<unsigned>& theirs = marks_[static_cast<std::size_t>(r)].reports;
-            for (int looks = 0; static_cast<int>(theirs.load(std::memory_order_acquire) - own) < 0;)
-                if (!other() && ++looks > spins) std::this_thread::yield();
+            unsigned now;
+            const auto is_over = [&] {
+                now = theirs.load(std::memory_order_acquire);
+                return static_cast<int>(now - own) >= 0;
+            };
+            while (!is_over() && other()) {
+            }
+            wait(rank, is_over, [&] { theirs.wait(now, std::memory_order_acquire); });
         }
+    }
+
+    // Whether members have waited so long of late that one alone would have been as fast: other programs have
+    // their cores. For one that all others wait for.
+    bool is_held_up() {
+        constexpr long enough = 2'000'000;
+        long waited = 0;
+        for (const Mark& m : marks_) waited += m.waited.load(std::memory_order_relaxed);
+        if (waited < enough) return false;
+        const bool held_up =
+            waited > static_cast<long>(marks_.size() - 1) * nanoseconds(Clock::now() - since_);
+        forget_waits();
+        return held_up;
+    }
+
+    void forget_waits() {
+        for (Mark& m : marks_) m.waited.store(0, std::memory_order_relaxed);
+        since_ = Clock::now();
     }
 };
 
@@ -99,12 +145,14 @@ public:
     int size() const { return size_; }
     // All have come so far; the last to come does what is to be done before any goes on.
     void sync() const {
-        point_->sync([] {});
+        point_->sync(rank_, [] {});
     }
-    template <class Last> void sync(Last&& last) const { point_->sync(last); }
+    template <class Last> void sync(Last&& last) const { point_->sync(rank_, last); }
     // Tells those of higher rank, in each round, that they may use what this member has done.
     void report() const { point_->report(rank_); }
     template <class Other> void await_lower(Other&& other) const { point_->await_lower(rank_, other); }
+    bool is_held_up() const { return point_->is_held_up(); }
+    void forget_waits() const { point_->forget_waits(); }
 };
 
 // Calls work(member) on `threads` threads, this one among them.

@@ -14,6 +14,23 @@
 
 namespace rattlebox::dem {
 
+// How long one works for a team that others hold up: the longer, the sooner the team is held up again.
+class Rest {
+    using Clock = std::chrono::steady_clock;
+    static constexpr Clock::duration shortest = std::chrono::milliseconds(20),
+                                     longest = std::chrono::seconds(1);
+    Clock::duration length_ = shortest;
+    Clock::time_point end_{};
+
+public:
+    bool is_over() const { return Clock::now() >= end_; }
+    void begin() {
+        const auto now = Clock::now();
+        length_ = now - end_ < length_ ? std::min(2 * length_, longest) : shortest;
+        end_ = now + length_;
+    }
+};
+
 class Simulation {
     Pages pages_; // of large beds
     Problem problem_;
@@ -33,7 +50,9 @@ class Simulation {
     int stopped_cavity_ = 0;
     Stopped stopped_;
     long builds_ = 0;
-    bool must_build_ = true, halted_ = false;
+    bool must_build_ = true, halted_ = false, paused_ = false;
+    Rest rest_;
+    long lone_steps_ = 0; // by one for a team that was held up
     Row body_before_{};
     long steps_since_ = 0;
     Division division_;
@@ -307,10 +326,10 @@ class Simulation {
         move_on();
     }
 
-    template <class Team> void run(Team& team, long until, const std::atomic<bool>& stop) {
-        division_.look_around(team.rank());
-        team.sync([&] { prepare(); });
-        while (step_ <= until && status_ == Status::finished && !halted_) {
+    // Goes on until that step is done, something stops it, or a pause is asked for after a step.
+    template <class Team, class Pause>
+    void go_on(Team& team, long until, const std::atomic<bool>& stop, Pause&& pause) {
+        while (step_ <= until && status_ == Status::finished && !halted_ && !paused_) {
             if (must_build_) build(team);
             const bool first = step_ == 0, sample = sampled();
             advance(team, first, sample, step_ == until);
@@ -318,8 +337,44 @@ class Simulation {
                 conclude(first, sample);
                 prepare();
                 halted_ = stop;
+                paused_ = pause();
             });
         }
+    }
+
+    template <class Team> void run(Team& team, long until, const std::atomic<bool>& stop) {
+        division_.look_around(team.rank());
+        team.sync([&] {
+            prepare();
+            paused_ = team.size() > 1 && !rest_.is_over();
+        });
+        const auto all_go_on = [&] {
+            go_on(team, until, stop, [&] {
+                const bool held_up = team.is_held_up();
+                if (held_up) rest_.begin();
+                return held_up;
+            });
+        };
+        all_go_on();
+        while (paused_) {
+            team.sync([&] { one_goes_on(until, stop, team.size()); });
+            division_.look_around(team.rank());
+            team.sync([&] { team.forget_waits(); });
+            all_go_on();
+        }
+    }
+
+    // For the others, who wait.
+    void one_goes_on(long until, const std::atomic<bool>& stop, int members) {
+        Alone alone;
+        division_.divide(1);
+        division_.look_around(0);
+        paused_ = false;
+        lone_steps_ -= step_;
+        go_on(alone, until, stop, [&] { return rest_.is_over(); });
+        lone_steps_ += step_;
+        paused_ = false;
+        division_.divide(members);
     }
 
 public:
@@ -385,6 +440,7 @@ public:
         return bytes;
     }
     long step() const { return step_; }
+    long lone_steps() const { return lone_steps_; }
     long builds() const { return builds_; }
     long scans() const { // of a chunk, on average
         long sum = 0;

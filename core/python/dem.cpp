@@ -95,6 +95,7 @@ public:
         nb::dict d = counts.write(simulation_->beds().size(), simulation_->step(), simulation_->builds(),
                                   simulation_->scans(), simulation_->memory(), seconds_);
         d["candidates"] = candidates;
+        d["lone_steps"] = simulation_->lone_steps();
         return d;
     }
 
