@@ -19,6 +19,7 @@ import pytest
 import rattlebox as rb
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.dem_follow import Journey
+from rattlebox.model.differences import differences
 from rattlebox.results.snapshots import SnapshotFile, Snapshots
 
 from ..mounts import needs_mounts, with_own_mounts
@@ -221,6 +222,7 @@ def test_other_runs_are_refused_with_the_differences(tmp_path: Path, monkeypatch
         '  case.duration: "0.001 s" there, "0.002 s" here\n'
         "  try: another file, or remove this one"
     )
+    assert "\n  case.dampers: 2 there, 1 here\n" in refused(short.model_copy(update={"dampers": short.dampers[:1]}))
     with monkeypatch.context() as other:
         other.setattr("rattlebox.engines.checkpoint.instructions", lambda: "v9")
         assert "try: RATTLEBOX_SIMD=" in refused(short)
@@ -279,6 +281,17 @@ def test_a_torn_checkpoint_is_refused(tmp_path: Path) -> None:
         else:
             assert bits(again) == bits(run)  # where the file says nothing
     assert refused > 40
+
+
+def test_long_values_are_told_where_they_part() -> None:
+    """Of two long values that differ at their ends, those ends are shown; of tables in lists, their number or place."""
+    there, here = ({"file": f"/home/someone/a/folder/of/many/records/{name}.csv"} for name in ("push", "pull"))
+    assert differences(there, here) == [
+        '  file: ...ne/a/folder/of/many/records/push.csv" there, ...ne/a/folder/of/many/records/pull.csv" here'
+    ]
+    assert differences({"a": [{"b": [1, 2]}]}, {"a": [{"b": [1, 3]}]}) == ["  a[0].b[1]: 2 there, 3 here"]
+    assert differences({"a": [1, 2]}, {"a": [1]}) == ["  a: [1, 2] there, [1] here"]
+    assert differences({"a": [{"b": 1}]}, {"a": [{"b": 1}, {"b": 2}]}) == ["  a: 1 there, 2 here"]
 
 
 def test_snapshots_that_are_gone_are_missed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
