@@ -60,17 +60,22 @@ class Journey:
         Raises
         ------
         CaseError
-            When they are not.
+            When they are not, or the file is something else.
         """
         self._snapshots, self._shots = snapshots, list(shots)
         before = sum(shot + 1 < self._dem.step for shot in shots)
         if not before:
             snapshots.create()
-        elif snapshots.taken < before:
-            raise CaseError(
-                f"{snapshots.path} does not hold the {before} snapshots before the checkpoint\n"
-                "  try: put the file back and leave output.snapshots as it was, or remove the checkpoint to begin anew"
-            )
+            return
+        wrong = f"{snapshots.path} does not hold the {before} snapshots before the checkpoint"
+        try:
+            if snapshots.taken >= before:
+                return
+        except ValueError as error:
+            wrong = str(error)
+        raise CaseError(
+            f"{wrong}\n  try: put the file back and leave output.snapshots as it was, or remove the checkpoint to begin anew"
+        )
 
     @property
     def seconds(self) -> float:

@@ -164,7 +164,13 @@ class SnapshotFile:
 
     @property
     def taken(self) -> int:
-        """Number of snapshots of this very run in the file; 0 without a file."""
+        """Number of snapshots of this very run in the file; 0 without a file.
+
+        Raises
+        ------
+        ValueError
+            When the file is something else, or torn.
+        """
         if not self.path.exists():
             return 0
         found = Snapshots(self.path)
@@ -234,6 +240,8 @@ class Snapshots:
         import h5py
 
         self.path = Path(path)
+        if self.path.is_dir():
+            raise ValueError(f"{self.path} is a folder, not a file")
         if not self.path.is_file():
             raise FileNotFoundError(f"there is no file {self.path}")
         try:
@@ -249,7 +257,7 @@ class Snapshots:
                 self.times = self.planned[: int(root["Steps"].attrs["NSteps"])]
                 self._fixed = {field: root[f"PointData/{field}"][...] for field in _FIXED}
                 self._places: FloatArray = root["FieldData/place"][...]
-        except OSError as error:
+        except (OSError, KeyError, RuntimeError) as error:
             raise ValueError(f"{self.path} is not an HDF5 file that is whole") from error
 
     def __len__(self) -> int:

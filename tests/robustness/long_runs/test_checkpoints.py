@@ -305,6 +305,29 @@ def test_snapshots_that_are_gone_are_missed(tmp_path: Path, monkeypatch: pytest.
         rb.simulate(case(), **files)
 
 
+def test_snapshots_that_are_something_else_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run does not go on with snapshots that are torn, foreign or a folder, and says what they are and what to try."""
+    files = {"checkpoint": tmp_path / "run.checkpoint", "snapshots": tmp_path / "run.vtkhdf"}
+    stop_at(3, monkeypatch)
+    rb.simulate(case(), **files)
+    monkeypatch.undo()
+    whole = files["snapshots"].read_bytes()
+
+    def refused() -> str:
+        with pytest.raises(rb.CaseError) as told:
+            rb.simulate(case(), **files)
+        return str(told.value)
+
+    for content in (whole[:5000], b"notes"):
+        files["snapshots"].write_bytes(content)
+        said = f"{files['snapshots']} is not an HDF5 file that is whole\n  try: put the file back"
+        assert refused().startswith(said)
+        assert files["snapshots"].read_bytes() == content
+    files["snapshots"].unlink()
+    files["snapshots"].mkdir()
+    assert refused().startswith(f"{files['snapshots']} is a folder, not a file\n  try: ")
+
+
 def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
     whole: Mapping[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
