@@ -14,6 +14,8 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import CaseError, Hint
 from rattlebox.results import GranularRun, Run
 
+_RESULTS = (".nc", ".vtkhdf", ".mat", ".csv", ".png")
+
 
 def make_folder(out: Path) -> None:
     """Make a folder for results.
@@ -36,7 +38,7 @@ def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
     if not case.particle_dampers:
         return simulate(case)
     console = Console(stderr=True, highlight=False)
-    if checkpoint.exists():
+    if checkpoint.is_file():
         console.print(f"going on from {checkpoint}", soft_wrap=True)
     snapshots = out / "run.vtkhdf" if case.output.snapshots is not None else None
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
@@ -68,6 +70,8 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
         raise CaseError(
             "--checkpoint: there are no particles in space, and other runs take no time\n  try: leave it out"
         )
+    if checkpoint is not None and checkpoint.suffix in _RESULTS and checkpoint.parent.resolve() == out.resolve():
+        raise CaseError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / 'run.checkpoint'}")
     make_folder(out)
     checkpoint = checkpoint or out / "run.checkpoint"
     try:

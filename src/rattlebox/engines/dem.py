@@ -82,15 +82,27 @@ def simulate_dem(
     Raises
     ------
     CaseError
-        When the step that is given is too long, particles do not settle, or the checkpoint is of another run, or in use.
+        When the step that is given is too long, particles do not settle, the checkpoint is of another run, or in use, or
+        a file is a folder, or both are one.
     OSError
         When a file cannot be written.
     """
+    _check_files(checkpoint, snapshots)
     if checkpoint is None:
         return _simulated(case, threads, progress, None, snapshots, on)
     file = Checkpoint(checkpoint, case, on)
     with file.held():
         return _simulated(case, threads, progress, file, snapshots, on)
+
+
+def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
+    """Refuse files that cannot be written side by side."""
+    if checkpoint is not None and checkpoint.is_dir():
+        raise CaseError(f"{checkpoint} is a folder; a run is kept in a file\n  try: {checkpoint / 'run.checkpoint'}")
+    if snapshots is not None and snapshots.is_dir():
+        raise CaseError(f"{snapshots} is a folder; snapshots are written to a file\n  try: another name or place")
+    if checkpoint is not None and snapshots is not None and checkpoint.resolve() == snapshots.resolve():
+        raise CaseError(f"{checkpoint} cannot hold both a run and its snapshots\n  try: run.checkpoint and run.vtkhdf")
 
 
 def _simulated(

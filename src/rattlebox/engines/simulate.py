@@ -61,8 +61,9 @@ def simulate(
     Raises
     ------
     CaseError
-        When the checkpoint is of another case, version or core, with what differs, or in use by another process; or when
-        files are given that the run has no use for; or when there is no card that can be used, naming what is missing.
+        When the checkpoint is of another case, version or core, with what differs, or in use by another process; when a
+        file is a folder, both are one, or the run has no use for them; or when there is no card that can be used, naming
+        what is missing.
     OSError
         When a file cannot be written.
     """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -325,7 +326,7 @@ def test_snapshots_that_are_something_else_are_told(tmp_path: Path, monkeypatch:
         assert files["snapshots"].read_bytes() == content
     files["snapshots"].unlink()
     files["snapshots"].mkdir()
-    assert refused().startswith(f"{files['snapshots']} is a folder, not a file\n  try: ")
+    assert refused().startswith(f"{files['snapshots']} is a folder; snapshots are written to a file\n  try: ")
 
 
 def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
@@ -495,3 +496,16 @@ def test_folders_that_are_not_there_are_told(tmp_path: Path) -> None:
         files = {"snapshots": tmp_path / "run.vtkhdf", name: tmp_path / "nowhere" / "file"}
         with pytest.raises(OSError, match=r"cannot be written: there is no folder .*nowhere\n  try: another folder"):
             rb.simulate(case(), **files)
+
+
+def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
+    """A folder in place of a file, and one file for both, are refused before anything is computed."""
+    file = tmp_path / "file"
+    for files, said in (
+        ({"checkpoint": tmp_path, "snapshots": file}, f"{tmp_path} is a folder; a run is kept in a file"),
+        ({"checkpoint": file, "snapshots": tmp_path}, f"{tmp_path} is a folder; snapshots are written to a file"),
+        ({"checkpoint": tmp_path / "." / "file", "snapshots": file}, "both a run and its snapshots"),
+    ):
+        with pytest.raises(rb.CaseError, match=re.escape(said)):
+            rb.simulate(case(), **files)
+    assert not any(tmp_path.iterdir())

@@ -70,3 +70,25 @@ def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
         assert f"case.toml: {field}\n" in done.stderr
         assert said in done.stderr
         assert "Traceback" not in done.stderr
+
+
+def test_files_that_collide_are_refused(tmp_path: Path) -> None:
+    """A checkpoint that is a folder, or a file that results are written to, is refused before anything is computed."""
+    case = CASE.replace('rate = "5 kHz"', 'rate = "5 kHz", snapshots = 3')
+    out = tmp_path / "out"
+    for checkpoint, said in (
+        (
+            tmp_path,
+            f"error: {tmp_path} is a folder; a run is kept in a file\n  try: {tmp_path}/run.checkpoint\n",
+        ),
+        (
+            out / "run.vtkhdf",
+            f"error: --checkpoint {out}/run.vtkhdf: results are written there\n  try: {out}/run.checkpoint\n",
+        ),
+        (out / ".." / "out" / "run.nc", "results are written there"),
+    ):
+        done = run(tmp_path, "--checkpoint", str(checkpoint), case=case)
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert "going on" not in done.stderr
+        assert not out.exists() or not any(out.iterdir())
