@@ -40,7 +40,7 @@ def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
     console = Console(stderr=True, highlight=False)
     if checkpoint.is_file():
         console.print(f"going on from {checkpoint}", soft_wrap=True)
-    snapshots = out / "run.vtkhdf" if case.output.snapshots is not None else None
+    snapshots = out / "run.vtkhdf" if case.output.snapshots else None
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         line = bar.add_task("filling in", total=None)
@@ -85,7 +85,7 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
     console.print(run.summary())
     run.save(out / "run.nc")
     written = ["run.nc"]
-    if (out / "run.vtkhdf").exists() and case.output.snapshots is not None:
+    if case.output.snapshots:
         written.append("run.vtkhdf")
     if mat:
         run.to_mat(out / "run.mat")

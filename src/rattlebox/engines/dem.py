@@ -88,6 +88,8 @@ def simulate_dem(
         When a file cannot be written.
     """
     _check_files(checkpoint, snapshots)
+    if case.output.snapshots == ():
+        snapshots = None
     if checkpoint is None:
         return _simulated(case, threads, progress, None, snapshots, on)
     file = Checkpoint(checkpoint, case, on)

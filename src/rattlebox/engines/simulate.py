@@ -71,7 +71,7 @@ def simulate(
     if case.particle_dampers:
         from rattlebox.engines.dem import simulate_dem
 
-        if snapshots is None and case.output.snapshots is not None:
+        if snapshots is None and case.output.snapshots:
             raise Hint("the output asks for snapshots, and there is no file for them", 'snapshots="run.vtkhdf"')
         return simulate_dem(case, progress=progress, checkpoint=_path(checkpoint), snapshots=_path(snapshots), on=on)
     if checkpoint is not None or snapshots is not None:

@@ -158,6 +158,7 @@ class Case(Part):
         """Look at the kinds of dampers and at what moves where."""
         if self.particle_dampers:
             check_in_space(self)
+            self._check_snapshots()
             return
         if self.output.snapshots is not None:
             raise Hint("snapshots are of particles in space, and there are none", "rate", ["output", "snapshots"])
@@ -174,6 +175,16 @@ class Case(Part):
                 if signal.direction is not None:
                     place = (*(("structure",) if field == "motion" else ()), field, index, "direction")
                     raise Hint("without particle dampers all motion is along one line", "leave direction out", place)
+
+    def _check_snapshots(self) -> None:
+        """Refuse snapshots after the end."""
+        times = self.output.snapshots if isinstance(self.output.snapshots, tuple) else ()
+        if late := [time for time in times if time > self.duration * (1 + 1e-9)]:
+            raise Hint(
+                f"a snapshot is asked for at {late[0]:.6g} s, after the end of the run at {self.duration:.6g} s",
+                "times up to the end, or a longer duration",
+                ["output", "snapshots"],
+            )
 
     def _check_size(self) -> None:
         """Refuse an output that no memory holds."""

@@ -168,7 +168,7 @@ class Output(Part):
         Instead: the times themselves [s]; with particles in space evenly spaced, together with 0 and the end.
     snapshots
         Of particles in space: how many snapshots, evenly spaced from 0 to the end, go to the file that is given for them, or
-        their times [s]; default 101.
+        their times [s], up to the end; default 101. An empty list asks for none.
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("output",)
@@ -223,5 +223,5 @@ class Output(Part):
             Of the run [s].
         """
         if isinstance(self.snapshots, tuple):
-            return np.array([time for time in self.snapshots if time <= duration])
+            return np.array(self.snapshots)
         return np.linspace(0.0, duration, self.snapshots or USUAL_SNAPSHOTS)

@@ -72,6 +72,14 @@ def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
         assert "Traceback" not in done.stderr
 
 
+def test_only_snapshots_that_are_asked_for_are_written(tmp_path: Path) -> None:
+    """With an empty list of snapshots no file of them is written or told."""
+    done = run(tmp_path, "--no-figures", case=CASE.replace('rate = "5 kHz"', 'rate = "5 kHz", snapshots = []'))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.endswith("run.nc\n")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"run.nc"}
+
+
 def test_files_that_collide_are_refused(tmp_path: Path) -> None:
     """A checkpoint that is a folder, or a file that results are written to, is refused before anything is computed."""
     case = CASE.replace('rate = "5 kHz"', 'rate = "5 kHz", snapshots = 3')

@@ -121,11 +121,30 @@ def test_all_room_on_disk_is_taken_at_once(steps: int, count: int, cavities: int
 
 
 def test_times_are_chosen(tmp_path: Path) -> None:
-    """Snapshots are taken at the steps nearest to the times that are given, each once; what is beyond the end is not."""
-    run = rb.simulate(case(snapshots=["0 s", "5 ms", "5.00001 ms", "1 s"]), snapshots=tmp_path / "run.vtkhdf")
+    """Snapshots are taken at the steps nearest to the times that are given, each once."""
+    times = [0.0, 0.005, 0.00500001, 0.02 * (1 + 1e-15)]
+    run = rb.simulate(case(snapshots=times), snapshots=tmp_path / "run.vtkhdf")
     found = Snapshots(tmp_path / "run.vtkhdf")
-    assert len(found) == 2
-    assert abs(found.times - [0, 0.005]).max() <= run.arrays.figures["step"] / 2
+    assert len(found) == 3
+    assert abs(found.times - [0, 0.005, 0.02]).max() <= run.arrays.figures["step"] / 2
+
+
+def test_times_after_the_end_are_refused() -> None:
+    """A snapshot that would be taken after the end of the run is told with both times."""
+    with pytest.raises(rb.CaseError) as told:
+        case(snapshots=["5 ms", "30 ms", "1 s"])
+    assert str(told.value).splitlines() == [
+        "Case: output.snapshots = (0.005, 0.03, 1.0)",
+        "  a snapshot is asked for at 0.03 s, after the end of the run at 0.02 s",
+        "  try: times up to the end, or a longer duration",
+    ]
+
+
+def test_no_times_give_no_file(tmp_path: Path) -> None:
+    """An empty list of times asks for no snapshots: no file is needed, and none is written."""
+    assert rb.simulate(case(snapshots=[])).ok
+    assert rb.simulate(case(snapshots=[]), snapshots=tmp_path / "run.vtkhdf").ok
+    assert not (tmp_path / "run.vtkhdf").exists()
 
 
 def test_snapshots_do_not_change_the_run(written: Any) -> None:
@@ -144,6 +163,8 @@ def test_other_files_are_refused(content: bytes | None, said: str, tmp_path: Pat
         path.write_bytes(content)
     with pytest.raises((FileNotFoundError, ValueError), match=said):
         Snapshots(path)
+    with pytest.raises(ValueError, match="is a folder, not a file"):
+        Snapshots(tmp_path)
 
 
 def test_runs_are_no_snapshots(written: Any, tmp_path: Path) -> None:
