@@ -1,6 +1,6 @@
 """Simulator and design tool for particle and impact dampers.
 
-The one import path: `import rattlebox as rb`. Everything public is a name of this module; heavy parts load when first
+The one import path: `import rattlebox as rb`. Everything public is a name of this module, and loads when it is first
 used.
 """
 
@@ -9,26 +9,25 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from rattlebox.model.case import Case
-from rattlebox.model.cavities import Box, Cylinder, SphericalCavity
-from rattlebox.model.contacts import Linear, Thornton, Tsuji, alpha_of_restitution, restitution_of_alpha
-from rattlebox.model.dampers import ImpactDamper, Sphere
-from rattlebox.model.errors import CaseError
-from rattlebox.model.friction import LinearSpring, Mindlin, Rolling
-from rattlebox.model.granular import PairLaws, ParticleDamper
-from rattlebox.model.materials import Material, materials
-from rattlebox.model.methods import Dem, EventDriven, Newton, Output, TwoStep
-from rattlebox.model.packing import Lattice, Positions, Settled
-from rattlebox.model.pairs import Body, Pair, contact_pairs
-from rattlebox.model.particles import LogNormal, Normal, Particles, Sieve
-from rattlebox.model.restitutions import Constant, JacksonGreen, Johnson, Tabulated, ThorntonRestitution
-from rattlebox.model.signals import HalfSine, Harmonic, Record, chirp, random_record
-from rattlebox.model.structures import SDOF, Fixed, Matrices, Modal, Shaker
-
 if TYPE_CHECKING:
     from rattlebox import analysis
     from rattlebox.engines.curves import restitution_curve
     from rattlebox.engines.simulate import simulate, simulate_many
+    from rattlebox.model.case import Case
+    from rattlebox.model.cavities import Box, Cylinder, SphericalCavity
+    from rattlebox.model.contacts import Linear, Thornton, Tsuji, alpha_of_restitution, restitution_of_alpha
+    from rattlebox.model.dampers import ImpactDamper, Sphere
+    from rattlebox.model.errors import CaseError
+    from rattlebox.model.friction import LinearSpring, Mindlin, Rolling
+    from rattlebox.model.granular import PairLaws, ParticleDamper
+    from rattlebox.model.materials import Material, materials
+    from rattlebox.model.methods import Dem, EventDriven, Newton, Output, TwoStep
+    from rattlebox.model.packing import Lattice, Positions, Settled
+    from rattlebox.model.pairs import Body, Pair, contact_pairs
+    from rattlebox.model.particles import LogNormal, Normal, Particles, Sieve
+    from rattlebox.model.restitutions import Constant, JacksonGreen, Johnson, Tabulated, ThorntonRestitution
+    from rattlebox.model.signals import HalfSine, Harmonic, Record, chirp, random_record
+    from rattlebox.model.structures import SDOF, Fixed, Matrices, Modal, Shaker
     from rattlebox.plots.basins import plot_basins
     from rattlebox.plots.bifurcation import plot_bifurcation
     from rattlebox.plots.design import plot_design
@@ -54,38 +53,48 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-_LATER = {
-    "simulate": "rattlebox.engines.simulate",
-    "simulate_many": "rattlebox.engines.simulate",
-    "sweep": "rattlebox.studies.sweep",
-    "MEASURES": "rattlebox.studies.measures",
-    "restitution_curve": "rattlebox.engines.curves",
-    "Run": "rattlebox.results",
-    "load": "rattlebox.results",
-    "frequency_response": "rattlebox.studies.frequency_response",
-    "basins": "rattlebox.studies.basins",
-    "bifurcation": "rattlebox.studies.bifurcation",
-    "plot_basins": "rattlebox.plots.basins",
-    "plot_bifurcation": "rattlebox.plots.bifurcation",
-    "film_particles": "rattlebox.plots.particles",
-    "plot_particles": "rattlebox.plots.particles",
-    "Snapshots": "rattlebox.results.snapshots",
-    "plot_design": "rattlebox.plots.design",
-    "plot_frequency_response": "rattlebox.plots.response",
-    "plot_loss_map": "rattlebox.plots.loss_map",
-    "plot_lyapunov": "rattlebox.plots.lyapunov",
-    "plot_map": "rattlebox.plots.maps",
-    "plot_sensitivity": "rattlebox.plots.sensitivity",
-    "design": "rattlebox.studies.design",
-    "loss_map": "rattlebox.studies.loss_map",
-    "open_study": "rattlebox.studies.store",
-    "sensitivity": "rattlebox.studies.sensitivity",
-    "lyapunov": "rattlebox.studies.lyapunov",
-    "geomspace": "rattlebox.studies.designs",
-    "linspace": "rattlebox.studies.designs",
-    "random_design": "rattlebox.studies.designs",
-    "replicas": "rattlebox.studies.designs",
+_PLACES = {
+    "rattlebox.engines.curves": "restitution_curve",
+    "rattlebox.engines.simulate": "simulate simulate_many",
+    "rattlebox.model.case": "Case",
+    "rattlebox.model.cavities": "Box Cylinder SphericalCavity",
+    "rattlebox.model.contacts": "Linear Thornton Tsuji alpha_of_restitution restitution_of_alpha",
+    "rattlebox.model.dampers": "ImpactDamper Sphere",
+    "rattlebox.model.errors": "CaseError",
+    "rattlebox.model.friction": "LinearSpring Mindlin Rolling",
+    "rattlebox.model.granular": "PairLaws ParticleDamper",
+    "rattlebox.model.materials": "Material materials",
+    "rattlebox.model.methods": "Dem EventDriven Newton Output TwoStep",
+    "rattlebox.model.packing": "Lattice Positions Settled",
+    "rattlebox.model.pairs": "Body Pair contact_pairs",
+    "rattlebox.model.particles": "LogNormal Normal Particles Sieve",
+    "rattlebox.model.restitutions": "Constant JacksonGreen Johnson Tabulated ThorntonRestitution",
+    "rattlebox.model.signals": "HalfSine Harmonic Record chirp random_record",
+    "rattlebox.model.structures": "Fixed Matrices Modal SDOF Shaker",
+    "rattlebox.plots.basins": "plot_basins",
+    "rattlebox.plots.bifurcation": "plot_bifurcation",
+    "rattlebox.plots.design": "plot_design",
+    "rattlebox.plots.loss_map": "plot_loss_map",
+    "rattlebox.plots.lyapunov": "plot_lyapunov",
+    "rattlebox.plots.maps": "plot_map",
+    "rattlebox.plots.particles": "film_particles plot_particles",
+    "rattlebox.plots.response": "plot_frequency_response",
+    "rattlebox.plots.sensitivity": "plot_sensitivity",
+    "rattlebox.results": "Run load",
+    "rattlebox.results.snapshots": "Snapshots",
+    "rattlebox.studies.basins": "basins",
+    "rattlebox.studies.bifurcation": "bifurcation",
+    "rattlebox.studies.design": "design",
+    "rattlebox.studies.designs": "geomspace linspace random_design replicas",
+    "rattlebox.studies.frequency_response": "frequency_response",
+    "rattlebox.studies.loss_map": "loss_map",
+    "rattlebox.studies.lyapunov": "lyapunov",
+    "rattlebox.studies.measures": "MEASURES",
+    "rattlebox.studies.sensitivity": "sensitivity",
+    "rattlebox.studies.store": "open_study",
+    "rattlebox.studies.sweep": "sweep",
 }
+_LATER = {name: module for module, names in _PLACES.items() for name in names.split()}
 
 __all__ = [
     "MEASURES",
@@ -175,6 +184,7 @@ def __getattr__(name: str) -> Any:
     if name == "analysis":
         return import_module("rattlebox.analysis")
     if name in _LATER:
+        import_module("rattlebox.model.case")  # before all else: messages list kinds in the order in which they load
         value = getattr(import_module(_LATER[name]), name)
         globals()[name] = value
         return value

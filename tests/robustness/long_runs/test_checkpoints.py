@@ -438,7 +438,8 @@ def test_a_run_stopped_before_its_first_step_goes_on(tmp_path: Path, monkeypatch
 
 LOST = """
 import os, signal, sys, time, weakref
-import rattlebox.cli.main as command
+from rattlebox.cli.commands import app
+from rattlebox.cli.main import main
 
 class Key:
     armed = False
@@ -450,7 +451,7 @@ class Key:
 class Thing:
     pass
 
-@command.app.command()
+@app.command()
 def wait():
     thing, values = Thing(), weakref.WeakValueDictionary()
     values[Key()] = thing
@@ -460,7 +461,7 @@ def wait():
     time.sleep(10)
 
 sys.argv = ["rattlebox", "wait"]
-command.main()
+main()
 """
 
 

@@ -121,3 +121,38 @@ def test_budget_of_events_ends_with_a_status() -> None:
     run = rb.simulate(case)
     assert run.status == "too_many_events"
     assert 0 < len(run.arrays.impacts) < 20
+
+
+PRESSED = """
+import os, signal, sys
+
+class Press:
+    def find_spec(self, name, path=None, target=None):
+        if name == module:
+            sys.meta_path.remove(self)
+            os.kill(os.getpid(), signal.SIGINT)
+
+module, sys.argv = sys.argv[1], ["rattlebox", *sys.argv[2:]]
+sys.meta_path.insert(0, Press())
+from rattlebox.cli.main import main
+main()
+"""
+
+
+@pytest.mark.parametrize("module", ["typer", "numpy", "rattlebox.model.case", "rattlebox.engines.simulate"])
+def test_ctrl_c_while_modules_load_is_quiet(module: str, tmp_path: Path) -> None:
+    """Ctrl-C before anything is computed, be it while modules load, ends with exit code 130 and one word."""
+    case = EXAMPLES / "steel_ball.toml"
+    command = [sys.executable, "-c", PRESSED, module, "run", str(case), "-o", str(tmp_path / "out")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "stopped\n")
+
+
+def test_the_package_loads_what_is_used() -> None:
+    """The package itself loads nothing, so that commands begin at once; every public name is there when it is used."""
+    script = (
+        "import sys, rattlebox; light = not {'numpy', 'pydantic'} & sys.modules.keys();"
+        "print(light, all(getattr(rattlebox, name) is not None for name in rattlebox.__all__))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False)
+    assert done.stdout == "True True\n", done.stderr

@@ -1,0 +1,198 @@
+"""What the rattlebox command can do."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rattlebox.cli.main import STOPPED
+from rattlebox.model.errors import CaseError
+
+app = typer.Typer(
+    help="Simulate and design particle and impact dampers.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from rattlebox import __version__
+
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def run(
+    case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("out"),
+    csv: Annotated[bool, typer.Option(help="Write CSV files too.")] = False,
+    mat: Annotated[bool, typer.Option(help="Write a MAT file too.")] = False,
+    figures: Annotated[bool, typer.Option(help="Draw motion, energy and impacts.")] = True,
+    checkpoint: Annotated[
+        Path | None,
+        typer.Option(help="File that keeps a run with particles on its way; default run.checkpoint in the folder."),
+    ] = None,
+) -> None:
+    """Run a case file: summary on the terminal, netCDF and figures in a folder. The same command goes on after a stop."""
+    from rattlebox.cli.run import run_case
+
+    run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint)
+
+
+@app.command()
+def sweep(
+    study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder of results (Zarr); default named after the study file.")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Threads; default one for each core.")] = None,
+    dask: Annotated[
+        str | None, typer.Option(help="Address or file of a Dask scheduler, to run on its workers.")
+    ] = None,
+    gpu: Annotated[bool, typer.Option("--gpu", help="Run on the graphics card.")] = False,
+) -> None:
+    """Run a study file: variants of a case over axes, or a ready map. The same command goes on after a stop."""
+    from rattlebox.cli.sweep import run_sweep
+
+    run_sweep(study, out, workers, dask, gpu=gpu)
+
+
+@app.command()
+def show(study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")]) -> None:
+    """Tell what is in a study, and how far it is."""
+    from rattlebox.cli.show import show_study
+
+    show_study(study)
+
+
+@app.command()
+def plot(
+    study: Annotated[Path, typer.Argument(help="Folder that sweep wrote; or run.nc or run.vtkhdf that run wrote.")],
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="File to write: PNG, SVG or PDF; a film of snapshots as GIF or MP4.")
+    ] = Path("study.png"),
+    kind: Annotated[
+        str | None,
+        typer.Option(
+            help="map or lines of a measure, or the kind that the study file names; default that. "
+            "Of a run motion, energy, impacts or particles."
+        ),
+    ] = None,
+    of: Annotated[str | None, typer.Option(help="Measure; default the first.")] = None,
+    at: Annotated[
+        list[str] | None, typer.Option(help='Value of a further axis, "load.amplitude=5 kN"; repeat for more.')
+    ] = None,
+    number: Annotated[int | None, typer.Option(help="Which snapshot, from 0; default the last.")] = None,
+    size: Annotated[str | None, typer.Option(help="column, page or slide.")] = None,
+) -> None:
+    """Draw a study: its own figure, or a measure over one or two of its axes. Draw a run, or film its particles."""
+    if study.is_file():
+        from rattlebox.cli.plot_run import plot_run
+
+        plot_run(study, out, kind=kind, number=number, size=size)
+        return
+    from rattlebox.cli.plot import plot_study
+
+    plot_study(study, out, kind=kind, of=of, at=at or (), size=size)
+
+
+@app.command()
+def demo(
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo"),
+) -> None:
+    """Run a steel ball on a pulsed structure with two restitution models side by side."""
+    from rattlebox.cli.demo import run_demo
+
+    run_demo(out)
+
+
+@app.command()
+def paper(
+    out: Annotated[Path, typer.Option("--out", "-o", help="New folder, or that of an earlier report.")] = Path(
+        "report"
+    ),
+    only: Annotated[
+        list[str] | None, typer.Option(help='Figure to make, as "4", "7c" or "A1"; repeat for more.')
+    ] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Processes; default one for each core.")] = None,
+) -> None:
+    """Reproduce and judge the reference study of a single-ball damper: every figure and claim on one page."""
+    from rattlebox.cli.paper import make_report
+
+    make_report(out, only or (), workers)
+
+
+@app.command()
+def schema(
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="File; default the terminal.")] = None,
+) -> None:
+    """Export the JSON Schema of case files, for editors."""
+    import json
+
+    from rattlebox.model.case import Case
+
+    text = json.dumps(Case.json_schema(), indent=2) + "\n"
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        out.write_text(text, encoding="utf-8")
+
+
+@app.command()
+def materials() -> None:
+    """List the materials of the library, with their sources."""
+    from rattlebox.cli.materials import show_materials
+
+    show_materials()
+
+
+@app.command()
+def doctor() -> None:
+    """Say what this machine can do, and which core is used and why."""
+    from rattlebox.cli.doctor import examine
+
+    examine()
+
+
+def carry_out() -> None:
+    """Do what the arguments of this process ask for; bad input is told on one screen, with exit code 2."""
+    try:
+        code = app(standalone_mode=False)
+        if code == STOPPED:
+            raise typer.Abort
+        sys.exit(code)
+    except CaseError as error:
+        typer.echo(f"error: {error}", err=True)
+        sys.exit(2)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        typer.echo(f"error: {where}{error.strerror or error}", err=True)
+        sys.exit(2)
+    except MemoryError:
+        typer.echo("error: there is not enough memory\n  try: a lower output rate, or fewer particles", err=True)
+        sys.exit(2)
+    except typer.Abort:
+        typer.echo("stopped", err=True)
+        sys.exit(STOPPED)
+    except typer.Exit as stop:
+        sys.exit(stop.exit_code)
+    except Exception as error:
+        show = getattr(error, "show", None)
+        if show is None:
+            raise
+        show()
+        sys.exit(getattr(error, "exit_code", 2))
