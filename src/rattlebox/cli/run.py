@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
+from rattlebox.cli.main import STOPPED
 from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.model.errors import CaseError, Hint
@@ -74,31 +76,48 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
         raise CaseError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / 'run.checkpoint'}")
     make_folder(out)
     checkpoint = checkpoint or out / "run.checkpoint"
+    written: list[str] = []
     try:
         run = _simulated(case, out, checkpoint)
+        if run.status == "interrupted" and case.particle_dampers:
+            typer.echo(run.message, err=True)
+            sys.exit(STOPPED)
+        console = Console()
+        console.print(run.summary())
+        if case.output.snapshots:
+            written.append("run.vtkhdf")
+        for name in _write(run, out, csv=csv, mat=mat, figures=figures):
+            written.append(name)
     except Hint as hint:
         raise CaseError(f"{path}: {hint}") from None
-    if run.status == "interrupted" and case.particle_dampers:
-        typer.echo(run.message, err=True)
-        sys.exit(130)
-    console = Console()
-    console.print(run.summary())
-    run.save(out / "run.nc")
-    written = ["run.nc"]
-    if case.output.snapshots:
-        written.append("run.vtkhdf")
-    if mat:
-        run.to_mat(out / "run.mat")
-        written.append("run.mat")
-    if csv:
-        written += [path.name for path in run.to_csv(out)]
-    if figures:
-        for name in ("motion", "energy") if isinstance(run, GranularRun) else ("motion", "energy", "impacts"):
-            getattr(run.plot, name)().savefig(out / f"{name}.png")
-            written.append(f"{name}.png")
+    except KeyboardInterrupt:
+        typer.echo(f"stopped; {_kept(checkpoint, out, written)}", err=True)
+        sys.exit(STOPPED)
     console.print(f"written to {out}: {', '.join(written)}")
     if run.status in ("finished", "ledger_open"):
         checkpoint.unlink(missing_ok=True)
     if not run.ok:
         console.print(f"[bold]{run.status}[/bold]: {run.message}")
         sys.exit(1)
+
+
+def _write(run: Run, out: Path, *, csv: bool, mat: bool, figures: bool) -> Iterator[str]:
+    """Write files one after the other, and give the name of each when it is there."""
+    run.save(out / "run.nc")
+    yield "run.nc"
+    if mat:
+        run.to_mat(out / "run.mat")
+        yield "run.mat"
+    if csv:
+        yield from [path.name for path in run.to_csv(out)]
+    if figures:
+        for name in ("motion", "energy") if isinstance(run, GranularRun) else ("motion", "energy", "impacts"):
+            getattr(run.plot, name)().savefig(out / f"{name}.png")
+            yield f"{name}.png"
+
+
+def _kept(checkpoint: Path, out: Path, written: Sequence[str]) -> str:
+    """What there is of a run that was stopped."""
+    if checkpoint.is_file():
+        return f"the same command goes on from {checkpoint}"
+    return f"written to {out}: {', '.join(written)}" if written else "nothing is kept yet"

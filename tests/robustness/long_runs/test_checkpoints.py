@@ -486,7 +486,7 @@ def test_the_command_goes_on(number: int, tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "going on from out/run.checkpoint" in done.stderr
-    assert "written to out: run.nc, run.vtkhdf" in done.stdout
+    assert "written to out: run.vtkhdf, run.nc" in done.stdout
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"run.nc", "run.vtkhdf"}
     assert len(Snapshots(tmp_path / "out/run.vtkhdf")) == 11
 

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import rattlebox as rb
+from rattlebox.cli.main import main
 
 CASE = """
 name = "beads"
@@ -70,6 +75,34 @@ def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
         assert f"case.toml: {field}\n" in done.stderr
         assert said in done.stderr
         assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    ("where", "kept"),
+    [
+        ("rattlebox.engines.dem.settle", "nothing is kept yet"),
+        ("rattlebox.results.GranularRun.save", "the same command goes on from out/run.checkpoint"),
+        ("rattlebox.results.GranularRun.to_csv", "the same command goes on from out/run.checkpoint"),
+    ],
+)
+def test_a_stop_is_told_wherever_it_comes(
+    number: int,
+    where: str,
+    kept: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """Ctrl-C and SIGTERM while particles settle, or while results are written, are told in one line with what is kept."""
+    monkeypatch.chdir(tmp_path)
+    Path("case.toml").write_text(CASE.replace("0.3 }", '0.3 }\npacking = { kind = "settled" }'), encoding="utf-8")
+    monkeypatch.setattr(sys, "argv", ["rattlebox", "run", "case.toml", "-o", "out", "--csv"])
+    monkeypatch.setattr(where, lambda *_: os.kill(os.getpid(), number))
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code == 128 + number
+    assert capfd.readouterr().err == f"stopped; {kept}\n"
 
 
 def test_only_snapshots_that_are_asked_for_are_written(tmp_path: Path) -> None:
