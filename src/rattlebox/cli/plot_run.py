@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import typer
 from rich.console import Console
 from rich.progress import Progress
 
+from rattlebox.cli.main import STOPPED
 from rattlebox.cli.plot import FORMATS, check_target
 from rattlebox.model.errors import CaseError, nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
@@ -74,6 +77,9 @@ def _film(of: Any, out: Path, options: dict[str, Any]) -> None:
         line = bar.add_task("pictures", total=len(of))
         try:
             film_particles(of, out, progress=lambda done, _: bar.update(line, completed=done), **options)
+        except KeyboardInterrupt:
+            typer.echo(f"stopped; {out} is not written", err=True)
+            sys.exit(STOPPED)
         except ModuleNotFoundError:
             raise CaseError(
                 "MP4 needs imageio-ffmpeg\n  try: python -m pip install 'rattlebox[3d]', or -o film.gif"

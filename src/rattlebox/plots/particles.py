@@ -6,6 +6,7 @@ import io
 import os
 import tomllib
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from pydantic import TypeAdapter
 from ..model.cavities import AnyCavity, Box, Cavity, Cylinder
 from ..results import GranularRun
 from ..results.snapshots import Frame, Snapshots
+from ..results.whole import telling, whole
 from .spheres import Renderer, draw_spheres
 from .style import INK, PaperFigure, Size, paper, pen, scaled
 
@@ -28,6 +30,7 @@ Array = NDArray[np.float64]
 
 FILMS = (".gif", ".mp4")
 _FILM_DPI: dict[Size, float] = {"column": 160.0, "page": 160.0, "slide": 110.0}
+_LOST = "make room and give the same command again"
 
 _AZIMUTH, _HEIGHT = np.radians(-60.0), np.radians(18.0)
 _TOWARDS = np.array([np.cos(_HEIGHT) * np.cos(_AZIMUTH), np.cos(_HEIGHT) * np.sin(_AZIMUTH), np.sin(_HEIGHT)])
@@ -107,7 +110,7 @@ def film_particles(
     ModuleNotFoundError
         When .mp4 is asked for and imageio-ffmpeg is not installed.
     OSError
-        When the file cannot be written.
+        When the file cannot be written; an earlier one is then as it was.
     """
     path = Path(out)
     if path.suffix not in FILMS:
@@ -128,12 +131,19 @@ def film_particles(
         scene.figure.savefig(io.BytesIO(), dpi=dpi)
         scene.figure.set_layout_engine("none")  # all pictures are laid out as the first
         writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
-        with writer.saving(scene.figure, os.fspath(path), dpi=dpi):
-            for number in range(len(snapshots)):
-                scene.show(number)
-                writer.grab_frame()
-                if progress is not None:
-                    progress(number + 1, len(snapshots))
+        with telling(path, _LOST), whole(path) as name:
+            writer.setup(scene.figure, os.fspath(name), dpi=dpi)
+            try:
+                for number in range(len(snapshots)):
+                    scene.show(number)
+                    writer.grab_frame()
+                    if progress is not None:
+                        progress(number + 1, len(snapshots))
+            except BaseException:
+                with suppress(Exception):  # it ends FFmpeg, and complains where there is no picture yet
+                    writer.finish()
+                raise
+            writer.finish()
     return path
 
 

@@ -42,7 +42,7 @@ def whole(path: Path) -> Iterator[Path]:
         When the file cannot be written; an earlier one is then as it was.
     """
     needs_folder(path)
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
     os.close(handle)
     temporary = Path(name)
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from functools import cache
@@ -15,7 +16,7 @@ from PIL import Image
 import rattlebox as rb
 from rattlebox.cli.main import main
 from rattlebox.model.cavities import Cavity
-from rattlebox.plots.particles import VIEW, film_particles, outline, plot_particles
+from rattlebox.plots.particles import VIEW, _Scene, film_particles, outline, plot_particles
 from rattlebox.plots.spheres import draw_spheres
 
 EXTENT = (-2.0, 2.0, -1.0, 1.0)
@@ -185,6 +186,35 @@ def test_the_command_draws_and_films(
     assert answer(monkeypatch, capsys, saved, "-o", "a.png") == (0, "written: a.png\n", "")
     assert answer(monkeypatch, capsys, run[1], "-o", "a.gif") == (0, f"{get}written: a.gif\n", "")
     assert Path("a.gif").read_bytes().startswith(b"GIF89a")
+
+
+@pytest.mark.parametrize("name", ["film.gif", "film.mp4"])
+@pytest.mark.parametrize("pictures", [0, 3])
+def test_films_that_are_stopped_leave_the_earlier_ones(
+    name: str,
+    pictures: int,
+    run: Any,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Ctrl-C in any picture of a film is told in one line, and the file is as it was before."""
+    if name.endswith("mp4"):
+        pytest.importorskip("imageio_ffmpeg", reason="no imageio-ffmpeg: python -m pip install 'rattlebox[3d]'")
+    drawn, show = 0, _Scene.show
+
+    def press(scene: _Scene, number: int) -> None:
+        nonlocal drawn
+        drawn += 1
+        if drawn == pictures + 2:  # one is drawn for the layout
+            signal.raise_signal(signal.SIGINT)
+        show(scene, number)
+
+    monkeypatch.setattr(_Scene, "show", press)
+    (tmp_path / name).write_text("an earlier film")
+    code, out, err = answer(monkeypatch, capsys, run[1], "-o", tmp_path / name)
+    assert (code, out, err) == (130, "", f"stopped; {tmp_path / name} is not written\n")
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["an earlier film"]
 
 
 @pytest.mark.parametrize(
