@@ -41,7 +41,7 @@ def run(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("out"),
     csv: Annotated[bool, typer.Option(help="Write CSV files too.")] = False,
     mat: Annotated[bool, typer.Option(help="Write a MAT file too.")] = False,
-    figures: Annotated[bool, typer.Option(help="Draw motion, energy and impacts.")] = True,
+    figures: Annotated[bool, typer.Option(help="Draw motion and energy, and the impacts of impact dampers.")] = True,
     checkpoint: Annotated[
         Path | None,
         typer.Option(help="File that keeps a run with particles on its way; default run.checkpoint in the folder."),
@@ -92,22 +92,23 @@ def plot(
             "Of a run motion, energy, impacts or particles."
         ),
     ] = None,
-    of: Annotated[str | None, typer.Option(help="Measure; default the first.")] = None,
+    of: Annotated[str | None, typer.Option(help="Measure of a study; default the first.")] = None,
     at: Annotated[
-        list[str] | None, typer.Option(help='Value of a further axis, "load.amplitude=5 kN"; repeat for more.')
+        list[str] | None,
+        typer.Option(help='Value of a further axis of a study, "load.amplitude=5 kN"; repeat for more.'),
     ] = None,
-    number: Annotated[int | None, typer.Option(help="Which snapshot, from 0; default the last.")] = None,
+    number: Annotated[int | None, typer.Option(help="Which snapshot of a run, from 0; default the last.")] = None,
     size: Annotated[str | None, typer.Option(help="column, page or slide.")] = None,
 ) -> None:
     """Draw a study: its own figure, or a measure over one or two of its axes. Draw a run, or film its particles."""
-    if study.is_file():
+    if study.is_file() or (study.suffix in (".nc", ".vtkhdf") and not study.exists()):
         from rattlebox.cli.plot_run import plot_run
 
-        plot_run(study, out, kind=kind, number=number, size=size)
+        plot_run(study, out, kind=kind, of=of, at=at or (), number=number, size=size)
         return
     from rattlebox.cli.plot import plot_study
 
-    plot_study(study, out, kind=kind, of=of, at=at or (), size=size)
+    plot_study(study, out, kind=kind, of=of, at=at or (), number=number, size=size)
 
 
 @app.command()

@@ -25,7 +25,14 @@ MAPS = tuple(kind for kind in KINDS if kind != "sweep")
 
 
 def plot_study(
-    study: Path, out: Path, *, kind: str | None, of: str | None, at: Sequence[str], size: str | None
+    study: Path,
+    out: Path,
+    *,
+    kind: str | None,
+    of: str | None,
+    at: Sequence[str],
+    number: int | None,
+    size: str | None,
 ) -> None:
     """Draw a study and write the figure.
 
@@ -39,10 +46,12 @@ def plot_study(
         "map" or "lines" of one measure, or the name of a ready map; default that of the study.
     of
         What to draw, where there is a choice.
-    size
-        Width; default that of the figure.
     at
         Texts "axis=value".
+    number
+        Of a snapshot, which a study has none of.
+    size
+        Width; default that of the figure.
 
     Raises
     ------
@@ -50,6 +59,10 @@ def plot_study(
         When an argument does not fit, or there is no such study.
     """
     check_target(out, size)
+    if (study / "run.nc").is_file():
+        raise CaseError(f"there is a run in {study}, not a study\n  try: {study / 'run.nc'}")
+    if number is not None:
+        raise CaseError(f"--number {number}: this applies to snapshots of a run, run.vtkhdf\n  try: leave it out")
     data, options = open_study(study), {"of": of, "size": size}
     own = str(data.attrs.get("study", "sweep"))
     options = {name: value for name, value in options.items() if value is not None}

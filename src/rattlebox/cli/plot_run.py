@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +23,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def plot_run(path: Path, out: Path, *, kind: str | None, number: int | None, size: str | None) -> None:
+def plot_run(
+    path: Path,
+    out: Path,
+    *,
+    kind: str | None,
+    of: str | None,
+    at: Sequence[str],
+    number: int | None,
+    size: str | None,
+) -> None:
     """Draw a run or its snapshots and write the figure or the film.
 
     Parameters
@@ -33,6 +43,8 @@ def plot_run(path: Path, out: Path, *, kind: str | None, number: int | None, siz
         File to write: PNG, SVG or PDF, or of snapshots GIF or MP4.
     kind
         "motion", "energy", "impacts" or "particles"; default the first, of snapshots the last.
+    of, at
+        What to draw of a study, which a run is not.
     number
         Which snapshot, from 0; default the last.
     size
@@ -44,29 +56,45 @@ def plot_run(path: Path, out: Path, *, kind: str | None, number: int | None, siz
         When an argument does not fit, or there is no such file.
     """
     check_target(out, size, (*FORMATS, *FILMS))
+    for option, value in (("--of", of), ("--at", at and at[0])):
+        if value:
+            what = "--number" if path.suffix == ".vtkhdf" else "--kind"
+            raise CaseError(f"{option} {value}: this applies to a study, and {path} is a run\n  try: {what}")
     options: dict[str, Any] = {} if size is None else {"size": size}
     try:
-        of = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
-    except (FileNotFoundError, ValueError) as error:
+        run = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
+    except FileNotFoundError as error:
+        raise CaseError(f"{error}\n  try: run.nc or run.vtkhdf that 'rattlebox run' wrote") from None
+    except ValueError as error:
         raise CaseError(str(error)) from None
-    if number is not None and not isinstance(of, Snapshots):
+    if number is not None and not isinstance(run, Snapshots):
         raise CaseError(
             "--number: a run has no snapshots\n  try: run.vtkhdf beside it, with output.snapshots in the case"
         )
     console = Console(highlight=False)
     try:
         if out.suffix in FILMS:
-            _film(of, out, options)
+            _check_film(out, kind, number)
+            _film(run, out, options)
         else:
-            _figure(of, kind, -1 if number is None else number, options).savefig(out)
+            _figure(run, kind, -1 if number is None else number, options).savefig(out)
     except (ValueError, IndexError) as error:
         raise CaseError(str(error)) from None
-    if (kind == "particles" or isinstance(of, Snapshots)) and usual_renderer() == "plain":
+    if (kind == "particles" or isinstance(run, Snapshots)) and usual_renderer() == "plain":
         console.print(
             "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox\\[3d]'",
             soft_wrap=True,
         )
     console.print(f"written: {out}", soft_wrap=True)
+
+
+def _check_film(out: Path, kind: str | None, number: int | None) -> None:
+    """Refuse what does not apply to a film."""
+    picture = out.with_suffix(".png")
+    if number is not None:
+        raise CaseError(f"--number {number}: a film shows all snapshots\n  try: -o {picture}")
+    if kind not in (None, "particles"):
+        raise CaseError(f"--kind {kind}: a film shows particles\n  try: run.nc, -o {picture}")
 
 
 def _film(of: Any, out: Path, options: dict[str, Any]) -> None:

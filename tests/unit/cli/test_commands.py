@@ -74,6 +74,12 @@ def test_missing_file_and_unknown_option_are_told() -> None:
         assert "Traceback" not in done.stderr
 
 
+def test_help_tells_what_particles_draw() -> None:
+    """The help of run names impacts as figures of impact dampers only."""
+    told = " ".join(rattlebox("run", "--help").stdout.replace("│", " ").split())
+    assert "Draw motion and energy, and the impacts of impact dampers." in told
+
+
 def test_schema_is_a_schema(tmp_path: Path) -> None:
     """The exported schema is JSON and knows the structures."""
     done = rattlebox("schema", "-o", tmp_path / "schema.json")

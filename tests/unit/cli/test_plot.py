@@ -62,6 +62,7 @@ def test_writes_every_format(study: Path, answer: Answer) -> None:
         (["--at", "damper.start=0", "--kind", "maps"], "did you mean 'map'"),
         (["--at", "damper.start=0", "--of", "impact"], "did you mean 'impacts'"),
         (["--size", "poster"], "column, page, slide"),
+        (["--number", "2"], "--number 2: this applies to snapshots of a run, run.vtkhdf"),
         (["-o", "map.jpg"], ".png, .svg, .pdf"),
         (["-o", "nowhere/map.png"], "there is no folder nowhere"),
     ],

@@ -229,6 +229,15 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
         (["run.vtkhdf", "--number", "5"], "holds 5 snapshots, numbered from 0; there is no number 5"),
         (["run.vtkhdf", "-o", "a.jpg"], "the ending must be one of .png, .svg, .pdf, .gif, .mp4"),
         (["run.vtkhdf", "--size", "wide"], "--size wide: there is no such size"),
+        (["run.vtkhdf", "--number", "0", "-o", "a.gif"], "--number 0: a film shows all snapshots\n  try: -o a.png"),
+        (
+            ["run.vtkhdf", "--kind", "motion", "-o", "a.gif"],
+            "--kind motion: a film shows particles\n  try: run.nc, -o a.png",
+        ),
+        (["run.nc", "--of", "loss"], "--of loss: this applies to a study, and run.nc is a run\n  try: --kind"),
+        (["run.vtkhdf", "--at", "x=1"], "--at x=1: this applies to a study, and run.vtkhdf is a run\n  try: --number"),
+        (["nope.nc"], "there is no file nope.nc\n  try: run.nc or run.vtkhdf that 'rattlebox run' wrote"),
+        (["."], "there is a run in ., not a study\n  try: run.nc"),
     ],
 )
 def test_wrong_arguments_are_told(
