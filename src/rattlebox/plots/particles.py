@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import os
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,7 +42,7 @@ VIEW: Array = np.array([_RIGHT, np.cross(_TOWARDS, _RIGHT), _TOWARDS])
 def plot_particles(
     of: GranularRun | Snapshots, *, number: int = -1, size: Size = "page", renderer: Renderer | None = None
 ) -> Figure:
-    """Draw the particles in their cavities at one time, coloured by their speed.
+    """Draw the particles in their cavities at one time, coloured by their speed, as seen from the base.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def plot_particles(
         raise ValueError(f"{of.path} holds no snapshot yet")
     frame = of[number] if isinstance(of, Snapshots) else _end(of)
     with paper(size):
-        return _Scene([frame], _cavities(of.case_toml), size, renderer).figure
+        return _Scene([frame], of.case_toml, size, renderer).figure
 
 
 def film_particles(
@@ -81,7 +81,7 @@ def film_particles(
     renderer: Renderer | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Path:
-    """Write a film of the particles in their cavities, with a picture for each snapshot.
+    """Write a film of the particles in their cavities, with a picture for each snapshot, as seen from the base.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def film_particles(
 
             mpl.rcParams["animation.ffmpeg_path"] = get_ffmpeg_exe()
         dpi = _FILM_DPI[size]
-        scene = _Scene(snapshots, _cavities(snapshots.case_toml), size, renderer, dpi)
+        scene = _Scene(snapshots, snapshots.case_toml, size, renderer, dpi)
         scene.figure.savefig(io.BytesIO(), dpi=dpi)
         scene.figure.set_layout_engine("none")  # all pictures are laid out as the first
         writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
@@ -165,9 +165,8 @@ def _end(run: GranularRun) -> Frame:
     )
 
 
-def _cavities(case_toml: str) -> list[tuple[str, Cavity]]:
-    """Names and forms of the cavities of a case, whose other files need not be there."""
-    dampers = tomllib.loads(case_toml)["dampers"]
+def _cavities(dampers: Sequence[Mapping[str, Any]]) -> list[tuple[str, Cavity]]:
+    """Names and forms of cavities, of a case whose other files need not be there."""
     form: TypeAdapter[Cavity] = TypeAdapter(AnyCavity)
     return [
         (damper.get("name") or f"damper {number}", form.validate_python(damper["cavity"]))
@@ -218,12 +217,14 @@ class _Scene:
     def __init__(
         self,
         frames: Sequence[Frame] | Snapshots,
-        cavities: Sequence[tuple[str, Cavity]],
+        case_toml: str,
         size: Size,
         renderer: Renderer | None,
         dpi: float = 300.0,
     ) -> None:
         self._dpi = dpi
+        case = tomllib.loads(case_toml)
+        cavities = _cavities(case["dampers"])
         self._frames, self._cavities, self._renderer = frames, cavities, renderer
         told = [(_speed(frame), frame.displacement, frame.time) for frame in frames]
         speeds = np.concatenate([speed for speed, _, _ in told])
@@ -238,7 +239,9 @@ class _Scene:
         panels = self.figure.subplots(1, len(cavities), squeeze=False, width_ratios=[w for w, _ in sides])[0]
         self._panels = [self._panel(k, axes, extents[k]) for k, axes in enumerate(panels)]
         bar = self.figure.colorbar(ScalarMappable(self._norm, _colours()), ax=list(panels), aspect=28, pad=0.02)
-        bar.set_label(f"Speed ({self._scale.unit})")
+        shaken = "base" in case or case["structure"]["kind"] == "shaker"
+        speed = "Speed relative\nto the base" if shaken else "Speed"  # two lines: pictures of flat boxes are low
+        bar.set_label(f"{speed} ({self._scale.unit})")
         bar.outline.set_visible(False)
         self.show(0)
 

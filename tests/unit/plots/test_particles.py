@@ -137,6 +137,29 @@ def test_a_figure_has_a_panel_for_each_cavity(run: Any) -> None:
                 assert shown.min() - 2 * pixel < seen[0] < seen[1] < shown.max() + 2 * pixel
 
 
+@pytest.mark.parametrize("shaken", ["base", "shaker"])
+def test_speeds_in_a_shaken_box_are_told_to_be_relative(shaken: str, tmp_path: Path) -> None:
+    """Where the base moves, the colour bar says that speeds are relative to it."""
+    push = rb.Harmonic(amplitude="1 mm", frequency="30 Hz")
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="glass", diameter="4 mm", count=5),
+        cavity=rb.Box(size=("20 mm", "20 mm", "20 mm")),
+        contact=rb.Tsuji(restitution=0.7),
+        softening=1000,
+    )
+    moved = (
+        {"structure": rb.Shaker(motion=push)}
+        if shaken == "shaker"
+        else {
+            "structure": rb.SDOF(mass="0.1 kg", stiffness="10 kN/m"),
+            "base": rb.HalfSine(amplitude=5, duration="9 ms"),
+        }
+    )
+    case = rb.Case(**moved, damper=damper, duration="10 ms", output=rb.Output(rate="1 kHz"))
+    figure = plot_particles(rb.simulate(case), size="column", renderer="plain")
+    assert figure.axes[-1].get_ylabel() == "Speed relative\nto the base (mm/s)"
+
+
 def test_films_have_a_picture_for_each_snapshot(run: Any, tmp_path: Path) -> None:
     """A GIF has as many pictures as there are snapshots, and they differ."""
     path = film_particles(rb.Snapshots(run[1]), tmp_path / "film.gif", rate=10, renderer="plain")
