@@ -515,7 +515,9 @@ def _told(
     if status == 0:
         return describe(0, case.duration, "", 0.0, case.method.kind)
     stopped = dem.stopped()
-    where = f"Particle {stopped['particle']} of {names[stopped['cavity']]!r}"
+    cavity = stopped["cavity"]
+    number = stopped["particle"] + sum(damper.contents.radius.size for damper in case.particle_dampers[:cavity])
+    where = f"Particle {number}, in {names[cavity]!r},"
     name, message = describe(status, stopped["time"], where, stopped["speed"], case.method.kind)
     if status == INTERRUPTED:
         return name, message if checkpoint is None else f"{message} Run again, it goes on from {checkpoint.path}."

@@ -177,7 +177,7 @@ class GranularArrays(_Comparable):
 
     @property
     def numbers(self) -> IntArray:
-        """Numbers of the particles, from 0."""
+        """Numbers of the particles, from 0, over all dampers."""
         return np.arange(self.radius.size)
 
     def __reduce__(self) -> tuple[Any, ...]:

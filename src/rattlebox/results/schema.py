@@ -241,7 +241,7 @@ GRANULAR = Form(
         "mode": ("1", "number of the mode"),
         "axis": ("", "axis"),
         "partner": ("", "what the particles touch"),
-        "particle": ("1", "number of the particle, from 0"),
+        "particle": ("1", "number of the particle, from 0, over all dampers"),
         "channel": ("", "channel of the energy"),
     },
     labels={

@@ -400,7 +400,7 @@ def test_a_particle_that_leaves_is_told(tmp_path: Path) -> None:
     thrown = rb.Case(structure=rb.Fixed(), damper=fast, duration="10 ms")
     run = rb.simulate(thrown, checkpoint=file)
     assert run.status == "escaped"
-    where = "Particle 1 of 'damper' left its cavity at "
+    where = "Particle 1, in 'damper', left its cavity at "
     assert run.message.startswith(where)
     told = run.message.removeprefix(where).split()
     assert float(told[0]) == pytest.approx(40, rel=0.1)
@@ -408,6 +408,30 @@ def test_a_particle_that_leaves_is_told(tmp_path: Path) -> None:
     assert f"The step was {step:.4g} s. The last checkpoint is of t = 0 s, in {file}." in run.message
     time_told = float(run.message.split("at t = ")[1].split()[0])
     assert 0.012 / 40 < time_told < 0.0185 / 40 + 3 * step
+
+
+def test_particles_are_counted_over_all_dampers() -> None:
+    """The number of a particle in a message is its place in `run.particles`, whichever damper it is in."""
+    steel = {
+        "particles": rb.Particles(material="steel", diameter="6 mm", count=2),
+        "contact": rb.Tsuji(restitution=0.5),
+    }
+    cavity, places = rb.Box(size=("30 mm", "30 mm", "30 mm")), [(0, 0, 0), (0, 0.01, 0)]
+    calm, wild = (
+        rb.ParticleDamper(
+            name=name,
+            cavity=cavity,
+            packing=rb.Positions(positions=places, velocities=[(0, 0, 0), (speed, 0, 0)]),
+            softening=1e6,
+            **steel,
+        )
+        for name, speed in (("calm", 0), ("wild", 40))
+    )
+    run = rb.simulate(rb.Case(structure=rb.Fixed(), dampers=[calm, wild], duration="10 ms"))
+    assert run.message.startswith("Particle 3, in 'wild', left its cavity at 38.8")
+    gone = run.particles.sel(particle=3)
+    assert abs(gone.position.values[0]) > 0.012
+    assert run.particles.position.values[:3, 0].max() < 1e-3
 
 
 def test_runs_without_particles_take_no_files(tmp_path: Path) -> None:

@@ -241,7 +241,7 @@ def test_a_particle_that_leaves_is_named() -> None:
     """A contact far too soft lets a fast particle through: the run ends with its number, time, speed and the step."""
     run = simulate(damper(particles=balls(1), velocity=(100, 0, 0), softening=1e6), structure=rb.Fixed(), duration=1e-3)
     assert run.status == "escaped"
-    assert run.message.startswith("Particle 0 of 'damper' left its cavity at 9")
+    assert run.message.startswith("Particle 0, in 'damper', left its cavity at 9")
     assert "The step was" in run.message
     assert run.arrays.time[-1] < 1e-3
 
@@ -262,7 +262,7 @@ def test_laws_that_give_no_rebound_are_told(ending: str) -> None:
     fast = damper(particles=lead, contact=law, velocity=(20, 0, 0), gravity=(0, 0, 0), softening=1)
     run = simulate(fast, structure=rb.Fixed(), duration=2e-3, output=rb.Output())
     assert run.status == "no_rebound"
-    assert "Particle 0 of 'damper' was struck at 20 m/s" in run.message
+    assert "Particle 0, in 'damper', was struck at 20 m/s" in run.message
     assert np.isfinite(run.arrays.position).all()
 
 
