@@ -4,10 +4,12 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
 import rattlebox as rb
+from rattlebox.cli import commands
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -162,3 +164,14 @@ def test_the_package_loads_what_is_used() -> None:
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False)
     assert done.stdout == "True True\n", done.stderr
+
+
+def test_errors_without_a_file_are_told_plainly(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What the system refuses is told with its file if there is one, and without a gap if there is none."""
+    for error, said in ((OSError("no such thing"), "no such thing"), (OSError(5, "odd", "a.nc"), "a.nc: odd")):
+        monkeypatch.setattr(commands, "app", Mock(side_effect=error))
+        with pytest.raises(SystemExit, match="2"):
+            commands.carry_out()
+        assert capsys.readouterr().err == f"error: {said}\n"
