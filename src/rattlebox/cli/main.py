@@ -10,6 +10,7 @@ from types import FrameType
 STOPPED = 128 + signal.SIGINT
 
 _LOSING = ("__del__", "cb")  # the latter lets go of a lock of importlib
+_COMPILED = "ExtensionFileLoader."  # of importlib: modules in C may lose what is raised while they load others
 
 
 def main() -> None:
@@ -45,7 +46,8 @@ def main() -> None:
 
 def _loses_exceptions(frame: FrameType | None) -> bool:
     while frame is not None:
-        if frame.f_code.co_filename == weakref.__file__ or frame.f_code.co_name in _LOSING:
+        code = frame.f_code
+        if code.co_filename == weakref.__file__ or code.co_name in _LOSING or code.co_qualname.startswith(_COMPILED):
             return True
         frame = frame.f_back
     return False

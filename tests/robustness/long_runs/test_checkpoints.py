@@ -495,6 +495,33 @@ def test_a_stop_where_exceptions_are_lost_is_heard() -> None:
     assert done.returncode == 128 + signal.SIGTERM, done.stderr
 
 
+LOADING = """
+import os, signal, sys, time
+from contextlib import suppress
+from rattlebox.cli.commands import app
+from rattlebox.cli.main import main
+
+class ExtensionFileLoader:
+    def exec_module(self):
+        with suppress(BaseException):
+            os.kill(os.getpid(), signal.SIGTERM)
+
+@app.command()
+def wait():
+    ExtensionFileLoader().exec_module()
+    time.sleep(10)
+
+sys.argv = ["rattlebox", "wait"]
+main()
+"""
+
+
+def test_a_stop_while_compiled_modules_load_is_heard() -> None:
+    """SIGTERM while a module in C loads, which may lose what is raised there, stops the command once it is loaded."""
+    done = subprocess.run([sys.executable, "-c", LOADING], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "stopped\n")
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_command_goes_on(number: int, tmp_path: Path) -> None:
     """Stopped by Ctrl-C or a cluster, the command says how to go on; given again it finishes and leaves no checkpoint."""
