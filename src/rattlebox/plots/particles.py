@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -140,11 +141,21 @@ def film_particles(
                     if progress is not None:
                         progress(number + 1, len(snapshots))
             except BaseException:
-                with suppress(Exception):  # it ends FFmpeg, and complains where there is no picture yet
-                    writer.finish()
+                _let_go(writer)
                 raise
             writer.finish()
     return path
+
+
+def _let_go(writer: Any) -> None:
+    """End FFmpeg without a word: what it has to say is that it was stopped, or has no picture yet."""
+    log = logging.getLogger("matplotlib.animation")
+    before, log.disabled = log.disabled, True
+    try:
+        with suppress(Exception):
+            writer.finish()
+    finally:
+        log.disabled = before
 
 
 def _end(run: GranularRun) -> Frame:
