@@ -330,7 +330,7 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
     Raises
     ------
     Hint
-        Naming the particles (counted from 0, as in results) and by how much.
+        Naming the particles (counted from 0 within their damper) and by how much.
     """
     room = cavity.room(positions, radii)
     worst = int(room.argmin())

@@ -13,6 +13,8 @@ import rattlebox as rb
 
 from . import cases
 
+CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 0
+
 LAWS: dict[str, tuple[Any, Any]] = {
     "Hertz": (rb.Tsuji(restitution=rb.JacksonGreen()), rb.Mindlin(0.4)),
     "linear": (rb.Linear(contact_time="0.2 ms", restitution=0.8), rb.LinearSpring(0.4, ratio=0.3)),
@@ -106,7 +108,7 @@ def test_restart_gives_the_same_bits(law: str) -> None:
     assert len(early["time"]) < len(unbroken.records()["time"])
 
 
-@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="cores of a process can be chosen on Linux only")
+@pytest.mark.skipif(CORES == 0, reason="cores of a process can be chosen on Linux only")
 def test_teams_on_one_core_give_the_same_bits() -> None:
     """Members who wait for each other on a single core let each other have it, compute the same bits, and keep to it."""
     before = os.sched_getaffinity(0)
@@ -218,3 +220,32 @@ def test_contacts_of_a_stopped_run_are_not_told_in_part() -> None:
         dem.contacts(0)
     dem.run(dem.step + 1)
     assert len(dem.contacts(0)["first"]) > 50
+
+
+@pytest.mark.skipif(CORES == 0, reason="cores of a process can be chosen on Linux only")
+@pytest.mark.skipif(CORES == 1, reason="a team is held up on cores that it shares: two are needed")
+def test_a_team_that_is_held_up_lets_one_go_on() -> None:
+    """Where others have the cores of a team, one member goes on alone for a while, and the bits stay."""
+    before = os.sched_getaffinity(0)
+    command = [sys.executable, "-c", "import time\nend = time.time() + 30\nwhile time.time() < end: pass"]
+    case = shaken("Hertz", duration=0.02)
+    alone, last = cases.dem_of(case)
+    alone.run(last)
+    others: list[subprocess.Popen[bytes]] = []
+    try:
+        os.sched_setaffinity(0, sorted(before)[:2])
+        others += [subprocess.Popen(command) for _ in range(4)]
+        lone = 0
+        for _ in range(20):  # whether others hold a team up is up to them
+            crowded, _ = cases.dem_of(case, 2)
+            crowded.run(last)
+            lone += crowded.counters()["lone_steps"]
+            assert flat(crowded.records()) + end(crowded) == flat(alone.records()) + end(alone)
+            if lone:
+                break
+        assert lone > 0
+    finally:
+        for other in others:
+            other.kill()
+            other.wait()
+        os.sched_setaffinity(0, before)
