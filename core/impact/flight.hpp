@@ -116,7 +116,8 @@ public:
         if (series_) {
             real rate = loads.frequency();
             for (const Mode& mode : problem_.modes) rate = std::max(rate, mode.rate());
-            if (rate * horizon_ > 1) horizon_ = 1 / rate;
+            // To an end that the clock can tell: else it would drift from the motion, cell by cell.
+            if (rate * horizon_ > 1) horizon_ = start.t + 1 / rate - start.t;
             Series base;
             for (std::size_t l = 0; l < loads.size(); ++l) {
                 load_series_[l] = Series{};

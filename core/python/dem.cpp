@@ -95,7 +95,6 @@ public:
         nb::dict d = counts.write(simulation_->beds().size(), simulation_->step(), simulation_->builds(),
                                   simulation_->scans(), simulation_->memory(), seconds_);
         d["candidates"] = candidates;
-        d["lone_steps"] = simulation_->lone_steps();
         return d;
     }
 
@@ -130,6 +129,7 @@ public:
         threads_ = n;
     }
     long step() const { return simulation_->step(); }
+    long lone_steps() const { return simulation_->lone_steps(); }
 };
 
 } // namespace
@@ -148,6 +148,7 @@ void add_dem(nb::module_& module) {
         .def("restore", &Dem::restore, nb::arg("bytes"))
         .def_prop_ro("status", &Dem::status)
         .def_prop_ro("step", &Dem::step)
+        .def_prop_ro("lone_steps", &Dem::lone_steps, "Of a team that was held up, by one of them.")
         .def_prop_rw("threads", &Dem::threads, &Dem::set_threads);
 }
 

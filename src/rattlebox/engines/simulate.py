@@ -166,7 +166,7 @@ def _with_contacts(times: NDArray[np.float64], raw: dict[str, Any]) -> NDArray[n
     opened = np.nextafter(touch + np.nan_to_num(raw["impacts"]["duration"]), np.inf)
     following = np.append(touch, raw["stopped_at"])[np.searchsorted(touch, opened)]
     every = np.concatenate([times, touch, 0.5 * (touch + opened), opened, 0.5 * (opened + following)])
-    return np.unique(every[every <= times[-1]])
+    return np.unique(every[(every >= times[0]) & (every <= times[-1])])  # contacts may begin a rounding before
 
 
 def _run(case: Case, raw: dict[str, Any]) -> Run:

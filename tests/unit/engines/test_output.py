@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.engines.simulate import _with_contacts
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -64,3 +65,12 @@ def test_run_of_very_many_events_is_not_repeated(monkeypatch: pytest.MonkeyPatch
     case = example("steel_ball.toml", duration=0.5)
     monkeypatch.setattr("rattlebox.engines.simulate._MOST_EVENTS", 10)
     assert np.array_equal(rb.simulate(case).arrays.time, case.sample_times())
+
+
+def test_a_contact_that_begins_a_rounding_before_the_start_keeps_times_in_order() -> None:
+    """Samples at contacts stay between the first and the last time of the run, whatever the clock of a contact tells."""
+    touch, duration = np.array([-1.5e-54, 0.4]), np.array([1e-5, 1e-5])
+    raw = {"impacts": {"time": touch, "duration": duration}, "stopped_at": 1.0}
+    times = _with_contacts(np.array([0.0, 0.5, 1.0]), raw)
+    assert times[0] == 0 and times[-1] == 1
+    assert np.all(np.diff(times) > 0) and np.isin(0.4, times)

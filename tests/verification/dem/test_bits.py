@@ -239,7 +239,7 @@ def test_a_team_that_is_held_up_lets_one_go_on() -> None:
         for _ in range(20):  # whether others hold a team up is up to them
             crowded, _ = cases.dem_of(case, 2)
             crowded.run(last)
-            lone += crowded.counters()["lone_steps"]
+            lone += crowded.lone_steps
             assert flat(crowded.records()) + end(crowded) == flat(alone.records()) + end(alone)
             if lone:
                 break
