@@ -20,7 +20,7 @@ from rattlebox.engines.core import instructions
 from rattlebox.model.differences import differences
 from rattlebox.model.errors import CaseError
 from rattlebox.results.provenance import Provenance
-from rattlebox.results.whole import needs_folder, telling, whole
+from rattlebox.results.whole import clear_remains, needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -105,6 +105,7 @@ class Checkpoint:
                 ) from None
         try:
             name.write_text(f"process {os.getpid()} on {socket.gethostname()}")
+            clear_remains(self.path)
             yield
         finally:
             name.unlink(missing_ok=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import glob
 import os
 import tempfile
 from collections.abc import Iterator
@@ -42,7 +43,7 @@ def whole(path: Path) -> Iterator[Path]:
         When the file cannot be written; an earlier one is then as it was.
     """
     needs_folder(path)
-    handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
     os.close(handle)
     temporary = Path(name)
     try:
@@ -54,6 +55,18 @@ def whole(path: Path) -> Iterator[Path]:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def clear_remains(path: Path) -> None:
+    """Remove what a process that was killed while it wrote this file has left; for who alone writes it.
+
+    Parameters
+    ----------
+    path
+        The file, which stays.
+    """
+    for left in path.parent.glob(glob.escape(f".{path.name}.") + "?" * 8 + glob.escape(path.suffix)):
+        left.unlink(missing_ok=True)
 
 
 @contextmanager

@@ -205,6 +205,16 @@ def test_two_processes_cannot_share_a_checkpoint(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"run.checkpoint", "run.vtkhdf"}
 
 
+def test_what_a_killed_process_left_unfinished_is_removed(tmp_path: Path) -> None:
+    """A state that was being written when its process was killed goes with the next run; other files stay."""
+    file = tmp_path / "run.checkpoint"
+    left, other = tmp_path / ".run.checkpoint.ab3_xyz9.checkpoint", tmp_path / ".run.2.checkpoint.ab3_xyz9.checkpoint"
+    for path in (left, other):
+        path.write_bytes(b"half of it")
+    assert rb.simulate(case(duration="1 ms"), checkpoint=file, snapshots=tmp_path / "run.vtkhdf").ok
+    assert not left.exists() and other.exists()
+
+
 def test_other_runs_are_refused_with_the_differences(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A checkpoint of another case, version or core is refused; what differs is listed; the file stays as it was."""
     file = tmp_path / "run.checkpoint"
