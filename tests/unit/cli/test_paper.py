@@ -53,7 +53,7 @@ def test_bad_input_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, argu
 
 
 def test_ctrl_c_stops_at_once(tmp_path: Path) -> None:
-    """Ctrl-C ends command and workers without a traceback, and the unfinished report can be written again."""
+    """Ctrl-C ends command and workers with one word, and the unfinished report can be written again."""
     process = subprocess.Popen(
         [*COMMAND, "-o", str(tmp_path)],
         stdout=subprocess.PIPE,
@@ -67,6 +67,6 @@ def test_ctrl_c_stops_at_once(tmp_path: Path) -> None:
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=20)
     assert process.returncode == 130
-    assert (out, err) == ("", "")
+    assert (out, err) == ("", "stopped\n")
     assert "not finished" in (tmp_path / "index.html").read_text()
     assert paper("-o", tmp_path, "--only", "2").returncode == 0
