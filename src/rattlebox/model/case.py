@@ -300,8 +300,6 @@ class Case(Part):
 
         A rate that does not divide it is raised a little.
         """
-        if self.output.rate is not None:
-            return max(1, int(np.ceil(self.duration * self.output.rate * (1 - 1e-12))))
         return self.output.sample_times(self.duration, self._fastest()).size - 1
 
     def _fastest(self) -> float:

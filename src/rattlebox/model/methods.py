@@ -210,9 +210,10 @@ class Output(Part):
             return np.array([0.0, *inside, duration])
         if self.rate is None:
             return np.linspace(0.0, duration, 1 + int(np.clip(20 * duration * fastest, 2000, 100_000)))
-        count = int(np.floor(duration * self.rate * (1 + 1e-12)))
-        times = np.arange(count + 1) / self.rate
-        return times if abs(times[-1] - duration) <= 1e-9 / self.rate else np.append(times, duration)
+        before = max(
+            1, int(np.ceil(duration * self.rate - 1e-6))
+        )  # 10 000 steps of 0.1 ms may be a little less than 1 s
+        return np.append(np.arange(before) / self.rate, duration)
 
     def snapshot_times(self, duration: float) -> Vector:
         """Return the times of snapshots of a run, (n,) [s].

@@ -60,6 +60,15 @@ def test_chosen_times_are_kept() -> None:
     assert rb.simulate(case).arrays.time == pytest.approx(np.arange(501) / 100, abs=1e-12)
 
 
+@pytest.mark.parametrize("duration", [sum([1e-4] * 10_000), 1.0, 1.0 + 4e-12, 1e-9, 0.123456])
+def test_rate_that_nearly_divides_the_duration(duration: float) -> None:
+    """The times of a rate rise from 0 to the very end, also of a duration that is rounded."""
+    times = rb.Output(rate="100 kHz").sample_times(duration)
+    assert times[0] == 0 and times[-1] == duration
+    assert np.all(np.diff(times) > 0)
+    assert times[1:-1] == pytest.approx(np.arange(1, times.size - 1) / 1e5, rel=1e-15)
+
+
 def test_run_of_very_many_events_is_not_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beyond the limit of events only the times known before the run are recorded."""
     case = example("steel_ball.toml", duration=0.5)
