@@ -11,9 +11,9 @@ import numpy as np
 from rattlebox.model.errors import CaseError
 
 from .axes import Axes, Design
-from .follow import whole_cycles
 from .orbits import attractors, check_part, period_of, reduced_strobes
 from .store import keep_map
+from .studytables import checked
 from .sweep import sweep
 from .task import SweepTask
 
@@ -99,7 +99,8 @@ def basins(
         raise CaseError("without a damper the motion is linear, and all starts lead to the same one")
     check_part("tolerance", tolerance)
     check_part("apart", apart)
-    _, look = whole_cycles(cycles)
+    cycles, threads = checked("basins", cycles=cycles, threads=threads).values()
+    look = cycles[1]
     design = Design.of(case, starts, source="basins")
     task = SweepTask(case, design, cycles=cycles, point=point)
     assert task.packed  # what differs in more than numbers is told before anything runs

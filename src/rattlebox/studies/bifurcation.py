@@ -10,9 +10,10 @@ import numpy as np
 from rattlebox.model.errors import CaseError, Hint
 
 from .axes import Design
-from .follow import follow, whole_cycles
+from .follow import follow
 from .orbits import check_part, period_of, reduced_strobes
 from .store import keep_map
+from .studytables import checked
 from .sweep import sweep
 from .task import SweepTask
 
@@ -107,7 +108,8 @@ def bifurcation(
     if not case.dampers:
         raise CaseError("without a damper the motion is linear, and nothing bifurcates")
     check_part("tolerance", tolerance)
-    _, look = whole_cycles(cycles)
+    cycles, threads = checked("bifurcation", cycles=cycles, threads=threads).values()
+    look = cycles[1]
     design = Design.of(case, {path: values}, source="bifurcation")
     task = SweepTask(case, design, cycles=cycles, point=point)
     assert task.packed  # what differs in more than numbers is told before anything runs

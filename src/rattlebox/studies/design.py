@@ -27,6 +27,7 @@ from .members import members
 from .parameters import Parameter
 from .runner import Stopped
 from .store import JOURNAL, keep_map, taken
+from .studytables import checked
 from .sweep import known, sweep
 from .task import SweepTask
 
@@ -122,6 +123,8 @@ def design(
     >>> best = rb.Case.from_toml(found.case.item(0))
     """
     optuna = extra("optuna", "design")
+    given = checked("design", skip=skip, cycles=cycles, samples=samples, threads=threads)
+    where = {"threads": given.pop("threads"), "on": on}
     search = _Search(
         case=case,
         parameters=[_Parameter.of(case, path, given, path in log) for path, given in _some(parameters).items()],
@@ -129,8 +132,8 @@ def design(
         axes=members(case, levels, starts),
         robust=robust,
         limit=None if max_added_mass is None else parse(max_added_mass, ("kg",))[0],
-        options={"skip": skip, "cycles": cycles, "samples": samples, "point": point},
-        where={"threads": threads, "on": on},
+        options={**given, "point": point},
+        where=where,
     )
     search.check(log)
     count = whole(trials, "trials", 1)
@@ -256,8 +259,7 @@ class _Search:
         if self.robust not in _ROBUST:
             raise Hint(f"robust = {self.robust!r}: there is no such choice", nearest(str(self.robust), _ROBUST))
         measures = known([goal.measure for goal in self.measured])
-        skip = parse(self.options["skip"], ("s",))[0]
-        task = SweepTask(self.case, self.members, measures=measures, **(self.options | {"skip": skip}))
+        task = SweepTask(self.case, self.members, measures=measures, **self.options)
         assert task.look
 
     @cached_property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import partial
@@ -122,7 +121,7 @@ def follow(
         case,
         _there_and_back(Design.of(case, axes), ways),
         measures=_named(measure),
-        cycles=whole_cycles(cycles),
+        cycles=cycles,
         samples=samples,
         point=point,
         motion=motion,
@@ -155,23 +154,6 @@ def _named(measure: Sequence[str]) -> list[str]:
         if name not in MEASURES:
             raise Hint(f"there is no measure {name!r} of a run that is followed", nearest(str(name), MEASURES))
     return names
-
-
-def whole_cycles(cycles: Any) -> tuple[int, int]:
-    """Return how many cycles to skip and to look at.
-
-    Raises
-    ------
-    Hint
-        When they are no two whole numbers, or there is nothing to look at.
-    """
-    try:
-        skip, look = (operator.index(number) for number in cycles)
-    except (TypeError, ValueError):
-        skip = look = -1
-    if skip < 0 or look < 1:
-        raise Hint(f"cycles = {cycles!r}: whole numbers of cycles to skip and to look at are needed", "(200, 50)")
-    return skip, look
 
 
 @dataclass

@@ -12,9 +12,10 @@ from rattlebox.model.errors import CaseError
 from rattlebox.model.signals import Harmonic
 
 from .axes import Design
-from .follow import follow, whole_cycles
+from .follow import follow
 from .orbits import period_of
 from .store import keep_map
+from .studytables import checked
 from .sweep import sweep
 from .task import SweepTask
 
@@ -107,9 +108,9 @@ def frequency_response(
     """
     if direction not in (*get_args(Direction), "both"):
         raise CaseError(f'direction = {direction!r} is unknown\n  try: "up", "down", "both" or "fresh"')
-    if not (isinstance(samples, int) and samples >= 8):
-        raise CaseError(f"samples = {samples!r}: at least 8 in each cycle are needed\n  try: 64")
-    _, look = whole_cycles(cycles)
+    given = checked("frequency_response", cycles=cycles, samples=samples, threads=threads)
+    cycles, samples, threads = given.values()
+    look = cycles[1]
     place, driver = _driver(case)
     at, strength = f"{place}.frequency", f"{place}.amplitude"
     level = {strength: [f"{driver.amplitude!r} {driver.unit}"] if levels is None else levels}

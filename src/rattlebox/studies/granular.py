@@ -196,7 +196,7 @@ class Granular(SweepTask):
             samples = samples or 1 + math.ceil(64 * self.cycles[1])
         if samples is None:
             return case
-        output = Output(rate=max(1, samples - 1) / (duration - skip))
+        output = Output(rate=(samples - 1) / (duration - skip))
         return case.model_copy(update={"duration": duration, "output": output})
 
     def _seen_in(self, run: GranularRun, case: Case) -> Seen:

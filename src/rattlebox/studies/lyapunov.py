@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import CaseError
-from rattlebox.model.units import parse
 
 from .axes import Axes, Design
 from .pairs import Pairs
 from .runner import run_task
+from .studytables import checked
 from .task import Extra, SweepTask
 
 if TYPE_CHECKING:
@@ -112,11 +112,12 @@ def lyapunov(
     >>> rb.lyapunov(case, cycles=(50, 20), pairs=4).running_exponent.dims
     ('cycle',)
     """
+    given = checked("lyapunov", cycles=cycles, skip=skip, threads=threads)
+    threads = given.pop("threads")
     task = LyapunovTask(
         case,
         Design((), (), {}, {}) if axes is None else Design.of(case, axes),
-        cycles=cycles,
-        skip=parse(skip, ("s",))[0],
+        **given,
         steps=steps,
         pairs=pairs,
         distance=distance,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping
+from functools import partial
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationError
 
-from rattlebox.model.errors import Hint, nearest
+from rattlebox.model.errors import CaseError, Hint, nearest, translate
 from rattlebox.model.units import NotNegativeTime, PositiveMass
 
 from .designs import Method
@@ -17,7 +19,7 @@ from .measures import MEASURES
 class Table(BaseModel):
     """A table of a study file."""
 
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, validate_assignment=True)
 
 
 class Range(Table):
@@ -79,8 +81,19 @@ def _known(measures: list[str]) -> list[str]:
     return measures
 
 
+def _whole(cycles: Any, least: int) -> tuple[int, int]:
+    try:
+        skip, look = (operator.index(number) for number in cycles)
+    except (TypeError, ValueError):
+        skip = look = -1
+    if skip < 0 or look < least:
+        raise Hint(f"whole numbers of cycles are needed: some to skip, at least {least} to look at", "[200, 50]")
+    return skip, look
+
+
 Measures = Annotated[list[str], AfterValidator(_known)]
-Whole = tuple[int, int]
+Cycles = Annotated[tuple[int, int], BeforeValidator(partial(_whole, least=1))]
+CyclesToCompare = Annotated[tuple[int, int], BeforeValidator(partial(_whole, least=2))]
 Part = Annotated[float, Field(gt=0, lt=1)]
 Count = Annotated[int, Field(ge=1)]
 Seed = Annotated[int, Field(ge=0)]
@@ -105,7 +118,7 @@ class _OverAxes(Study):
 class _Sweep(_OverAxes):
     measure: Measures = []
     skip: NotNegativeTime = 0.0
-    cycles: tuple[float, float] | None = None
+    cycles: Cycles | None = None
     samples: Annotated[int, Field(ge=2)] | None = None
     point: str | None = None
     motion: bool = False
@@ -115,7 +128,7 @@ class _Sweep(_OverAxes):
 class _Bifurcation(Study):
     axes_needed: ClassVar[bool] = True
     axes: dict[str, Axis] = {}
-    cycles: Whole = (400, 48)
+    cycles: CyclesToCompare = (400, 48)
     show: Literal["strobe", "impacts"] = "strobe"
     direction: Literal["up", "down", "both", "fresh"] = "both"
     measure: Measures = []
@@ -127,7 +140,7 @@ class _FrequencyResponse(Study):
     frequencies: Values
     levels: Values | None = None
     direction: Literal["up", "down", "both", "fresh"] = "both"
-    cycles: Whole = (200, 32)
+    cycles: Cycles = (200, 32)
     measure: Measures = []
     point: str | None = None
     samples: Annotated[int, Field(ge=8)] = 64
@@ -135,7 +148,7 @@ class _FrequencyResponse(Study):
 
 
 class _Basins(_OverAxes):
-    cycles: Whole = (400, 48)
+    cycles: CyclesToCompare = (400, 48)
     measure: Measures = []
     tolerance: Part = 1e-4
     apart: Part = 1e-2
@@ -144,7 +157,7 @@ class _Basins(_OverAxes):
 
 class _Lyapunov(_OverAxes):
     axes_needed: ClassVar[bool] = False
-    cycles: tuple[float, float] | None = None
+    cycles: Cycles | None = None
     skip: NotNegativeTime = 0.0
     steps: Annotated[int, Field(ge=2)] | None = None
     pairs: Count = 8
@@ -156,7 +169,7 @@ class _Lyapunov(_OverAxes):
 class _LossMap(Study):
     amplitudes: Values
     frequencies: Values
-    cycles: tuple[float, float] = (50, 50)
+    cycles: Cycles = (50, 50)
     samples: Annotated[int, Field(ge=2)] | None = None
 
 
@@ -167,7 +180,7 @@ class _Judged(Study):
     starts: int | list[Any] | None = None
     seed: Seed = 0
     skip: NotNegativeTime = 0.0
-    cycles: tuple[float, float] | None = None
+    cycles: Cycles | None = None
     samples: Annotated[int, Field(ge=2)] | None = None
     point: str | None = None
 
@@ -198,6 +211,32 @@ KINDS: Mapping[str, type[Study]] = {
     "sensitivity": _Sensitivity,
 }
 """Kinds of studies, each of which is a function of rattlebox, by name."""
+
+
+def checked(kind: str, **given: Any) -> dict[str, Any]:
+    """Return arguments of a study's function as they are read from a study file.
+
+    Parameters
+    ----------
+    kind
+        Name of the function.
+    **given
+        Some of its arguments.
+
+    Raises
+    ------
+    CaseError
+        When a file could not hold one of them, naming it, its value and what is allowed.
+    """
+    empty: type[Table] = KINDS[kind]
+    table = empty.model_construct()
+    for name, value in given.items():
+        try:
+            setattr(table, name, value)
+        except ValidationError as error:
+            raise CaseError(str(translate(error, "", {}, given)).removeprefix(": ")) from None
+    return {name: getattr(table, name) for name in given}
+
 
 INSIDE = {
     "spaced": {"": {"from", "to", "count", "spacing"}},

@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rattlebox.model.errors import Hint
-from rattlebox.model.units import parse
 
 from .axes import Design
 from .granular import GranularTask
 from .measures import MEASURES
 from .runner import run_task
+from .studytables import checked
 from .task import SweepTask
 
 if TYPE_CHECKING:
@@ -96,18 +96,17 @@ def sweep(
     >>> maps.impacts.dims
     ('damper.gap',)
     """
+    given = checked("sweep", skip=skip, cycles=cycles, samples=samples, last=last, threads=threads)
+    threads = given.pop("threads")
     design = Design.of(case, axes)
     kind = GranularTask if case.particle_dampers else SweepTask
     task = kind(
         case,
         design,
         measures=known(measure),
-        skip=parse(skip, ("s",))[0],
-        cycles=cycles,
-        samples=samples,
         point=point,
         motion=motion,
-        last=last,
+        **given,
     )
     assert task.look  # what does not fit is told before anything runs
     return run_task(

@@ -93,7 +93,7 @@ def test_unfinished_runs_are_told_apart():
         ({"damper.begin": [0.0]}, {}, "there is no 'begin'"),
         (STARTS, {"tolerance": 2}, "tolerance = 2"),
         (STARTS, {"apart": 0}, "apart = 0"),
-        (STARTS, {"cycles": (10, 0)}, "whole numbers of cycles"),
+        (STARTS, {"cycles": (10, 1)}, "at least 2 to look at"),
         ({"damper.start": [0.0, 1.5]}, {}, "damper.start"),
     ],
 )

@@ -93,14 +93,15 @@ def test_names_can_be_compared_fresh():
         ("damper.ball.material", ["steel", "brass"], {}, "no numbers that rise or fall"),
         (AMPLITUDE, [1e-3], {"show": "strobes"}, "show = 'strobes' is unknown"),
         (AMPLITUDE, [1e-3], {"direction": "left"}, "direction = 'left' is unknown"),
-        (AMPLITUDE, [1e-3], {"cycles": (10, 0)}, "whole numbers of cycles"),
+        (AMPLITUDE, [1e-3], {"cycles": (5, 1)}, "at least 2 to look at"),
+        (AMPLITUDE, [1e-3], {"threads": 0}, "threads = 0"),
         (AMPLITUDE, [1e-3], {"tolerance": 0}, "tolerance = 0"),
     ],
 )
 def test_what_cannot_be_followed_is_told(path, values, options, said):
     """Bad arguments are told before anything runs."""
     with pytest.raises(rb.CaseError, match=said):
-        rb.bifurcation(shaken(), path, values, **{"cycles": (3, 1), **options})
+        rb.bifurcation(shaken(), path, values, **{"cycles": (3, 2), **options})
 
 
 def test_nothing_bifurcates_without_damper_or_cycle():

@@ -139,9 +139,6 @@ def test_value_that_does_not_finish_leaves_the_state():
     ("path", "options", "said"),
     [
         ("damper.start", {}, "damper.start is a start"),
-        ("damper.gap", {"cycles": (2.5, 1)}, "whole numbers of cycles"),
-        ("damper.gap", {"cycles": 10}, "whole numbers of cycles"),
-        ("damper.gap", {"cycles": (3, 0)}, "whole numbers of cycles"),
         ("damper.gap", {"measure": ["impact"]}, "did you mean 'impacts'"),
         ("damper.gap", {"measure": [len]}, "there is no measure"),
         ("damper.gaps", {}, "did you mean 'gap'"),

@@ -163,7 +163,7 @@ def test_files_are_seen_from_the_folder_of_the_study(tmp_path: Path, monkeypatch
         ('measure = "impacts"\n' + BALL + GAPS, ["measure = 'impacts'", "a list is needed"]),
         ("threads = 0\n" + BALL + GAPS, ["threads = 0", "at least 1"]),
         ('skip = "1 kg"\n' + BALL + GAPS, ["skip = '1 kg'", "a time (s) is needed, not a mass"]),
-        ("cycles = 3\n" + BALL + GAPS, ["cycles = 3", "a list is needed"]),
+        ("cycles = 3\n" + BALL + GAPS, ["cycles = 3", "whole numbers of cycles"]),
         (BALL + "axes = 3", ["axes = 3", "a table is needed"]),
         (BALL + '[axes]\n"damper.gap" = "1 mm"', ["axes.damper.gap = '1 mm'", "a list is needed"]),
         (BALL + '[axes]\n"damper.gapp" = ["1 mm"]', ["damper.gapp", "did you mean 'gap'?"]),
