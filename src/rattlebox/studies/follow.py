@@ -19,7 +19,7 @@ from rattlebox.model.paths import place_of
 from .axes import Axes, Design
 from .blocks import Blocks
 from .chosen import chosen
-from .measures import MEASURES
+from .measures import MEASURES, check_names
 from .runner import run_task
 from .task import Extra, SweepTask
 
@@ -153,6 +153,7 @@ def _named(measure: Sequence[str]) -> list[str]:
     for name in names:
         if name not in MEASURES:
             raise Hint(f"there is no measure {name!r} of a run that is followed", nearest(str(name), MEASURES))
+    check_names(names)
     return names
 
 

@@ -160,13 +160,13 @@ class Granular(SweepTask):
         """Return the coordinates of the further dimensions, of which there are none."""
         return {}
 
-    def row(self, case: Case, run: GranularRun) -> dict[str, float]:
+    def row(self, case: Case, run: GranularRun, index: int) -> dict[str, float]:
         """Return what is kept of a run, and of what was run, by name."""
         row: dict[str, float] = {"status": _NUMBERS[run.status]}
         if run.ok:
             seen = self._seen_in(run, case)
             row |= {name: _FOUND[name](seen) for name in self.named}
-            row |= {name: measure(run) for name, measure in self.own.items()}
+            row |= self.own_of(run, index)
         return row
 
     def columns(self, rows: Mapping[int, Mapping[str, float]], start: int, stop: int) -> Values:
@@ -300,7 +300,7 @@ class GranularTask(Granular):
                 continue
             if run is None or run.status == "interrupted":
                 return None
-            rows[index] = self.row(case, run)
+            rows[index] = self.row(case, run, index)
         return self.columns(rows, start, stop)
 
 
@@ -362,7 +362,7 @@ class GranularOnCard(Granular):
             if runs is None:
                 return None
             ended = zip(cases.items(), runs, strict=True)
-            rows |= {index: self.row(case, run) for (index, case), run in ended if isinstance(run, GranularRun)}
+            rows |= {index: self.row(case, run, index) for (index, case), run in ended if isinstance(run, GranularRun)}
         self._compiling += card.compiling
         return self.columns(rows, start, stop)
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from rattlebox.model.errors import Hint
 
 
 class Measure(NamedTuple):
@@ -52,3 +55,22 @@ MEASURES: dict[str, Measure] = {
     "damping_mass": Measure("kg", "imaginary part of the apparent mass", samples=True, cyclic=True),
     "loss_factor": Measure("1", "loss factor", samples=True, cyclic=True),
 }
+
+
+def name_of(measure: Any) -> str:
+    """Return what a measure is called, which may be a function of a Run."""
+    return measure if isinstance(measure, str) else getattr(measure, "__name__", repr(measure))
+
+
+def check_names(measures: Iterable[Any]) -> None:
+    """Refuse measures of which two have one name.
+
+    Raises
+    ------
+    Hint
+        With the name.
+    """
+    names = [name_of(measure) for measure in measures]
+    for name in names:
+        if names.count(name) > 1:
+            raise Hint(f"two measures are called {name}", "each once, functions with names of their own")

@@ -13,7 +13,7 @@ from rattlebox.model.errors import CaseError, Hint, nearest, translate
 from rattlebox.model.units import NotNegativeTime, PositiveMass
 
 from .designs import Method
-from .measures import MEASURES
+from .measures import MEASURES, check_names
 
 
 class Table(BaseModel):
@@ -78,6 +78,7 @@ def _known(measures: list[str]) -> list[str]:
     for index, name in enumerate(measures):
         if name not in MEASURES:
             raise Hint("there is no such measure", nearest(name, MEASURES), [index])
+    check_names(measures)
     return measures
 
 

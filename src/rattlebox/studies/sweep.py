@@ -10,7 +10,7 @@ from rattlebox.model.errors import Hint
 
 from .axes import Design
 from .granular import GranularTask
-from .measures import MEASURES
+from .measures import MEASURES, check_names
 from .runner import run_task
 from .studytables import checked
 from .task import SweepTask
@@ -98,12 +98,15 @@ def sweep(
     """
     given = checked("sweep", skip=skip, cycles=cycles, samples=samples, last=last, threads=threads)
     threads = given.pop("threads")
+    measures = known(measure)
+    if not (measures or motion or given["last"]):
+        raise Hint("there is no measure", ", ".join(MEASURES))
     design = Design.of(case, axes)
     kind = GranularTask if case.particle_dampers else SweepTask
     task = kind(
         case,
         design,
-        measures=known(measure),
+        measures=measures,
         point=point,
         motion=motion,
         **given,
@@ -132,9 +135,10 @@ def known(measure: Any) -> list[Any]:
     Raises
     ------
     CaseError
-        When there is no such measure, with the nearest name.
+        When there is no such measure, with the nearest name, or two have one name.
     """
     asked = [measure] if isinstance(measure, str) or callable(measure) else list(measure)
+    check_names(asked)
     for name in asked:
         if isinstance(name, str) and name not in MEASURES:
             near = difflib.get_close_matches(name, MEASURES, n=1)

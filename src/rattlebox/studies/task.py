@@ -19,7 +19,7 @@ from rattlebox.engines.pack import Batch, Packed, pack_parts
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
 
-from .measures import MEASURES
+from .measures import MEASURES, name_of
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -120,11 +120,7 @@ class SweepTask:
     @property
     def own(self) -> dict[str, UserMeasure]:
         """Measures that are functions of a Run, by name."""
-        return {
-            getattr(measure, "__name__", repr(measure)): measure
-            for measure in self.measures
-            if not isinstance(measure, str)
-        }
+        return {name_of(measure): measure for measure in self.measures if not isinstance(measure, str)}
 
     @cached_property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:
@@ -233,11 +229,31 @@ class SweepTask:
             runs = simulate_many([self.design.case_at(self.case, index) for index in members], threads=threads)
             for index, run in zip(members, runs, strict=True):
                 if run.status == "finished":
-                    for name, measure in self.own.items():
-                        columns[name][index - start] = measure(run)
+                    for name, number in self.own_of(run, index).items():
+                        columns[name][index - start] = number
             first = members.stop
             count = max(threads, int(len(members) * min(2.0, _UNHEARD / (perf_counter() - began))))
         return {**result, **columns}
+
+    def own_of(self, run: Run, index: int) -> dict[str, float]:
+        """Return what functions of a Run give of a variant.
+
+        Raises
+        ------
+        CaseError
+            When one of them gives no number.
+        """
+        found = {}
+        for name, measure in self.own.items():
+            value: Any = measure(run)
+            try:
+                if isinstance(value, str) or np.ndim(value):
+                    raise TypeError
+                found[name] = float(value)
+            except TypeError:
+                kind = type(value).__name__
+                raise Hint(f"measure {name}: of variant {index} it is {kind}, not one number", "float(...)") from None
+        return found
 
     def _measured(self, start: int, stop: int, threads: int, go_on: Callable[[int], bool]) -> Values | None:
         """What the core finds of variants start to stop."""

@@ -161,6 +161,7 @@ def test_files_are_seen_from_the_folder_of_the_study(tmp_path: Path, monkeypatch
         ('mesure = ["impacts"]\n' + BALL + GAPS, ["mesure = ['impacts']", "did you mean 'measure'?"]),
         ('measure = ["impacts", "impactz"]\n' + BALL + GAPS, ["measure[1] = 'impactz'", "did you mean 'impacts'"]),
         ('measure = "impacts"\n' + BALL + GAPS, ["measure = 'impacts'", "a list is needed"]),
+        ('measure = ["peak", "peak"]\n' + BALL + GAPS, ["measure = ['peak', 'peak']", "two measures are called peak"]),
         ("threads = 0\n" + BALL + GAPS, ["threads = 0", "at least 1"]),
         ('skip = "1 kg"\n' + BALL + GAPS, ["skip = '1 kg'", "a time (s) is needed, not a mass"]),
         ("cycles = 3\n" + BALL + GAPS, ["cycles = 3", "whole numbers of cycles"]),

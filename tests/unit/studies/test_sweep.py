@@ -155,6 +155,9 @@ def test_a_member_that_fails_carries_its_status() -> None:
         ({"measure": ["impact_shares"]}, "impact_share"),
         ({"measure": [3]}, "function"),
         ({"measure": ["loss_factor"]}, "harmonic"),
+        ({"measure": []}, "there is no measure\n  try: impacts"),
+        ({"measure": ["impacts", "peak", "impacts"]}, "two measures are called impacts"),
+        ({"measure": [lambda run: 1, lambda run: 2]}, "two measures are called <lambda>"),
         ({"skip": "9 s"}, "nothing of the run"),
         ({"cycles": (10, 5)}, "harmonic"),
         ({"skip": "9 kg"}, "s"),
@@ -165,6 +168,18 @@ def test_what_does_not_fit_is_told_before_anything_runs(options: dict[str, Any],
     """Unknown measures, windows outside the run and cycles without a load are refused with a hint."""
     with pytest.raises(rb.CaseError, match=told):
         rb.sweep(seed_case(duration=1.0), {"damper.gap": ["1 mm"]}, **options)
+
+
+@pytest.mark.parametrize("value", ["2", None, np.ones(3), 1j], ids=str)
+def test_function_that_gives_no_number_is_told(value: Any) -> None:
+    """A function of a Run that gives anything but one number is named, with the variant and what it gave."""
+
+    def loudness(run: Any) -> Any:
+        return value if run.ledger.work[-1] > 1e-3 else 0.0
+
+    said = f"measure loudness: of variant 1 it is {type(value).__name__}, not one number"
+    with pytest.raises(rb.CaseError, match=said):
+        rb.sweep(seed_case(duration=0.1), {"load.amplitude": [0.1, 5e3]}, loudness)
 
 
 def test_what_is_no_number_to_the_core_varies_too(tmp_path: Path) -> None:
