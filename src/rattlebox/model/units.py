@@ -133,6 +133,31 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         raise Hint(_wanted(units), _example(units)) from None
 
 
+def as_written(value: Any) -> tuple[float, str] | None:
+    """Return a number and its unit, "" where none is told; None for what is neither text, a number nor a pair of them."""
+    if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str):
+        value = f"{value[0]} {value[1]}"
+    if isinstance(value, (int, float)):
+        return float(value), ""
+    match = _NUMBER.match(value) if isinstance(value, str) else None
+    return (float(match[1]), match[2]) if match else None
+
+
+def are_alike(one: str, other: str) -> bool:
+    """Return whether units as they are written are of one dimension; frequencies and angular velocities are.
+
+    Raises
+    ------
+    Hint
+        When a unit is unknown.
+    """
+    one, other = (next((si for si, known in _COMMON.items() if unit in known), unit) for unit in (one, other))
+    if one == other:
+        return True
+    first, second = (_with_pint(1.0, _pint_unit(unit), ()) for unit in (one, other))
+    return bool(first.is_compatible_with(second))
+
+
 def _with_pint(number: float, text: str, units: tuple[str, ...]) -> Any:
     ureg = registry()
     try:

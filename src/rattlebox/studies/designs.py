@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint, nearest
+from rattlebox.model.units import are_alike, as_written
 
 Vector = NDArray[np.float64]
 Method = Literal["sobol", "halton", "lhs", "random"]
@@ -25,6 +26,7 @@ class Spaced:
     stop: Any
     count: int
     log: bool = False
+    names: tuple[str, str] = ("start", "stop")  # of the ends, for messages
 
     def values(self, start: float, stop: float) -> Vector:
         """Return the values between the ends in SI, (count,).
@@ -54,13 +56,13 @@ def linspace(start: Any, stop: Any, count: int) -> Spaced:
     Raises
     ------
     CaseError
-        When count is no whole number of at least 1.
+        When count is no whole number of at least 1, or the ends are not of one dimension.
 
     Examples
     --------
     >>> axes = {"damper.gap": linspace("0.1 mm", "2 mm", 200)}
     """
-    return Spaced(start, stop, whole(count, "count", 1))
+    return _spaced(start, stop, count)
 
 
 def geomspace(start: Any, stop: Any, count: int) -> Spaced:
@@ -76,13 +78,26 @@ def geomspace(start: Any, stop: Any, count: int) -> Spaced:
     Raises
     ------
     CaseError
-        When count is no whole number of at least 1.
+        When count is no whole number of at least 1, or the ends are not of one dimension, of one sign and other than zero.
 
     Examples
     --------
     >>> axes = {"load.amplitude": geomspace("10 N", "10 kN", 61)}
     """
-    return Spaced(start, stop, whole(count, "count", 1), log=True)
+    return _spaced(start, stop, count, log=True)
+
+
+def _spaced(start: Any, stop: Any, count: Any, *, log: bool = False) -> Spaced:
+    """Values of which all is told that can be known without a parameter."""
+    low, high = as_written(start), as_written(stop)
+    if low and high:
+        (first, unit), (last, other) = low, high
+        told = f"start = {start!r}, stop = {stop!r}"
+        if unit and other and not are_alike(unit, other):
+            raise Hint(f"{told}: ends of one dimension are needed")
+        if log and not np.sign(first) * np.sign(last) > 0:
+            raise Hint(f"{told}: values that grow by a factor need ends other than zero, of one sign", "rb.linspace")
+    return Spaced(start, stop, whole(count, "count", 1), log)
 
 
 @dataclass(frozen=True)

@@ -116,11 +116,11 @@ class Parameter:
             return None
         return float(result), self.unit or "1"
 
-    def ends(self, low: Any, high: Any) -> tuple[float, float, str]:
-        """Read the ends of a range, in one unit."""
+    def ends(self, low: Any, high: Any, names: Sequence[str | int] = (0, 1)) -> tuple[float, float, str]:
+        """Read the ends of a range, in one unit; `names` are what messages call them."""
         if self.unit is None:
             raise self.wrong("its values are no numbers", "a list of values")
-        start, stop = self.number(low, "from"), self.number(high, "to")
+        start, stop = self.number(low, names[0]), self.number(high, names[1])
         if start is None or stop is None:
             raise self.wrong("its values are no numbers", "a list of values")
         if start[1] != stop[1]:
@@ -142,7 +142,7 @@ class Parameter:
             When there are none, or the case would not take one of them.
         """
         if isinstance(given, Spaced):
-            start, stop, unit = self.ends(given.start, given.stop)
+            start, stop, unit = self.ends(given.start, given.stop, given.names)
             try:
                 return Values(self, given.values(start, stop), unit)
             except Hint as hint:

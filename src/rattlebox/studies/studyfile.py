@@ -16,8 +16,8 @@ from rattlebox.model.errors import CaseError, Hint, nearest, translate
 from rattlebox.model.files import existing, read_toml
 from rattlebox.model.materials import Material
 
+from . import designs
 from .axes import Design
-from .designs import geomspace, linspace, random_design, replicas
 from .studytables import INSIDE, KINDS, Range, Spaced, shape_of
 from .studytables import Study as Content
 
@@ -255,7 +255,7 @@ def _text(file: Path) -> str:
 def _read_values(path: str, values: Any, own: Mapping[str, Material]) -> Any:
     """Values of a parameter as the functions take them."""
     if isinstance(values, Spaced):
-        return (geomspace if values.spacing == "log" else linspace)(values.start, values.to, values.count)
+        return designs.Spaced(values.start, values.to, values.count, values.spacing == "log", ("from", "to"))
     if isinstance(values, Range):
         return values.start, values.to
     if isinstance(values, list) and path.rpartition(".")[2] in ("material", "wall"):
@@ -277,9 +277,9 @@ def _axes(study: Content, own: Mapping[str, Material]) -> list[Any]:
     axes: list[Any] = [_read_axes(given["axes"], own)] if given["axes"] else []
     if random := given["design"]:
         ranges = {path: _read_values(path, values, own) for path, values in random.ranges.items()}
-        axes.append(random_design(ranges, random.count, method=random.method, seed=random.seed, log=random.log))
+        axes.append(designs.random_design(ranges, random.count, method=random.method, seed=random.seed, log=random.log))
     if copies := given["replicas"]:
-        axes.append(replicas(copies.reach, copies.count, seed=copies.seed))
+        axes.append(designs.replicas(copies.reach, copies.count, seed=copies.seed))
     return axes
 
 

@@ -426,8 +426,8 @@ def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> No
         ({"damper.ball.material": ["stel"]}, ["damper.ball.material[0] = 'stel'", "did you mean 'steel'?"]),
         ({"damper.contact": [{"kind": "tsuj"}]}, ["damper.contact[0].kind = 'tsuj'", "did you mean 'tsuji'?"]),
         ({"structure.mass": [1, 0]}, ["structure.mass[1] = 0", "greater than zero"]),
-        ({"damper.gap": rb.geomspace(0, "1 mm", 3)}, ["damper.gap", "other than zero", "rb.linspace"]),
-        ({"damper.gap": rb.linspace("1 mm", "1 kg", 3)}, ["damper.gap, to = '1 kg'", "not a mass"]),
+        ({"damper.gap": rb.linspace("1 mm", -2, 3)}, ["damper.gap, stop = -2", "must not be negative"]),
+        ({"damper.gap": rb.geomspace("1 N", "1 kN", 3)}, ["damper.gap, start = '1 N'", "not a force"]),
         ({"damper.ball.material": rb.linspace(0, 1, 3)}, ["damper.ball.material", "no numbers"]),
         ({"damper.gap": [1e-3], "dampers[0].gap": [1e-3]}, ["dampers[0].gap varies twice, also as damper.gap"]),
         (
@@ -493,10 +493,35 @@ def test_which_of_several_must_be_told(row: rb.Case) -> None:
 
 
 @pytest.mark.parametrize(
+    "ends",
+    [
+        ("1 mm", "1 inch"),
+        ("1 Hz", "10 rad/s"),
+        ("1 Ns/m", "2 kg/s"),
+        (-1, "1 mm"),
+        ("-2 mm", (-1, "mm")),
+        ("10 deg", "1 rad"),
+    ],
+    ids=str,
+)
+def test_ends_may_be_written_differently(ends: tuple[Any, Any]) -> None:
+    """Ends in other units of one dimension, or of which one is in SI, are left to the parameter."""
+    assert rb.linspace(*ends, 3).start == ends[0]
+
+
+@pytest.mark.parametrize(
     ("make", "said"),
     [
         (lambda: rb.linspace(0, 1, 0), "count = 0"),
         (lambda: rb.geomspace(1, 2, 2.5), "count = 2.5"),  # type: ignore[arg-type]
+        (
+            lambda: rb.geomspace("0 mm", "1 mm", 3),
+            "start = '0 mm', stop = '1 mm': .* other than zero.*\n  try: rb.linspace",
+        ),
+        (lambda: rb.geomspace(-1, 2.0, 3), "start = -1, stop = 2.0: .* of one sign"),
+        (lambda: rb.linspace("1 mm", "1 kN", 3), "start = '1 mm', stop = '1 kN': ends of one dimension"),
+        (lambda: rb.linspace((1, "inch"), "1 kg", 3), "ends of one dimension"),
+        (lambda: rb.linspace("1 mm", "2 mn", 3), "unknown unit 'mn'"),
         (lambda: rb.random_design({}, 3), "ranges"),
         (lambda: rb.random_design({"a": (0, 1)}, 3, method="sobl"), "did you mean 'sobol'"),  # type: ignore[arg-type]
         (lambda: rb.random_design({"a": (0, 1)}, 3, log="b"), "log = 'b'"),
