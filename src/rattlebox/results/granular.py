@@ -189,7 +189,7 @@ def _rebuild(values: dict[str, Any]) -> GranularArrays:
     return GranularArrays(**values)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class GranularLedger(Ledger):
     """Sums over the energies of a run with particles; every array is (T,) in J.
 

@@ -8,10 +8,11 @@ from functools import cached_property
 import numpy as np
 
 from .arrays import FloatArray, RunArrays
+from .quantities import quantity
 from .schema import CHANNELS
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Ledger:
     """Sums over the energies of a run; every array is (T,) in J.
 
@@ -132,3 +133,7 @@ class Ledger:
     def share(self) -> FloatArray:
         """The same as an array, (channels,)."""
         return np.array(list(self.shares.values()))
+
+    def __repr__(self) -> str:
+        shares = ", ".join(f"{channel} {quantity(share, '%')}" for channel, share in self.shares.items())
+        return f"<Ledger {quantity(float(self.supplied[-1]), 'J')} supplied: {shares}; closes to {self.closure:.1e}>"

@@ -69,7 +69,7 @@ def quantity(value: float, unit: str, significant: int = 4) -> str:
     value
         Number in SI units.
     unit
-        Unit, such as "m" or "m/s"; "" or "1" for a pure number, "%" for a share written in per cent.
+        Unit, such as "m" or "m/s"; "" or "1" for a pure number, "%" for a share written in per cent, below 1e-12 as 0.
     significant
         Count of significant digits.
 
@@ -81,7 +81,7 @@ def quantity(value: float, unit: str, significant: int = 4) -> str:
     if math.isnan(value):
         return MISSING
     if unit == "%":
-        return f"{digits(100.0 * value, significant)} %"
+        return f"{digits(100.0 * value if abs(value) >= 1e-12 else 0.0, significant)} %"
     if unit in ("", "1"):
         return digits(value, significant)
     if unit == "kg" and abs(value) < 1.0:

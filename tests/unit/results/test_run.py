@@ -50,6 +50,12 @@ def test_shares_of_a_ledger() -> None:
     assert shares == {"viscous": 1.25 / 3, "impact": 0.5 / 3, "plastic": 0.5 / 3, "motion": 0.75 / 3}
 
 
+def test_ledger_tells_itself_in_a_line() -> None:
+    """A ledger that is printed says how much was supplied, where it went, and how well the sum closes."""
+    shares = "viscous 41.67 %, impact 16.67 %, plastic 16.67 %, motion 25.00 %"
+    assert repr(_open_ledger().ledger) == f"<Ledger 3.000 J supplied: {shares}; closes to 6.2e-02>"
+
+
 def test_zero_of_gravity_does_not_matter() -> None:
     """Closure and shares of a falling ball do not depend on the height from which it is counted."""
     falling = {
