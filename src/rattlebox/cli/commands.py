@@ -145,12 +145,14 @@ def schema(
     import json
 
     from rattlebox.model.case import Case
+    from rattlebox.results.whole import telling
 
     text = json.dumps(Case.json_schema(), indent=2) + "\n"
     if out is None:
         typer.echo(text, nl=False)
     else:
-        out.write_text(text, encoding="utf-8")
+        with telling(out, "the same command once there is room"):
+            out.write_text(text, encoding="utf-8")
 
 
 @app.command()

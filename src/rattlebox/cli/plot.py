@@ -13,6 +13,7 @@ import rattlebox
 from rattlebox.model.errors import CaseError, nearest
 from rattlebox.plots.maps import plot_map, select
 from rattlebox.plots.style import WIDTHS
+from rattlebox.results.whole import telling
 from rattlebox.studies.store import open_study
 from rattlebox.studies.studytables import KINDS
 
@@ -72,7 +73,8 @@ def plot_study(
         figure = plot_map(data, kind=kind, at=_values(at), **options)  # type: ignore[arg-type]
     else:
         raise CaseError(f"--kind {kind}: there is no such kind\n  {nearest(kind, ('map', 'lines', *MAPS))}")
-    figure.savefig(out)
+    with telling(out, "the same command once there is room"):
+        figure.savefig(out)
     Console(highlight=False).print(f"written: {out}", soft_wrap=True)
 
 

@@ -79,6 +79,8 @@ def statuses(study: xr.Dataset) -> dict[str, int]:
 def _how_far(progress: Progress) -> str:
     if progress.done == progress.total:
         return f"{progress.total:,} variants, complete"
+    if not progress.done:
+        return f"0 of {progress.total:,} variants"
     ago = time.time() - progress.last
     since = f"{ago:.0f} s" if ago < 120 else f"{ago / 60:.0f} min" if ago < 7200 else f"{ago / 3600:.0f} h"
     share = 100 * progress.done / progress.total

@@ -75,6 +75,13 @@ def test_clear_refusals(study: Path, answer: Answer, options: list[str], said: s
     assert list(Path().iterdir()) == []
 
 
+def test_figure_that_cannot_be_written(study: Path, answer: Answer) -> None:
+    """The message names the file, the reason and what to try."""
+    Path("a.png").mkdir()
+    said = "error: a.png: it cannot be written: Is a directory\n  try: another folder\n"
+    assert answer(study, "--at", "damper.start=0", "-o", "a.png") == (2, "", said)
+
+
 def test_no_study(answer: Answer) -> None:
     """A folder that is not there is told."""
     assert answer("nothing.zarr")[0] == 2

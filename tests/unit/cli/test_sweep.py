@@ -96,6 +96,17 @@ def test_runs_that_do_not_finish_are_counted(study: Path, answer: Answer) -> Non
     assert answer("show", "study.zarr")[1].endswith("ended: 6 too_many_events\n")
 
 
+def test_study_of_which_nothing_is_done(study: Path, answer: Answer) -> None:
+    """Show tells of no last variant where there is none."""
+
+    def stop(done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        rb.sweep(rb.Case.from_file(EXAMPLE), {"damper.gap": [1e-3, 2e-3]}, store="begun.zarr", progress=stop)
+    assert answer("show", "begun.zarr")[1].startswith("begun.zarr: 0 of 2 variants\n")
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
