@@ -8,12 +8,12 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.model import restitutions
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "add_a_law.md").read_text(encoding="utf-8")
@@ -82,8 +82,8 @@ def compiled(folder: Path, values: dict[str, float], name: str) -> tuple[list[st
 @pytest.mark.skipif(COMPILER is None, reason="no C++ compiler")
 def test_the_example_on_the_page(tmp_path: Path) -> None:
     """The page's C++ law compiles in place, takes the coefficients of the page's class by name, and gives the formula."""
-    space = dict(vars(restitutions))
-    exec(block("python"), space)
+    space: dict[str, Any] = {}
+    exec(compile(block("python"), "page", "exec", dont_inherit=True), space)
     law = space["Viscoelastic"](loss=0.25, maximum=0.95)
     ball = rb.ImpactDamper(
         ball=rb.Sphere(radius="5 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.9)
