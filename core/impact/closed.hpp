@@ -59,6 +59,16 @@ protected:
         record(problem_.sample_times[next_sample_++], scratch_, ledger);
     }
 
+    // What rounding leaves of a gap that is zero.
+    real gap_blur(int c, const real* y) const {
+        const Contact& k = contact(c);
+        const Damper& damper = problem_.dampers[damper_of(c)];
+        const real* at = positions(problem_, y);
+        real size = damper.clearance + std::fabs(gap(problem_, k, y).value);
+        for (int ball : {k.below, k.above}) size += std::fabs(ball == wall ? cavity(damper, y).q : at[ball]);
+        return 8 * epsilon * size;
+    }
+
     // First step in transformed time: a tenth of the way through the contact that is soonest over.
     real first_step(real remaining) const {
         if (system_.active.empty()) {
@@ -67,7 +77,10 @@ protected:
             real h = std::min(remaining, rate > 0 ? 0.1 / rate : remaining);
             for (const Released& r : released_) {
                 const Gap g = gap(problem_, contact(r.contact), state_.y.data());
-                if (g.value != 0 && g.rate != 0) h = std::min(h, 0.1 * std::fabs(g.value / g.rate));
+                // To where it opens, or back to where its force begins; no less than rounding can tell.
+                const real room = std::fabs(g.rate < 0 ? g.value + r.memory.offset : g.value);
+                if (room != 0 && g.rate != 0)
+                    h = std::min(h, 0.1 * (room + gap_blur(r.contact, state_.y.data())) / std::fabs(g.rate));
             }
             return h;
         }
@@ -283,8 +296,7 @@ protected:
                 const auto value = [&](const real* y) { return gap(problem_, contact(c), y).value; };
                 const Gap before = gap(problem_, contact(c), y_.data()),
                           after = gap(problem_, contact(c), trial_.data());
-                const real blur =
-                    8 * epsilon * (problem_.dampers[damper_of(c)].clearance + std::fabs(before.value));
+                const real blur = gap_blur(c, y_.data());
                 if (phase(c) == Phase::touching ||
                     (std::fabs(before.value) <= blur && std::fabs(before.rate) <= blur)) {
                     if (after.value > blur) phase(c) = Phase::open;
@@ -294,9 +306,11 @@ protected:
                         continue;
                     }
                     if (after.value >= -blur) continue;
+                    const bool faint = after.value >= -4 * blur ||
+                                       weak(c, trial_.data(), trial_[clock] - y_[clock], contact_speed());
+                    if (faint && after.rate >= 0) continue; // it parts again: nothing begins
                     // A dashpot acts at once: as soon as rounding can tell that it closes must do.
-                    if (after.value >= -4 * blur ||
-                        weak(c, trial_.data(), trial_[clock] - y_[clock], contact_speed())) {
+                    if (faint) {
                         phase(c) = Phase::touching;
                         event = Event::rest_touch;
                     } else {

@@ -11,8 +11,9 @@ namespace rattlebox {
 
 class Touching : protected Progress {
     LoneContact lone_, sampler_;
-    Ledger spent_;     // in one contact
-    real fastest_ = 0; // of the balls relative to their cavities, at any hard impact so far
+    Ledger spent_;        // in one contact
+    real rest_speed_ = 0; // of contacts about to close from rest: when force and inertia balance
+    real fastest_ = 0;    // of the balls relative to their cavities, at any hard impact so far
 
 protected:
     // ---- first touch
@@ -148,31 +149,46 @@ protected:
     }
 
     // Length of a flight in which the contacts that close from rest go on to close, with a negligible force.
+    // They start slower than rounding can tell from the motion around them, so that their errors are measured
+    // by the speed they have when their force balances what closes them.
     real rest_start_length(real length) {
+        rest_speed_ = 0;
         for (int halving = 0; halving < 400; ++halving, length *= 0.5) {
             flight_.at(length, scratch_);
-            bool negligible = true;
+            const real* y = scratch_.y.data();
+            bool balanced = true, negligible = true;
+            real speed = 0;
             for (int c = 0; c < problem_.contact_count(); ++c) {
                 if (phase(c) != Phase::touching) continue;
-                const real back = gap(problem_, contact(c), scratch_.y.data()).rate * length;
-                negligible = negligible && back <= 8 * epsilon * problem_.dampers[damper_of(c)].clearance &&
-                             weak(c, scratch_.y.data(), length, 0);
+                const real rate = gap(problem_, contact(c), y).rate;
+                speed = std::fmax(speed, -rate);
+                balanced = balanced && braking(c, y, length) <= std::fabs(rate);
+                negligible = negligible &&
+                             rate * length <= 8 * epsilon * problem_.dampers[damper_of(c)].clearance &&
+                             weak(c, y, length, 0);
             }
+            if (balanced) rest_speed_ = std::fmax(rest_speed_, speed);
             if (negligible) break;
         }
         return length;
     }
 
-    // Is what the force of a contact that closes from rest does in `length` negligible: below 1e-8 of the
-    // closing rate itself, or within the tolerance of the speeds around it?
-    bool weak(int c, const real* y, real length, real speed) const {
+    // What the force of a contact that closes from rest would take from its closing rate in `length`.
+    real braking(int c, const real* y, real length) const {
         const Gap g = gap(problem_, contact(c), y);
-        if (g.value >= 0) return true;
+        if (g.value >= 0) return 0;
         const real e = rebound(contact(c).restitution, 0).e, x = std::sqrt(std::sqrt(-g.value));
         const real f =
             contact(c).normal.visit([&](const auto& law) { return law.force(law.begin(e), x, -g.rate); });
-        return std::fabs(f) * length <=
-               contact(c).mass * std::fmax(1e-8 * std::fabs(g.rate), problem_.settings.tolerance * speed);
+        return std::fabs(f) * length / contact(c).mass;
+    }
+
+    // Is that negligible: below 1e-8 of the closing rate itself, or within the tolerance of the speeds around
+    // it?
+    bool weak(int c, const real* y, real length, real speed) const {
+        const real rate = gap(problem_, contact(c), y).rate;
+        return braking(c, y, length) <=
+               std::fmax(1e-8 * std::fabs(rate), problem_.settings.tolerance * speed);
     }
 
     void begin_at_rest() {
@@ -183,8 +199,9 @@ protected:
             const Rebound r = rebound(contact(c).restitution, 0);
             if (!possible(contact(c).normal, r)) return fail(Status::no_rebound, c, 0);
             begin_contact(c, 0, r.e, std::sqrt(std::sqrt(-g.value)));
-            system_.active.back().speed = -g.rate;
+            system_.active.back().speed = std::fmax(-g.rate, rest_speed_);
         }
+        rest_speed_ = 0;
     }
 
     // ---- hard impacts

@@ -1,0 +1,73 @@
+"""Contacts that close from rest, or are about to, slower than rounding can tell: time goes on all the same."""
+
+from typing import Any
+
+import pytest
+
+import rattlebox as rb
+
+STEEL = rb.Sphere(radius="5 mm", material="steel")
+GLASS = rb.Sphere(radius="5 mm", material="glass")
+LARGE = rb.Sphere(radius="10 mm", material="glass")
+PULSE = rb.HalfSine(amplitude="50 N", duration="2 ms")
+
+
+def packed(balls: list[Any], contact: Any, duration: str, gravity: str = "0 m/s^2", **case: Any) -> Any:
+    """Run balls packed in a cavity without play, with a small budget of events."""
+    return rb.simulate(
+        rb.Case(
+            structure=rb.SDOF(mass="1 kg", stiffness="1e4 N/m"),
+            damper=rb.ImpactDamper(balls=balls, gap=0, gravity=gravity, contact=contact),
+            duration=duration,
+            method=rb.EventDriven(max_events=300),
+            output=rb.Output(rate="1 kHz"),
+            **case,
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    "base",
+    [
+        rb.Harmonic(amplitude="5 m/s^2", frequency="20 Hz"),
+        rb.Record(times=[0, 0.1], values=[0, 30], unit="m/s^2"),
+    ],
+    ids=lambda base: base.kind,
+)
+def test_a_ball_without_play_follows_a_base_that_moves_off_gently(base: Any) -> None:
+    """A contact that nothing closes at first is integrated in a few thousand steps, whatever moves it later."""
+    run = packed([STEEL], rb.Tsuji(restitution=0.9), "50 ms", base=base)
+    assert run.ok, run.message
+    assert run.arrays.counts["contact_steps"] < 10_000
+
+
+@pytest.mark.parametrize(
+    ("balls", "restitution", "load"),
+    [
+        ([STEEL] * 3, 0.05, PULSE),
+        ([STEEL, GLASS, LARGE], 0.5, PULSE),
+        ([STEEL, GLASS, LARGE], 0.05, None),
+    ],
+)
+def test_packed_rows_close_once(balls: list[Any], restitution: float, load: Any) -> None:
+    """Neighbours in a row that rounding moves to and fro are no events."""
+    run = packed(balls, rb.Tsuji(restitution=restitution), "3 ms", gravity="-9.81 m/s^2", load=load)
+    assert run.ok, run.message
+    assert run.arrays.counts["events"] < 20
+
+
+@pytest.mark.parametrize("other", [rb.Tsuji(restitution=1), rb.Linear(stiffness="1e6 N/m", restitution=1)])
+def test_dents_are_met_again_in_a_few_steps(other: Any) -> None:
+    """Balls that fall back into the dents they left move there in steps of that way, however near to its edge they are."""
+    damper = rb.ImpactDamper(balls=[STEEL] * 2, gap="10 um", start=1, contact=rb.Thornton(yield_pressure="1 GPa"))
+    run = rb.simulate(
+        rb.Case(
+            structure=rb.SDOF(mass="0.5 kg", stiffness=0, velocity="1.5 m/s"),
+            dampers=[damper, rb.ImpactDamper(ball=GLASS, gap="10 um", start=0.3, contact=other)],
+            duration="20 ms",
+            method=rb.EventDriven(max_events=400),
+            output=rb.Output(rate="1 kHz"),
+        )
+    )
+    counts = run.arrays.counts
+    assert counts["contact_steps"] < 100 * counts["events"]
