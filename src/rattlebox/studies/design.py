@@ -56,7 +56,7 @@ def design(
     trials: int = 100,
     seed: int = 0,
     skip: float | str = 0.0,
-    cycles: tuple[float, float] | None = None,
+    cycles: tuple[int, int] | None = None,
     samples: int | None = None,
     point: str | None = None,
     threads: int | None = None,

@@ -28,7 +28,7 @@ def loss_map(
     amplitudes: Any,
     frequencies: Any,
     *,
-    cycles: tuple[float, float] = (50, 50),
+    cycles: tuple[int, int] = (50, 50),
     samples: int | None = None,
     threads: int | None = None,
     on: Any = None,

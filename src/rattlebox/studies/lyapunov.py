@@ -33,7 +33,7 @@ def lyapunov(
     case: Case,
     axes: Axes | None = None,
     *,
-    cycles: tuple[float, float] | None = None,
+    cycles: tuple[int, int] | None = None,
     skip: float | str = 0.0,
     steps: int | None = None,
     pairs: int = 8,
@@ -150,7 +150,7 @@ class LyapunovTask:
 
     case: Case
     design: Design
-    cycles: tuple[float, float] | None = None
+    cycles: tuple[int, int] | None = None
     skip: float = 0.0
     steps: int | None = None
     pairs: int = 8

@@ -53,7 +53,7 @@ def sensitivity(
     confidence: float = 0.95,
     seed: int = 0,
     skip: float | str = 0.0,
-    cycles: tuple[float, float] | None = None,
+    cycles: tuple[int, int] | None = None,
     samples: int | None = None,
     point: str | None = None,
     threads: int | None = None,

@@ -30,7 +30,7 @@ def sweep(
     measure: Sequence[str | Callable[[Run], float]] = ("impact_share",),
     *,
     skip: float | str = 0.0,
-    cycles: tuple[float, float] | None = None,
+    cycles: tuple[int, int] | None = None,
     samples: int | None = None,
     point: str | None = None,
     motion: bool = False,
@@ -85,7 +85,8 @@ def sweep(
     Raises
     ------
     CaseError
-        When an axis or a measure does not fit the case, before anything runs; when there is no card that can be used.
+        When an argument does not fit, alone or to the case, before anything runs; when there is no card that can be used;
+        when a function of a Run gives no number.
 
     Examples
     --------

@@ -62,7 +62,7 @@ class SweepTask:
     design: Design
     measures: Sequence[str | UserMeasure] = ()
     skip: float = 0.0
-    cycles: tuple[float, float] | None = None
+    cycles: tuple[int, int] | None = None
     samples: int | None = None
     point: str | None = None
     motion: bool = False
