@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Any, ClassVar, Literal
@@ -84,10 +83,11 @@ def _known(measures: list[str]) -> list[str]:
 
 def _whole(cycles: Any, least: int) -> tuple[int, int]:
     try:
-        skip, look = (operator.index(number) for number in cycles)
-    except (TypeError, ValueError):
-        skip = look = -1
-    if skip < 0 or look < least:
+        skip, look = (int(number) for number in cycles)
+        whole = (skip, look) == tuple(cycles)
+    except (TypeError, ValueError, OverflowError):
+        whole = False
+    if not whole or skip < 0 or look < least:
         raise Hint(f"whole numbers of cycles are needed: some to skip, at least {least} to look at", "[200, 50]")
     return skip, look
 

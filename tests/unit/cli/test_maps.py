@@ -219,7 +219,7 @@ def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer)
         (study("bifurcation").replace("show", "shown"), "did you mean 'show'"),
         (study("bifurcation") + '"damper.gap" = ["1 mm"]', "a bifurcation diagram has one"),
         (study("bifurcation").split("[axes]")[0], "nothing varies"),
-        (study("bifurcation").replace("[40, 16]", "[40.5, 16]"), "an integer is needed"),
+        (study("bifurcation").replace("[40, 16]", "[40.5, 16]"), "whole numbers of cycles are needed"),
         (study("bifurcation").replace('"0.5 mm"', '"0.5 kg"'), "not a mass"),
         (study("frequency_response").replace("frequencies", "frequency"), "did you mean 'frequencies'"),
         (study("frequency_response").replace('"29 Hz"', '"29 m"'), "not a length"),
