@@ -296,7 +296,7 @@ def test_a_torn_checkpoint_is_refused(tmp_path: Path) -> None:
 
 def test_long_values_are_told_where_they_part() -> None:
     """Of two long values that differ at their ends, those ends are shown; of tables in lists, their number or place."""
-    there, here = ({"file": f"/home/someone/a/folder/of/many/records/{name}.csv"} for name in ("push", "pull"))
+    there, here = ({"file": f"kept/by/someone/a/folder/of/many/records/{name}.csv"} for name in ("push", "pull"))
     assert differences(there, here) == [
         '  file: ...ne/a/folder/of/many/records/push.csv" there, ...ne/a/folder/of/many/records/pull.csv" here'
     ]
