@@ -18,6 +18,6 @@ found = rb.loss_map(
     case,
     rb.geomspace("15 m/s^2", "500 m/s^2", 25),
     rb.geomspace("10 Hz", "200 Hz", 21),
-    cycles=(40, 20),
+    cycles=(400, 20),
 )
 rb.plot_loss_map(found).savefig("loss_map.png")
