@@ -16,6 +16,7 @@ namespace rattlebox::dem {
 struct Chunk {
     int begin, end;
     int highest = 0;                // particle that the chunk's particles have as a neighbour
+    real closed = infinity;         // how much nearer to each other any two may have come since the build
     Paged<std::uint8_t> near_first; // neighbours within reach: which of the chunk's particles,
     Paged<int> near_second;         // and the number of the other
     Contacts pairs, walls;
@@ -32,7 +33,7 @@ struct Chunk {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(highest, near_first, near_second, tally, stopped);
+        a(highest, closed, near_first, near_second, tally, stopped);
         pairs.keep(a);
         walls.keep(a);
     }
@@ -40,9 +41,10 @@ struct Chunk {
 
 // What all need to know of a chunk in a step: a line of memory.
 struct alignas(64) Brief {
-    real push[3] = {}, moved = 0; // on the cavity; how far any particle has moved beyond the reference
-    real momentum[3] = {},
-         closed = 0; // and how much nearer to each other any two may have come since the build
+    // On the cavity, and how far any particle has moved beyond the reference: to infinity if one stops the
+    // run.
+    real push[3] = {}, moved = 0;
+    real momentum[3] = {}, closed = 0; // the chunk's
 };
 
 // How velocity and spin change: a line of memory.

@@ -126,27 +126,29 @@ public:
     // Particles and contacts are more than caches hold.
     bool is_far() const { return far_; }
 
-    // Candidates are those that may touch in this step.
-    void look_around(const Neighbours& neighbours, Chunk& chunk) {
+    // Forces of all pairs that touch and of which the chunk owns the first: of them it reads particles, and
+    // what it writes is the chunk's alone.
+    void pair_forces(const Neighbours& neighbours, Chunk& chunk, bool sampled, const Ahead& ahead) {
         const int own = chunk.begin / Bed::chunk_size, last = chunk.highest / Bed::chunk_size;
-        const real moved = at(bed_.briefs, own).moved;
         real others = 0;
         for (int c = own; c <= last; ++c) others = larger(others, at(bed_.briefs, c).moved);
-        Contacts &pairs = chunk.pairs, &walls = chunk.walls;
-        pairs.since += moved + others, ++pairs.age;
-        walls.since += moved + bed_.apart, ++walls.age;
-        at(bed_.briefs, own).closed += moved + others;
+        const real moved = at(bed_.briefs, own).moved + others;
+        Contacts& pairs = chunk.pairs;
+        pairs.since += moved, ++pairs.age;
+        chunk.closed += moved;
         if (pairs.is_stale()) neighbours.scan_pairs(bed_, chunk), ++chunk.tally.scans;
-        if (walls.is_stale()) neighbours.scan_walls(bed_, chunk);
+        // Those of tier t were at least t / tiers of the skin apart.
+        const real tiers = pairs.since / pairs.skin * Contacts::tiers;
+        const int tier = std::min(static_cast<int>(tiers), Contacts::tiers - 1);
+        visit(pairs, PairView{bed_, pairs, pair_mu_}, pairs.tier_end[tier], pair_, particle, sampled, chunk,
+              ahead);
     }
 
-    // Forces of all contacts that the chunk owns, and of its particles at the walls.
-    void forces(Chunk& chunk, bool sampled, const Ahead& ahead) {
-        // Those of tier t were at least t / tiers of the skin apart.
-        const real closed = chunk.pairs.since / chunk.pairs.skin * Contacts::tiers;
-        const int tier = std::min(static_cast<int>(closed), Contacts::tiers - 1);
-        visit(chunk.pairs, PairView{bed_, chunk.pairs, pair_mu_}, chunk.pairs.tier_end[tier], pair_, particle,
-              sampled, chunk, ahead);
+    // Forces on the chunk's particles at the walls.
+    void wall_forces(const Neighbours& neighbours, Chunk& chunk, bool sampled) {
+        chunk.walls.since += at(bed_.briefs, chunk.begin / Bed::chunk_size).moved + bed_.apart;
+        ++chunk.walls.age;
+        if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
         visit(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, chunk.walls.size(), wall_, wall,
               sampled, chunk, Ahead());
         Row total{}, moment{};
@@ -265,7 +267,9 @@ public:
             drift = drift > speed ? drift : speed;
         }
         Brief& brief = at(bed_.briefs, chunk.begin / Bed::chunk_size);
-        brief.moved = problem_.dt * std::sqrt(drift) * (1 + 1e-9);
+        const bool goes_on = chunk.stopped.status == Status::finished;
+        brief.moved = goes_on ? problem_.dt * std::sqrt(drift) * (1 + 1e-9) : infinity;
+        brief.closed = chunk.closed;
         for (int a = 0; a < 3; ++a) brief.momentum[a] = momentum[a];
         if constexpr (sampled) {
             tally.kinetic = 0.5 * kinetic;

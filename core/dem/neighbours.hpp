@@ -21,13 +21,15 @@ namespace rattlebox::dem {
 class Neighbours {
     static constexpr int none = Contacts::none;
 
-    // A contact on its way from the order before a sort to that after it, and the memories of a chunk's.
+    // A contact on its way from the order before a sort to that after it; and of a chunk, such contacts, their
+    // memories, and where its particles are.
     struct Moving {
         int first, second, wall, slot;
     };
     struct Leaving {
         std::vector<Moving> moving;
         Memory pairs, walls;
+        Row low = row(infinity, infinity, infinity), high = -low;
     };
 
     // Where the lists of a bed are sorted, one at a time.
@@ -56,29 +58,6 @@ class Neighbours {
         list.since = 0, list.age = 0;
     }
 
-    void lay_cells(const Bed& bed) {
-        Row low = row(infinity, infinity, infinity), high = -low;
-        for (const Row& p : bed.position) low = p < low ? p : low, high = p > high ? p : high;
-        const Row span = high - low;
-        const auto order = [&](int& inner, int& outer) {
-            if (span[inner] > 1.5 * span[outer]) std::swap(inner, outer);
-        };
-        auto& [line, plane, rest] = axis_;
-        line = 0, plane = 1, rest = 2;
-        order(line, plane), order(plane, rest), order(line, plane);
-        size_ = (2 * largest_ + bed.reach) * (1 + 1e-12);
-        for (;;
-             size_ *= 1.25) { // few particles in a large cavity need no more cells than there are particles
-            real total = 1;
-            for (int a = 0; a < 3; ++a) total *= std::floor(span[a] / size_) + 1;
-            if (total <= 4.0 * bed.particles() + 64) break;
-        }
-        for (int a = 0; a < 3; ++a) {
-            low_[a] = low[axis_[a]];
-            cells_[a] = static_cast<int>(span[axis_[a]] / size_) + 1;
-        }
-    }
-
 public:
     void start(Bed& bed) {
         largest_ = 0;
@@ -101,8 +80,13 @@ public:
     // ---- a build: contacts leave their chunks, particles are sorted, each chunk is searched, contacts
     // arrive
 
-    void pack_up(Chunk& chunk) {
+    void pack_up(const Bed& bed, Chunk& chunk) {
         Leaving& leaving = at(leaving_, chunk.begin / Bed::chunk_size);
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            const Row& p = at(bed.position, i);
+            leaving.low = p < leaving.low ? p : leaving.low;
+            leaving.high = p > leaving.high ? p : leaving.high;
+        }
         leaving.moving.reserve(static_cast<std::size_t>(chunk.pairs.actives + chunk.walls.actives));
         for (const Contacts* list : {&chunk.pairs, &chunk.walls})
             for (int a = 0; a < list->actives; ++a) {
@@ -113,17 +97,45 @@ public:
         chunk.pairs.leave(leaving.pairs), chunk.walls.leave(leaving.walls);
     }
 
-    // The order of the particles by cell.
-    void find_order(const Bed& bed) {
-        lay_cells(bed);
-        const int n = bed.particles();
-        cell_.resize(static_cast<std::size_t>(n)), order_.resize(cell_.size()), place_.resize(cell_.size());
+    void lay_cells(const Bed& bed) {
+        Row low = row(infinity, infinity, infinity), high = -low;
+        for (const Leaving& from : leaving_) {
+            low = from.low < low ? from.low : low;
+            high = from.high > high ? from.high : high;
+        }
+        const Row span = high - low;
+        const auto order = [&](int& inner, int& outer) {
+            if (span[inner] > 1.5 * span[outer]) std::swap(inner, outer);
+        };
+        auto& [line, plane, rest] = axis_;
+        line = 0, plane = 1, rest = 2;
+        order(line, plane), order(plane, rest), order(line, plane);
+        size_ = (2 * largest_ + bed.reach) * (1 + 1e-12);
+        for (;;
+             size_ *= 1.25) { // few particles in a large cavity need no more cells than there are particles
+            real total = 1;
+            for (int a = 0; a < 3; ++a) total *= std::floor(span[a] / size_) + 1;
+            if (total <= 4.0 * bed.particles() + 64) break;
+        }
+        for (int a = 0; a < 3; ++a) {
+            low_[a] = low[axis_[a]];
+            cells_[a] = static_cast<int>(span[axis_[a]] / size_) + 1;
+        }
         cell_start_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2] + 1), 0);
-        for (int i = 0; i < n; ++i) {
+        for (auto* v : {&order_, &place_, &cell_}) v->resize(bed.position.size());
+    }
+
+    void find_cells(const Bed& bed, const Chunk& chunk) {
+        for (int i = chunk.begin; i < chunk.end; ++i) {
             const Row& p = at(bed.position, i);
             at(cell_, i) = (cell_along(p, 2) * cells_[1] + cell_along(p, 1)) * cells_[0] + cell_along(p, 0);
-            ++at(cell_start_, at(cell_, i) + 1);
         }
+    }
+
+    // The order of the particles by cell.
+    void find_order() {
+        const int n = static_cast<int>(cell_.size());
+        for (const int c : cell_) ++at(cell_start_, c + 1);
         for (std::size_t c = 1; c < cell_start_.size(); ++c) cell_start_[c] += cell_start_[c - 1];
         for (int i = 0; i < n; ++i) at(place_, i) = at(cell_start_, at(cell_, i))++;
         for (std::size_t c = cell_start_.size() - 1; c > 0; --c) cell_start_[c] = cell_start_[c - 1];

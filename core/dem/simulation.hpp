@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <utility>
 
 #include "base/team.hpp"
 #include "dem/bed_step.hpp"
@@ -49,8 +50,13 @@ class Simulation {
     Status status_ = Status::finished;
     int stopped_cavity_ = 0;
     Stopped stopped_;
-    long builds_ = 0;
-    bool must_build_ = true, halted_ = false, paused_ = false;
+    // What is asked for in one step is done after the next: members may be ahead of the step they wait in.
+    struct Break {
+        bool halt = false, pause = false;
+    } asked_, taken_;
+    bool must_build_ = true, builds_soon_ = false; // before the next step, and before the one after it
+    bool goes_ahead_ = false;                      // who waits at the end of the step
+    long builds_ = 0, late_builds_ = 0;
     Rest rest_;
     long lone_steps_ = 0; // by one for a team that was held up
     Row body_before_{};
@@ -59,7 +65,7 @@ class Simulation {
     Records records_;
 
     real now() const { return static_cast<real>(step_) * problem_.dt; }
-    bool sampled() const { return step_ % problem_.every == 0 || step_ == problem_.steps; }
+    bool sampled(long step) const { return step % problem_.every == 0 || step == problem_.steps; }
 
     // Takes the particles over from the cavity.
     void fill_bed(Bed& bed, Cavity& cavity, bool rolls, Pages* pages) {
@@ -155,7 +161,7 @@ class Simulation {
 
     void choose_reach(Bed& bed) {
         constexpr real steps = 80; // a build costs as much as some ten scans: measured, and flat about this
-        const real smallest = bed.smallest, since = since_build(bed);
+        const real smallest = bed.smallest, since = closing(bed).since;
         bed.reach =
             steps_since_ > 0 && since < infinity
                 ? std::clamp(since / static_cast<real>(steps_since_) * steps, 0.02 * smallest, 0.6 * smallest)
@@ -167,10 +173,14 @@ class Simulation {
             division_.each_chunk(team.rank(),
                                  [&](Place p) { f(at(neighbours_, p.bed), at(beds_, p.bed), p.chunk); });
         };
-        each_chunk([](Neighbours& n, Bed& bed, int c) { n.pack_up(at(bed.chunks, c)); });
+        each_chunk([](Neighbours& n, Bed& bed, int c) { n.pack_up(bed, at(bed.chunks, c)); });
         team.sync([&] {
             for (std::size_t b = 0; b < beds_.size(); ++b)
-                choose_reach(beds_[b]), neighbours_[b].find_order(beds_[b]);
+                choose_reach(beds_[b]), neighbours_[b].lay_cells(beds_[b]);
+        });
+        each_chunk([](Neighbours& n, const Bed& bed, int c) { n.find_cells(bed, at(bed.chunks, c)); });
+        team.sync([&] {
+            for (Neighbours& n : neighbours_) n.find_order();
         });
         const Part& part = division_.part(team.rank());
         const auto each_bed = [&](auto&& f) {
@@ -186,7 +196,7 @@ class Simulation {
         }
         each_chunk([](const Neighbours& n, Bed& bed, int c) {
             n.search(bed, at(bed.chunks, c));
-            at(bed.briefs, c) = Brief{};
+            at(bed.briefs, c) = Brief{}, at(bed.chunks, c).closed = 0;
         });
         each_bed([](Neighbours& n, Bed& bed, int first, int until) { n.unpack(bed, first, until); });
         team.sync();
@@ -219,15 +229,16 @@ class Simulation {
         const Row all = structure().body();
         std::vector<char>& known = part.known;
         known.assign(part.early.begin(), part.early.end());
-        const auto forces = [&](Place p, const Ahead& ahead = {}) {
-            BedStep& step = at(steps_, p.bed);
-            step.look_around(at(neighbours_, p.bed), chunk(p));
-            step.forces(chunk(p), sample, ahead);
+        const auto forces = [&](int k, const Ahead& ahead = {}) {
+            const Place p = division_.place(k);
+            if (!at(part.ahead, k - part.begin))
+                at(steps_, p.bed).pair_forces(at(neighbours_, p.bed), chunk(p), sample, ahead);
+            at(steps_, p.bed).wall_forces(at(neighbours_, p.bed), chunk(p), sample);
         };
         {
             const Timed timed(busy);
             for (int k = part.begin; k < part.end; ++k)
-                if (at(known, k - part.begin)) forces(division_.place(k));
+                if (at(known, k - part.begin)) forces(k);
         }
         team.report();
         team.await_lower([&, k = part.begin]() mutable {
@@ -235,7 +246,7 @@ class Simulation {
             if (k == part.end) return false;
             at(known, k - part.begin) = true;
             const Timed timed(busy);
-            forces(division_.place(k));
+            forces(k);
             return true;
         });
         const Timed timed(busy);
@@ -248,22 +259,41 @@ class Simulation {
             Chunk& own = chunk(p);
             Sums& sums = at(part.sums, p.bed);
             BedStep& step = at(steps_, p.bed);
-            const bool is_known = at(known, k - part.begin), lends = !is_known && !last;
+            const bool is_known = at(known, k - part.begin), is_ahead = at(part.ahead, k - part.begin);
             const auto lend = [&] {
-                if (lends) own.pairs.actions.swap(part.at_pairs), own.walls.actions.swap(part.at_walls);
+                if (is_known || last) return;
+                own.walls.actions.swap(part.at_walls);
+                if (!is_ahead) own.pairs.actions.swap(part.at_pairs);
             };
             lend();
-            if (!is_known) forces(p, ahead(part, k));
+            if (!is_known) forces(k, ahead(part, k));
             const int until = at(part.until, p.bed);
             step.add_own(sums, own, until);
             lend();
             step.advance(sums, own, until, all, body_before_, first, sample);
         }
+        std::ranges::fill(part.ahead, false);
+    }
+
+    // Forces of pairs in the step to come, of one more chunk, whose particles and neighbours have all moved
+    // on; false if there is none left. These forces need nothing that all are waiting for.
+    bool go_ahead(Part& part) {
+        for (int k = part.begin; k < part.end; ++k) {
+            const auto own = k - part.begin;
+            if (at(part.early, own) || at(part.ahead, own)) continue;
+            const Timed timed(&part.busy);
+            const Place p = division_.place(k);
+            at(part.ahead, own) = true;
+            at(steps_, p.bed).pair_forces(at(neighbours_, p.bed), chunk(p), false, {});
+            return true;
+        }
+        return false;
     }
 
     void check() {
         for (std::size_t b = 0; b < beds_.size(); ++b)
             for (const Chunk& c : beds_[b].chunks) {
+                if (at(beds_[b].briefs, c.begin / Bed::chunk_size).moved < infinity) continue;
                 if (c.stopped.status == Status::finished || status_ != Status::finished) continue;
                 status_ = c.stopped.status;
                 stopped_ = c.stopped;
@@ -274,37 +304,46 @@ class Simulation {
             }
     }
 
-    // How much nearer to each other any two may have come since the build.
-    static real since_build(const Bed& bed) {
-        real since = 0, others = 0;
+    // How much nearer to each other any two may have come since the build, and in the last step.
+    struct Closing {
+        real since, pace;
+        // Twice the pace and a little more to begin with.
+        bool may_reach(real reach) const { return !(since + 2 * pace + 0.02 * reach < reach); }
+    };
+    static Closing closing(const Bed& bed) {
+        real since = 0, moved = 0;
         for (const Brief& brief : bed.briefs)
-            others = larger(others, brief.moved), since = larger(since, brief.closed + brief.moved);
-        return since + others;
+            moved = larger(moved, brief.moved), since = larger(since, brief.closed + brief.moved);
+        return {since + moved, 2 * moved};
     }
 
     // On to the next step.
     void move_on() {
         structure().kick();
         structure().drift();
-        must_build_ = false;
+        must_build_ = std::exchange(builds_soon_, false);
+        bool is_late = false;
         for (Bed& bed : beds_) {
             const Row before = bed.motion.displacement, momentum = momentum_of(bed);
             place(bed);
             const Row apart = bed.motion.displacement - before - bed.reference * problem_.dt;
             bed.apart = std::sqrt(dot(apart, apart)) * (1 + 1e-9);
             bed.reference = row(momentum[0], momentum[1], momentum[2]) / bed.mass;
-            const real since = since_build(bed);
-            must_build_ |= !(since < bed.reach);
-            if (!(since + bed.apart < infinity)) status_ = Status::not_finite;
+            const Closing close = closing(bed);
+            builds_soon_ |= !must_build_ && close.may_reach(bed.reach);
+            is_late |= !must_build_ && !(close.since < bed.reach);
+            if (status_ == Status::finished && !(close.since + bed.apart < infinity))
+                status_ = Status::not_finite;
         }
-        ++step_;
+        late_builds_ += is_late;
+        __atomic_store_n(&step_, step_ + 1, __ATOMIC_RELAXED);
         ++steps_since_;
     }
 
     // What all need to know of the step to come; done by one.
     void prepare() {
         structure().load_values(now());
-        if (sampled()) records_.before(beds_);
+        if (sampled(step_)) records_.before(beds_);
     }
 
     // What follows from the forces of this step; done by one.
@@ -329,16 +368,19 @@ class Simulation {
     // Goes on until that step is done, something stops it, or a pause is asked for after a step.
     template <class Team, class Pause>
     void go_on(Team& team, long until, const std::atomic<bool>& stop, Pause&& pause) {
-        while (step_ <= until && status_ == Status::finished && !halted_ && !paused_) {
+        while (step_ <= until && status_ == Status::finished && !taken_.halt && !taken_.pause) {
             if (must_build_) build(team);
-            const bool first = step_ == 0, sample = sampled();
+            const bool first = step_ == 0, sample = sampled(step_), goes_ahead = goes_ahead_;
             advance(team, first, sample, step_ == until);
-            team.sync([&] {
-                conclude(first, sample);
-                prepare();
-                halted_ = stop;
-                paused_ = pause();
-            });
+            team.sync(
+                [&] {
+                    conclude(first, sample);
+                    prepare();
+                    taken_ = std::exchange(asked_, {stop, pause()});
+                    goes_ahead_ = step_ < until && !builds_soon_ && !sampled(step_) && !sampled(step_ + 1) &&
+                                  !asked_.halt && !asked_.pause;
+                },
+                [&] { return goes_ahead && go_ahead(division_.part(team.rank())); });
         }
     }
 
@@ -346,7 +388,7 @@ class Simulation {
         division_.look_around(team.rank());
         team.sync([&] {
             prepare();
-            paused_ = team.size() > 1 && !rest_.is_over();
+            begin_with({.pause = team.size() > 1 && !rest_.is_over()});
         });
         const auto all_go_on = [&] {
             go_on(team, until, stop, [&] {
@@ -356,7 +398,7 @@ class Simulation {
             });
         };
         all_go_on();
-        while (paused_) {
+        while (taken_.pause) {
             team.sync([&] { one_goes_on(until, stop, team.size()); });
             division_.look_around(team.rank());
             team.sync([&] { team.forget_waits(); });
@@ -364,16 +406,21 @@ class Simulation {
         }
     }
 
+    void begin_with(Break taken) {
+        taken_ = taken, asked_ = {};
+        goes_ahead_ = false;
+    }
+
     // For the others, who wait.
     void one_goes_on(long until, const std::atomic<bool>& stop, int members) {
         Alone alone;
         division_.divide(1);
         division_.look_around(0);
-        paused_ = false;
+        begin_with({.halt = taken_.halt});
         lone_steps_ -= step_;
         go_on(alone, until, stop, [&] { return rest_.is_over(); });
         lone_steps_ += step_;
-        paused_ = false;
+        begin_with({.halt = taken_.halt});
         division_.divide(members);
     }
 
@@ -413,15 +460,14 @@ public:
     void run(long until, int threads, const std::atomic<bool>& stop) {
         until = std::min(until, problem_.steps);
         threads = std::min(threads, division_.chunks());
-        halted_ = false;
         division_.divide(threads);
         together(threads, [&](auto team) { run(team, until, stop); });
     }
 
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
-        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, must_build_, steps_since_,
-                modes_, modes_shown_, modal_force_, load_work_, base_work_, viscous_);
+        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, late_builds_, must_build_,
+                builds_soon_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_, viscous_);
         for (Bed& bed : beds_) bed.keep(archive);
     }
 
@@ -439,9 +485,10 @@ public:
         for (std::size_t b = 0; b < beds_.size(); ++b) bytes += beds_[b].memory() + neighbours_[b].memory();
         return bytes;
     }
-    long step() const { return step_; }
+    long step() const { return __atomic_load_n(&step_, __ATOMIC_RELAXED); } // while it runs, too
     long lone_steps() const { return lone_steps_; }
     long builds() const { return builds_; }
+    long late_builds() const { return late_builds_; } // once a pair may have come within reach unseen
     long scans() const { // of a chunk, on average
         long sum = 0;
         for (const Bed& bed : beds_)

@@ -94,7 +94,7 @@ public:
         }
         nb::dict d = counts.write(simulation_->beds().size(), simulation_->step(), simulation_->builds(),
                                   simulation_->scans(), simulation_->memory(), seconds_);
-        d["candidates"] = candidates;
+        d["candidates"] = candidates, d["late_builds"] = simulation_->late_builds();
         return d;
     }
 

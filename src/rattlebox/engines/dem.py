@@ -446,7 +446,7 @@ def _arrays(
         base += np.multiply.outer(base_motion(acceleration, times), direction_of_base(case, signal))
     counters = dem.counters()
     overlaps, speeds = (counters[name].tolist() for name in ("largest_overlap", "largest_approach_speed"))
-    figures, notes = outcome(case, tables, step, overlaps, speeds)
+    figures, notes = outcome(case, tables, step, overlaps, speeds, counters.get("late_builds", 0))
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     name, message = _told(case, names, dem, status, step, journey.checkpoint)
     ends = dem.state()["cavities"]

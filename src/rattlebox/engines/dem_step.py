@@ -381,7 +381,12 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
 
 
 def outcome(
-    case: Case, tables: list[ContactTable], step: Step, overlaps: Sequence[float], speeds: Sequence[float]
+    case: Case,
+    tables: list[ContactTable],
+    step: Step,
+    overlaps: Sequence[float],
+    speeds: Sequence[float],
+    late: int = 0,
 ) -> tuple[dict[str, float], list[str]]:
     """Return figures and notes on a step, after the run.
 
@@ -393,6 +398,8 @@ def outcome(
         Largest overlap over the smaller radius, in each damper.
     speeds
         Largest approach speed at a first touch, in each damper [m/s].
+    late
+        Steps after which neighbours should have been known already.
     """
     dampers = case.particle_dampers
     shortest = min(
@@ -420,6 +427,11 @@ def outcome(
         notes.append(
             f"warning: only {steps:.3g} steps in the shortest contact, that of {shortest.what.removeprefix('contact of ')}; "
             f"at least {FEWEST_STEPS:g} are good"
+        )
+    if late:
+        notes.append(
+            f"warning: particles sped up within a step beyond what neighbours allow for, {late} times; contacts may have "
+            "begun a step late: shorten the step"
         )
     for index, (damper, overlap) in enumerate(zip(dampers, overlaps, strict=True)):
         if overlap > MOST_OVERLAP:

@@ -222,6 +222,20 @@ def test_contacts_of_a_stopped_run_are_not_told_in_part() -> None:
     assert len(dem.contacts(0)["first"]) > 50
 
 
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_a_run_that_is_stopped_again_and_again_gives_the_same_bits(threads: int) -> None:
+    """Wherever a team is asked to stop, none of it is ahead, and the run goes on from there as if it never had."""
+    case = shaken("Hertz", rate=500.0)
+    whole, last = cases.dem_of(case)
+    whole.run(last)
+    dem, _ = cases.dem_of(case, threads=threads)
+    steps = [dem.step]
+    while not dem.run(last, lambda _: False):
+        steps.append(dem.step)
+    assert len(set(steps)) > 3
+    assert flat(dem.records()) + end(dem) == flat(whole.records()) + end(whole)
+
+
 @pytest.mark.skipif(CORES == 0, reason="cores of a process can be chosen on Linux only")
 @pytest.mark.skipif(CORES == 1, reason="a team is held up on cores that it shares: two are needed")
 def test_a_team_that_is_held_up_lets_one_go_on() -> None:

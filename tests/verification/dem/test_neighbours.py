@@ -146,6 +146,28 @@ def test_nothing_is_missed_in_a_moving_cavity() -> None:
     assert seen["pairs"] > 150 and seen["walls"] > 100
 
 
+@pytest.mark.parametrize(("blow", "told"), [(1e8, False), (1e9, True)])
+def test_a_blow_that_neighbours_do_not_allow_for_is_told(blow: float, told: bool) -> None:
+    """Spheres at rest that get to 1 km/s in a microsecond may be seen a step late, and a note says so."""
+    run = rb.simulate(
+        rb.Case(
+            structure=rb.Shaker(
+                motion=rb.Record(times=[0, 1e-3, 1.001e-3, 1.002e-3, 2e-3], values=[0, 0, blow, 0, 0], unit="m/s^2")
+            ),
+            damper=rb.ParticleDamper(
+                particles=rb.Particles(material="steel", diameter="2 mm", count=200),
+                cavity=rb.Box(size=("30 mm", "30 mm", "30 mm")),
+                contact=rb.Tsuji(restitution=0.5),
+                packing=rb.Lattice(noise=0.5, seed=1),
+            ),
+            duration="1.1 ms",
+            output=rb.Output(rate="100 kHz"),
+        )
+    )
+    assert run.ok, run.message
+    assert any("a step late" in note for note in run.arrays.notes) == told
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_nothing_is_missed_in_random_cases(seed: int) -> None:
