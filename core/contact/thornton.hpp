@@ -81,21 +81,26 @@ struct Thornton {
         return work - 0.4 * curve * std::pow(deepest - dent, 2.5);
     }
 
-    real boundary(const Memory& m, real x, real rate) const {
-        if (m.phase == yielding) return rate;
+    // From x to where the curve ends: at the yield overlap, or at the deepest one so far.
+    real room(const Memory& m, real x) const {
         const real limit = m.phase == loading ? yield_overlap() : m.deepest - m.offset;
-        const real room = std::sqrt(std::sqrt(limit)) - x;
-        return room < x ? room : x;
+        return std::sqrt(std::sqrt(limit)) - x;
     }
 
-    Next cross(Memory& m, real x, real rate) const {
+    real boundary(const Memory& m, real x, real rate) const {
+        if (m.phase == yielding) return rate;
+        const real above = room(m, x);
+        return above < x ? above : x;
+    }
+
+    Next cross(Memory& m, real x, real) const {
         if (m.phase == yielding) {
             m.deepest = square(x * x);
             unloading_curve(m.deepest, m.stiffness, m.offset);
             m.phase = unloading;
             return Next::stay;
         }
-        if (rate > 0) {
+        if (room(m, x) < x) { // whatever rounding has made of the rate, where it turns just there
             m.phase = yielding;
             m.offset = 0;
             return Next::stay;

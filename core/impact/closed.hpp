@@ -9,6 +9,7 @@ namespace rattlebox {
 class ClosedContacts : protected Touching {
     Dop853 integrator_;
     std::vector<real> partial_, scale_, slope_, ahead_, behind_;
+    real deepest_ = 0;                    // overlap that closed contacts come to, about
     static constexpr real roughly = 1e-8; // of a step: for peaks, whose error is its square
 
 protected:
@@ -66,7 +67,13 @@ protected:
         const real* at = positions(problem_, y);
         real size = damper.clearance + std::fabs(gap(problem_, k, y).value);
         for (int ball : {k.below, k.above}) size += std::fabs(ball == wall ? cavity(damper, y).q : at[ball]);
-        return 8 * epsilon * size;
+        return 8 * epsilon * std::fmax(size, deepest_);
+    }
+
+    // x where the overlap of a contact comes to what its speed lets expect.
+    real expected(const Active& a) const {
+        return contact(a.contact).normal.visit(
+            [&](const auto& law) { return std::sqrt(std::sqrt(law.overlap_scale(a.speed))); });
     }
 
     // First step in transformed time: a tenth of the way through the contact that is soonest over.
@@ -86,9 +93,9 @@ protected:
         }
         real h = infinity;
         for (const Active& a : system_.active) {
-            const real depth = contact(a.contact).normal.visit(
-                [&](const auto& law) { return std::sqrt(std::sqrt(law.overlap_scale(a.speed))); });
-            h = std::min(h, 0.4 * (a.x > 0 ? std::min(a.x, depth) : depth) / a.speed);
+            const real depth = expected(a);
+            // Of a contact that starts from rest either may be too small for a number.
+            h = std::min(h, 0.4 * (a.x > 0 && depth > 0 ? std::min(a.x, depth) : a.x + depth) / a.speed);
         }
         return h;
     }
@@ -99,32 +106,49 @@ protected:
         return speed;
     }
 
-    // Errors are measured against the speeds and overlaps of the contacts themselves.
+    // What rounding of the velocities of both sides makes of x, in the time that the contact takes.
+    real x_blur(const Active& a, real depth) const {
+        if (a.speed == 0 || depth == 0) return 0;
+        const Contact& k = contact(a.contact);
+        real size = 0;
+        for (int side : {k.below, k.above})
+            size = std::fmax(size, std::fabs(side == wall
+                                                 ? cavity(problem_.dampers[damper_of(a.contact)], y_.data()).p
+                                                 : velocities(problem_, y_.data())[side]));
+        const real x = expected(a);
+        return 0.25 * epsilon * size / a.speed * x * cube(x / depth);
+    }
+
+    // Errors are measured against the speeds and overlaps of the contacts themselves, but not below rounding.
     void set_scales() {
         const real tolerance = problem_.settings.tolerance;
         scale_.assign(system_.size(), infinity);
         real speed = 0, deepest = 0;
-        const auto depth = [&](const Active& a) {
-            const real scale = contact(a.contact).normal.visit(
-                [&](const auto& law) { return std::sqrt(std::sqrt(law.overlap_scale(a.speed))); });
-            return std::max(scale, std::fabs(a.x));
-        };
+        const auto depth = [&](const Active& a) { return std::max(expected(a), std::fabs(a.x)); };
         for (const Active& a : system_.active) {
             speed = std::max(speed, a.speed);
             deepest = std::max(deepest, depth(a));
         }
-        // A contact that starts from rest has no depth of its own to measure by.
-        for (std::size_t j = 0; j < system_.active.size(); ++j)
-            scale_[system_.x_index(j)] = tolerance * std::max(depth(system_.active[j]), 0.1 * deepest);
+        deepest_ = square(square(deepest));
+        for (std::size_t j = 0; j < system_.active.size(); ++j) {
+            const Active& a = system_.active[j];
+            // A contact that starts from rest has no depth of its own to measure by.
+            const real size = std::max(depth(a), 0.1 * deepest);
+            scale_[system_.x_index(j)] = std::fmax(tolerance * size, x_blur(a, depth(a)));
+        }
         if (system_.active.empty())
             for (real y : state_.y) speed = std::max(speed, std::fabs(y));
         if (speed == 0) speed = 1;
+        const auto bound = [&](real size, real v) {
+            return std::fmax(tolerance * size, epsilon * std::fabs(v));
+        };
+        const real* v = velocities(problem_, y_.data());
         real* ball = scale_.data() + 2 * problem_.modes.size() + problem_.ball_mass.size();
-        for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) ball[i] = tolerance * speed;
+        for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) ball[i] = bound(speed, v[i]);
         for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
             real shape = 0;
             for (const Damper& damper : problem_.dampers) shape = std::max(shape, std::fabs(damper.shape[k]));
-            scale_[2 * k + 1] = shape > 0 ? tolerance * speed / shape : tolerance * speed;
+            scale_[2 * k + 1] = bound(shape > 0 ? speed / shape : speed, y_[2 * k + 1]);
         }
     }
 
@@ -165,6 +189,15 @@ protected:
         const real rate = system_.approach(y, a.contact);
         return contact(a.contact).normal.visit(
             [&](const auto& law) { return law.boundary(a.memory, y[system_.x_index(j)], rate); });
+    }
+
+    // Whether the curve of force that it is on ends at some overlap.
+    bool has_end(std::size_t j) const {
+        const Active& a = system_.active[j];
+        return contact(a.contact).normal.visit([&](const auto& law) {
+            if constexpr (requires { law.room(a.memory, a.x); }) return a.memory.phase != law.yielding;
+            return false;
+        });
     }
 
     // Positive while a released contact's law would not push.
@@ -238,7 +271,7 @@ protected:
             int which = -1;
             const auto consider = [&](Event kind, int index, real before, auto&& f) {
                 const real after = f(trial_.data());
-                if (after > 0 || before < 0) return;
+                if (after > 0 || before < 0 || (before == 0 && after == 0)) return;
                 const real where = locate(end, before, after, f);
                 if (where < end || event == Event::none) {
                     end = where;
@@ -247,24 +280,34 @@ protected:
                     integrator_.step(system_, y_.data(), end, trial_.data());
                 }
             };
-            for (std::size_t j = 0; j < system_.active.size(); ++j)
-                consider(Event::boundary, static_cast<int>(j), std::fmax(boundary(y_.data(), j), 0.0),
-                         [&](const real* y) { return boundary(y, j); });
+            // Turns to where a rate changes its sign, if something is over there that is not so at the end.
+            const auto turn_back = [&](real before, real after, auto&& rate, auto&& is_over) {
+                const real turn = locate(end, before, after, rate);
+                integrator_.step(system_, y_.data(), turn, partial_.data());
+                if (!is_over(partial_.data())) return;
+                std::swap(trial_, partial_);
+                end = turn;
+                event = Event::none;
+            };
+            for (std::size_t j = 0; j < system_.active.size(); ++j) {
+                const auto room = [&](const real* y) { return boundary(y, j); };
+                const auto rate = [&](const real* y) {
+                    return system_.approach(y, system_.active[j].contact);
+                };
+                const real before = rate(y_.data()), after = rate(trial_.data());
+                if (before > 0 && after < 0 && has_end(j) && room(trial_.data()) > 0)
+                    turn_back(before, after, rate, [&](const real* y) { return room(y) < 0; });
+                consider(Event::boundary, static_cast<int>(j), std::fmax(room(y_.data()), 0.0), room);
+            }
             for (std::size_t r = 0; r < released_.size(); ++r) {
                 const Released& released = released_[r];
                 const auto at = [&](const real* y) { return gap(problem_, contact(released.contact), y); };
                 const Gap before = at(y_.data()), after = at(trial_.data());
                 // It may open and close again within the step.
-                if (after.value < 0 && before.rate > 0 && after.rate < 0) {
-                    const real widest =
-                        locate(end, before.rate, after.rate, [&](const real* y) { return at(y).rate; });
-                    integrator_.step(system_, y_.data(), widest, partial_.data());
-                    if (at(partial_.data()).value >= 0) {
-                        std::swap(trial_, partial_);
-                        end = widest;
-                        event = Event::none;
-                    }
-                }
+                if (after.value < 0 && before.rate > 0 && after.rate < 0)
+                    turn_back(
+                        before.rate, after.rate, [&](const real* y) { return at(y).rate; },
+                        [&](const real* y) { return at(y).value >= 0; });
                 consider(Event::opened, static_cast<int>(r), -before.value,
                          [&](const real* y) { return -at(y).value; });
                 // Only a force that grows: one that was just released may still push by rounding.
@@ -323,16 +366,12 @@ protected:
                 } else if (before.rate < 0 && after.rate > 0 &&
                            std::fmin(before.value, after.value) <
                                2 * trial_[clock] * std::fmax(-before.rate, after.rate)) {
-                    const real lowest = locate(end, -before.rate, -after.rate, [&](const real* y) {
-                        return -gap(problem_, contact(c), y).rate;
-                    });
-                    integrator_.step(system_, y_.data(), lowest, partial_.data());
-                    if (value(partial_.data()) <= 0) {
-                        std::swap(trial_, partial_);
-                        end = lowest;
-                        event = Event::none;
+                    turn_back(
+                        -before.rate, -after.rate,
+                        [&](const real* y) { return -gap(problem_, contact(c), y).rate; },
+                        [&](const real* y) { return value(y) <= 0; });
+                    if (value(trial_.data()) <= 0)
                         consider(Event::touch, c, std::fmax(before.value, 0.0), value);
-                    }
                 }
             }
             if (retry) {

@@ -37,17 +37,21 @@ class Flight {
     std::vector<real> curvature_, jerk_; // bounds on each gap's second derivative from below, on its third
     mutable std::vector<real> safe_;     // no touch before
 
-    Series gap_series(const Contact& contact) const {
-        Series g;
+    // The series that a gap is made of: add(weight, series).
+    template <class Add> void each_part(const Contact& contact, Add&& add) const {
+        if (contact.above != wall) add(1.0, ball_series_[static_cast<std::size_t>(contact.above)]);
+        if (contact.below != wall) add(-1.0, ball_series_[static_cast<std::size_t>(contact.below)]);
+        if (contact.below != wall && contact.above != wall) return;
         const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
         const real side = contact.below == wall ? 1 : -1;
-        if (contact.above != wall) g.add(1, ball_series_[static_cast<std::size_t>(contact.above)]);
-        if (contact.below != wall) g.add(-1, ball_series_[static_cast<std::size_t>(contact.below)]);
-        if (contact.below == wall || contact.above == wall) {
-            for (std::size_t k = 0; k < damper.shape.size(); ++k)
-                g.add(-side * damper.shape[k], mode_series_[k]);
-            g.c[0] += 0.5 * damper.clearance;
-        }
+        for (std::size_t k = 0; k < damper.shape.size(); ++k) add(-side * damper.shape[k], mode_series_[k]);
+    }
+
+    Series gap_series(const Contact& contact) const {
+        Series g;
+        each_part(contact, [&](real weight, const Series& part) { g.add(weight, part); });
+        if (contact.below == wall || contact.above == wall)
+            g.c[0] += 0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
         return g;
     }
 
@@ -205,6 +209,10 @@ public:
     // cannot come back), 0 no motion at all. Needs series.
     int tendency(const Contact& contact) {
         const Series g = gap_series(contact);
+        real sizes[Series::order + 1] = {}; // of what may cancel
+        each_part(contact, [&](real weight, const Series& part) {
+            for (int n = 0; n <= Series::order; ++n) sizes[n] += std::fabs(weight * part.c[n]);
+        });
         real scale = 0, power = 1;
         for (int n = 1; n <= Series::order; ++n)
             scale = std::max(scale, std::fabs(g.c[n]) * (power *= horizon_));
@@ -212,9 +220,9 @@ public:
         for (int n = 2; n <= Series::order; ++n) {
             power *= horizon_;
             // Rounding of the forces, and of the clock that the loads follow.
-            const real turned = n < Series::order ? (n + 1) * g.c[n + 1] * epsilon * start_->t : 0;
-            if (std::fabs(g.c[n]) * power <= 8192 * epsilon * scale + 64 * std::fabs(turned) * power)
-                continue;
+            const real turned = n < Series::order ? (n + 1) * std::fabs(g.c[n + 1]) * start_->t : 0;
+            const real rounding = 8192 * scale + 64 * (sizes[n] + turned) * power;
+            if (std::fabs(g.c[n]) * power <= epsilon * rounding) continue;
             if (g.c[n] < 0) return -1;
             for (;;) {
                 real rest = 0, later = 1;

@@ -191,14 +191,16 @@ protected:
                std::fmax(1e-8 * std::fabs(rate), problem_.settings.tolerance * speed);
     }
 
-    void begin_at_rest() {
+    // Those that press begin where they are, also where rounding of the places has lost the way they came.
+    void begin_at_rest(const std::vector<char>& presses = {}) {
         for (int c = 0; c < problem_.contact_count(); ++c) {
             if (phase(c) != Phase::touching) continue;
             const Gap g = gap(problem_, contact(c), state_.y.data());
-            if (g.value >= 0 || g.rate >= 0) continue;
+            const bool pressing = !presses.empty() && presses[static_cast<std::size_t>(c)];
+            if (g.rate >= 0 || (g.value >= 0 && !pressing)) continue;
             const Rebound r = rebound(contact(c).restitution, 0);
             if (!possible(contact(c).normal, r)) return fail(Status::no_rebound, c, 0);
-            begin_contact(c, 0, r.e, std::sqrt(std::sqrt(-g.value)));
+            begin_contact(c, 0, r.e, std::sqrt(std::sqrt(std::fmax(-g.value, 0.0))));
             system_.active.back().speed = std::fmax(-g.rate, rest_speed_);
         }
         rest_speed_ = 0;

@@ -10,7 +10,7 @@
 namespace rattlebox {
 
 class Trajectory : ClosedContacts {
-    std::vector<char> watched_;
+    std::vector<char> watched_, presses_;
     State ahead_; // at the end of a flight
 
     void sample_flight(real until) {
@@ -33,12 +33,13 @@ class Trajectory : ClosedContacts {
         for (Phase p : phase_) any_touching = any_touching || p == Phase::touching;
         flight_.begin(state_, loads_, stop - state_.t, any_touching);
         bool pressing = false;
+        presses_.assign(phase_.size(), false);
         for (std::size_t c = 0; c < phase_.size(); ++c) {
             watched_[c] = phase_[c] != Phase::touching;
             if (phase_[c] != Phase::touching) continue;
             const int tendency = flight_.tendency(problem_.contacts[c]);
             if (tendency > 0) phase_[c] = Phase::open;
-            if (tendency < 0) pressing = true;
+            if (tendency < 0) pressing = presses_[c] = true;
             if (tendency < 0 && hard()) stick(static_cast<int>(c));
         }
         if (pressing && hard()) return;
@@ -55,7 +56,7 @@ class Trajectory : ClosedContacts {
         std::swap(ahead_.y, state_.y);
         state_.t = end;
         settle_released(touch.contact);
-        if (pressing) begin_at_rest();
+        if (pressing) begin_at_rest(presses_);
         if (touch.contact >= 0 && length == touch.after) meet(touch.contact);
     }
 

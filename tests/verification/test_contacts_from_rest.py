@@ -71,3 +71,58 @@ def test_dents_are_met_again_in_a_few_steps(other: Any) -> None:
     )
     counts = run.arrays.counts
     assert counts["contact_steps"] < 100 * counts["events"]
+
+
+def test_balls_that_lie_on_a_wall_at_a_distance_are_pressed_at_once() -> None:
+    """A contact that closes from rest begins also where rounding of the places loses the way that it has come."""
+    run = rb.simulate(
+        rb.Case(
+            structure=rb.SDOF(mass="1 kg", stiffness="1e3 N/m"),
+            damper=rb.ImpactDamper(
+                balls=[STEEL, GLASS, STEEL], gap="10 mm", start=-1, contact=rb.Tsuji(restitution=0.05)
+            ),
+            base=rb.Record(times=[0, 0.1], values=[0, 30], unit="m/s^2"),
+            duration="50 ms",
+            method=rb.EventDriven(max_events=1000),
+        )
+    )
+    assert run.ok, run.message
+    assert run.arrays.counts["flights"] < 20
+
+
+def test_a_row_that_is_struck_does_not_stop_the_clock() -> None:
+    """Overlaps and speeds too small for a number, of a row without play that a moving wall strikes, are waited for."""
+    steel, alike = rb.Sphere(radius="10 mm", material="steel"), rb.Tsuji(alpha=0, ending="zero_force")
+    run = rb.simulate(
+        rb.Case(
+            structure=rb.Modal(frequencies=[20], damping_ratios=[0], shapes={"b": [-0.5]}, velocity=[0.19]),
+            dampers=[
+                rb.ImpactDamper(balls=[steel] * 2, gap="10 mm", start=1, gravity=9.81, contact=alike, point="b"),
+                rb.ImpactDamper(
+                    balls=[steel, GLASS, LARGE], gap=0, start=-1, contact=rb.Thornton(yield_pressure="1 GPa"), point="b"
+                ),
+            ],
+            load=rb.Harmonic(amplitude=1.0, frequency=50.0, point="b"),
+            duration="1 ms",
+            method=rb.EventDriven(max_events=1000),
+        )
+    )
+    assert run.ok, run.message
+    assert abs(run.closure) < 1e-11
+
+
+def test_a_slow_contact_of_fast_bodies_takes_few_steps() -> None:
+    """Errors are not held below what rounding leaves of velocities: 1 m/s each, 0.1 nm/s towards each other."""
+    run = rb.simulate(
+        rb.Case(
+            structure=rb.SDOF(mass="1 kg", stiffness=0, velocity=1.0),
+            damper=rb.ImpactDamper(
+                ball=GLASS, gap="1 pm", velocity=1.0 + 1e-10, contact=rb.Linear(stiffness="1e6 N/m", restitution=0.5)
+            ),
+            duration="20 ms",
+            output=rb.Output(rate="1 kHz"),
+        )
+    )
+    assert run.ok, run.message
+    assert run.arrays.impacts.time.size > 0
+    assert run.arrays.counts["contact_steps"] < 1000

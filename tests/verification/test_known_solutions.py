@@ -8,7 +8,7 @@ import pytest
 import rattlebox as rb
 
 from . import cases, measures
-from .exact import printed, shaken
+from .exact import printed, restitution_laws, shaken
 
 
 @pytest.mark.parametrize("lines", measures.ALL, ids=lambda f: f.__name__)
@@ -129,3 +129,14 @@ def test_soft_ball_chatters_to_rest() -> None:
     depth = -run.arrays.ball_position[-1, 0] - 1e-3
     assert depth == pytest.approx((weight / cases.STIFFNESS) ** (2 / 3), rel=1e-4)
     assert run.closure <= 1e-10
+
+
+@pytest.mark.parametrize("excess", [1e-6, 1e-5, 1e-4, 1e-3, 1e-2])
+def test_the_least_yielding_is_seen(excess: float) -> None:
+    """A ball just fast enough to yield turns within one step of where it does, and loses what it must all the same."""
+    pressure = 1.6 * cases.YIELD
+    yielding = restitution_laws.thornton_speed(cases.RADIUS, cases.MASS, cases.MODULUS, pressure)
+    case = cases.single_impact(rb.Thornton(yield_pressure=pressure), (1 + excess) * yielding, 3e-4)
+    lost = rb.simulate(case).arrays.impacts.energy_lost[0] / (0.5 * cases.MASS * ((1 + excess) * yielding) ** 2)
+    assert lost == pytest.approx(1 - restitution_laws.thornton(1 + excess) ** 2, rel=1e-6, abs=4e-15)
+    assert lost > 0.4 * excess**2
