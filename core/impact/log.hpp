@@ -20,14 +20,17 @@ struct Impact {
     bool complete = false;
 };
 
-// Impacts summed up, each once.
+// Impacts summed up, each once, in any order: the last bit of a sum must not depend on which line was
+// dropped when.
 struct ImpactSums {
-    real impacts = 0, approach_speeds = 0;
+    real impacts = 0, approach_speeds = 0, rounded_off = 0;
     real largest_approach_speed = 0, peak_force = 0, peak_overlap = 0, longest_contact = 0;
 
     void add(const Impact& i) {
         impacts += 1;
-        approach_speeds += i.approach_speed;
+        const real sum = approach_speeds + i.approach_speed, part = sum - approach_speeds;
+        rounded_off += (approach_speeds - (sum - part)) + (i.approach_speed - part);
+        approach_speeds = sum;
         largest_approach_speed = std::fmax(largest_approach_speed, i.approach_speed);
         peak_force = std::fmax(peak_force, i.peak_force);
         peak_overlap = std::fmax(peak_overlap, i.peak_overlap);

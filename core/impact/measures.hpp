@@ -221,7 +221,7 @@ inline constexpr Measure measures[] = {
     {"mean_approach_speed", false, false,
      [](const Observer& o) {
          const ImpactSums all = o.impacts();
-         return all.impacts > 0 ? all.approach_speeds / all.impacts : not_a_number;
+         return all.impacts > 0 ? (all.approach_speeds + all.rounded_off) / all.impacts : not_a_number;
      }},
     {"longest_contact", false, false, [](const Observer& o) { return o.impacts().longest_contact; }},
     {"work", false, false, [](const Observer& o) { return o.load_work(o.last()) + o.base_work(o.last()); }},
