@@ -21,8 +21,8 @@ namespace rattlebox::dem {
 class Neighbours {
     static constexpr int none = Contacts::none;
 
-    // A contact on its way from the order before a sort to that after it; and of a chunk, such contacts, their
-    // memories, and where its particles are.
+    // A contact on its way from the order before a sort to that after it; and of a chunk, such contacts,
+    // their memories, and where its particles are.
     struct Moving {
         int first, second, wall, slot;
     };

@@ -467,7 +467,8 @@ public:
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
         archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, late_builds_, must_build_,
-                builds_soon_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_, viscous_);
+                builds_soon_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_,
+                viscous_);
         for (Bed& bed : beds_) bed.keep(archive);
     }
 
@@ -489,7 +490,7 @@ public:
     long lone_steps() const { return lone_steps_; }
     long builds() const { return builds_; }
     long late_builds() const { return late_builds_; } // once a pair may have come within reach unseen
-    long scans() const { // of a chunk, on average
+    long scans() const {                              // of a chunk, on average
         long sum = 0;
         for (const Bed& bed : beds_)
             for (const Chunk& c : bed.chunks) sum += c.tally.scans;
