@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/cores.hpp"
+#include "base/waits.hpp"
 
 namespace rattlebox {
 
@@ -44,45 +45,39 @@ public:
 
 // Where the members of a team wait for each other.
 class Meetingpoint {
-    using Clock = std::chrono::steady_clock;
-    struct alignas(64) Mark {
-        std::atomic<unsigned> reports{0};
-        std::atomic<long> waited{0}; // beyond the first moments [ns]
+    struct alignas(64) Reports {
+        std::atomic<unsigned> number{0};
     };
     alignas(64) std::atomic<int> waiting_{0};
     alignas(64) std::atomic<unsigned> round_{0};
-    alignas(64) std::vector<Mark> marks_;
-    Clock::time_point since_ = Clock::now();
+    alignas(64) std::vector<Reports> reports_;
+    Waits waits_; // beyond the first moments
 
     // A phase lasts microseconds, worth spinning for. Who waits longer lets others have the core, since what
     // it waits for may be among them, and sleeps in the end, to be woken where a core is free.
     static constexpr int spins = 2000, yields = 1000;
 
-    static long nanoseconds(Clock::duration d) {
-        return std::chrono::duration_cast<std::chrono::nanoseconds>(d).count();
-    }
-
     // Until is_over() or sleep() has brought what is waited for.
     template <class IsOver, class Sleep> void wait(int rank, IsOver&& is_over, Sleep&& sleep) {
         for (int looks = 0; looks < spins; ++looks)
             if (is_over()) return;
-        const auto begun = Clock::now();
+        const auto begun = Waits::Clock::now();
         for (int looks = 0; !is_over(); ++looks)
             if (looks < yields)
                 std::this_thread::yield();
             else
                 sleep();
-        waits(rank).fetch_add(nanoseconds(Clock::now() - begun), std::memory_order_relaxed);
+        waits_.add(rank, begun, Waits::Clock::now());
     }
 
-    std::atomic<long>& waits(int rank) { return marks_[static_cast<std::size_t>(rank)].waited; }
+    std::atomic<unsigned>& reports(int rank) { return reports_[static_cast<std::size_t>(rank)].number; }
 
 public:
-    explicit Meetingpoint(int size) : marks_(static_cast<std::size_t>(size)) {}
+    explicit Meetingpoint(int size) : reports_(static_cast<std::size_t>(size)), waits_(size) {}
 
     template <class Last, class Other> void sync(int rank, Last&& last, Other&& other) {
         const unsigned round = round_.load(std::memory_order_relaxed);
-        if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == static_cast<int>(marks_.size())) {
+        if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == static_cast<int>(reports_.size())) {
             last();
             waiting_.store(0, std::memory_order_relaxed);
             round_.store(round + 1, std::memory_order_release);
@@ -96,7 +91,7 @@ public:
     }
 
     void report(int rank) {
-        std::atomic<unsigned>& own = marks_[static_cast<std::size_t>(rank)].reports;
+        std::atomic<unsigned>& own = reports(rank);
         own.store(own.load(std::memory_order_relaxed) + 1, std::memory_order_release);
         own.notify_all();
     }
@@ -104,9 +99,9 @@ public:
     // All lower members have reported as often as this one; until then it works on something other, while
     // there is some.
     template <class Other> void await_lower(int rank, Other&& other) {
-        const unsigned own = marks_[static_cast<std::size_t>(rank)].reports.load(std::memory_order_relaxed);
+        const unsigned own = reports(rank).load(std::memory_order_relaxed);
         for (int r = 0; r < rank; ++r) {
-            const std::atomic<unsigned>& theirs = marks_[static_cast<std::size_t>(r)].reports;
+            const std::atomic<unsigned>& theirs = reports(r);
             unsigned now;
             const auto is_over = [&] {
                 now = theirs.load(std::memory_order_acquire);
@@ -120,21 +115,8 @@ public:
 
     // Whether members have waited so long of late that one alone would have been as fast: other programs have
     // their cores. For one that all others wait for.
-    bool is_held_up() {
-        constexpr long enough = 2'000'000;
-        long waited = 0;
-        for (const Mark& m : marks_) waited += m.waited.load(std::memory_order_relaxed);
-        if (waited < enough) return false;
-        const bool held_up =
-            waited > static_cast<long>(marks_.size() - 1) * nanoseconds(Clock::now() - since_);
-        forget_waits();
-        return held_up;
-    }
-
-    void forget_waits() {
-        for (Mark& m : marks_) m.waited.store(0, std::memory_order_relaxed);
-        since_ = Clock::now();
-    }
+    bool is_held_up() { return waits_.are_a_habit(Waits::Clock::now()); }
+    void forget_waits() { waits_.forget(Waits::Clock::now()); }
 };
 
 class Member {
