@@ -2,6 +2,8 @@
 
 scaling   particle-steps a second with 100 to 100,000 particles, one core and two, and the memory they take
 rest      the same for beds that have settled, where contacts persist
+cores     one core and two in turns over short windows of one bed: `cores [rest] [N ...]`, by how long meetings of threads
+          take then, since hosts of virtual machines move cores together and apart (a C++ compiler measures that)
 peers     one start, step and physics in this and other programs: `peers FOLDER [rest] [N ...]`, with FOLDER of their decks
           (particle_peers.py); what is not installed is left out. `--program NAME=PATH` adds another LAMMPS (lmp of another
           environment, say). Beds are made by LAMMPS first; `--beds FOLDER` keeps them (shaken_1000.csv, rest_1000.csv), and
@@ -19,13 +21,15 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import shutil
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +47,10 @@ WINDOWS = {100: (5, 50), 1000: (5, 10), 10_000: (5, 5), 100_000: (1, 1)}
 """Periods before the clock starts, and while it runs."""
 WIDE = {"shaken": ((0.2, 0.3), (1, 1)), "rest": ((0.2, 0.5),)}
 """The same for beds beside their mirror images: packed by the floor, and thin in flight."""
+WINDOW = 0.1
+"""Of one core, with `cores` [s]."""
+APART = (0.0, 0.06, 0.2, 10.0)
+"""Meetings of threads on one core that has two, of cores that share a cache, and of others [us]."""
 LOOKS = 101
 """At contacts, at all phases of the shaking."""
 AMPLITUDES = {"shaken": 98.1, "rest": 0.0}
@@ -155,6 +163,75 @@ def scaling(kind: str = "shaken", turns: int = 3) -> Iterator[tuple[str, str]]:
         yield "contacts a particle", f"{found[0][0]['contacts']:.2f}"
 
 
+def meetings(folder: Path) -> Callable[[], float]:
+    """Return what tells how long a meeting of two threads takes just now [us]."""
+    core_folder = Path(__file__).parents[1] / "core"
+    command = [
+        os.environ.get("CXX", "c++"),
+        "-O2",
+        "-std=c++20",
+        "-pthread",
+        f"-I{core_folder}",
+        "-o",
+        folder / "meetings",
+    ]
+    subprocess.run([*command, Path(__file__).with_name("meetings.cpp")], check=True)
+    program = subprocess.Popen([folder / "meetings"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def ask() -> float:
+        assert program.stdin and program.stdout
+        program.stdin.write("\n")
+        program.stdin.flush()
+        return float(program.stdout.readline())
+
+    return ask
+
+
+def cores(kind: str, counts: list[int], seconds: float) -> Iterator[tuple[str, str]]:
+    """Two cores against one, window by window."""
+    with tempfile.TemporaryDirectory() as folder:
+        meeting = meetings(Path(folder))
+        for count in counts or [1000, 10_000, 100_000]:
+            yield from _in_turns(kind, count, seconds, meeting)
+
+
+def _in_turns(kind: str, count: int, seconds: float, meeting: Callable[[], float]) -> Iterator[tuple[str, str]]:
+    packed, _, _ = pack_dem(shaken(count, amplitude=AMPLITUDES[kind]))
+    pair = core().Dem(packed), core().Dem(packed)
+    step = steps_of(25 if kind == "rest" else WINDOWS[count][0])
+    for threads, dem in enumerate(pair, 1):
+        dem.threads = threads
+        dem.run(step)
+
+    def took(dem: Any) -> float:
+        before = dem.counters()["seconds"]
+        dem.run(step)
+        return float(dem.counters()["seconds"] - before)
+
+    step += 100
+    steps = max(1, round(100 * WINDOW / took(pair[0])))
+    took(pair[1])
+    found: list[tuple[float, float, float, float]] = []  # meetings before and after, one core, two
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        step += steps
+        first = meeting()
+        times = [took(dem) for dem in (pair if len(found) % 2 else pair[::-1])]
+        single, double = times if len(found) % 2 else times[::-1]
+        found.append((first, meeting(), single, double))
+    for low, high in pairwise(APART):
+        some = [(a, b) for early, late, a, b in found if low <= min(early, late) and max(early, late) < high]
+        if len(some) < 4:
+            continue
+        least, middle, most = statistics.quantiles([a / b for a, b in some], n=4)
+        rate = count * steps / statistics.median(b for _, b in some) / 1e6
+        told = f"two cores against one {middle:.2f} (half of {len(some)} windows: {least:.2f} to {most:.2f}), "
+        yield (
+            f"{count:,} particles, {kind}, meetings of {low:g} to {high:g} us",
+            told + f"{rate:.1f} million particle-steps/s",
+        )
+
+
 def wide(bed: str, turns: int) -> Iterator[tuple[str, str]]:
     """Cost of a bed, and of wide ones that are put together from it."""
     kind, count = Path(bed).stem.split("_")
@@ -230,11 +307,12 @@ def _compared(
 def main() -> None:
     """Print a table of what was asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("job", nargs="?", choices=["scaling", "rest", "peers", "wide", "one", "one_wide"])
+    parser.add_argument("job", nargs="?", choices=["scaling", "rest", "cores", "peers", "wide", "one", "one_wide"])
     parser.add_argument("arguments", nargs="*")
     parser.add_argument("--beds", type=Path)
     parser.add_argument("--program", type=another_lammps, action="append", default=[])
     parser.add_argument("--turns", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=100.0, help="for each bed of `cores`")
     parser.add_argument("--cores", type=int, nargs="+", choices=[1, 2], default=[1, 2])
     given = parser.parse_intermixed_args()
     if given.job in ("one", "one_wide"):
@@ -250,6 +328,9 @@ def main() -> None:
         if given.beds:
             given.beds.mkdir(parents=True, exist_ok=True)
         rows = [peers(Path(folder), kind, counts, (*PROGRAMS, *given.program), given.beds, given.cores, given.turns)]
+    elif given.job == "cores":
+        kind = "rest" if "rest" in given.arguments else "shaken"
+        rows = [cores(kind, [int(word) for word in given.arguments if word != kind], given.seconds)]
     elif given.job == "wide":
         rows = [wide(given.arguments[0], given.turns)]
     else:
