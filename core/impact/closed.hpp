@@ -200,10 +200,11 @@ protected:
         });
     }
 
-    // Positive while a released contact's law would not push.
+    // Positive while a released contact's law would not surely push: a force that grows by less than rounding
+    // of its gap would make contacts close and be released again at one instant.
     real apart(const real* y, const Released& r) const {
         const Gap g = gap(problem_, contact(r.contact), y);
-        const real overlap = -g.value - r.memory.offset;
+        const real overlap = -g.value - r.memory.offset - gap_blur(r.contact, y);
         if (overlap <= 0) return 1;
         const real x = std::sqrt(std::sqrt(overlap));
         return -contact(r.contact).normal.visit(
@@ -288,6 +289,7 @@ protected:
                 std::swap(trial_, partial_);
                 end = turn;
                 event = Event::none;
+                at_stop = false;
             };
             for (std::size_t j = 0; j < system_.active.size(); ++j) {
                 const auto room = [&](const real* y) { return boundary(y, j); };

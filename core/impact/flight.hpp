@@ -235,6 +235,13 @@ public:
         return 0;
     }
 
+    // What rounding leaves of a gap that is zero.
+    real gap_blur(const Contact& contact, const State& state) const {
+        const real half = 0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
+        const int ball = contact.below == wall ? contact.above : contact.below;
+        return 4 * epsilon * (half + std::fabs(positions(problem_, state.y.data())[ball]));
+    }
+
     // The first touch of the watched contacts within the horizon, and the state there.
     RATTLEBOX_CALL Touch first_touch(const std::vector<char>& watched, State& out) const {
         const auto end = [&](Touch touch) {
@@ -253,11 +260,7 @@ public:
                 if (safe_[c] <= s) {
                     const Contact& contact = problem_.contacts[c];
                     const Gap g = gap(problem_, contact, out.y.data());
-                    const real half =
-                        0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
-                    const int ball = contact.below == wall ? contact.above : contact.below;
-                    const real blur =
-                        4 * epsilon * (half + std::fabs(positions(problem_, out.y.data())[ball]));
+                    const real blur = gap_blur(contact, out);
                     if (g.value < -blur &&
                         g.rate > 0) { // released, still recovering: when it is open at the latest
                         const real room = g.rate * g.rate + 2 * curvature_[c] * -g.value;
@@ -273,7 +276,11 @@ public:
                 }
             }
             if (!(next < horizon_)) return end({horizon_, -1});
-            if (next - s <= epsilon * s) return {s, nearest}; // closer than the clock can tell
+            if (next - s <= epsilon * s) { // closer than the clock can tell
+                const Contact& contact = problem_.contacts[static_cast<std::size_t>(nearest)];
+                const Gap g = gap(problem_, contact, out.y.data());
+                if (g.rate <= 0 || g.value >= -gap_blur(contact, out)) return {s, nearest};
+            }
             s = next;
             at(s, out);
         }

@@ -126,3 +126,64 @@ def test_a_slow_contact_of_fast_bodies_takes_few_steps() -> None:
     assert run.ok, run.message
     assert run.arrays.impacts.time.size > 0
     assert run.arrays.counts["contact_steps"] < 1000
+
+
+def test_a_released_contact_closes_again_only_where_rounding_can_tell() -> None:
+    """A force about zero, of a row without play, does not close and release a contact again and again at one instant."""
+    steel = rb.Sphere(radius="10 mm", material="steel")
+    run = rb.simulate(
+        rb.Case(
+            structure=rb.Modal(
+                frequencies=[800],
+                damping_ratios=[1.0000001],
+                shapes={"a": [0.284225183454787], "b": [-1.1945206106624247]},
+                velocity=[0.9883219647988619],
+            ),
+            dampers=[
+                rb.ImpactDamper(
+                    balls=[STEEL] * 2,
+                    gap=0,
+                    start=-1,
+                    contact=rb.Linear(stiffness="1e6 N/m", restitution=0.5, ending="zero_force"),
+                    point="b",
+                ),
+                rb.ImpactDamper(
+                    ball=steel,
+                    gap="10 mm",
+                    gravity=-9.81,
+                    contact=rb.Tsuji(restitution=0.05, ending="zero_force"),
+                    point="a",
+                ),
+            ],
+            load=rb.Harmonic(amplitude="1 N", frequency="5 Hz", stop="0.1 s", point="b"),
+            duration="0.3 s",
+            method=rb.EventDriven(max_events=2000),
+        )
+    )
+    assert run.ok, run.message
+    assert abs(run.closure) < 1e-11
+
+
+def test_a_contact_that_recovers_is_not_taken_for_one_that_closes() -> None:
+    """Where the ball leaves one wall as it meets the other, nearer than the clock can tell, the other is met."""
+    steel, plastic = rb.Sphere(radius="10 mm", material="steel"), rb.Thornton(yield_pressure="1 GPa")
+    run = rb.simulate(
+        rb.Case(
+            structure=rb.Modal(
+                frequencies=[20, 20, 800],
+                damping_ratios=[0.01, 0.5, 0.5],
+                shapes={"a": [0.3083576460840023, 0.15771052533551524, 1.8039522371176606]},
+                participation=[0.17372190802429174, -0.9792207201295954, -0.5984246849184236],
+            ),
+            dampers=[
+                rb.ImpactDamper(ball=GLASS, gap=0, start=1, contact=plastic, point="a"),
+                rb.ImpactDamper(balls=[steel] * 2, gap="1 mm", start=0.3, gravity=9.81, contact=plastic, point="a"),
+            ],
+            load=rb.HalfSine(amplitude="50 N", duration="2 ms", point="a"),
+            base=rb.Harmonic(amplitude="5 m/s^2", frequency="20 Hz"),
+            duration="40 ms",
+            method=rb.EventDriven(max_events=2000),
+        )
+    )
+    assert run.ok, run.message
+    assert abs(run.closure) < 1e-11
