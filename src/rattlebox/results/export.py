@@ -11,9 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .datasets import columns, labels
+from .whole import needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from .run import Run
+
+_LOST = "make room and write the file again"
 
 
 def _cells(names: tuple[str, ...]) -> Any:
@@ -54,6 +57,7 @@ def to_mat(run: Run, path: Path) -> Path:
     """
     from scipy.io import savemat
 
+    needs_folder(path)
     arrays = run.arrays
     names = labels(arrays)
     content: dict[str, Any] = {}
@@ -82,12 +86,13 @@ def to_mat(run: Run, path: Path) -> Path:
         "wall_time": arrays.wall_time,
         "counts": dict(arrays.counts) or np.zeros((0, 0)),
     }
-    savemat(
-        path,
-        content | {"units": units, "info": info},
-        long_field_names=True,
-        appendmat=False,
-    )
+    with telling(path, _LOST), whole(path) as name:
+        savemat(
+            name,
+            content | {"units": units, "info": info},
+            long_field_names=True,
+            appendmat=False,
+        )
     return path
 
 

@@ -21,7 +21,8 @@ from .datasets import columns, labels
 from .granular import GranularArrays, GranularRun
 from .provenance import Provenance
 from .schema import GRANULAR, IMPACT, IMPACT_VARIABLES, Form, Kind
-from .whole import needs_folder, telling, whole
+from .snapshots import ROOT as SNAPSHOTS
+from .whole import DAMAGE, needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from .run import Run
@@ -178,34 +179,51 @@ def load(path: str | os.PathLike[str]) -> Run:
     ------
     FileNotFoundError
         When there is no such file.
+    OSError
+        When the file must not be read.
     ValueError
-        When the file is not a run of Rattlebox, or is one of a later version.
+        When the file is not a run of Rattlebox, is not whole, or is one of a later version.
     """
     import h5netcdf
-
-    from .run import Run
 
     path = Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"there is no file {path}")
+    with path.open("rb"):  # which says why it cannot be read, as HDF5 does not
+        pass
     try:
-        file = h5netcdf.File(path, "r")
-    except OSError as error:
-        raise ValueError(f"{path} is not a netCDF-4 file") from error
-    with file:
-        layout = file.attrs.get("rattlebox_format")
-        if layout is None:
-            raise ValueError(f"{path} is a netCDF-4 file, but not a run written by Rattlebox")
-        if int(layout) > FORMAT:
-            version = _text_attribute(file.attrs.get("version", "?"))
-            raise ValueError(f"{path} was written by a later Rattlebox ({version}); update to read it")
-        texts: dict[str, Any] = {
-            f.name: _text_attribute(file.attrs[f.name]) for f in fields(Provenance) if f.name in file.attrs
-        }
-        provenance = Provenance(**texts | {"seed": int(file.attrs["seed"])})
-        if _text_attribute(file.attrs.get("rattlebox_kind", b" ")) == GRANULAR.name:
-            return GranularRun(_read_granular(file), _read_text(file, "case"), provenance)
-        return Run(_read(file), _read_text(file, "case"), provenance)
+        with h5netcdf.File(path, "r") as file:
+            refused = _refused(file, path)
+            if not refused:
+                return _read_run(file)
+    except DAMAGE as error:
+        raise ValueError(f"{path} is not a netCDF-4 file that is whole") from error
+    raise ValueError(refused)
+
+
+def _refused(file: Any, path: Path) -> str:
+    """Why a netCDF-4 file holds no run that can be read; "" where it does."""
+    layout = file.attrs.get("rattlebox_format")
+    if layout is None:
+        return f"{path} is a netCDF-4 file, but not a run written by Rattlebox"
+    if SNAPSHOTS in file.groups:
+        return f"{path} holds snapshots of particles, not a run; rattlebox.Snapshots reads them"
+    if int(layout) > FORMAT:
+        version = _text_attribute(file.attrs.get("version", "?"))
+        return f"{path} was written by a later Rattlebox ({version}); update to read it"
+    return ""
+
+
+def _read_run(file: Any) -> Run:
+    from .run import Run
+
+    texts: dict[str, Any] = {
+        f.name: _text_attribute(file.attrs[f.name]) for f in fields(Provenance) if f.name in file.attrs
+    }
+    provenance = Provenance(**texts | {"seed": int(file.attrs["seed"])})
+    if _text_attribute(file.attrs.get("rattlebox_kind", b" ")) == GRANULAR.name:
+        return GranularRun(_read_granular(file), _read_text(file, "case"), provenance)
+    return Run(_read(file), _read_text(file, "case"), provenance)
 
 
 def _read_text(file: Any, name: str) -> str:

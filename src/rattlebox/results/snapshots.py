@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,12 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arrays import FloatArray, IntArray
-from .whole import reserve, telling, whole
+from .whole import DAMAGE, reserve, telling, whole
 
 FORMAT = 1
 """Number of what is said beside the VTKHDF; files with a higher one are refused."""
 
-_ROOT = "VTKHDF"
+ROOT = "VTKHDF"
+"""Group of a VTKHDF file that holds everything."""
+
 _MOVING = {"velocity": (3,), "spin": (3,), "push": ()}
 _FIXED = ("radius", "mass", "cavity", "species")
 _OFFSETS, _LAYOUT = 25, 1 << 16
@@ -125,7 +128,7 @@ class SnapshotFile:
         file.attrs["rattlebox_format"] = FORMAT
         file.attrs["case"] = self._case
         file.attrs["numbers"] = self._numbers
-        root = file.create_group(_ROOT)
+        root = file.create_group(ROOT)
         root.attrs["Version"] = (2, 0)
         root.attrs.create("Type", b"PolyData", dtype="S8")
         root["NumberOfPoints"] = [count]
@@ -202,7 +205,7 @@ class SnapshotFile:
         placed = [each["position"] + place for each, place in zip(cavities, self._places, strict=True)]
         # Without a lock, so that others may look at the file during the run.
         with telling(self.path, _LOST), h5py.File(self.path, "r+", locking=False) as file:
-            root = file[_ROOT]
+            root = file[ROOT]
             count = root["NumberOfPoints"][0]
             rows = slice(number * count, (number + 1) * count)
             root["Points"][rows] = np.concatenate(placed)
@@ -232,33 +235,49 @@ class Snapshots:
     ------
     FileNotFoundError
         When there is no such file.
+    OSError
+        When it must not be read.
     ValueError
-        When it holds no snapshots of particles, or is one of a later version.
+        When it holds no snapshots of particles, is not whole, or is one of a later version.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        import h5py
-
         self.path = Path(path)
         if self.path.is_dir():
             raise ValueError(f"{self.path} is a folder, not a file")
         if not self.path.is_file():
             raise FileNotFoundError(f"there is no file {self.path}")
-        try:
-            with h5py.File(self.path, "r", locking=False) as file:
-                layout = file.attrs.get("rattlebox_format")
-                if layout is None or _ROOT not in file:
-                    raise ValueError(f"{self.path} holds no snapshots of particles written by Rattlebox")
-                if layout > FORMAT:
-                    raise ValueError(f"{self.path} was written by a later Rattlebox; update to read it")
+        with self._opened() as file:
+            refused = self._refused(file)
+            if not refused:
                 self.case_toml, self.numbers = str(file.attrs["case"]), str(file.attrs["numbers"])
-                root = file[_ROOT]
+                root = file[ROOT]
                 self.planned: FloatArray = root["Steps/Values"][...]
                 self.times = self.planned[: int(root["Steps"].attrs["NSteps"])]
                 self._fixed = {field: root[f"PointData/{field}"][...] for field in _FIXED}
                 self._places: FloatArray = root["FieldData/place"][...]
-        except (OSError, KeyError, RuntimeError) as error:
+        if refused:
+            raise ValueError(refused)
+
+    @contextmanager
+    def _opened(self) -> Iterator[Any]:
+        """The file, open to be read; what fails meanwhile is told as damage."""
+        import h5py
+
+        with self.path.open("rb"):  # which says why it cannot be read, as HDF5 does not
+            pass
+        try:
+            with h5py.File(self.path, "r", locking=False) as file:
+                yield file
+        except DAMAGE as error:
             raise ValueError(f"{self.path} is not an HDF5 file that is whole") from error
+
+    def _refused(self, file: Any) -> str:
+        """Why a file of HDF5 holds no snapshots that can be read; "" where it does."""
+        layout = file.attrs.get("rattlebox_format")
+        if layout is None or ROOT not in file:
+            return f"{self.path} holds no snapshots of particles written by Rattlebox"
+        return f"{self.path} was written by a later Rattlebox; update to read it" if layout > FORMAT else ""
 
     def __len__(self) -> int:
         return int(self.times.size)
@@ -267,15 +286,13 @@ class Snapshots:
         return (self[number] for number in range(len(self)))
 
     def __getitem__(self, number: int) -> Frame:
-        import h5py
-
         if not -len(self) <= number < len(self):
             raise IndexError(f"{self.path} holds {len(self)} snapshots, numbered from 0; there is no number {number}")
         number %= len(self)
         count, cavities = self._fixed["radius"].size, len(self._places)
         rows = slice(number * count, (number + 1) * count)
-        with h5py.File(self.path, "r", locking=False) as file:
-            root = file[_ROOT]
+        with self._opened() as file:
+            root = file[ROOT]
             return Frame(
                 time=float(self.times[number]),
                 position=root["Points"][rows] - self._places[self._fixed["cavity"]],

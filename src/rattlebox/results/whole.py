@@ -10,6 +10,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+DAMAGE = (OSError, AttributeError, LookupError, RuntimeError, TypeError, ValueError, OverflowError)
+"""What libraries raise where a file of HDF5 is torn, or holds other things than it should."""
+
 
 def needs_folder(path: Path) -> None:
     """Refuse a file in a folder that is not there.

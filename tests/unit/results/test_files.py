@@ -14,6 +14,7 @@ import pytest
 
 from rattlebox.results import Provenance, Run, RunArrays, load
 from rattlebox.results.schema import GROUPS
+from rattlebox.results.snapshots import Snapshots
 
 
 def test_round_trip_is_exact(any_run: Run, tmp_path: Path) -> None:
@@ -150,6 +151,49 @@ def test_loading_something_else(tmp_path: Path) -> None:
         file.attrs["rattlebox_format"] = np.int32(1000)
     with pytest.raises(ValueError, match=r"later Rattlebox \(99\.0\)"):
         load(later)
+
+
+def test_damaged_files_are_named(run: Run, tmp_path: Path) -> None:
+    """A file that is cut off, or lacks a part, is told with its name."""
+    whole = run.save(tmp_path / "whole.nc").read_bytes()
+    damaged = tmp_path / "damaged.nc"
+    said = r"damaged\.nc is not a netCDF-4 file that is whole"
+    for size in (0, 100, 5000, len(whole) - 1000):
+        damaged.write_bytes(whole[:size])
+        with pytest.raises(ValueError, match=said):
+            load(damaged)
+    for lost in ("motion", "impacts/time", "case"):
+        damaged.write_bytes(whole)
+        with h5py.File(damaged, "a") as file:
+            del file[lost]
+            del file.attrs["seed"]
+        with pytest.raises(ValueError, match=said):
+            load(damaged)
+
+
+def test_a_file_that_must_not_be_read(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The system's own reason is told where a file must not be read."""
+    path = run.save(tmp_path / "run.nc")
+
+    def forbidden(self: Path, *_: object) -> None:
+        raise PermissionError(13, "Permission denied", str(self))
+
+    monkeypatch.setattr(Path, "open", forbidden)
+    with pytest.raises(PermissionError, match=r"Permission denied: .*run\.nc"):
+        load(path)
+    with pytest.raises(PermissionError, match=r"Permission denied: .*run\.nc"):
+        Snapshots(path)
+
+
+def test_matlab_file_that_cannot_be_written(run: Run, tmp_path: Path) -> None:
+    """A missing folder and a folder in the place of the file are told as when a run is saved."""
+    (tmp_path / "folder").mkdir()
+    for write in (run.save, run.to_mat):
+        with pytest.raises(FileNotFoundError, match=r"cannot write .*run\.mat: there is no folder .*missing"):
+            write(tmp_path / "missing" / "run.mat")
+        with pytest.raises(OSError, match=r"it cannot be written: .*\n  try: another folder.*folder"):
+            write(tmp_path / "folder")
+    assert [path.name for path in tmp_path.iterdir()] == ["folder"]
 
 
 def test_matlab_round_trip(any_run: Run, tmp_path: Path) -> None:

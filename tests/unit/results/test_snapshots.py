@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 
@@ -189,3 +190,24 @@ def test_wrong_choices_are_told(value: Any, said: str) -> None:
     """A choice of snapshots that makes no sense is refused."""
     with pytest.raises(rb.CaseError, match=said):
         rb.Output(snapshots=value)
+
+
+def test_snapshots_are_no_run(written: Any) -> None:
+    """Where a run is to be loaded from the file of snapshots, what it holds is told."""
+    with pytest.raises(ValueError, match=r"run\.vtkhdf holds snapshots of particles, not a run"):
+        rb.load(written[1])
+
+
+def test_damaged_snapshots_are_named(written: Any, tmp_path: Path) -> None:
+    """A file that lacks a part, when it is opened or when a snapshot is read, is told with its name."""
+    for lost in ("Steps", "PointData/radius", "PointData/spin"):
+        path = tmp_path / "run.vtkhdf"
+        path.write_bytes(written[1].read_bytes())
+        with h5py.File(path, "r+") as file:
+            del file["VTKHDF"][lost]
+        with pytest.raises(ValueError, match=r"run\.vtkhdf is not an HDF5 file that is whole"):
+            _ = Snapshots(path)[0]
+    with h5py.File(path, "r+") as file:
+        del file.attrs["case"]
+    with pytest.raises(ValueError, match=r"run\.vtkhdf is not an HDF5 file that is whole"):
+        Snapshots(path)
