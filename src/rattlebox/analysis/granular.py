@@ -49,11 +49,17 @@ def shaken_cavity(
 
     Raises
     ------
+    TypeError
+        When the run has no particles in space.
     ValueError
         When less than one cycle is covered, the cavity does not move at this frequency, or there is no such damper.
     """
     import xarray
 
+    from rattlebox.results import GranularRun
+
+    if not isinstance(run, GranularRun):
+        raise TypeError(f"a run with particles in space is needed, not {run!r:.60}")
     arrays = run.arrays
     if damper is None and len(arrays.dampers) == 1:
         damper = arrays.dampers[0]

@@ -129,7 +129,9 @@ def impacts_per_cycle(impact_times: ArrayLike, period: float, *, start: float, e
 def _motion(run: Run, of: str | None) -> tuple[str, FloatArray, FloatArray]:
     arrays = run.arrays
     names = (*arrays.balls, *arrays.points)
-    name = of if of is not None else next(iter(names), "")
+    if of is None and not names:
+        raise ValueError("there is no ball in this run, and no point of a structure that moves")
+    name = of if of is not None else names[0]
     if name in arrays.balls:
         k = arrays.balls.index(name)
         return name, arrays.relative_position[:, k] - arrays.ball_centre[k], arrays.relative_velocity[:, k]

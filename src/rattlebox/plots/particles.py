@@ -63,9 +63,13 @@ def plot_particles(
 
     Raises
     ------
+    TypeError
+        When something else is given, as a run without particles in space.
     ValueError
         When there is no snapshot, or the size is unknown.
     """
+    if not isinstance(of, (GranularRun, Snapshots)):
+        raise TypeError(f"a run with particles in space or its snapshots are needed, not {of!r:.60}")
     if isinstance(of, Snapshots) and not len(of):
         raise ValueError(f"{of.path} holds no snapshot yet")
     frame = of[number] if isinstance(of, Snapshots) else _end(of)
@@ -106,6 +110,8 @@ def film_particles(
 
     Raises
     ------
+    TypeError
+        When something else than snapshots is given, as a run, which knows its particles at the end only.
     ValueError
         When there is no snapshot, or the ending is another one.
     ModuleNotFoundError
@@ -113,6 +119,8 @@ def film_particles(
     OSError
         When the file cannot be written; an earlier one is then as it was.
     """
+    if not isinstance(snapshots, Snapshots):
+        raise TypeError(f'snapshots are needed, as rb.Snapshots("run.vtkhdf"), not {snapshots!r:.60}')
     path = Path(out)
     if path.suffix not in FILMS:
         raise ValueError(f"{path}: a film is {' or '.join(FILMS)}")

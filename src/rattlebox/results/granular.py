@@ -102,6 +102,7 @@ class GranularArrays(_Comparable):
     channels: ClassVar[tuple[str, ...]] = GRANULAR_CHANNELS
     partners: ClassVar[tuple[str, ...]] = PARTNERS
     axes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    balls: ClassVar[tuple[str, ...]] = ()  # particles have no names
 
     time: FloatArray
     points: tuple[str, ...] = ()

@@ -5,6 +5,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.analysis import impacts_per_cycle, phase_portrait, poincare_section
+from rattlebox.plots import plot_phase_portrait
 from rattlebox.results import Run, RunArrays
 
 PERIOD = 0.1
@@ -155,3 +156,49 @@ def test_bad_strobes_are_refused():
         poincare_section(run, -1.0)
     with pytest.raises(ValueError, match=r"no strobe of period 0\.1 s falls into the run, 0\.01 s to 0\.05 s"):
         poincare_section(run, 0.1)
+
+
+def granular(**options):
+    """Return a short run with particles in space."""
+    usual = {
+        "structure": rb.SDOF(mass=0.1, stiffness=1e4, velocity=0.5),
+        "damper": rb.ParticleDamper(
+            particles=rb.Particles(material="steel", diameter="4 mm", count=2),
+            cavity=rb.Box(size=("20 mm",) * 3),
+            contact=rb.Tsuji(restitution=0.7),
+            softening=1000,
+        ),
+        "duration": 0.05,
+        "output": rb.Output(rate="10 kHz"),
+    }
+    return rb.simulate(rb.Case(**{**usual, **options}))
+
+
+def test_points_of_runs_with_particles():
+    """With particles in space the points of the structure are shown, the first when none is named."""
+    run = granular()
+    for of in (None, "mass"):
+        portrait = phase_portrait(run, of)
+        assert portrait.attrs["of"] == run.arrays.points[0]
+        np.testing.assert_array_equal(portrait.position, run.arrays.displacement[:, 0])
+        np.testing.assert_array_equal(portrait.velocity, run.arrays.velocity[:, 0])
+    assert poincare_section(run, 0.01).sizes["time"] == 6
+    assert plot_phase_portrait(run).axes
+    with pytest.raises(ValueError, match="there is no ball or point 'damper'; there are mass"):
+        phase_portrait(run, "damper")
+
+
+def test_runs_without_a_point_are_refused():
+    """Where nothing but particles moves, that is told."""
+    still = granular(structure=rb.Fixed())
+    nothing = Run(RunArrays(time=np.linspace(0, 1, 5)))
+    for run in (nothing,) if still.arrays.points else (nothing, still):
+        with pytest.raises(ValueError, match="there is no ball in this run, and no point"):
+            phase_portrait(run)
+
+
+def test_a_run_without_particles_has_no_shaken_cavity():
+    """A run without particles in space is told to be one."""
+    run = subharmonic(1)
+    with pytest.raises(TypeError, match="a run with particles in space is needed, not <Run finished"):
+        rb.analysis.shaken_cavity(run, frequency=10)

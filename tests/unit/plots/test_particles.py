@@ -283,3 +283,27 @@ def test_films_without_the_extra_are_told(
         2,
         "error: MP4 needs imageio-ffmpeg\n  try: python -m pip install 'rattlebox[3d]', or -o film.gif\n",
     )
+
+
+def test_runs_without_particles_are_told(run: Any, tmp_path: Path) -> None:
+    """What has no particles to draw, or no snapshots to film, is refused as what it is."""
+    plain = rb.simulate(rb.Case(structure=rb.SDOF(mass=1, stiffness=1, velocity=1), duration=1))
+    with pytest.raises(TypeError, match="a run with particles in space or its snapshots are needed, not <Run finished"):
+        plot_particles(plain)  # type: ignore[arg-type]
+    for of in (plain, run[0]):
+        with pytest.raises(
+            TypeError, match=r'snapshots are needed, as rb.Snapshots\("run.vtkhdf"\), not <Run finished'
+        ):
+            film_particles(of, tmp_path / "a.gif")
+
+
+def test_the_command_tells_of_damaged_files(
+    run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Snapshots under the name of a run, and files that are torn, are told without a traceback."""
+    content = run[1].read_bytes()
+    for name, size in (("run.nc", None), ("torn.nc", 5000), ("torn.vtkhdf", 5000)):
+        (tmp_path / name).write_bytes(content[:size])
+        code, _, told = answer(monkeypatch, capsys, tmp_path / name, "-o", tmp_path / "a.png")
+        assert code == 2
+        assert told.startswith(f"error: {tmp_path / name} {'holds snapshots' if size is None else 'is not a'}")
