@@ -63,7 +63,7 @@ class Case(Part):
     method, output
         How it is computed, EventDriven or, with particle dampers, Dem if left out; and at which times it is recorded.
     name, seed
-        For the record; nothing in one run is random.
+        For the record; nothing in one run is random. A seed is an integer from 0 to 2^63 - 1, as files of runs hold.
 
     Raises
     ------
@@ -81,7 +81,7 @@ class Case(Part):
     duration: PositiveTime
     method: AnyMethod = Field(default_factory=EventDriven)
     output: Output = Field(default_factory=Output)
-    seed: int = 0
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 0  # what files of runs hold
 
     @model_validator(mode="before")
     @classmethod

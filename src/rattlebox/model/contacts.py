@@ -38,7 +38,8 @@ def _soft(restitution: Any) -> None:
     if isinstance(restitution, Constant) and restitution.e < 1e-6:
         raise Hint(
             "a contact with duration needs a restitution of at least 1e-6",
-            "method = Newton(), whose impacts may be fully plastic",
+            "restitution = 1e-6, or for balls in a row method = Newton(), whose impacts may be fully plastic",
+            ["restitution"],
         )
 
 

@@ -213,6 +213,7 @@ _PLAIN = {
     "finite_number": "a finite number is needed",
     "greater_than_equal": "must be at least {ge:g}",
     "less_than_equal": "must be at most {le:g}",
+    "less_than": "must be less than {lt:g}",
     "literal_error": "must be {expected}",
 }
 _TABLES = ("model_type", "model_attributes_type", "dict_type")
@@ -249,4 +250,6 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: 
         expected = str(context.get("expected", "")).replace(" or ", ", ").split(", ")
         close = difflib.get_close_matches(value, [word.strip("'") for word in expected], n=1)
         return _PLAIN[what].format(**context), f'"{close[0]}"' if close else ""
+    if what == "greater_than":
+        return f"must be greater than {format(context['gt'], 'g') if context['gt'] else 'zero'}", ""
     return _PLAIN[what].format(**context) if what in _PLAIN else finding["msg"], ""

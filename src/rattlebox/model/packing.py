@@ -202,6 +202,9 @@ def _read_positions(path: str) -> dict[str, Any]:
     unknown = sorted(set(columns) - set(_COLUMNS))
     if unknown:
         raise Hint(f"{file} has a column {unknown[0]!r}", f"columns of {', '.join(_COLUMNS)}")
+    if len({column.size for column in columns.values()}) > 1:
+        told = ", ".join(f"{name} {column.size}" for name, column in columns.items())
+        raise Hint(f"{file} has arrays of different lengths: {told}", "a number for each particle in each of them")
     values: dict[str, Any] = {"positions": np.column_stack([columns[name] for name in "xyz"])}
     if "radius" in columns:
         values["radii"] = columns["radius"]

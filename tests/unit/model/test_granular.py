@@ -272,6 +272,41 @@ def test_bad_rows_of_positions_are_told(text: str, said: str, tmp_path: Path) ->
         )
 
 
+def test_arrays_of_positions_of_different_lengths_are_told(tmp_path: Path) -> None:
+    """Arrays of x, y and z that do not go together are told with the file, the field and how long each is."""
+    np.savez(tmp_path / "p.npz", x=[0, 0.006], y=[0, 0], z=[0.0])
+    with pytest.raises(rb.CaseError) as told:
+        rb.Positions(file=tmp_path / "p.npz")
+    place, said, hint = str(told.value).splitlines()
+    assert place.startswith("Positions: file = ")
+    assert said == f"  {tmp_path / 'p.npz'} has arrays of different lengths: x 2, y 2, z 1"
+    assert hint == "  try: a number for each particle in each of them"
+
+
+def test_contacts_without_rebound_are_told() -> None:
+    """Particles whose restitution is zero are told the field, the value, and what particles may have."""
+    with pytest.raises(rb.CaseError) as told:
+        damper(contact={"kind": "tsuji", "restitution": 0})
+    place, _, hint = str(told.value).splitlines()
+    assert place == "ParticleDamper: contact.restitution = 0"
+    assert hint.startswith("  try: restitution = 1e-6, ")
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: rb.Dem(fraction=0),
+        lambda: rb.Settled(at_rest=0),
+        lambda: rb.Rolling(coefficient=0.1, stiffness=0),
+        lambda: rb.LinearSpring(coefficient=0.1, ratio=0),
+    ],
+)
+def test_zero_is_told_alike(make: Any) -> None:
+    """Numbers that must not be zero are told in the same words everywhere."""
+    with pytest.raises(rb.CaseError, match=r"= 0\n  must be greater than zero$"):
+        make()
+
+
 def test_positions_have_units() -> None:
     """Rows of positions, radii, velocities and spins take quantities, as text and of pint, and plain numbers in SI."""
     quantity = registry().Quantity

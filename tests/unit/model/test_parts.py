@@ -260,3 +260,14 @@ def test_a_changed_copy_forgets_what_was_computed() -> None:
     case = rb.Case(structure=rb.SDOF(mass=1.0, stiffness=4.0), duration=1.0)
     copy = case.model_copy(update={"structure": rb.SDOF(mass=1.0, stiffness=9.0)})
     assert (case.modes.stiffness, copy.modes.stiffness, case.model_copy().modes.stiffness) == (4.0, 9.0, 4.0)
+
+
+@pytest.mark.parametrize("seed", [-1, 2**63, 99999999999999999999])
+def test_seeds_that_no_file_holds_are_refused(seed: int) -> None:
+    """A seed that the file of a run cannot hold is refused before the run; the largest that it holds is not."""
+    options = {"structure": rb.SDOF(mass=1, stiffness=1), "duration": 1}
+    assert rb.Case(**options, seed=2**63 - 1).seed == 2**63 - 1
+    with pytest.raises(rb.CaseError) as told:
+        rb.Case(**options, seed=seed)
+    limit = "must be at least 0" if seed < 0 else "must be at most 9.22337e+18"
+    assert str(told.value).splitlines() == [f"Case: seed = {seed}", f"  {limit}"]
