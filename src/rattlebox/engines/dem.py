@@ -330,7 +330,7 @@ def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[Packed,
     contacts: list[Packed] = []
     cavities = []
     for index, (damper, shape, table) in enumerate(zip(case.particle_dampers, shapes, tables, strict=True)):
-        with at("dampers", index):
+        with at(*(("dampers", index) if len(shapes) > 1 else ("damper",))):
             start = None if starts is None else starts[index]
             cavities.append(_cavity(damper, shape, modes.q0 @ shape, table, len(contacts), start))
         contacts += [_contact(damper, entry) for entry in table.entries]
@@ -518,7 +518,8 @@ def _told(
     cavity = stopped["cavity"]
     number = stopped["particle"] + sum(damper.contents.radius.size for damper in case.particle_dampers[:cavity])
     where = f"Particle {number}, in {names[cavity]!r},"
-    name, message = describe(status, stopped["time"], where, stopped["speed"], case.method.kind)
+    softened = case.particle_dampers[cavity].softening > 1
+    name, message = describe(status, stopped["time"], where, stopped["speed"], case.method.kind, softened=softened)
     if status == INTERRUPTED:
         return name, message if checkpoint is None else f"{message} Run again, it goes on from {checkpoint.path}."
     message += f" The step was {step.dt:.4g} s."

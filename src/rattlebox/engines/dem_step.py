@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,6 +41,9 @@ HERTZ_TIME = 2.9432752
 HERTZ_FREQUENCY = 1.5 * 1.25
 """Square of the largest frequency of a Hertz contact times the square of overlap by speed."""
 
+
+MOST_STEPS = 2**63 - 1
+"""In a run: the core counts them in 64-bit integers."""
 
 INSTANTS, GOLDEN = 4096, (math.sqrt(5) - 1) / 2
 """At which speeds are looked at besides the samples, which may be as far apart as a period. Multiples of the golden ratio
@@ -358,7 +362,7 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
     Raises
     ------
     Hint
-        When the step that is given is too long to be stable, or to follow a load.
+        When the step that is given is too long to be stable or to follow a load, or its steps are too many to be counted.
     """
     assert isinstance(case.method, Dem)
     found = limits(case, tables, speeds)
@@ -375,9 +379,21 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
                 f'dt = "auto", or dt = "{0.99e6 * refusing.bound:.3g} us"',
             )
     interval = case.duration / samples
-    every = math.ceil(interval / longest * (1 - 1e-12))
+    every = math.ceil(min(interval / longest * (1 - 1e-12), 2.0 * MOST_STEPS))
+    if every * samples > MOST_STEPS:
+        raise _uncountable(case, longest, given=case.method.dt != "auto")
     shortest = min((limit for limit in found if limit.is_contact), key=lambda limit: limit.duration)
     return Step(interval / every, every, every * samples, tightest, shortest, speeds)
+
+
+def _uncountable(case: Case, dt: float, *, given: bool) -> Hint:
+    """What is said of a step of which more are needed than the core can count."""
+    steps = Decimal(case.duration) / Decimal(dt)
+    return Hint(
+        f"{'' if given else 'the automatic '}dt = {dt:.3g} s is too short: the run would take {steps:.2e} steps, "
+        f"and at most {MOST_STEPS:.2e} can be counted",
+        'dt = "auto"' if given else "a larger fraction, or a shorter duration",
+    )
 
 
 def outcome(

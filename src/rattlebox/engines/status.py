@@ -58,12 +58,14 @@ _ADVICE: dict[str, dict[str, str]] = {
         "dem": "Shorten dt, or the fraction of the shortest contact that it is.",
     },
     "refused": {"": "Run it alone, which says why."},
-    "escaped": {"": "Shorten dt, or soften the contacts less."},
+    "escaped": {"": "Shorten dt, or use a stiffer contact.", "softened": "Shorten dt, or soften the contacts less."},
 }
-"""What to try, by status and kind of method; "" for every other method."""
+"""What to try, by status and kind of method; "" for every other method, "softened" where contacts are."""
 
 
-def describe(status: int, time: float, contact: str, value: float, method: str) -> tuple[str, str]:
+def describe(
+    status: int, time: float, contact: str, value: float, method: str, *, softened: bool = False
+) -> tuple[str, str]:
     """Return the name of a core status, and what happened with what to try.
 
     Parameters
@@ -78,8 +80,11 @@ def describe(status: int, time: float, contact: str, value: float, method: str) 
         Approach speed there [m/s], or the closure of a ledger.
     method
         Kind of the method that ran, as in case files.
+    softened
+        Whether the contacts concerned are softer than their bodies are.
     """
     name, happened = STATUSES[status]
     advice = _ADVICE.get(name, {})
-    sentences = happened.format(time=time, contact=contact, value=value), advice.get(method, advice.get("", ""))
+    own = advice.get("softened" if softened and "softened" in advice else method, advice.get("", ""))
+    sentences = happened.format(time=time, contact=contact, value=value), own
     return name, " ".join(sentences).strip()

@@ -56,17 +56,18 @@ def test_a_case_with_particles_runs_from_its_file(tmp_path: Path) -> None:
 
 
 def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
-    """Too many particles, none, and too long a step, are told on one screen with file and field, and exit code 2."""
+    """Too many particles, none, and too long or short a step, are told on one screen with file, field, and exit code 2."""
     particles = 'particles = { material = "glass", diameter = "3 mm", fill_ratio = 0.3 }\n'
     for old, new, field, said in (
         ("fill_ratio = 0.3", "count = 4000", "damper.particles", "do not fit"),
         (particles, "", "damper.particles", "this field is needed"),
         (particles, "particles = []\n", "damper", "an empty damper damps nothing"),
         ("softening = 100", 'softening = 100\n[method]\nkind = "dem"\ndt = "1 ms"', "method.dt", "the bound is"),
+        ("softening = 100", 'softening = 100\n[method]\nkind = "dem"\ndt = 1e-25', "method.dt", "is too short"),
         (
             "fill_ratio = 0.3 }",
             'fill_ratio = 0.6 }\npacking = { kind = "settled" }',
-            "dampers[0].packing",
+            "damper.packing",
             "cannot be inserted at random",
         ),
     ):

@@ -246,6 +246,25 @@ def test_a_particle_that_leaves_is_named() -> None:
     assert run.arrays.time[-1] < 1e-3
 
 
+@pytest.mark.parametrize(("softening", "advice"), [(1e6, "soften the contacts less."), (1, "use a stiffer contact.")])
+def test_what_to_try_when_a_particle_leaves(softening: float, advice: str) -> None:
+    """Less softening is proposed where there is some, else a stiffer contact."""
+    soft = rb.Linear(stiffness="1 kN/m" if softening > 1 else "1 N/m", restitution=0.7)
+    fast = damper(particles=balls(1), contact=soft, friction=0, velocity=(100, 0, 0), softening=softening)
+    run = simulate(fast, structure=rb.Fixed(), duration=1e-3)
+    assert run.status == "escaped"
+    assert f"Shorten dt, or {advice} The step was" in run.message
+
+
+def test_a_bed_that_does_not_settle_is_named_as_in_the_file() -> None:
+    """Settling that fails is told of damper.packing where there is one damper, and of dampers[1].packing of the second."""
+    tight = damper(particles=balls(220), packing=rb.Settled())
+    for dampers, place in (((tight,), "damper.packing"), ((damper(name="a"), tight), "dampers[1].packing")):
+        with pytest.raises(rb.CaseError) as told:
+            simulate(*dampers)
+        assert str(told.value).splitlines()[0] == place
+
+
 def test_laws_are_not_used_beyond_their_domain() -> None:
     """An impact faster than its restitution law covers ends the run with a status."""
     fast = damper(contact=rb.Tsuji(restitution=rb.JacksonGreen()), velocity=(200, 0, 0), gravity=(0, 0, 0), softening=1)
@@ -285,6 +304,23 @@ def test_too_long_a_step_is_refused_before_the_run() -> None:
     """A step above the bound is refused, with the field and the bound."""
     with pytest.raises(rb.CaseError, match="is too long: the bound is"):
         simulate(method=rb.Dem(dt="1 ms"))
+
+
+@pytest.mark.parametrize("dt", [1e-25, 5e-324])
+def test_a_step_of_which_too_many_are_needed_is_refused(dt: float) -> None:
+    """A step so short that the core cannot count its steps is refused, with the field, the number and what to try."""
+    with pytest.raises(rb.CaseError) as told:
+        simulate(method=rb.Dem(dt=dt))
+    place, said, hint = str(told.value).splitlines()
+    assert (place, hint) == ("method.dt", '  try: dt = "auto"')
+    assert said.startswith(f"  dt = {dt:.3g} s is too short: the run would take ")
+    assert said.endswith(f"e+{'23' if dt == 1e-25 else '322'} steps, and at most 9.22e+18 can be counted")
+
+
+def test_an_automatic_step_of_which_too_many_are_needed_is_refused() -> None:
+    """A fraction so small that the core cannot count the steps is told as a fraction."""
+    with pytest.raises(rb.CaseError, match=r"the automatic dt = .* is too short.*\n  try: a larger fraction"):
+        simulate(method=rb.Dem(fraction=1e-25))
 
 
 def test_cases_of_both_kinds_run_side_by_side() -> None:
