@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from .errors import Hint, nearest
+from .errors import Hint, nearest, several
 from .files import BINARY, Array, check_finite, existing, read_arrays
 
 Column = int | str
@@ -23,10 +23,11 @@ def read_columns(path: str, columns: Sequence[Column] | None = None) -> tuple[Ar
     ----------
     path
         CSV and other text: comma, semicolon, tab or blank between columns; lines above the numbers and lines that begin
-        with # or % are no data. NPY, NPZ, MAT: an array of columns, or one variable for each.
+        with # or % are no data. NPY, NPZ, MAT: an array of columns, or one variable for each, which count in the order of
+        the file; without columns also an array of two rows.
     columns
-        Which column or variable holds times and which values; may be left out where there are two columns, or variables
-        called time and value.
+        Which column or variable holds times and which values; may be left out where there are two, or variables called
+        time and value.
 
     Returns
     -------
@@ -63,48 +64,57 @@ def as_columns(value: Any) -> tuple[Column, Column] | None:
 
 def _pick(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> tuple[Array, Array]:
     """Two of the variables, or two columns of the only one."""
-    there = ", ".join(f"{name or 'an array'} {array.shape}" for name, array in arrays.items()) or "no numbers"
+    if not arrays:
+        raise Hint(f"{file} holds no numbers")
     if columns is None and {"time", "value"} <= set(arrays):
         columns = ("time", "value")
     if len(arrays) == 1 and (columns is None or all(isinstance(column, int) for column in columns)):
         ((_, table),) = arrays.items()
-        if table.ndim == 2 and table.shape[0] == 2 != table.shape[1]:
+        if columns is None and table.ndim == 2 and table.shape[0] == 2 != table.shape[1]:
             table = table.T
         if table.ndim == 2:
             names = [str(k + 1) for k in range(table.shape[1])]
             first, second = (table[:, k] for k in _numbers(file, columns, names))
             return check_finite(first, f"{file}: the times"), check_finite(second, f"{file}: the values")
-    if columns is None:
-        raise Hint(f"{file} holds {there}; which is which?", 'columns = ["time", "value"]')
-    pair = []
-    for column in columns:
-        if column not in arrays:
-            raise Hint(f"{file} holds {there}; no {column!r}", nearest(str(column), arrays))
-        pair.append(check_finite(arrays[str(column)].ravel(), f"{file}: {column}"))
-    if pair[0].size != pair[1].size:
-        raise Hint(f"{file}: {columns[0]} holds {pair[0].size} numbers, {columns[1]} {pair[1].size}")
-    return pair[0], pair[1]
+    there = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
+    pair = [list(arrays.items())[k] for k in _numbers(file, columns, list(arrays), there)]
+    for name, array in pair:
+        if array.size != max(array.shape, default=1):
+            raise Hint(f"{file}: one row of numbers is needed, but {name} has shape {array.shape}")
+        check_finite(array.ravel(), f"{file}: {name}")
+    (time, times), (value, values) = pair
+    if times.size != values.size:
+        raise Hint(f"{file}: {time} holds {times.size} numbers, {value} {values.size}")
+    return times.ravel(), values.ravel()
 
 
-def _numbers(file: Path, columns: Sequence[Column] | None, names: list[str]) -> list[int]:
-    """Places of the two columns, counted from 0."""
-    available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in enumerate(names, start=1))
+def _numbers(
+    file: Path, columns: Sequence[Column] | None, names: list[str], there: Sequence[str] | None = None
+) -> list[int]:
+    """Places of the two columns, or of the two variables that are there, counted from 0."""
+    what = "column" if there is None else "variable"
+    available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in enumerate(there or names, start=1))
     if columns is None:
         if len(names) != 2:
             raise Hint(
-                f"{file} has {len(names)} columns ({available}), two are needed",
+                f"{file} has {several(len(names), what)} ({available}), two are needed",
                 "columns = [1, 2]" if len(names) > 2 else "",
             )
         columns = (1, 2)
     places = []
     for column in columns:
+        if isinstance(column, str) and names.count(column) > 1:
+            same = " or ".join(str(k) for k, name in enumerate(names, start=1) if name == column)
+            raise Hint(f"{file} has {names.count(column)} {what}s {column!r}", f"its number, {same}")
         if isinstance(column, str) and column in names:
             places.append(names.index(column))
         elif isinstance(column, int) and 1 <= column <= len(names):
             places.append(column - 1)
         else:
-            suggestion = nearest(column, names) if isinstance(column, str) else "columns count from 1"
-            raise Hint(f"{file} has no column {column!r}; it has {available}", suggestion)
+            suggestion = nearest(column, names) if isinstance(column, str) else f"{what}s count from 1"
+            raise Hint(f"{file} has no {what} {column!r}; it has {available}", suggestion)
+    if places[0] == places[1]:
+        raise Hint(f"{file}: times and values are both {what} {columns[0]!r}; it has {available}", "two that differ")
     return places
 
 

@@ -218,7 +218,8 @@ class Record(Signal):
         As many, in `unit`, multiplied by `scale`.
     file, columns
         Instead of both: a CSV, NPY, NPZ or MAT file, and its columns of times and values, by number counted from 1 or by
-        name: `columns=(1, 3)`, `columns=("t", "a")`. They may be left out where there are only two.
+        name: `columns=(1, 3)`, `columns=("t", "a")`. Variables count in the order of the file. They may be left out where
+        there are only two, or variables called time and value.
     """
 
     in_file: ClassVar[tuple[str, ...]] = ("times", "values")

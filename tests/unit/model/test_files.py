@@ -141,6 +141,65 @@ def test_which_columns_must_be_said_among_three(tmp_path: Path, name: str) -> No
         rb.Record.from_file(record_file(tmp_path, name), unit="N")
 
 
+def test_rows_are_not_taken_for_columns_that_are_asked_for(tmp_path: Path) -> None:
+    """Of an array of two rows columns are columns; it is turned only where none are asked for."""
+    np.save(tmp_path / "push.npy", [[0, 5, 9], [1, 6, 8]])
+    record = rb.Record(file=tmp_path / "push.npy", columns=(1, 2))
+    assert (record.times, record.values) == ((0, 1), (5, 6))
+    record = rb.Record(file=tmp_path / "push.npy")
+    assert (record.times, record.values) == ((0, 5, 9), (1, 6, 8))
+
+
+@pytest.mark.parametrize("name", ["push.npy", "push.npz", "push.mat", "struct.mat"])
+def test_variables_by_number(tmp_path: Path, name: str) -> None:
+    """Variables are picked by number, counted from 1 in the order of the file, which is not that of the alphabet."""
+    record = rb.Record.from_file(record_file(tmp_path, name), columns=(1, 3), unit="N")
+    assert (record.times, record.values) == NUMBERS
+
+
+@pytest.mark.parametrize("name", ["push.npz", "push.mat"])
+def test_two_variables_need_no_choice(tmp_path: Path, name: str) -> None:
+    """Of two variables the first of the file holds times, whatever they are called."""
+    if name.endswith("npz"):
+        np.savez(tmp_path / name, t=TIMES, a=FORCE)
+    else:
+        savemat(tmp_path / name, {"t": TIMES, "a": FORCE})
+    record = rb.Record(file=tmp_path / name)
+    assert (record.times, record.values) == NUMBERS
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "said"),
+    [
+        ("t,a,a\n0,1,2\n1,2,3\n", ("t", "a"), r"push\.csv has 2 columns 'a'\n  try: its number, 2 or 3"),
+        ("t,a\n0,1\n1,2\n", (1, 1), r"times and values are both column 1; it has 1 t, 2 a"),
+        ("t,a\n0,1\n1,2\n", ("t", 1), r"times and values are both column 't'"),
+    ],
+)
+def test_columns_that_are_not_two(tmp_path: Path, text: str, columns: tuple[Any, Any], said: str) -> None:
+    """A name that two columns have, and one column for both times and values, are refused."""
+    (tmp_path / "push.csv").write_text(text)
+    with pytest.raises(rb.CaseError, match=said):
+        rb.Record(file=tmp_path / "push.csv", columns=columns)
+
+
+@pytest.mark.parametrize(
+    ("arrays", "options", "said"),
+    [
+        ({"t": TIMES, "a": FORCE}, {"columns": (1, 3)}, r"has no variable 3; it has 1 t \(3,\), 2 a \(3,\)"),
+        ({"t": TIMES, "a": FORCE}, {"columns": (2, 2)}, "times and values are both variable 2"),
+        ({"t": TIMES, "table": np.ones((3, 2))}, {}, r"one row of numbers is needed, but table has shape \(3, 2\)"),
+        ({"t": TIMES}, {}, r"push.npz has 1 variable \(1 t \(3,\)\), two are needed"),
+        ({"note": "by hand"}, {}, "push.npz holds no numbers"),
+    ],
+)
+def test_variables_of_no_record(tmp_path: Path, arrays: dict[str, Any], options: dict[str, Any], said: str) -> None:
+    """Variables that are not there, or are no row of numbers, are refused with what the file holds."""
+    np.savez(tmp_path / "push.npz", **arrays)
+    with pytest.raises(rb.CaseError, match=said):
+        rb.Record(file=tmp_path / "push.npz", **options)
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 @pytest.mark.parametrize("name", ["push.npy", "push.npz", "push.mat"])
 def test_numbers_that_are_none(tmp_path: Path, name: str, bad: float) -> None:
