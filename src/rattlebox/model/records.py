@@ -146,24 +146,48 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
 
 
 def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[Array, Array]:
-    lines, names = _data(file)
+    lines, names = _data(file, asked=[str(column) for column in columns or ()])
     table = _rows(file, lines, _numbers(file, columns, names))
     return table[:, 0], table[:, 1]
 
 
-def _data(file: Path, known: Sequence[str] = ()) -> tuple[list[tuple[int, list[str]]], list[str]]:
-    """Number and cells of the lines with data, and the names of the columns."""
+def _data(
+    file: Path, known: Sequence[str] = (), asked: Sequence[str] = ()
+) -> tuple[list[tuple[int, list[str]]], list[str]]:
+    """Number and cells of the lines with data, and the names of the columns.
+
+    The names are the last line above the data that has as many cells and no number in it, or one before, above one of units
+    say, that holds more of the names that are known or asked for.
+    """
     lines = _lines(file)
-    start = next((k for k, (_, cells, marked) in enumerate(lines) if not marked and any(map(_is_number, cells))), None)
+    start = _begin(lines)
     if start is None:
         raise Hint(f"{file} holds no numbers")
     width = len(lines[start][1])
     for number, cells, _ in lines[:start]:
         if len(cells) != width and set(cells) <= set(known):
             raise Hint(f"{file}, line {lines[start][0]}: {width} columns, but {len(cells)} in line {number}")
-    heads = [cells for _, cells, _ in lines[:start] if len(cells) == width]
+    heads = [cells for _, cells, _ in lines[:start] if len(cells) == width and not any(map(_is_number, cells))]
+    sought = {*known, *asked}
+    names = max(reversed(heads), key=lambda cells: len(sought & set(cells)), default=None)
     data = [(number, cells) for number, cells, marked in lines[start:] if not marked]
-    return data, heads[0] if heads else [str(k + 1) for k in range(width)]
+    return data, names or [str(k + 1) for k in range(width)]
+
+
+def _begin(lines: list[tuple[int, list[str], bool]]) -> int | None:
+    """Place of the first line of data: of numbers only or, with columns of text, with a number.
+
+    Lines right above it that begin with a number are data too, with a fault that is to be told.
+    """
+    bare = [
+        (k, [_is_number(_pointed(cell)) for cell in cells]) for k, (_, cells, marked) in enumerate(lines) if not marked
+    ]
+    whole = (place for place, (k, _) in enumerate(bare) if all(map(_is_number, lines[k][1])))
+    some = (place for place, (_, numeric) in enumerate(bare) if any(numeric))
+    first = next(whole, next(some, None))
+    while first and bare[first - 1][1][0]:
+        first -= 1
+    return None if first is None else bare[first][0]
 
 
 def _rows(file: Path, lines: list[tuple[int, list[str]]], places: list[int]) -> Array:
@@ -213,7 +237,12 @@ def _is_number(cell: str) -> bool:
     return True
 
 
+def _pointed(cell: str) -> str:
+    """The cell with a decimal point for a decimal comma."""
+    return cell.replace(",", ".", 1)
+
+
 def _complain(file: Path, number: int, cells: list[str]) -> NoReturn:
     bad = next(cell for cell in cells if not _is_number(cell))
-    comma = _is_number(bad.replace(",", ".", 1))
+    comma = _is_number(_pointed(bad))
     raise Hint(f"{file}, line {number}: {bad!r} is not a number", "a decimal point, not a comma" if comma else "")

@@ -200,6 +200,39 @@ def test_variables_of_no_record(tmp_path: Path, arrays: dict[str, Any], options:
         rb.Record(file=tmp_path / "push.npz", **options)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# made by X, version 2\nt,a\n0,1\n1,2\n",
+        "# t,a\n0,1\n1,2\n",
+        "Rate,1000\nUnit,N\nt,a\n0,1\n1,2\n",
+        "t,a\ns,m/s^2\n0,1\n1,2\n",
+        "left,right\nt,a\ns,N\nRate,1000\n0,1\n1,2\n",
+        "t,day,a\n0,mon,1\n1,tue,2\n",
+    ],
+)
+def test_names_among_other_lines_above_the_data(tmp_path: Path, text: str) -> None:
+    """Names of columns are found below titles and above units, and lines with a number beside text are no data."""
+    (tmp_path / "push.csv").write_text(text)
+    record = rb.Record(file=tmp_path / "push.csv", columns=("t", "a"))
+    assert (record.times, record.values) == ((0, 1), (1, 2))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("t;f\n0,0;1,5\n1,0;2,5\n", r"line 2: '0,0' is not a number\n  try: a decimal point, not a comma"),
+        ("t;f\n0;1,5\n1;2\n2;3\n", r"line 2: '1,5' is not a number\n  try: a decimal point, not a comma"),
+        ("t,f\n0,soft\n1,2\n2,3\n", r"line 2: 'soft' is not a number"),
+    ],
+)
+def test_faults_in_the_first_lines_of_data(tmp_path: Path, text: str, said: str) -> None:
+    """Decimal commas and text in the first line of data are told, and not taken for a line above it."""
+    (tmp_path / "push.csv").write_text(text)
+    with pytest.raises(rb.CaseError, match=said):
+        rb.Record(file=tmp_path / "push.csv")
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 @pytest.mark.parametrize("name", ["push.npy", "push.npz", "push.mat"])
 def test_numbers_that_are_none(tmp_path: Path, name: str, bad: float) -> None:
