@@ -94,9 +94,12 @@ def read_arrays(file: Path) -> dict[str, Array]:
         When the file cannot be read.
     """
     try:
-        content = dict(_flat(_from_mat(file) if file.suffix == ".mat" else _from_numpy(file)))
+        file.open("rb").close()  # SciPy does not say why it cannot
+        content = dict(_flat(_from_mat(file) if file.suffix.lower() == ".mat" else _from_numpy(file)))
     except NotImplementedError:
         raise Hint(f"{file} is a MAT file of version 7.3", "save('...', '-v7') in MATLAB") from None
+    except OSError as error:
+        raise Hint(f"{file} cannot be read: {error.strerror or error}") from None
     except Exception as error:
         raise Hint(f"{file} cannot be read as {file.suffix[1:].upper()}: {error}") from None
     return {name: np.asarray(value, dtype=float) for name, value in content.items() if _is_real(value)}

@@ -193,7 +193,7 @@ _COLUMNS = ("x", "y", "z", "radius", "vx", "vy", "vz", "wx", "wy", "wz")
 def _read_positions(path: str) -> dict[str, Any]:
     """Fields of Positions in a file."""
     file = existing(path)
-    columns = _from_arrays(file, read_arrays(file)) if file.suffix in BINARY else read_table(file, _COLUMNS)
+    columns = _from_arrays(file, read_arrays(file)) if file.suffix.lower() in BINARY else read_table(file, _COLUMNS)
     if not set("xyz") <= set(columns):
         if not all(name.isdecimal() for name in columns) or len(columns) not in (3, 4, 7, 10):
             there = ", ".join(columns) or "nothing"

@@ -39,7 +39,7 @@ def read_columns(path: str, columns: Sequence[Column] | None = None) -> tuple[Ar
         When the file cannot be read, naming the line that is wrong, or the columns that there are.
     """
     file = existing(path)
-    if file.suffix in BINARY:
+    if file.suffix.lower() in BINARY:
         times, values = _pick(file, read_arrays(file), columns)
     else:
         times, values = _from_text(file, columns)
@@ -211,6 +211,8 @@ def _lines(file: Path) -> list[tuple[int, list[str], bool]]:
         text = file.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
         raise Hint(f"{file} is not text", "CSV, or a file that ends in .npy, .npz or .mat") from None
+    except OSError as error:
+        raise Hint(f"{file} cannot be read: {error.strerror or error}") from None
     last = next((line for line in reversed(text) if line.strip() and line.lstrip()[0] not in "#%"), "")
     delimiter = next((mark for mark in ";\t," if mark in last), None)
     lines = []

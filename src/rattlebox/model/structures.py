@@ -356,7 +356,7 @@ class Matrices(Part):
 def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
     """Matrices and points in a file, by name."""
     file = existing(path)
-    if file.suffix not in (".npz", ".mat"):
+    if file.suffix.lower() not in (".npz", ".mat"):
         raise Hint(f"{path} is neither NPZ nor MAT", "numpy.savez('beam.npz', M=M, C=C, K=K, point_tip=weights)")
     arrays = read_arrays(file)
     for name in ("M", "K"):

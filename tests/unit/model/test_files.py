@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import pickle
 from pathlib import Path
 from typing import Any
@@ -231,6 +232,35 @@ def test_faults_in_the_first_lines_of_data(tmp_path: Path, text: str, said: str)
     (tmp_path / "push.csv").write_text(text)
     with pytest.raises(rb.CaseError, match=said):
         rb.Record(file=tmp_path / "push.csv")
+
+
+@pytest.mark.parametrize("name", ["push.NPY", "push.NPZ", "push.MAT"])
+def test_suffixes_in_capitals(tmp_path: Path, name: str) -> None:
+    """Binary records are recognised whether their suffix is written small or in capitals."""
+    record_file(tmp_path, name.lower()).rename(tmp_path / name)
+    record = rb.Record(file=tmp_path / name, columns=("t", "force"))
+    assert (record.times, record.values) == NUMBERS
+
+
+@pytest.mark.parametrize("name", ["BEAM.NPZ", "BEAM.MAT"])
+def test_suffixes_of_structures_in_capitals(tmp_path: Path, name: str) -> None:
+    """Matrices are read from files whose suffix is written in capitals."""
+    beam(tmp_path, name.lower()).rename(tmp_path / name)
+    assert rb.Matrices.from_file(tmp_path / name).points == DIRECT.points
+
+
+@pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.npz", "push.mat"])
+def test_a_record_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """A file that may not be opened is refused by its name and the reason."""
+    file = record_file(tmp_path, name)
+
+    def refuse(*_: Any, **__: Any) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied", str(file))
+
+    monkeypatch.setattr("io.open", refuse)
+    monkeypatch.setattr("builtins.open", refuse)
+    with pytest.raises(rb.CaseError, match=rf"{name} cannot be read: Permission denied"):
+        rb.Record(file=file, columns=(1, 3))
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])

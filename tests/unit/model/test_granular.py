@@ -243,6 +243,13 @@ def test_positions_from_a_file(head: str, tmp_path: Path) -> None:
     assert again.radii == made.packing.radii
 
 
+def test_positions_from_a_file_with_a_suffix_in_capitals(tmp_path: Path) -> None:
+    """Arrays of positions are read from a file whose suffix is written in capitals."""
+    np.save(tmp_path / "bed.npy", np.array([[0, 0, 0, 1e-3], [0.01, 0, 0, 2e-3]]))
+    (tmp_path / "bed.npy").rename(tmp_path / "BED.NPY")
+    assert rb.Positions.from_file(tmp_path / "BED.NPY").radii == pytest.approx([1e-3, 2e-3])
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
