@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, m
 
 from .base import Part
 from .elementwise import power
-from .errors import Hint, at
+from .errors import Hint, at, nearest
 from .files import absolute
 from .records import Column, as_columns, read_columns
 from .space import Direction
@@ -334,13 +334,22 @@ def signals_in(*units: Unit) -> BeforeValidator:
     return BeforeValidator(read)
 
 
+_SWEEPS = ("linear", "logarithmic")
+
+
+def _si(name: str, value: Any, unit: str) -> float:
+    """The argument of this name in an SI unit."""
+    with at(name):
+        return parse(value, (unit,))[0]
+
+
 def chirp(
     amplitude: Any,
-    f0: float,
-    f1: float,
-    duration: float,
+    f0: Any,
+    f1: Any,
+    duration: Any,
     *,
-    rate: float | None = None,
+    rate: Any = None,
     method: Literal["linear", "logarithmic"] = "linear",
     point: str | None = None,
 ) -> Record:
@@ -351,20 +360,35 @@ def chirp(
     amplitude
         Peak value, with its unit.
     f0, f1
-        First and last frequency [Hz].
+        First and last frequency [Hz], or text with a unit.
     duration
-        Length [s].
+        Length [s], or text with a unit.
     rate
-        Points per second; default 200 per period of the highest frequency (error below 1.3e-4 of the amplitude).
+        Points per second [Hz]; default 200 per period of the highest frequency (error below 1.3e-4 of the amplitude).
     method
         How frequency grows with time.
     point
         Point of the structure.
+
+    Raises
+    ------
+    CaseError
+        When something is no such quantity, or the rate less than twice the highest frequency.
     """
+    f0, f1, duration = _si("f0", f0, "Hz"), _si("f1", f1, "Hz"), _si("duration", duration, "s")
     if not (f0 > 0 and f1 > 0 and duration > 0):
         raise Hint("a chirp needs positive frequencies and duration")
-    number, unit = parse(amplitude, _UNITS)
-    count = math.ceil(duration * (rate or 200 * max(f0, f1))) + 1
+    if method not in _SWEEPS:
+        raise Hint(f"there is no method {method!r}", nearest(str(method), _SWEEPS), ["method"])
+    highest = max(f0, f1)
+    rate = 200 * highest if rate is None else _si("rate", rate, "Hz")
+    if rate < 2 * highest:
+        raise Hint(
+            "a chirp needs a rate of at least twice the highest frequency", f"rate = {200 * highest:g}", ["rate"]
+        )
+    with at("amplitude"):
+        number, unit = parse(amplitude, _UNITS)
+    count = math.ceil(duration * rate) + 1
     t = np.linspace(0, duration, count)
     if method == "linear" or f0 == f1:
         phase = 2 * np.pi * (f0 * t + (f1 - f0) * t**2 / (2 * duration))
@@ -376,8 +400,8 @@ def chirp(
 
 def random_record(
     psd: Sequence[tuple[float, float]],
-    duration: float,
-    rate: float,
+    duration: Any,
+    rate: Any,
     *,
     seed: int = 0,
     unit: Unit | None = None,
@@ -390,24 +414,39 @@ def random_record(
     psd
         Points (frequency [Hz], one-sided density [unit^2/Hz]); straight lines in log-log between, nothing outside.
     duration, rate
-        Length [s] and points per second [1/s].
+        Length [s] and points per second [Hz], or text with units; the last point is at the duration or the first after it.
     seed
         Of the random phases and amplitudes: the same seed gives the same record.
     unit, point
         Unit of the values, point of the structure.
+
+    Raises
+    ------
+    CaseError
+        When something is no such number, or the rate less than twice the highest frequency.
     """
-    corners = np.asarray(psd, dtype=float)
-    if corners.ndim != 2 or corners.shape[1] != 2 or np.any(corners <= 0) or np.any(np.diff(corners[:, 0]) <= 0):
+    with at("psd"):
+        corners = numbers(psd)
+    if (
+        corners.ndim != 2
+        or corners.shape[1] != 2
+        or not corners.size
+        or np.any(corners <= 0)
+        or np.any(np.diff(corners[:, 0]) <= 0)
+    ):
         raise Hint(
             "a PSD needs positive (frequency, density) pairs with rising frequencies",
             "[(10, 1e-3), (200, 1e-3)]",
         )
+    duration, rate = _si("duration", duration, "s"), _si("rate", rate, "Hz")
     if not (duration > 0 and rate >= 2 * corners[-1, 0]):
         raise Hint(
             "a random record needs a positive duration, and a rate of at least twice the highest frequency",
             f"rate = {10 * corners[-1, 0]:g}",
         )
-    count = round(duration * rate)
+    if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
+        raise Hint(f"{seed!r} is no seed, a whole number from 0 on", "seed = 0", ["seed"])
+    count = math.ceil(duration * rate * (1 - 1e-12))  # 0.07 s of 100 Hz may be a little more than 7
     frequency = np.fft.rfftfreq(count, 1 / rate)
     inside = (frequency >= corners[0, 0]) & (frequency <= corners[-1, 0])
     if not inside.any():

@@ -165,6 +165,21 @@ def test_random_record_has_its_density() -> None:
     assert np.mean(values**2) == pytest.approx(2e-3 * 90.0, rel=0.05)
 
 
+@pytest.mark.parametrize(("duration", "rate"), [(0.333, 100), (0.3, 100), (0.07, 100), (0.29, 100), (1 / 3, 300)])
+def test_random_record_covers_its_duration(duration: float, rate: float) -> None:
+    """A random record lasts to its duration or to the first point after it, whatever rounding makes of their number."""
+    record = rb.random_record([(10.0, 1.0), (50.0, 1.0)], duration, rate)
+    assert len(record.times) == 1 + math.ceil(round(duration * rate, 9))
+    rb.Case(structure=rb.SDOF(mass=1.0, stiffness=1.0), load=record, duration=duration)
+
+
+def test_helpers_that_make_records_take_units() -> None:
+    """Chirps and random records are the same from quantities with units and from numbers in SI."""
+    assert rb.chirp("1 N", "1 Hz", "5 Hz", "200 ms", rate="1 kHz") == rb.chirp("1 N", 1.0, 5.0, 0.2, rate=1000)
+    psd = [(10.0, 1.0), (50.0, 1.0)]
+    assert rb.random_record(psd, "500 ms", "1 kHz") == rb.random_record(psd, 0.5, 1000.0)
+
+
 @pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.mat"])
 def test_record_files(tmp_path: Path, name: str) -> None:
     """A record read from CSV, NPY or MAT holds the numbers that were written."""
