@@ -199,12 +199,12 @@ class Case(Part):
             )
 
     def _check_record(self, record: Record) -> None:
-        if record.times[0] > 0 or record.times[-1] < self.duration:
+        if not record.covers(self.duration):
+            first, last = record.times[0], record.times[-1]
+            enough = f'duration = "{last:.10g} s", or a longer record' if last > 0 else "a longer record"
             raise Hint(
-                f"the record covers {record.times[0]:.6g} s to {record.times[-1]:.6g} s, the run 0 to {self.duration:.6g} s",
-                f'duration = "{record.times[-1]:.6g} s", or a longer record'
-                if record.times[-1] > 0
-                else "a longer record",
+                f"the record covers {first:.10g} s to {last:.10g} s, the run 0 to {self.duration:.10g} s",
+                enough if record.covers(last) else "a record that begins at 0 s",
                 record.where,
             )
 

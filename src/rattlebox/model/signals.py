@@ -23,6 +23,9 @@ Unit = Literal["N", "m/s^2", "m"]
 _UNITS: tuple[Unit, ...] = ("N", "m/s^2", "m")
 _NAMES = {"N": "a force", "m/s^2": "an acceleration", "m": "a displacement"}
 
+ROUNDING = 1e-9
+"""Of the duration: what times of a record may miss by where they were added up."""
+
 
 class _Amplitude(float):
     """A number that remembers which unit it was given in."""
@@ -298,8 +301,16 @@ class Record(Signal):
 
     def evaluate(self, time: Any) -> NDArray[np.float64]:
         """Return the values at the given times [s]."""
-        values = self.scale * np.asarray(self.values)
-        return np.asarray(np.interp(np.asarray(time, dtype=float), self.times, values, left=0.0, right=0.0))
+        t, values = np.asarray(time, dtype=float), self.scale * np.asarray(self.values)
+        first, last = self.times[0], self.times[-1]
+        near = np.clip(t, first, last)  # the end of a run that the record covers but for rounding
+        t = np.where(np.abs(t - near) <= ROUNDING * last, near, t)
+        return np.asarray(np.interp(t, self.times, values, left=0.0, right=0.0))
+
+    def covers(self, duration: float) -> bool:
+        """Return whether it lasts from 0 to the end of a run [s]; times that were added up may miss both by rounding."""
+        slack = ROUNDING * duration
+        return self.times[0] <= slack and self.times[-1] >= duration - slack
 
     def coefficients(self) -> dict[str, Any]:
         """Return what the core reads."""

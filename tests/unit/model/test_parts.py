@@ -6,6 +6,7 @@ import math
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pint
@@ -178,6 +179,60 @@ def test_helpers_that_make_records_take_units() -> None:
     assert rb.chirp("1 N", "1 Hz", "5 Hz", "200 ms", rate="1 kHz") == rb.chirp("1 N", 1.0, 5.0, 0.2, rate=1000)
     psd = [(10.0, 1.0), (50.0, 1.0)]
     assert rb.random_record(psd, "500 ms", "1 kHz") == rb.random_record(psd, 0.5, 1000.0)
+
+
+BOX = rb.ParticleDamper(
+    particles=rb.Particles(count=1, diameter="2 mm", material="steel"),
+    cavity=rb.Box(size=["20 mm", "20 mm", "20 mm"]),
+    contact=rb.Tsuji(restitution=0.5),
+)
+
+
+@pytest.mark.parametrize("late", [0.0, 1e-17])
+@pytest.mark.parametrize(
+    "parts",
+    [
+        {"method": rb.EventDriven()},
+        {"method": rb.TwoStep()},
+        {"method": rb.Newton()},
+        {"damper": BOX},
+    ],
+)
+def test_a_record_may_miss_the_ends_by_rounding(parts: dict[str, Any], late: float) -> None:
+    """A record whose added up times end just before the run, or begin just after 0, drives it as one that covers it."""
+    times = np.cumsum([late] + [0.1] * 10)
+    assert times[-1] < 1.0
+    first, second = (
+        rb.simulate(
+            rb.Case(
+                structure=rb.SDOF(mass=1.0, stiffness=100.0),
+                load=rb.Record(times=knots, values=np.ones(11)),
+                duration=1.0,
+                output=rb.Output(rate=100),
+                **parts,
+            )
+        )
+        for knots in (times, np.linspace(0.0, 1.0, 11))
+    )
+    for name in ("displacement", "velocity", "load"):
+        one, other = (getattr(run.arrays, name) for run in (first, second))
+        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("times", "said"),
+    [
+        ([0.0, 0.5], r"covers 0 s to 0.5 s, the run 0 to 1 s\n  try: duration = \"0.5 s\", or a longer record"),
+        ([0.5, 2.0], r"covers 0.5 s to 2 s, the run 0 to 1 s\n  try: a record that begins at 0 s"),
+        ([0.0, 1 - 1e-8], r"covers 0 s to 0.99999999 s, the run 0 to 1 s"),
+    ],
+)
+def test_a_record_that_misses_a_part_of_the_run(times: list[float], said: str) -> None:
+    """A record that ends early is refused with a duration that it covers, one that begins late with that."""
+    with pytest.raises(rb.CaseError, match=said):
+        rb.Case(
+            structure=rb.SDOF(mass=1.0, stiffness=1.0), load=rb.Record(times=times, values=[0.0, 1.0]), duration=1.0
+        )
 
 
 @pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.mat"])
