@@ -327,12 +327,7 @@ class _Grid:
 
     def add(self, new: Parameter, column: Column) -> None:
         """Let a parameter vary, unless it does already."""
-        for old in self.parameters.values():
-            if old.place == new.place:
-                raise Hint(f"{new.path} varies twice" + (f", also as {old.path}" if old.path != new.path else ""))
-            pairs = new.part.alternatives if old.place[:-1] == new.place[:-1] else ()
-            if (old.name, new.name) in pairs or (new.name, old.name) in pairs:
-                raise Hint(f"{old.path} and {new.path} exclude each other", "one of them")
+        new.check_beside(self.parameters.values())
         self.parameters[new.place], self.found[new.place] = new, column
 
     def move(self, parameter: Parameter, offsets: Column) -> None:

@@ -23,13 +23,14 @@ from .axes import Design, labels, materials_in
 from .bar import telling
 from .designs import whole
 from .extras import extra
+from .inputs import described
 from .members import members
 from .parameters import Parameter
 from .runner import Stopped
 from .store import JOURNAL, keep_map, taken
 from .studytables import checked
 from .sweep import known, sweep
-from .task import SweepTask
+from .task import SweepTask, fingerprint
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -258,6 +259,11 @@ class _Search:
                 raise Hint(f"log = {path!r}: there is no parameter of that name", nearest(path, paths))
         if self.robust not in _ROBUST:
             raise Hint(f"robust = {self.robust!r}: there is no such choice", nearest(str(self.robust), _ROBUST))
+        together: list[Parameter] = []
+        for path in [*(self.members.columns if self.axes else ()), *paths]:
+            new = Parameter(self.case, path, "parameters", materials_in(self.case))
+            new.check_beside(together)
+            together.append(new)
         measures = known([goal.measure for goal in self.measured])
         task = SweepTask(self.case, self.members, measures=measures, **self.options)
         assert task.look
@@ -265,7 +271,11 @@ class _Search:
     @cached_property
     def members(self) -> Design:
         """The runs of a trial."""
-        return Design.of(self.case, self.axes, source="levels")
+        return Design.of(self.case, self.axes_of(self.case), source="levels")
+
+    def axes_of(self, case: Case) -> list[Any]:
+        """The axes over which a design is judged; without any it is run once."""
+        return self.axes or [{"duration": [case.duration]}]
 
     @property
     def measured(self) -> list[_Goal]:
@@ -274,10 +284,12 @@ class _Search:
 
     def describe(self) -> dict[str, Any]:
         """What tells this search from others, in JSON's types."""
+        functions = {goal.name: fingerprint(goal.measure) for goal in self.goals if not isinstance(goal.measure, str)}
         return {
-            "case": self.case.to_toml(),
+            **described(self.case, self.members.columns),
             "parameters": {parameter.path: parameter.describe() for parameter in self.parameters},
             "objective": {goal.name: "max" if goal.largest else "min" for goal in self.goals},
+            **({"functions": functions} if functions else {}),
             "members": self.members.describe(),
             "robust": self.robust,
             "max_added_mass": self.limit,
@@ -311,7 +323,7 @@ class _Search:
         """What counts of all runs of a design, and the share of the runs that have no value."""
         runs = sweep(
             case,
-            self.axes,
+            self.axes_of(case),
             [goal.measure for goal in self.measured],
             progress=False,
             **self.where,
@@ -450,7 +462,7 @@ def _study(optuna: Any, storage: Any, search: _Search, seed: int, store: Any) ->
     if there is None:
         study.set_user_attr("about", about)
     elif there != about:
-        names = ", ".join(name for name in about if there.get(name) != about[name])
+        names = ", ".join(name for name in {**there, **about} if there.get(name) != about.get(name))
         raise CaseError(f"{store} holds the trials of another study; different: {names}\n  try: another folder")
     for trial in study.get_trials(
         deepcopy=False, states=(optuna.trial.TrialState.RUNNING,)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rattlebox.model.errors import CaseError
 
 from .axes import Axes, Design
+from .inputs import described
 from .pairs import Pairs
 from .runner import run_task
 from .studytables import checked
@@ -245,9 +246,8 @@ class LyapunovTask:
         """What is computed besides the design, in JSON's types."""
         names = "skip", "steps", "pairs", "distance", "reach", "seed"
         cycles = None if self.cycles is None else list(self.cycles)
-        return {"study": "lyapunov", "case": self.case.to_toml(), "cycles": cycles} | {
-            name: getattr(self, name) for name in names
-        }
+        about = {"study": "lyapunov", **described(self.case, self.design.columns), "cycles": cycles}
+        return about | {name: getattr(self, name) for name in names}
 
     @cached_property
     def sweep(self) -> SweepTask:

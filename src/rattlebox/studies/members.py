@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def members(case: Case, levels: Any = None, starts: int | Sequence[Any] | None = None) -> list[Any]:
-    """Return the axes of the runs that judge one design together; there is always at least one.
+    """Return the axes of the runs that judge one design together; none where it is judged by one run.
 
     Parameters
     ----------
@@ -38,4 +38,4 @@ def members(case: Case, levels: Any = None, starts: int | Sequence[Any] | None =
             raise Hint("starts are of one ball, and the case has not exactly one", 'levels={"dampers[0].start": [...]}')
         one_by_one = hasattr(starts, "__len__")
         axes.append({"damper.start": starts if one_by_one else np.linspace(-1, 1, whole(starts, "starts", 2))})
-    return axes or [{"duration": [case.duration]}]
+    return axes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cache
 from numbers import Real
@@ -69,6 +69,21 @@ class Parameter:
         self.now = node
         self.is_start = isinstance(self.part, ImpactDamper) and self.name == "start"
         self.unit = "1" if self.is_start else unit_of(case, path)
+
+    def check_beside(self, others: Iterable[Parameter]) -> None:
+        """Refuse to vary what varies already, or what excludes it.
+
+        Raises
+        ------
+        Hint
+            When it does.
+        """
+        for other in others:
+            if other.place == self.place:
+                raise Hint(f"{self.path} varies twice" + (f", also as {other.path}" if other.path != self.path else ""))
+            pairs = self.part.alternatives if other.place[:-1] == self.place[:-1] else ()
+            if (other.name, self.name) in pairs or (self.name, other.name) in pairs:
+                raise Hint(f"{other.path} and {self.path} exclude each other", "one of them")
 
     def read(self, value: Any, which: int | str | None = None) -> Any:
         """Read a value as the case would; `which` tells messages which one it is.

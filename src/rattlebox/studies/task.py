@@ -19,6 +19,7 @@ from rattlebox.engines.pack import Batch, Packed, pack_parts
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
 
+from .inputs import described
 from .measures import MEASURES, name_of
 
 if TYPE_CHECKING:
@@ -182,8 +183,8 @@ class SweepTask:
         """What is computed besides the design, in JSON's types."""
         kept = {name: getattr(self, name) for name in ("skip", "samples", "point", "motion", "last", "state")}
         return {
-            "case": self.case.to_toml(),
-            "measures": [*self.named, *(f"{name} {_fingerprint(own)}" for name, own in self.own.items())],
+            **described(self.case, self.design.columns),
+            "measures": [*self.named, *(f"{name} {fingerprint(own)}" for name, own in self.own.items())],
             "cycles": None if self.cycles is None else list(self.cycles),
             **kept,
         }
@@ -359,8 +360,8 @@ def _period(packed: Packed) -> Any:
     return None
 
 
-def _fingerprint(function: UserMeasure) -> str:
-    """Tells a function from others of its name."""
+def fingerprint(function: UserMeasure) -> str:
+    """Return what tells a function from others of its name."""
     try:
         return sha256(getsource(function).encode()).hexdigest()[:12]
     except (OSError, TypeError):

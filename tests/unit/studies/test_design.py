@@ -136,6 +136,14 @@ def test_choices_and_misfits() -> None:
     assert (found.missing.values[misfit] == 1).all()
 
 
+def test_the_duration_may_be_searched() -> None:
+    """A trial runs as long as its parameters say: impacts are those of a sweep over the same durations."""
+    found = rb.design(struck(), {"duration": ("0.05 s", "0.5 s")}, "impacts", trials=3, progress=False)
+    swept = rb.sweep(struck(), {"duration": found.duration.values}, "impacts", progress=False)
+    assert (found.impacts.values == swept.impacts.values).all()
+    assert len(set(found.impacts.values)) > 1
+
+
 def test_own_measure() -> None:
     """A function of a Run is an objective, too."""
 
@@ -204,6 +212,17 @@ def test_another_study_is_refused(tmp_path: Path) -> None:
         searched(trials=2, store=store, seed=1)
     with pytest.raises(rb.CaseError, match="different: parameters\n"):
         searched(trials=2, store=store, log=[])
+
+    def measured(run: rb.Run) -> float:
+        return float(run.closure)
+
+    def told_otherwise(run: rb.Run) -> float:
+        return 2.0
+
+    told_otherwise.__name__ = measured.__name__
+    searched(trials=1, objective=measured, store=tmp_path / "own")
+    with pytest.raises(rb.CaseError, match="different: functions\n"):
+        searched(trials=1, objective=told_otherwise, store=tmp_path / "own")
     other = tmp_path / "notes.txt"
     other.write_text("buy milk\n")
     with pytest.raises(rb.CaseError, match="a study needs a folder"):
@@ -252,6 +271,10 @@ def test_a_store_opens_as_what_was_found(tmp_path: Path) -> None:
         (BOUNDS, {"levels": {"load.amplitud": [1.0]}}, "did you mean 'amplitude'"),
         (BOUNDS, {"cycles": (1, 1)}, "cycles need a harmonic load"),
         ({}, {}, "paths with bounds or choices"),
+        ({"damper.start": (-1, 1)}, {"starts": 2}, "damper.start varies twice"),
+        ({"load.amplitude": ("1 kN", "5 kN")}, {"levels": {"loads[0].amplitude": ["1 kN"]}}, "varies twice, also as"),
+        ({GAP: (1e-4, 1e-3), "dampers[0].gap": (1e-4, 1e-3)}, {}, "varies twice, also as"),
+        ({RADIUS: (0.01, 0.02), "damper.ball.diameter": (0.01, 0.02)}, {}, "exclude each other"),
     ],
 )
 def test_clear_refusals(parameters: Any, options: dict[str, Any], said: str) -> None:

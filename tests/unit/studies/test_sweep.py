@@ -240,3 +240,25 @@ def test_balls_that_do_not_line_up_are_refused() -> None:
     assert rb.sweep(case, axes, ["impacts"]).impacts.values.tolist()[1] == 0
     with pytest.raises(rb.CaseError, match="differ in more than numbers"):
         rb.sweep(case, axes, ["impacts"], motion=True)
+
+
+def test_a_file_that_has_changed_is_another_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A store tells numbers that came from files: of the case, of a file that varies, and of columns that vary."""
+    monkeypatch.chdir(tmp_path)
+
+    def record(scale: float) -> rb.Case:
+        Path("force.csv").write_text("".join(f"{t},{scale * t},{t}\n" for t in (0, 0.5, 1)))
+        load = rb.Record(file="force.csv", columns=(1, 2), unit="N")
+        return rb.Case(structure=rb.SDOF(mass=2, stiffness=800, damping=3), load=load, duration=0.9)
+
+    axes: dict[str, dict[str, Any]] = {
+        "mass": {"structure.mass": [1.0, 2.0]},
+        "file": {"load.file": ["force.csv"]},
+        "columns": {"load.columns": [(1, 2), (1, 3)]},
+    }
+    for name, varies in axes.items():
+        for _ in range(2):
+            rb.sweep(record(1.0), varies, "peak", store=name, progress=False)
+    for name, varies in axes.items():
+        with pytest.raises(rb.CaseError, match=r"another study\n  files\."):
+            rb.sweep(record(100.0), varies, "peak", store=name, progress=False)
