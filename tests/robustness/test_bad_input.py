@@ -241,6 +241,7 @@ def test_damping_that_is_not_proportional() -> None:
         ({"M": [[1.0, 0.0], [0.0, 0.0]]}, "M is not positive definite"),
         ({"K": [[1.0, 0.0], [0.0, -1.0]]}, "K is not positive semidefinite"),
         ({"K": [[1.0, 1.0], [0.0, 1.0]]}, "K is not symmetric"),
+        ({"C": [[-0.2, 0.1], [0.1, -0.2]]}, "C is not positive semidefinite: mode 2 would gain energy"),
         ({"points": {"end": 2}}, "no such degree of freedom"),
         ({"C": [[0.0]]}, "C has shape"),
     ],

@@ -90,7 +90,7 @@ class Cavity(Part):
         return np.asarray(self.depth(positions) - radii)
 
     def extent(self, direction: Vector) -> float:
-        """Return the length of the box around it along a unit vector [m]."""
+        """Return its width along a unit vector [m]."""
         return float(np.abs(self.frame @ direction) @ self.lengths)
 
 
@@ -202,6 +202,12 @@ class Cylinder(_Round):
         first /= np.linalg.norm(first)
         return np.array([first, np.cross(along, first), along])
 
+    def extent(self, direction: Vector) -> float:
+        """Return its width along a unit vector [m]."""
+        along = unit_vector(self.axis)
+        across = np.linalg.norm(np.cross(along, direction))
+        return float(self.length * abs(along @ direction) + 2 * self.radius * across)
+
 
 class SphericalCavity(_Round):
     """A hollow sphere.
@@ -227,6 +233,10 @@ class SphericalCavity(_Round):
     def lengths(self) -> Vector:
         """The diameter three times, (3,) [m]."""
         return np.full(3, 2 * self.radius)
+
+    def extent(self, direction: Vector) -> float:
+        """Return the diameter [m]."""
+        return 2 * self.radius
 
     @property
     def inside(self) -> Vector:

@@ -337,13 +337,18 @@ class Matrices(Part):
                 "Rayleigh damping C = a M + b K, or Modal with damping ratios",
                 self._where("C"),
             )
+        if diagonal.size and diagonal.min() < -1e-9 * np.abs(diagonal).max():
+            raise Hint(
+                f"C is not positive semidefinite: mode {diagonal.argmin() + 1} would gain energy",
+                place=self._where("C"),
+            )
         n = len(values)
         weights = {name: np.eye(n)[p] if isinstance(p, int) else np.array(p) for name, p in self.points.items()}
         projection = vectors.T @ mass
         spatial, zero = self._spatial(), np.zeros(n)
         influence = self.influence if self.influence is not None or spatial else np.ones(n)
         return ModalModel(
-            decay=diagonal / 2,
+            decay=np.maximum(diagonal, 0) / 2,
             stiffness=values,
             shapes={name: (weight @ vectors).T for name, weight in weights.items()},
             participation=None if influence is None else projection @ np.transpose(influence),

@@ -14,7 +14,7 @@ from .axes import Axes, Design
 from .orbits import attractors, check_part, period_of, reduced_strobes
 from .store import keep_map
 from .studytables import checked
-from .sweep import sweep
+from .sweep import beside, sweep
 from .task import SweepTask
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def basins(
     starts: Axes,
     *,
     cycles: tuple[int, int] = (400, 48),
-    measure: Sequence[str] = (),
+    measure: str | Sequence[str] = (),
     tolerance: float = 1e-4,
     apart: float = 1e-2,
     point: str | None = None,
@@ -108,7 +108,7 @@ def basins(
     maps = sweep(
         case,
         starts,
-        [*basic, *(name for name in measure if name not in basic)],
+        beside(basic, measure),
         cycles=cycles,
         samples=look + 1,
         point=point,

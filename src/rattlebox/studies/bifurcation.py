@@ -14,7 +14,7 @@ from .follow import follow
 from .orbits import check_part, period_of, reduced_strobes
 from .store import keep_map
 from .studytables import checked
-from .sweep import sweep
+from .sweep import beside, sweep
 from .task import SweepTask
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def bifurcation(
     cycles: tuple[int, int] = (400, 48),
     show: Show = "strobe",
     direction: Direction = "both",
-    measure: Sequence[str] = (),
+    measure: str | Sequence[str] = (),
     tolerance: float = 1e-4,
     point: str | None = None,
     threads: int | None = None,
@@ -117,7 +117,7 @@ def bifurcation(
     basic = ("impacts", "impacts_per_cycle")
     options: dict[str, Any] = {
         "cycles": cycles,
-        "measure": [*basic, *(name for name in measure if name not in basic)],
+        "measure": beside(basic, measure),
         "samples": look + 1,
         "motion": True,
         "last": _IMPACTS * look if show == "impacts" else 0,

@@ -224,7 +224,7 @@ class _Goal:
 
 def _goals(objective: Any) -> list[_Goal]:
     """The objectives with their directions."""
-    if isinstance(objective, str) or callable(objective):
+    if isinstance(objective, str) or not hasattr(objective, "__iter__"):
         objective = [objective]
     given = dict(objective) if isinstance(objective, Mapping) else dict.fromkeys(objective, "min")
     if not given:

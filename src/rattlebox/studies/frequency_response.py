@@ -16,7 +16,7 @@ from .follow import follow
 from .orbits import period_of
 from .store import keep_map
 from .studytables import checked
-from .sweep import sweep
+from .sweep import beside, sweep
 from .task import SweepTask
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def frequency_response(
     levels: Any = None,
     direction: Direction | Literal["both"] = "both",
     cycles: tuple[int, int] = (200, 32),
-    measure: Sequence[str] = (),
+    measure: str | Sequence[str] = (),
     point: str | None = None,
     samples: int = 64,
     tolerance: float = 1e-3,
@@ -120,7 +120,7 @@ def frequency_response(
         raise CaseError("frequencies must rise from each to the next\n  try: numpy.unique")
     bare = _bare(SweepTask(case, design, cycles=(0, 1), point=point))
     options: dict[str, Any] = {
-        "measure": [*_MEASURES, *(name for name in measure if name not in _MEASURES)],
+        "measure": beside(_MEASURES, measure),
         "cycles": cycles,
         "samples": samples * look + 1,
         "point": point,

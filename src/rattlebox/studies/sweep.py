@@ -125,6 +125,23 @@ def sweep(
     )
 
 
+def beside(needed: Sequence[str], measure: str | Sequence[str]) -> list[str]:
+    """Return the measures that a map needs, and those that it is asked for besides.
+
+    Parameters
+    ----------
+    needed
+        Names.
+    measure
+        One name or several.
+    """
+    return [*needed, *(name for name in _several(measure) if name not in needed)]
+
+
+def _several(measure: Any) -> list[Any]:
+    return list(measure) if hasattr(measure, "__iter__") and not isinstance(measure, str) else [measure]
+
+
 def known(measure: Any) -> list[Any]:
     """Return measures as a list.
 
@@ -138,7 +155,7 @@ def known(measure: Any) -> list[Any]:
     CaseError
         When there is no such measure, with the nearest name, or two have one name.
     """
-    asked = [measure] if isinstance(measure, str) or callable(measure) else list(measure)
+    asked = _several(measure)
     check_names(asked)
     for name in asked:
         if isinstance(name, str) and name not in MEASURES:

@@ -172,6 +172,17 @@ def test_normal_sizes_have_their_mean_and_deviation() -> None:
     assert (np.exp(np.median(wide)), np.exp(wide.std())) == (pytest.approx(1e-2), pytest.approx(1.3, rel=1e-3))
 
 
+def test_the_width_of_a_round_cavity_knows_no_corners() -> None:
+    """A sphere is as wide as its diameter in any direction, and a can in any across its axis; a box has a diagonal."""
+    skew, way = np.array([1.0, 1.0, 1.0]) / np.sqrt(3), np.array([1.0, -1.0, 0.0]) / np.sqrt(2)
+    sphere = rb.SphericalCavity(diameter="30 mm")
+    assert [sphere.extent(d) for d in (skew, way)] == [0.03, 0.03]
+    can = rb.Cylinder(diameter="30 mm", length="50 mm", axis="z")
+    assert can.extent(way) == pytest.approx(0.03, rel=1e-15)
+    assert can.extent(skew) == pytest.approx((0.05 + np.sqrt(2) * 0.03) / np.sqrt(3), rel=1e-15)
+    assert rb.Box(size=("30 mm",) * 3).extent(skew) == pytest.approx(np.sqrt(3) * 0.03, rel=1e-15)
+
+
 def test_fill_ratio_is_of_the_cavity() -> None:
     """A fill ratio is the volume of the particles over that of the cavity."""
     contents = damper(particles=balls(count=None, fill_ratio=0.2)).contents

@@ -64,3 +64,25 @@ def test_counts_of_numpy_are_counts(tmp_path: Path) -> None:
     counts = {"cycles": np.array([1, 2]), "samples": np.int64(5), "last": np.int32(2)}
     found = rb.sweep(shaken(), {"damper.gap": ["1 mm"]}, ["peak"], store=tmp_path / "s.zarr", **counts)
     assert (found.status == 0).all()
+
+
+def test_one_measure_needs_no_list() -> None:
+    """Ready maps take one measure by its name, as sweeps do; what is no measure is told so."""
+    driven = rb.Case(
+        structure=rb.SDOF(mass=1, stiffness=1e4, damping=2),
+        damper=shaken().dampers[0],
+        load=rb.Harmonic(amplitude="10 N", frequency="16 Hz"),
+        duration="1 s",
+        method=rb.Newton(),
+    )
+    ways: dict[Any, Any] = {
+        rb.bifurcation: ("load.amplitude", [5.0, 10.0]),
+        rb.basins: ({"damper.start": [-1.0, 1.0]},),
+        rb.frequency_response: ([15.0, 16.0],),
+    }
+    for study, arguments in ways.items():
+        assert "peak" in study(driven, *arguments, cycles=(4, 2), measure="peak", progress=False)
+        with pytest.raises(rb.CaseError, match="measure"):
+            study(driven, *arguments, cycles=(4, 2), measure=5, progress=False)
+    with pytest.raises(rb.CaseError, match="5 is neither the name of a measure"):
+        rb.design(driven, {"damper.gap": ("1 mm", "2 mm")}, 5)
