@@ -14,7 +14,7 @@ from rich.table import Column, Table
 
 from rattlebox.results.quantities import quantity
 from rattlebox.studies.design import trials_in
-from rattlebox.studies.store import Progress, has_map, open_study, progress_of
+from rattlebox.studies.store import Progress, has_map, open_study, progress_of, readable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,13 +42,14 @@ def show_study(path: Path) -> None:
     kind = "design" if study is None else str(study.attrs.get("study", "sweep"))
     said = "" if kind == "sweep" else f"{kind.replace('_', ' ')}, "
     console.print(f"[bold]{path}[/bold]: {said}{far}", soft_wrap=True)
-    if study is not None:
-        console.print(_axes(study))
-    if study is not None and some:
-        console.print(_results(study))
-        if counts := statuses(study):
-            told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
-            console.print(f"  ended: {told}", soft_wrap=True)
+    with readable(path):
+        if study is not None:
+            console.print(_axes(study))
+        if study is not None and some:
+            console.print(_results(study))
+            if counts := statuses(study):
+                told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
+                console.print(f"  ended: {told}", soft_wrap=True)
     if not whole:
         console.print("  The command that began it goes on.")
 

@@ -159,7 +159,7 @@ class Store:
         self._plan = plan
         with ExitStack() as stack:
             stack.enter_context(taken(self.path))
-            with _telling(self.path):
+            with _telling(self.path), readable(self.path):
                 self._open(cut)
             self._held = stack.pop_all()
 
@@ -302,6 +302,31 @@ def _telling(path: Path) -> Iterator[None]:
         raise OSError(error.errno, said, str(path)) from error
 
 
+@contextmanager
+def readable(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Say of a study whose files are damaged that they are, and what to do.
+
+    Parameters
+    ----------
+    path
+        Folder of the study.
+
+    Raises
+    ------
+    CaseError
+        When they are.
+    """
+    try:
+        yield
+    except CaseError:
+        raise
+    except (ValueError, KeyError, RuntimeError, FileNotFoundError) as error:
+        what = str(error).partition("\n")[0] or type(error).__name__
+        raise CaseError(
+            f"{path} is damaged: {what}\n  try: a copy of it, or remove it and give its command again"
+        ) from error
+
+
 def _with_texts(data: xr.Dataset) -> xr.Dataset:
     """The same with texts as Zarr has them, of any length."""
     return data.assign({name: data[name].astype(object) for name in data.variables if data[name].dtype.kind == "U"})
@@ -397,16 +422,18 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
     """
     if has_map(path):
         return _open(Path(path) / _MAP)
-    _check_format(path)
-    return _open(path, list(_attributes(path)["manifest"]["outputs"]))
+    with readable(path):
+        _check_format(path)
+        return _open(path, list(_attributes(path)["manifest"]["outputs"]))
 
 
 def _open(path: str | os.PathLike[str], names: list[str] | None = None) -> xr.Dataset:
     """Variables in their order."""
     import xarray as xr
 
-    data: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
-    return data[names or data.attrs.pop("variables")]
+    with readable(path):
+        data: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
+        return data[names or data.attrs.pop("variables")]
 
 
 def progress_of(path: str | os.PathLike[str]) -> Progress:
@@ -422,10 +449,12 @@ def progress_of(path: str | os.PathLike[str]) -> Progress:
     CaseError
         When there is no study.
     """
-    _check_format(path)
-    group = _group(path, "r")
-    files = (Path(path) / _PROGRESS / "finished").rglob("*")
-    return Progress(_blocks(group), group[f"{_PROGRESS}/finished"][...], max(file.stat().st_mtime for file in files))
+    with readable(path):
+        _check_format(path)
+        group = _group(path, "r")
+        files = (Path(path) / _PROGRESS / "finished").rglob("*")
+        last = max(file.stat().st_mtime for file in files)
+        return Progress(_blocks(group), group[f"{_PROGRESS}/finished"][...], last)
 
 
 def _group(path: str | os.PathLike[str], mode: Literal["r", "r+"]) -> Any:

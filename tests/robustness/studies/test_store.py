@@ -13,6 +13,7 @@ import pytest
 import xarray as xr
 
 import rattlebox as rb
+from rattlebox.cli.show import show_study
 from rattlebox.studies.runner import run_task
 from rattlebox.studies.store import open_study, progress_of
 
@@ -197,3 +198,17 @@ def test_a_task_that_fails_is_not_hidden(tmp_path: Path) -> None:
     with pytest.raises(ZeroDivisionError, match="a fault in the task"):
         study(tmp_path / "study.zarr", Logistic(broken=True))
     assert bits(study(tmp_path / "study.zarr")) == bits(study())
+
+
+@pytest.mark.parametrize(
+    "name", ["progress/zarr.json", "progress/finished/c/0", "zarr.json", "value/zarr.json"], ids=lambda name: name
+)
+def test_a_damaged_store_is_told(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Files that were cut off are told with the folder, by what shows a study and by what goes on with it."""
+    store = tmp_path / "study.zarr"
+    study(store)
+    damaged = store / name
+    damaged.write_bytes(damaged.read_bytes()[: damaged.stat().st_size // 2])
+    for use in (study, show_study):
+        with pytest.raises(rb.CaseError, match=r"study.zarr is damaged: .*\n  try: a copy of it"):
+            use(store)
