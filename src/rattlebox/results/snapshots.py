@@ -27,6 +27,7 @@ FORMAT = 1
 ROOT = "VTKHDF"
 """Group of a VTKHDF file that holds everything."""
 
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _MOVING = {"velocity": (3,), "spin": (3,), "push": ()}
 _FIXED = ("radius", "mass", "cavity", "species")
 _OFFSETS, _LAYOUT = 25, 1 << 16
@@ -67,6 +68,21 @@ class Frame:
     displacement: FloatArray
 
 
+def _may_be_snapshots(path: Path) -> bool:
+    """Whether a file holds snapshots, or may have before it was torn."""
+    import h5py  # type: ignore[import-untyped]
+
+    with path.open("rb") as file:
+        begin = file.read(len(_SIGNATURE))
+    if begin != _SIGNATURE:
+        return not begin
+    try:
+        with h5py.File(path, "r", locking=False) as whole_file:
+            return ROOT in whole_file
+    except OSError:
+        return True
+
+
 class SnapshotFile:
     """The file that a run adds snapshots to.
 
@@ -104,11 +120,15 @@ class SnapshotFile:
 
         Raises
         ------
+        FileExistsError
+            When something else than snapshots is in its place.
         OSError
             When it cannot be written.
         """
-        import h5py  # type: ignore[import-untyped]
+        import h5py
 
+        if self.path.is_file() and not _may_be_snapshots(self.path):
+            raise FileExistsError(f"{self.path} holds no snapshots, and is kept\n  try: another file for the snapshots")
         with telling(self.path, _LOST), whole(self.path) as name:
             reserve(name, self._room())
             with h5py.File(name, "w") as file:

@@ -168,6 +168,21 @@ def test_other_files_are_refused(content: bytes | None, said: str, tmp_path: Pat
         Snapshots(tmp_path)
 
 
+def test_files_of_other_things_are_kept(written: Any, tmp_path: Path) -> None:
+    """Snapshots do not take the place of results or notes; earlier ones, also torn, give way."""
+    results, notes, torn = (tmp_path / name for name in ("run.nc", "notes.txt", "torn.vtkhdf"))
+    written[0].save(results)
+    notes.write_text("buy milk")
+    for path in (results, notes):
+        before = path.read_bytes()
+        with pytest.raises(FileExistsError, match="holds no snapshots, and is kept\n  try: another file"):
+            rb.simulate(case(snapshots=2), snapshots=path)
+        assert path.read_bytes() == before
+    torn.write_bytes(written[1].read_bytes()[:4000])
+    rb.simulate(case(snapshots=2), snapshots=torn)
+    assert len(Snapshots(torn)) == 2
+
+
 def test_runs_are_no_snapshots(written: Any, tmp_path: Path) -> None:
     """The netCDF file of a run, which is HDF5 too, holds no snapshots; and there are as many of them as there are."""
     run, path = written
