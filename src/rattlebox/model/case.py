@@ -25,7 +25,7 @@ from .modes import ModalModel
 from .pairs import contact_pairs
 from .signals import AnySignal, HalfSine, Harmonic, Record, Signal, Unit, as_several, signals_in
 from .structures import AnyStructure, Matrices, Shaker
-from .units import PositiveTime
+from .units import PositiveTime, Whole
 
 _MEMORY = 16e9  # bytes
 _NOT_COMPUTABLE = "cannot be computed for bodies of these sizes, masses and moduli"
@@ -81,7 +81,7 @@ class Case(Part):
     duration: PositiveTime
     method: AnyMethod = Field(default_factory=EventDriven)
     output: Output = Field(default_factory=Output)
-    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 0  # what files of runs hold
+    seed: Annotated[Whole, Field(ge=0, le=2**63 - 1)] = 0  # what files of runs hold
 
     @model_validator(mode="before")
     @classmethod

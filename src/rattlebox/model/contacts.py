@@ -14,7 +14,7 @@ from .elementwise import power, sqrt
 from .errors import Hint
 from .pairs import Pair
 from .restitutions import AnyRestitution, Constant, Restitution, ThorntonRestitution, yield_pressure
-from .units import LARGEST, Damping, Modulus, PositiveStiffness, PositiveTime
+from .units import LARGEST, Damping, Modulus, Number, PositiveStiffness, PositiveTime
 
 Ending = Literal["zero_force", "zero_overlap"]
 
@@ -64,7 +64,7 @@ class Tsuji(Contact):
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "alpha"),)
     kind: Literal["tsuji"] = "tsuji"
     restitution: AnyRestitution | None = None
-    alpha: Annotated[float, Field(ge=0, le=LARGEST)] | None = None
+    alpha: Annotated[Number, Field(ge=0, le=LARGEST)] | None = None
     ending: Ending = "zero_force"
 
     @model_validator(mode="after")

@@ -156,7 +156,7 @@ def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[str, An
         if part == _get(node, "kind") and part != tag:
             tag = part
             continue
-        name = next((name for name in (part, _SPELLINGS.get(part, part)) if _get(node, name) is not None), None)
+        name = next((name for name in (part, _SPELLINGS.get(part, part)) if _is_told(node, name)), None)
         if name is not None:
             words.append(name)
             node, tag = _get(node, name), None
@@ -164,6 +164,10 @@ def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[str, An
             words.append(str(part))
             node = _NOTHING
     return ".".join(words), node if words else _NOTHING
+
+
+def _is_told(node: Any, name: Any) -> bool:
+    return name in node if isinstance(node, Mapping) else _get(node, name) is not None
 
 
 def _get(node: Any, name: Any) -> Any:

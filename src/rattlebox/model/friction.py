@@ -10,9 +10,9 @@ from .base import AlsoTakes, Part
 from .errors import Hint
 from .materials import Material
 from .pairs import Pair
-from .units import LARGEST, PositiveStiffness
+from .units import LARGEST, Number, PositiveStiffness
 
-NotNegative = Annotated[float, Field(ge=0, le=LARGEST)]
+NotNegative = Annotated[Number, Field(ge=0, le=LARGEST)]
 
 
 def _shear_compliance(material: Material | None) -> float:
@@ -81,7 +81,7 @@ class LinearSpring(Friction):
     unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
     kind: Literal["spring"] = "spring"
     stiffness: PositiveStiffness | None = None
-    ratio: Annotated[float, Field(gt=0, le=10)] | None = None
+    ratio: Annotated[Number, Field(gt=0, le=10)] | None = None
 
     if TYPE_CHECKING:
 
@@ -119,7 +119,7 @@ class Rolling(Part):
     held_as: ClassVar[tuple[str, ...]] = ("rolling",)
     unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
     coefficient: NotNegative
-    stiffness: Annotated[float, Field(gt=0, le=LARGEST)] = 1.0
+    stiffness: Annotated[Number, Field(gt=0, le=LARGEST)] = 1.0
     damping: NotNegative = 0.0
 
     if TYPE_CHECKING:

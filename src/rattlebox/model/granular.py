@@ -23,6 +23,7 @@ from .packing import AnyPacking, Lattice, Positions, Settled, check_packing, che
 from .pairs import Body, Pair
 from .particles import Particles, as_species
 from .space import Accelerations, Direction, Velocities
+from .units import Number
 
 WALL = "wall"
 
@@ -191,7 +192,7 @@ class ParticleDamper(Part):
     direction: Direction = "x"
     packing: AnyPacking = Field(default_factory=Lattice)
     velocity: Velocities = (0.0, 0.0, 0.0)
-    softening: Annotated[float, Field(ge=1, le=1e6)] = 1.0
+    softening: Annotated[Number, Field(ge=1, le=1e6)] = 1.0
 
     @model_validator(mode="after")
     def _fits(self) -> ParticleDamper:
@@ -202,7 +203,11 @@ class ParticleDamper(Part):
 
     def _check_amounts(self) -> None:
         if not self.particles:
-            raise Hint("an empty damper damps nothing", "particles = { material = ..., radius = ..., count = ... }")
+            raise Hint(
+                "an empty damper damps nothing",
+                "particles = { material = ..., radius = ..., count = ... }",
+                ["particles"],
+            )
         labels = [species.label for species in self.particles]
         for index, species in enumerate(self.particles):
             place: list[str | int] = ["particles", index] if len(labels) > 1 else ["particles"]

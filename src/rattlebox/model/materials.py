@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Discriminator, Tag, ValidationInfo, field_
 
 from .base import AlsoTakes, Part
 from .errors import Hint, nearest
-from .units import Density, Modulus
+from .units import Density, Modulus, Number
 
 
 class Material(Part):
@@ -41,7 +41,7 @@ class Material(Part):
     title: str = ""
     density: Density
     young: Modulus
-    poisson: float
+    poisson: Number
     yield_stress: Modulus | None = None
     source: str = ""
 

@@ -11,7 +11,7 @@ from .base import Part
 from .elementwise import Vector
 from .errors import Hint, at
 from .restitutions import AnyRestitution
-from .units import PositiveFrequency, PositiveTime, numbers, parse
+from .units import Number, PositiveFrequency, PositiveTime, Whole, numbers, parse
 
 
 class EventDriven(Part):
@@ -29,8 +29,8 @@ class EventDriven(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("method",)
     kind: Literal["event_driven"] = "event_driven"
-    tolerance: Annotated[float, Field(ge=1e-14, le=1e-3)] = 1e-12
-    max_events: Annotated[int, Field(ge=1)] = 10_000_000
+    tolerance: Annotated[Number, Field(ge=1e-14, le=1e-3)] = 1e-12
+    max_events: Annotated[Whole, Field(ge=1)] = 10_000_000
     collocation: bool = True
 
 
@@ -69,8 +69,8 @@ class Newton(Part):
     held_as: ClassVar[tuple[str, ...]] = ("method",)
     kind: Literal["newton"] = "newton"
     restitution: AnyRestitution | None = None
-    stick: Annotated[float, Field(ge=0, le=0.1)] = 1e-6
-    max_events: Annotated[int, Field(ge=1)] = 10_000_000
+    stick: Annotated[Number, Field(ge=0, le=0.1)] = 1e-6
+    max_events: Annotated[Whole, Field(ge=1)] = 10_000_000
 
 
 def _step(value: Any) -> Any:
@@ -105,8 +105,8 @@ class Dem(Part):
         BeforeValidator(_step),
         WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}], "description": "step in s, or auto"}),
     ] = "auto"
-    fraction: Annotated[float, Field(gt=0, le=0.2)] = 0.025
-    threads: Annotated[int, Field(ge=1)] | None = None
+    fraction: Annotated[Number, Field(gt=0, le=0.2)] = 0.025
+    threads: Annotated[Whole, Field(ge=1)] | None = None
     checkpoint: PositiveTime | None = None
     checkpoint_every: PositiveTime | None = None
 

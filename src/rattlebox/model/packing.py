@@ -19,7 +19,7 @@ from .elementwise import Vector
 from .errors import Hint, at, several
 from .files import BINARY, absolute, check_finite, existing, read_arrays
 from .records import read_table
-from .units import SI, in_si, numbers
+from .units import SI, Number, Whole, in_si, numbers
 
 TOUCHING = 1e-9  # overlap, in parts of a radius, that rounding may make
 
@@ -43,8 +43,8 @@ class Lattice(Packing):
     """
 
     kind: Literal["lattice"] = "lattice"
-    noise: Annotated[float, Field(ge=0, le=1)] = 0.5
-    seed: Annotated[int, Field(ge=0)] = 0
+    noise: Annotated[Number, Field(ge=0, le=1)] = 0.5
+    seed: Annotated[Whole, Field(ge=0)] = 0
 
     def place(self, cavity: AnyCavity, radii: Vector) -> Vector:
         """Return positions for spheres, (n, 3) [m].
@@ -85,8 +85,8 @@ class Settled(Packing):
     """
 
     kind: Literal["settled"] = "settled"
-    seed: Annotated[int, Field(ge=0)] = 0
-    at_rest: Annotated[float, Field(gt=0, le=0.1)] = 1e-3
+    seed: Annotated[Whole, Field(ge=0)] = 0
+    at_rest: Annotated[Number, Field(gt=0, le=0.1)] = 1e-3
 
 
 def _table(columns: int, unit: str, what: str) -> Any:

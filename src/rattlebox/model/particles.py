@@ -14,7 +14,7 @@ from .base import Part
 from .elementwise import Vector
 from .errors import Hint, at
 from .materials import AnyMaterial
-from .units import SI, PositiveLength, PositiveMass, parse, radius_of_diameter
+from .units import SI, Number, PositiveLength, PositiveMass, Whole, parse, radius_of_diameter
 
 _MOST = 100_000_000  # of one kind
 _MANY = 4096  # sizes from which the mean volume is guessed
@@ -90,7 +90,7 @@ class LogNormal(_Bounded):
 
     kind: Literal["log_normal"] = "log_normal"
     median: PositiveLength
-    spread: Annotated[float, Field(le=100)]
+    spread: Annotated[Number, Field(le=100)]
 
     @model_validator(mode="after")
     def _spreads(self) -> LogNormal:
@@ -181,9 +181,9 @@ class Particles(Part):
     radius: PositiveLength | None = None
     diameter: PositiveLength | None = Field(default=None, exclude=True)
     distribution: AnyDistribution | None = None
-    count: Annotated[int, Field(ge=0, le=_MOST)] | None = None
+    count: Annotated[Whole, Field(ge=0, le=_MOST)] | None = None
     mass: PositiveMass | None = None
-    fill_ratio: float | None = None
+    fill_ratio: Number | None = None
 
     @model_validator(mode="before")
     @classmethod

@@ -12,7 +12,7 @@ from .elementwise import less, pick, power, sqrt
 from .errors import Hint
 from .materials import AnyWall
 from .pairs import Pair, hardness
-from .units import SI, Modulus, PositiveVelocity
+from .units import SI, Modulus, PositiveVelocity, not_boolean
 
 Coefficients = tuple[str, dict[str, Any]]
 _fraction = WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})
@@ -20,7 +20,7 @@ _fraction = WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})
 
 def _restitution(value: Any) -> float:
     try:
-        number = float(value)
+        number = float(not_boolean(value))
     except (TypeError, ValueError, OverflowError):
         raise Hint("a number from 0 to 1 is needed", "0.8") from None
     if not 0 <= number <= 1:

@@ -17,7 +17,7 @@ from .errors import Hint, at, nearest
 from .files import absolute
 from .records import Column, as_columns, read_columns
 from .space import Direction
-from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime, numbers, parse
+from .units import Angle, NotNegativeTime, Number, PositiveFrequency, PositiveTime, numbers, parse
 
 Unit = Literal["N", "m/s^2", "m"]
 _UNITS: tuple[Unit, ...] = ("N", "m/s^2", "m")
@@ -231,7 +231,7 @@ class Record(Signal):
     values: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
     file: str | None = None
     columns: tuple[Column, Column] | None = None
-    scale: float = 1.0
+    scale: Number = 1.0
 
     @model_validator(mode="before")
     @classmethod

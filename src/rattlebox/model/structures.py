@@ -16,7 +16,7 @@ from .errors import Hint, at, nearest
 from .files import absolute, check_finite, existing, read_arrays
 from .modes import ModalModel
 from .signals import AnySignal, Signal, Unit, signals_in
-from .units import LARGEST, SI, Damping, Frequency, Length, PositiveMass, Stiffness, Velocity, numbers
+from .units import LARGEST, SI, Damping, Frequency, Length, Number, PositiveMass, Stiffness, Velocity, numbers
 
 if TYPE_CHECKING:
     from typing import Self
@@ -65,7 +65,7 @@ Shape = Annotated[list[float] | list[list[float]], BeforeValidator(_shape)]
 Weights = Annotated[list[float] | list[list[float]], BeforeValidator(_weights)]
 Point = Annotated[int | list[float] | list[list[float]], BeforeValidator(_point)]
 _ratio_schema = WithJsonSchema({"type": "number", "minimum": 0, "description": "damping ratio"})
-Ratio = Annotated[float, Field(ge=0, le=LARGEST), _ratio_schema]
+Ratio = Annotated[Number, Field(ge=0, le=LARGEST), _ratio_schema]
 
 
 class SDOF(Part):
@@ -364,9 +364,11 @@ def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
     if file.suffix.lower() not in (".npz", ".mat"):
         raise Hint(f"{path} is neither NPZ nor MAT", "numpy.savez('beam.npz', M=M, C=C, K=K, point_tip=weights)")
     arrays = read_arrays(file)
+    if not arrays:
+        raise Hint(f"{path} holds no numbers", "arrays M, C and K")
     for name in ("M", "K"):
         if name not in arrays:
-            raise Hint(f"{path} holds no {name}, but {', '.join(arrays) or 'no numbers'}", nearest(name, arrays))
+            raise Hint(f"{path} holds no {name}, but {', '.join(arrays)}", nearest(name, arrays))
     matrices: dict[str, Vector] = {name: np.atleast_2d(arrays[name]) for name in ("M", "C", "K") if name in arrays}
     points: dict[str, Vector] = {}
     for name, array in arrays.items():

@@ -70,6 +70,8 @@ def _article(name: str) -> str:
 
 
 def _described(quantity: Any) -> str:
+    if quantity.unitless:
+        return "a ratio"
     for unit, name in _NAMES.items():
         if quantity.is_compatible_with(_pint_unit(unit)):
             return _article(name)
@@ -119,7 +121,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         value = _with_pint(number, text, units)
     if hasattr(value, "is_compatible_with") and hasattr(value, "to"):
         for unit in units:
-            if value.is_compatible_with(_pint_unit(unit)) and (unit == "rad" or not value.dimensionless):
+            if value.is_compatible_with(_pint_unit(unit)) and (_is_angle(value) or not value.dimensionless):
                 angular = any(word in str(value.units) for word in ("radian", "rev", "turn", "degree"))
                 if unit == "Hz" and angular:
                     return _finite(float(value.to("rad/s").magnitude) / (2 * math.pi)), unit
@@ -156,6 +158,11 @@ def are_alike(one: str, other: str) -> bool:
         return True
     first, second = (_with_pint(1.0, _pint_unit(unit), ()) for unit in (one, other))
     return bool(first.is_compatible_with(second))
+
+
+def _is_angle(value: Any) -> bool:
+    """Whether a dimensionless quantity is one, and no percentage."""
+    return str(value.units) == "dimensionless" or str(value.to_root_units().units) == "radian"
 
 
 def _with_pint(number: float, text: str, units: tuple[str, ...]) -> Any:
@@ -300,6 +307,19 @@ def _not_negative(value: float) -> float:
     return value
 
 
+def not_boolean(value: Any) -> Any:
+    """Return what is given, unless it is true or false, which Python takes for 1 and 0.
+
+    Raises
+    ------
+    Hint
+        When it is.
+    """
+    if isinstance(value, (bool, np.bool_)):
+        raise Hint("a number is needed")
+    return value
+
+
 def _make(unit: str, check: Any = None) -> Any:
     read, *rest = quantity(unit)
     checks = [] if check is None else [BeforeValidator(check)]
@@ -324,4 +344,5 @@ PositiveFrequency = Annotated[float, *_make("Hz", _positive)]
 Modulus = Annotated[float, *_make("Pa", _positive)]
 Density = Annotated[float, *_make("kg/m^3", _positive)]
 Angle = Annotated[float, *_make("rad")]
-Number = Annotated[float, Field(allow_inf_nan=False)]
+Number = Annotated[float, Field(allow_inf_nan=False), BeforeValidator(not_boolean)]
+Whole = Annotated[int, BeforeValidator(not_boolean)]

@@ -44,6 +44,42 @@ def test_units_that_only_pint_knows() -> None:
     assert rb.Harmonic(amplitude=1.0, frequency="2 rad/s").frequency == pytest.approx(1 / math.pi, rel=1e-14)
 
 
+@pytest.mark.parametrize(
+    ("part", "name"),
+    [
+        (lambda value: rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio=value), "damping_ratio"),
+        (lambda value: rb.Mindlin(coefficient=value), "coefficient"),
+        (lambda value: rb.Constant(e=value), "e"),
+        (lambda value: rb.Material(density=1e3, young=1e9, poisson=value), "poisson"),
+        (lambda value: rb.Particles(material="steel", radius=0.1, count=value), "count"),
+        (lambda value: rb.Particles(material="steel", radius=0.1, fill_ratio=value), "fill_ratio"),
+        (lambda value: rb.EventDriven(max_events=value), "max_events"),
+    ],
+)
+@pytest.mark.parametrize("value", [True, np.False_])
+def test_true_and_false_are_no_numbers(part: Any, name: str, value: Any) -> None:
+    """True is not read as 1, nor False as 0, where a plain number or a count is asked for."""
+    with pytest.raises(rb.CaseError, match=f": {name} = .*\n  a number"):
+        part(value)
+
+
+def test_percentages_are_no_angles() -> None:
+    """A ratio with a unit of its own is not read as radians; angles and plain ratios are."""
+    registry = pint.UnitRegistry()
+    for phase in ("50 %", registry.Quantity(50, "percent"), "3 ppm"):
+        with pytest.raises(rb.CaseError, match=r"an angle .* is needed, not a ratio"):
+            rb.Harmonic(amplitude=1.0, frequency=1.0, phase=phase)
+    for phase in ("0.25 turn", registry.Quantity(math.pi / 2), registry.Quantity(90, "deg")):
+        assert rb.Harmonic(amplitude=1.0, frequency=1.0, phase=phase).phase == pytest.approx(math.pi / 2, rel=1e-15)
+
+
+def test_none_is_told_with_its_name() -> None:
+    """None where a number is needed is refused with the name of the field."""
+    for part in (lambda: rb.Mindlin(None), lambda: rb.TwoStep(dt_flight=None)):
+        with pytest.raises(rb.CaseError, match=r": (coefficient|dt_flight) = None\n"):
+            part()
+
+
 def test_import_leaves_the_heavy_parts_alone() -> None:
     """Importing rattlebox and building a case in plain and common units loads none of the heavy libraries."""
     heavy = [
