@@ -187,6 +187,8 @@ def load(path: str | os.PathLike[str]) -> Run:
     import h5netcdf
 
     path = Path(path)
+    if path.is_dir():
+        raise ValueError(f"{path} is a folder, not a file")
     if not path.is_file():
         raise FileNotFoundError(f"there is no file {path}")
     with path.open("rb"):  # which says why it cannot be read, as HDF5 does not

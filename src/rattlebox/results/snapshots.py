@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -305,7 +305,15 @@ class Snapshots:
     def __iter__(self) -> Iterator[Frame]:
         return (self[number] for number in range(len(self)))
 
-    def __getitem__(self, number: int) -> Frame:
+    @overload
+    def __getitem__(self, number: int) -> Frame: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> list[Frame]: ...
+
+    def __getitem__(self, number: int | slice) -> Frame | list[Frame]:
+        if isinstance(number, slice):
+            return [self[n] for n in range(*number.indices(len(self)))]
         if not -len(self) <= number < len(self):
             raise IndexError(f"{self.path} holds {len(self)} snapshots, numbered from 0; there is no number {number}")
         number %= len(self)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Value = float | int | str
 
 _MOST_POINTS = 4
+_OPEN = 0.01  # of the energy supplied: beyond it a run does not show what it says
 _CHANNEL_LABELS = {
     "viscous": "lost in the structure",
     "impact": "lost in impacts",
@@ -112,7 +113,11 @@ def _extremes(run: Run) -> dict[str, Value]:
 def _notes(run: Run) -> tuple[str, ...]:
     """What is said below the numbers."""
     message = (run.message,) if run.message and not run.ok else ()
-    return message + (run.arrays.notes if isinstance(run, GranularRun) else ())
+    steps: tuple[str, ...] = ()
+    if run.ok and not run.ledger.closes(_OPEN):
+        told = quantity(run.closure, "%")
+        steps = (f"warning: the energy ledger is open by {told} of the energy supplied; shorten the time steps",)
+    return message + steps + (run.arrays.notes if isinstance(run, GranularRun) else ())
 
 
 def _largest(x: Any) -> float:
@@ -123,7 +128,8 @@ def _rms(time: Any, x: Any) -> float:
     """Root mean square over time of a motion sampled at uneven times."""
     if time.size < 2:
         return float(np.abs(x[0]))
-    return float(np.sqrt(np.trapezoid(x**2, time) / (time[-1] - time[0])))
+    with np.errstate(over="ignore"):  # of a motion that grew beyond all numbers
+        return float(np.sqrt(np.trapezoid(x**2, time) / (time[-1] - time[0])))
 
 
 def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:

@@ -134,7 +134,9 @@ def test_saving_into_no_folder(run: Run, tmp_path: Path) -> None:
 
 
 def test_loading_something_else(tmp_path: Path) -> None:
-    """A missing file, a text, a foreign netCDF file and one of a later version are each refused by name."""
+    """A missing file, a folder, a text, a foreign netCDF file and one of a later version are each refused by name."""
+    with pytest.raises(ValueError, match="is a folder, not a file"):
+        load(tmp_path)
     with pytest.raises(FileNotFoundError, match=r"there is no file .*none\.nc"):
         load(tmp_path / "none.nc")
     text = tmp_path / "text.nc"

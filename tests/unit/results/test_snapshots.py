@@ -192,6 +192,14 @@ def test_runs_are_no_snapshots(written: Any, tmp_path: Path) -> None:
         Snapshots(path)[11]
 
 
+def test_several_snapshots_at_once(written: Any) -> None:
+    """A slice of snapshots gives those that it gives of a list."""
+    there = Snapshots(written[1])
+    times = list(there.times)
+    for some in (slice(2, 5), slice(None, None, 4), slice(-2, None), slice(5, 2)):
+        assert [frame.time for frame in there[some]] == times[some]
+
+
 @pytest.mark.parametrize(
     ("value", "said"),
     [

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import rattlebox as rb
 from rattlebox.results import Run, RunArrays, compare
 from rattlebox.results.quantities import digits, prefix, quantity
 
@@ -115,6 +116,39 @@ def test_why_a_run_ended_is_said(make_run) -> None:
     """The message of an interrupted run stands below its table."""
     stopped = make_run(duration=0.01, times=11, status="interrupted", message="Stopped by hand [at 3].")
     assert str(stopped.summary()).endswith("Stopped by hand [at 3].")
+
+
+def test_an_open_ledger_is_told() -> None:
+    """Fixed steps too long for the contacts end a run with a warning below its numbers; short ones do not."""
+    case = rb.Case(
+        structure=rb.SDOF(mass="1 kg", stiffness="1 kN/m"),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="10 mm", material="steel"),
+            gap="1 mm",
+            velocity="0.1 m/s",
+            contact=rb.Tsuji(restitution=0.9),
+        ),
+        duration="0.1 s",
+    )
+    for step, said in {"1 us": False, "30 us": True}.items():
+        method = rb.TwoStep(dt_contact=step, dt_flight=step)
+        run = rb.simulate(case.model_copy(update={"method": method}))
+        assert run.ok
+        assert ("the energy ledger is open by" in str(run.summary())) is said, (step, run.closure)
+
+
+def test_numbers_beyond_all_warn_of_nothing() -> None:
+    """The summary of a motion that grew beyond all numbers is made without warnings of NumPy."""
+    arrays = RunArrays(
+        time=np.array([0.0, 1.0]),
+        points=("tip",),
+        mode_frequency=np.array([1.0]),
+        displacement=np.array([[0.0], [1e200]]),
+        load_work=np.array([0.0, np.inf]),
+        viscous_loss=np.array([0.0, np.inf]),
+        wall_time=0.25,
+    )
+    assert "peak displacement" in str(Run(arrays).summary())
 
 
 def test_show_is_plain_outside_a_terminal(run: Run) -> None:
