@@ -11,7 +11,7 @@ import numpy as np
 from rattlebox.model.errors import CaseError
 
 from .axes import Axes, Design
-from .orbits import attractors, check_part, period_of, reduced_strobes
+from .orbits import attractors, period_of, reduced_strobes
 from .store import keep_map
 from .studytables import checked
 from .sweep import beside, sweep
@@ -97,9 +97,8 @@ def basins(
     """
     if not case.dampers:
         raise CaseError("without a damper the motion is linear, and all starts lead to the same one")
-    check_part("tolerance", tolerance)
-    check_part("apart", apart)
-    cycles, threads = checked("basins", cycles=cycles, threads=threads).values()
+    given = checked("basins", cycles=cycles, tolerance=tolerance, apart=apart, threads=threads)
+    cycles, tolerance, apart, threads = given.values()
     look = cycles[1]
     design = Design.of(case, starts, source="basins")
     task = SweepTask(case, design, cycles=cycles, point=point)

@@ -11,7 +11,7 @@ from rattlebox.model.errors import CaseError, Hint
 
 from .axes import Design
 from .follow import follow
-from .orbits import check_part, period_of, reduced_strobes
+from .orbits import period_of, reduced_strobes
 from .store import keep_map
 from .studytables import checked
 from .sweep import beside, sweep
@@ -107,9 +107,9 @@ def bifurcation(
             raise Hint(f"{name} = {given!r} is unknown", ", ".join(f'"{one}"' for one in get_args(known)))
     if not case.dampers:
         raise CaseError("without a damper the motion is linear, and nothing bifurcates")
-    check_part("tolerance", tolerance)
-    cycles, threads = checked("bifurcation", cycles=cycles, threads=threads).values()
+    cycles, tolerance, threads = checked("bifurcation", cycles=cycles, tolerance=tolerance, threads=threads).values()
     look = cycles[1]
+    path = tuple(map(str, path)) if isinstance(path, (list, tuple)) else str(path)
     design = Design.of(case, {path: values}, source="bifurcation")
     task = SweepTask(case, design, cycles=cycles, point=point)
     assert task.packed  # what differs in more than numbers is told before anything runs

@@ -17,11 +17,9 @@ from numpy.typing import NDArray
 
 from rattlebox.model.errors import CaseError, Hint, nearest
 from rattlebox.model.paths import replaced
-from rattlebox.model.units import parse
 
 from .axes import Design, labels, materials_in
 from .bar import telling
-from .designs import whole
 from .extras import extra
 from .inputs import described
 from .members import members
@@ -124,6 +122,9 @@ def design(
     >>> best = rb.Case.from_toml(found.case.item(0))
     """
     optuna = extra("optuna", "design")
+    trials, seed, robust, limit = checked(
+        "design", trials=trials, seed=seed, robust=robust, max_added_mass=max_added_mass
+    ).values()
     given = checked("design", skip=skip, cycles=cycles, samples=samples, threads=threads)
     where = {"threads": given.pop("threads"), "on": on}
     search = _Search(
@@ -132,28 +133,27 @@ def design(
         goals=_goals(objective),
         axes=members(case, levels, starts),
         robust=robust,
-        limit=None if max_added_mass is None else parse(max_added_mass, ("kg",))[0],
+        limit=limit,
         options={**given, "point": point},
         where=where,
     )
     search.check(log)
-    count = whole(trials, "trials", 1)
     done = 0
     try:
-        with _quiet(optuna), _storage(optuna, store) as storage, telling(progress, count, "trials") as tell:
-            study = _study(optuna, storage, search, whole(seed, "seed", 0), store)
-            while (done := len(_told(optuna, study))) < count:
+        with _quiet(optuna), _storage(optuna, store) as storage, telling(progress, trials, "trials") as tell:
+            study = _study(optuna, storage, search, seed, store)
+            while (done := len(_told(optuna, study))) < trials:
                 tell(done)
                 study.sampler = optuna.samplers.TPESampler(seed=_seed(seed, done))
                 search.run_trial(optuna, study)
-            tell(count)
-            found = search.result(_told(optuna, study)[:count])
+            tell(trials)
+            found = search.result(_told(optuna, study)[:trials])
         return keep_map(found, "design", store)
     except KeyboardInterrupt:
         kept = "which are lost; with a store, they would be kept"
         if store is not None:
             kept = f"which are in {os.fspath(store)}, and the same command goes on from there"
-        raise Stopped(f"stopped after {done} of {count} trials, {kept}") from None
+        raise Stopped(f"stopped after {done} of {trials} trials, {kept}") from None
 
 
 def _some(parameters: Any) -> Mapping[str, Any]:
@@ -257,8 +257,6 @@ class _Search:
         for path in (log,) if isinstance(log, str) else log:
             if path not in paths:
                 raise Hint(f"log = {path!r}: there is no parameter of that name", nearest(path, paths))
-        if self.robust not in _ROBUST:
-            raise Hint(f"robust = {self.robust!r}: there is no such choice", nearest(str(self.robust), _ROBUST))
         together: list[Parameter] = []
         for path in [*(self.members.columns if self.axes else ()), *paths]:
             new = Parameter(self.case, path, "parameters", materials_in(self.case))

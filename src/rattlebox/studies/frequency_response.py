@@ -108,8 +108,8 @@ def frequency_response(
     """
     if direction not in (*get_args(Direction), "both"):
         raise CaseError(f'direction = {direction!r} is unknown\n  try: "up", "down", "both" or "fresh"')
-    given = checked("frequency_response", cycles=cycles, samples=samples, threads=threads)
-    cycles, samples, threads = given.values()
+    given = checked("frequency_response", cycles=cycles, samples=samples, tolerance=tolerance, threads=threads)
+    cycles, samples, tolerance, threads = given.values()
     look = cycles[1]
     place, driver = _driver(case)
     at, strength = f"{place}.frequency", f"{place}.amplitude"

@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.model.errors import Hint
-
 if TYPE_CHECKING:
     import xarray
 
@@ -18,18 +16,6 @@ Vector = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
 _MOST = 256
-
-
-def check_part(name: str, value: Any) -> None:
-    """Refuse what is no part of the gap.
-
-    Raises
-    ------
-    Hint
-        When it does not lie between 0 and 1.
-    """
-    if not (isinstance(value, (int, float)) and 0 < value < 1):
-        raise Hint(f"{name} = {value!r}: a part of the gap between 0 and 1 is needed", "1e-4")
 
 
 def reduced_strobes(maps: xarray.Dataset, packed: Packed, period: Any) -> Vector:

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from rattlebox.model.errors import CaseError, Hint
 
-from .designs import RandomDesign, random_design, whole
+from .designs import RandomDesign, random_design
 from .extras import extra
 from .members import members
 from .store import keep_map
+from .studytables import checked
 from .sweep import sweep
 
 if TYPE_CHECKING:
@@ -112,10 +113,11 @@ def sensitivity(
     >>> found.total.dims
     ('measure', 'parameter')
     """
-    if whole(n, "n", 8) & (n - 1):
+    n, confidence = checked("sensitivity", n=n, confidence=confidence).values()
+    if n & (n - 1):
         raise Hint(f"n = {n}: a power of two is needed", f"{2 ** n.bit_length()}")
-    if not 0 < confidence < 1:
-        raise Hint(f"confidence = {confidence!r}: must lie between 0 and 1", "0.95")
+    if not isinstance(bounds, Mapping) or not bounds:
+        raise Hint("bounds: paths with bounds or choices are needed", '{"damper.gap": ("0.1 mm", "2 mm")}')
     ranges = random_design(bounds, n * (len(bounds) + 2), seed=seed, log=log)
     points = _Crossed(ranges.ranges, ranges.count, ranges.method, ranges.seed, ranges.log)
     runs = sweep(

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationError
 
 from rattlebox.model.errors import CaseError, Hint, nearest, translate
-from rattlebox.model.units import NotNegativeTime, PositiveMass
+from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, Whole
 
 from .designs import Method
 from .measures import MEASURES, check_names
@@ -32,7 +32,7 @@ class Range(Table):
 class Spaced(Range):
     """Values from one to another."""
 
-    count: Annotated[int, Field(ge=1)]
+    count: Annotated[Whole, Field(ge=1)]
 
 
 def shape_of(value: Any) -> str:
@@ -59,9 +59,9 @@ class Random(Table):
     """A random design."""
 
     ranges: dict[str, list[Any]]
-    count: Annotated[int, Field(ge=1)]
+    count: Annotated[Whole, Field(ge=1)]
     method: Method = "sobol"
-    seed: Annotated[int, Field(ge=0)] = 0
+    seed: Annotated[Whole, Field(ge=0)] = 0
     log: list[str] = []
 
 
@@ -69,8 +69,8 @@ class Replicas(Table):
     """Replicas of each variant."""
 
     reach: dict[str, Any]
-    count: Annotated[int, Field(ge=1)]
-    seed: Annotated[int, Field(ge=0)] = 0
+    count: Annotated[Whole, Field(ge=1)]
+    seed: Annotated[Whole, Field(ge=0)] = 0
 
 
 def _known(measures: list[str]) -> list[str]:
@@ -95,9 +95,9 @@ def _whole(cycles: Any, least: int) -> tuple[int, int]:
 Measures = Annotated[list[str], AfterValidator(_known)]
 Cycles = Annotated[tuple[int, int], BeforeValidator(partial(_whole, least=1))]
 CyclesToCompare = Annotated[tuple[int, int], BeforeValidator(partial(_whole, least=2))]
-Part = Annotated[float, Field(gt=0, lt=1)]
-Count = Annotated[int, Field(ge=1)]
-Seed = Annotated[int, Field(ge=0)]
+Part = Annotated[Number, Field(gt=0, lt=1)]
+Count = Annotated[Whole, Field(ge=1)]
+Seed = Annotated[Whole, Field(ge=0)]
 
 
 class Study(Table):
@@ -120,10 +120,10 @@ class _Sweep(_OverAxes):
     measure: Measures = []
     skip: NotNegativeTime = 0.0
     cycles: Cycles | None = None
-    samples: Annotated[int, Field(ge=2)] | None = None
+    samples: Annotated[Whole, Field(ge=2)] | None = None
     point: str | None = None
     motion: bool = False
-    last: Annotated[int, Field(ge=0)] = 0
+    last: Annotated[Whole, Field(ge=0)] = 0
 
 
 class _Bifurcation(Study):
@@ -144,7 +144,7 @@ class _FrequencyResponse(Study):
     cycles: Cycles = (200, 32)
     measure: Measures = []
     point: str | None = None
-    samples: Annotated[int, Field(ge=8)] = 64
+    samples: Annotated[Whole, Field(ge=8)] = 64
     tolerance: Part = 1e-3
 
 
@@ -160,10 +160,10 @@ class _Lyapunov(_OverAxes):
     axes_needed: ClassVar[bool] = False
     cycles: Cycles | None = None
     skip: NotNegativeTime = 0.0
-    steps: Annotated[int, Field(ge=2)] | None = None
+    steps: Annotated[Whole, Field(ge=2)] | None = None
     pairs: Count = 8
-    distance: float = 1e-7
-    reach: float = 1e-3
+    distance: Annotated[Number, Field(ge=1e-12, le=1e-4)] = 1e-7
+    reach: Annotated[Number, Field(ge=0, le=1)] = 1e-3
     seed: Seed = 0
 
 
@@ -171,7 +171,7 @@ class _LossMap(Study):
     amplitudes: Values
     frequencies: Values
     cycles: Cycles = (50, 50)
-    samples: Annotated[int, Field(ge=2)] | None = None
+    samples: Annotated[Whole, Field(ge=2)] | None = None
 
 
 class _Judged(Study):
@@ -182,7 +182,7 @@ class _Judged(Study):
     seed: Seed = 0
     skip: NotNegativeTime = 0.0
     cycles: Cycles | None = None
-    samples: Annotated[int, Field(ge=2)] | None = None
+    samples: Annotated[Whole, Field(ge=2)] | None = None
     point: str | None = None
 
 
@@ -197,7 +197,7 @@ class _Design(_Judged):
 class _Sensitivity(_Judged):
     bounds: dict[str, Bounds]
     measure: Measures = ["impact_share"]
-    n: Annotated[int, Field(ge=8)] = 256
+    n: Annotated[Whole, Field(ge=8)] = 256
     confidence: Part = 0.95
 
 
@@ -236,6 +236,8 @@ def checked(kind: str, **given: Any) -> dict[str, Any]:
             setattr(table, name, value)
         except ValidationError as error:
             raise CaseError(str(translate(error, "", {}, given)).removeprefix(": ")) from None
+    if given.get("cycles") is not None and getattr(table, "skip", None):
+        raise Hint(f"skip = {given['skip']!r}: with cycles, the first number of them is what is skipped", "one of both")
     return {name: getattr(table, name) for name in given}
 
 

@@ -59,6 +59,65 @@ def test_ready_maps_refuse_the_same(study: Any, arguments: tuple[Any, ...]) -> N
             study(shaken(), *arguments, **{name: value})
 
 
+def driven() -> rb.Case:
+    """Return a ball in a structure under a harmonic load."""
+    return rb.Case(
+        structure=rb.SDOF(mass=1, stiffness=1e4, damping=2),
+        damper=shaken().dampers[0],
+        load=rb.Harmonic(amplitude="10 N", frequency="16 Hz"),
+        duration="1 s",
+        method=rb.Newton(),
+    )
+
+
+GAP: dict[str, Any] = {"damper.gap": ("1 mm", "2 mm")}
+OWN: list[tuple[Any, tuple[Any, ...], str, Any]] = [
+    *((rb.frequency_response, ([15.0, 16.0],), "tolerance", value) for value in ["x", -1, True, 1]),
+    *((rb.bifurcation, ("load.amplitude", [5.0, 10.0]), "tolerance", value) for value in [0, None]),
+    (rb.basins, ({"damper.start": [-1.0, 1.0]},), "apart", "x"),
+    *((rb.lyapunov, (), name, value) for name, value in [("distance", 1), ("distance", True), ("reach", -1)]),
+    *((rb.lyapunov, (), name, value) for name, value in [("seed", -1), ("steps", 0), ("pairs", 2.5), ("pairs", 0)]),
+    *((rb.design, (GAP, "peak"), "max_added_mass", value) for value in [-1, "1 m"]),
+    *((rb.design, (GAP, "peak"), "robust", value) for value in [["worst"], "best"]),
+    *((rb.design, (GAP, "peak"), name, value) for name, value in [("trials", True), ("seed", 0.5)]),
+    *((rb.sensitivity, (GAP, "peak"), "confidence", value) for value in [None, 1]),
+    (rb.sensitivity, (GAP, "peak"), "n", 7),
+]
+
+
+@pytest.mark.parametrize(("study", "arguments", "name", "value"), OWN, ids=str)
+def test_each_study_refuses_its_own_by_name(study: Any, arguments: tuple[Any, ...], name: str, value: Any) -> None:
+    """What only one kind of study has is looked at as in its file, with the name and the value of the argument."""
+    with pytest.raises(rb.CaseError, match="^" + re.escape(f"{name} = {value!r}\n")):
+        study(driven(), *arguments, cycles=(4, 2), **{name: value})
+
+
+@pytest.mark.parametrize(
+    ("study", "arguments"),
+    [
+        (rb.sweep, ({"damper.gap": ["1 mm"]}, ["peak"])),
+        (rb.lyapunov, ()),
+        (rb.design, (GAP, "peak")),
+        (rb.sensitivity, (GAP, "peak")),
+    ],
+    ids=["sweep", "lyapunov", "design", "sensitivity"],
+)
+def test_what_to_skip_is_told_once(study: Any, arguments: tuple[Any, ...]) -> None:
+    """With cycles the time to skip is theirs: another one beside them is refused, not left out."""
+    with pytest.raises(rb.CaseError, match=r"skip = '0\.1 s': with cycles"):
+        study(driven(), *arguments, cycles=(4, 2), skip="0.1 s")
+
+
+def test_what_is_no_parameter_is_told() -> None:
+    """A path, or bounds, of another type than is asked for get an answer, no traceback."""
+    for path in (3, [["load.amplitude"]], ["load.amplitude"]):
+        with pytest.raises(rb.CaseError):
+            rb.bifurcation(driven(), path, [5.0, 10.0], cycles=(4, 2))
+    for bounds in (None, {}, [1]):
+        with pytest.raises(rb.CaseError, match="bounds: paths with bounds or choices are needed"):
+            rb.sensitivity(driven(), bounds, "peak", 8)  # type: ignore[arg-type]
+
+
 def test_counts_of_numpy_are_counts(tmp_path: Path) -> None:
     """Counts may come from NumPy, also where a store keeps them."""
     counts = {"cycles": np.array([1, 2]), "samples": np.int64(5), "last": np.int32(2)}
@@ -68,21 +127,14 @@ def test_counts_of_numpy_are_counts(tmp_path: Path) -> None:
 
 def test_one_measure_needs_no_list() -> None:
     """Ready maps take one measure by its name, as sweeps do; what is no measure is told so."""
-    driven = rb.Case(
-        structure=rb.SDOF(mass=1, stiffness=1e4, damping=2),
-        damper=shaken().dampers[0],
-        load=rb.Harmonic(amplitude="10 N", frequency="16 Hz"),
-        duration="1 s",
-        method=rb.Newton(),
-    )
     ways: dict[Any, Any] = {
         rb.bifurcation: ("load.amplitude", [5.0, 10.0]),
         rb.basins: ({"damper.start": [-1.0, 1.0]},),
         rb.frequency_response: ([15.0, 16.0],),
     }
     for study, arguments in ways.items():
-        assert "peak" in study(driven, *arguments, cycles=(4, 2), measure="peak", progress=False)
+        assert "peak" in study(driven(), *arguments, cycles=(4, 2), measure="peak", progress=False)
         with pytest.raises(rb.CaseError, match="measure"):
-            study(driven, *arguments, cycles=(4, 2), measure=5, progress=False)
+            study(driven(), *arguments, cycles=(4, 2), measure=5, progress=False)
     with pytest.raises(rb.CaseError, match="5 is neither the name of a measure"):
-        rb.design(driven, {"damper.gap": ("1 mm", "2 mm")}, 5)
+        rb.design(driven(), {"damper.gap": ("1 mm", "2 mm")}, 5)

@@ -155,7 +155,7 @@ def test_chaos_agrees_with_pairs_left_to_themselves():
     [
         ({"pairs": 0}, "pairs = 0"),
         ({"steps": 1}, "steps = 1"),
-        ({"distance": 1.0}, "1e-7"),
+        ({"distance": 1.0}, "distance = 1.0\n  must be at most 0.0001"),
         ({"reach": -1.0}, "reach"),
         ({"cycles": (10, 0)}, "at least 1 to look at"),
         ({"axes": {"load.frequenzy": [30.0]}}, "frequency"),

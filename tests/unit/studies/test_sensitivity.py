@@ -108,11 +108,11 @@ def test_points_without_a_value_are_left_out() -> None:
         (BOUNDS, {"n": 100}, "a power of two"),
         (BOUNDS, {"n": 4}, "at least 8"),
         (BOUNDS, {"measure": "shares"}, "there is no measure 'shares'"),
-        (BOUNDS, {"confidence": 95}, "between 0 and 1"),
+        (BOUNDS, {"confidence": 95}, "must be less than 1"),
         (BOUNDS, {"log": ["gap"]}, "there is no range of that name"),
         (BOUNDS, {"measure": "settling_time"}, "have a run without a value"),
         ({"damper.gap": ("50 mm", "60 mm")}, {}, "nothing depends on anything"),
-        ({}, {}, "ranges: paths with values are needed"),
+        ({}, {}, "bounds: paths with bounds or choices are needed"),
     ],
 )
 def test_clear_refusals(bounds: Any, options: dict[str, Any], said: str) -> None:
