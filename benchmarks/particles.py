@@ -82,6 +82,11 @@ def shaken(count: int, amplitude: float = AMPLITUDES["shaken"], across: int = 1)
     )
 
 
+def window_of(count: int) -> tuple[float, float]:
+    """Return the periods before the clock starts and while it runs: those of the largest number that is not above."""
+    return WINDOWS[max((n for n in WINDOWS if n <= count), default=min(WINDOWS))]
+
+
 def steps_of(periods: float) -> int:
     """Return the steps in some periods."""
     return round(periods * PERIOD / DT)
@@ -124,7 +129,7 @@ def put(packed: dict[str, Any], columns: np.ndarray) -> None:
 def one(kind: str, count: str, cores: str, start: str = "") -> None:
     """Print the JSON line of one measurement; what `apart` runs."""
     n = int(count)
-    warm, window = WINDOWS[n]
+    warm, window = window_of(n)
     packed, _, _ = pack_dem(shaken(n, amplitude=AMPLITUDES[kind]))
     if start:
         put(packed, np.loadtxt(start, delimiter=",", ndmin=2))
@@ -198,7 +203,7 @@ def cores(kind: str, counts: list[int], seconds: float) -> Iterator[tuple[str, s
 def _in_turns(kind: str, count: int, seconds: float, meeting: Callable[[], float]) -> Iterator[tuple[str, str]]:
     packed, _, _ = pack_dem(shaken(count, amplitude=AMPLITUDES[kind]))
     pair = core().Dem(packed), core().Dem(packed)
-    step = steps_of(25 if kind == "rest" else WINDOWS[count][0])
+    step = steps_of(25 if kind == "rest" else window_of(count)[0])
     for threads, dem in enumerate(pair, 1):
         dem.threads = threads
         dem.run(step)
@@ -275,7 +280,7 @@ def peers(
 def _compared(
     where: Path, bed: Path, count: int, cores: int, kind: str, programs: list[Program], turns: int
 ) -> Iterator[tuple[str, str]]:
-    warm, steps = (steps_of(periods) for periods in WINDOWS[count])
+    warm, steps = (steps_of(periods) for periods in window_of(count))
     own: list[dict[str, float]] = []
     seconds: dict[str, list[float]] = {program.name: [] for program in programs}
     done: set[str] = set()
