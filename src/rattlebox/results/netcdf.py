@@ -34,7 +34,8 @@ _LOST = "make room and write the run again"
 
 _STORED: dict[Kind, str] = {"float": "f8", "int": "i4", "bool": "i1"}
 _LABELS = ("point", "ball", "damper", "source", "species")
-_COMPRESSION: dict[str, Any] = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
+_LARGE: dict[str, Any] = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
+"""Of arrays of more than 64 numbers; the last is a checksum, so that damage is told when they are read."""
 
 
 def _characters(texts: tuple[str, ...]) -> Any:
@@ -58,12 +59,16 @@ def _describe(target: Any, **attributes: str) -> None:
         target.attrs[name] = _attribute(text)
 
 
+def _filters(data: Any) -> dict[str, Any]:
+    return _LARGE if data.size > 64 else {}
+
+
 def _write_text(group: Any, name: str, text: str, long_name: str) -> None:
     if not text:
         return
     characters = np.frombuffer(text.encode(), "S1")
     group.dimensions[f"{name}_length"] = characters.size
-    variable = group.create_variable(name, (f"{name}_length",), "S1", data=characters)
+    variable = group.create_variable(name, (f"{name}_length",), "S1", data=characters, **_filters(characters))
     _describe(variable, long_name=long_name, _Encoding="utf-8")
 
 
@@ -77,7 +82,7 @@ def _write_coordinate(group: Any, dim: str, values: Any, units: str, long_name: 
         return
     array = np.asarray(values)
     stored = array.astype("i4") if array.dtype.kind == "i" else array
-    variable = group.create_variable(dim, (dim,), stored.dtype, data=stored)
+    variable = group.create_variable(dim, (dim,), stored.dtype, data=stored, **_filters(stored))
     _describe(variable, long_name=long_name, units=units)
 
 
@@ -86,7 +91,8 @@ def _write(run: Run, target: IO[bytes]) -> None:
 
     arrays = run.arrays
     names = labels(arrays)
-    with h5netcdf.File(target, "w", invalid_netcdf=False) as file:
+    # From version 1.10 on HDF5 has checksums of its own entries, too, and takes less room.
+    with h5netcdf.File(target, "w", invalid_netcdf=False, libver="v110") as file:
         _describe(file, title="Rattlebox run", status=arrays.status)
         file.attrs["rattlebox_format"] = np.int32(FORMAT)
         for name, value in asdict(run.provenance).items():
@@ -120,9 +126,8 @@ def _write(run: Run, target: IO[bytes]) -> None:
                     else:
                         _write_coordinate(group, dim, names[dim], *arrays.form.coordinates[dim])
                 data = values[v.name]
-                large = _COMPRESSION if data.size > 64 else {}
                 chunks = {"chunks": (max(data.size, 1),)} if v.dims == ("impact",) else {}
-                variable = group.create_variable(v.name, v.dims, _STORED[v.kind], **chunks, **large)
+                variable = group.create_variable(v.name, v.dims, _STORED[v.kind], **chunks, **_filters(data))
                 if data.size:
                     variable[...] = data
                 _describe(variable, units=v.units, long_name=v.long_name)

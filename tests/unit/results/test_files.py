@@ -133,6 +133,28 @@ def test_saving_into_no_folder(run: Run, tmp_path: Path) -> None:
         run.save(tmp_path / "missing" / "run.nc")
 
 
+def test_damage_is_told(run: Run, tmp_path: Path) -> None:
+    """A bit that flips in a file, wherever it is, is told, or changes nothing of what is large enough to have a checksum."""
+    path = run.save(tmp_path / "run.nc")
+    content = path.read_bytes()
+    rng = np.random.default_rng(0)
+    told: list[str] = []
+    for _ in range(60):
+        damaged = bytearray(content)
+        damaged[rng.integers(len(content))] ^= 1 << int(rng.integers(8))
+        path.write_bytes(damaged)
+        try:
+            there = load(path)
+        except ValueError as error:
+            told.append(str(error))
+            continue
+        assert there.case_toml == run.case_toml
+        for name in ("time", "displacement", "velocity", "ball_position", "ball_velocity", "viscous_loss"):
+            np.testing.assert_array_equal(getattr(there.arrays, name), getattr(run.arrays, name))
+    assert len(told) > 30
+    assert all("run.nc" in message for message in told)
+
+
 def test_loading_something_else(tmp_path: Path) -> None:
     """A missing file, a folder, a text, a foreign netCDF file and one of a later version are each refused by name."""
     with pytest.raises(ValueError, match="is a folder, not a file"):
