@@ -11,6 +11,7 @@ html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["formulas.css"]
 html_title = "Rattlebox"
+html_show_copyright = False
 html_math_renderer = "mathml"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
