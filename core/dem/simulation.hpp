@@ -335,7 +335,7 @@ class Simulation {
             if (status_ == Status::finished && !(close.since + bed.apart < infinity))
                 status_ = Status::not_finite;
         }
-        late_builds_ += is_late;
+        late_builds_ += is_late && status_ == Status::finished; // who stopped has moved by infinity
         __atomic_store_n(&step_, step_ + 1, __ATOMIC_RELAXED);
         ++steps_since_;
     }

@@ -445,8 +445,9 @@ def outcome(
             f"at least {FEWEST_STEPS:g} are good"
         )
     if late:
+        often = "once" if late == 1 else f"{late} times"
         notes.append(
-            f"warning: particles sped up within a step beyond what neighbours allow for, {late} times; contacts may have "
+            f"warning: particles sped up within a step beyond what neighbours allow for, {often}; contacts may have "
             "begun a step late: shorten the step"
         )
     for index, (damper, overlap) in enumerate(zip(dampers, overlaps, strict=True)):

@@ -205,7 +205,7 @@ def test_force_on_the_cavity_is_what_changes_momentum() -> None:
 
 
 def test_loss_and_mass_of_a_shaken_cavity_in_two_ways() -> None:
-    """Force times velocity and the ledger tell the same loss, force and momentum the same mass."""
+    """Force times velocity and the ledger tell the same loss, momentum and the forces recorded the same mass."""
     run = simulate(damper(gravity=(0, 0, 0)), structure=shaker(), duration=0.25, output=rb.Output(rate="8 kHz"))
     found = rb.analysis.shaken_cavity(run, frequency=40, after=0.1)
     taken, lost = found.active_power.values
@@ -215,6 +215,16 @@ def test_loss_and_mass_of_a_shaken_cavity_in_two_ways() -> None:
     assert float(found.reduced_loss[1]) == pytest.approx(
         lost / 40 / (run.arrays.particle_mass[0] * (0.003 * 80 * math.pi) ** 2), rel=1e-6
     )
+    times = run.arrays.time
+    kept = times >= 0.1 - 1e-9
+    turn = np.exp(-80j * math.pi * times[kept])
+    moved, pushed = (
+        2 / 0.15 * np.trapezoid(values[kept] * turn, times[kept])
+        for values in (run.arrays.base_velocity[:, 0], -run.arrays.cavity_force[:, 0, 0])
+    )
+    power = complex(np.conj(pushed) * moved / 2)
+    assert power.real == pytest.approx(taken, rel=0.01)
+    assert -2 * power.imag / (80 * math.pi * abs(moved) ** 2) == pytest.approx(float(found.effective_mass[0]), rel=0.01)
     with pytest.raises(ValueError, match="damper is one of damper"):
         rb.analysis.shaken_cavity(run, frequency=40, damper="none")
     with pytest.raises(ValueError, match="no whole cycle"):
@@ -271,6 +281,28 @@ def test_laws_are_not_used_beyond_their_domain() -> None:
     run = simulate(fast, structure=rb.Fixed(), duration=1e-3, output=rb.Output())
     assert run.status == "law_domain"
     assert "was struck at" in run.message
+    assert not any("warning" in note for note in run.arrays.notes)
+
+
+def test_an_open_ledger_is_a_status() -> None:
+    """A step as long as may be given, too long for a contact to be followed, ends a run whose energies do not add up."""
+    alone = damper(
+        particles=rb.Particles(material="steel", diameter="3 mm"),
+        packing=rb.Positions(positions=[[0, 0, 0]], velocities=[[0.1, 0, 0]]),
+        cavity=rb.Box(size=("4 mm", "20 mm", "20 mm")),
+        contact=rb.Tsuji(restitution=0.9),
+        friction=None,
+        gravity=(0, 0, 0),
+        softening=1,
+    )
+    long, short = (
+        simulate(alone, structure=rb.Fixed(), duration=0.02, output=rb.Output(), method=rb.Dem(dt=dt))
+        for dt in ("2.8 us", "1 us")
+    )
+    assert (long.status, short.status) == ("ledger_open", "finished")
+    assert 0.01 < long.closure < 0.1
+    assert "its energy ledger closes only to 0.04" in long.message
+    assert short.closure < 0.01
 
 
 @pytest.mark.parametrize("ending", ["zero_force", "zero_overlap"])
@@ -283,6 +315,7 @@ def test_laws_that_give_no_rebound_are_told(ending: str) -> None:
     assert run.status == "no_rebound"
     assert "Particle 0, in 'damper', was struck at 20 m/s" in run.message
     assert np.isfinite(run.arrays.position).all()
+    assert not any("warning" in note for note in run.arrays.notes)
 
 
 @pytest.mark.parametrize("how", ["ctrl-c", "false"])
