@@ -97,7 +97,10 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
     if run.status in ("finished", "ledger_open"):
         checkpoint.unlink(missing_ok=True)
     if not run.ok:
-        console.print(f"[bold]{run.status}[/bold]: {run.message}")
+        told = Console(stderr=True, highlight=False, soft_wrap=True)
+        told.print(f"[bold]{run.status}[/bold]: {run.message}")
+        if checkpoint.is_file():
+            told.print(f"{checkpoint} is kept; a case that you have changed needs it removed, or another folder")
         sys.exit(1)
 
 

@@ -106,6 +106,20 @@ def test_a_stop_is_told_wherever_it_comes(
     assert capfd.readouterr().err == f"stopped; {kept}\n"
 
 
+def test_a_run_that_fails_says_so_beside_its_results(tmp_path: Path) -> None:
+    """A particle that leaves ends the command with code 1, and errors tell it, and what is kept; results are written."""
+    fast = CASE.replace("fill_ratio = 0.3", "count = 1").replace(
+        "softening = 100",
+        'softening = 1e6\nvelocity = ["100 m/s", 0, 0]\n[method]\nkind = "dem"\ncheckpoint_every = "20 us"',
+    )
+    done = run(tmp_path, case=fast)
+    assert done.returncode == 1
+    assert done.stderr.startswith("escaped: Particle 0, in 'damper', left its cavity at")
+    checkpoint = tmp_path / "out" / "run.checkpoint"
+    assert f"{checkpoint} is kept; a case that you have changed needs it removed" in done.stderr
+    assert checkpoint.is_file() and rb.load(tmp_path / "out" / "run.nc").status == "escaped"
+
+
 def test_only_snapshots_that_are_asked_for_are_written(tmp_path: Path) -> None:
     """With an empty list of snapshots no file of them is written or told."""
     done = run(tmp_path, "--no-figures", case=CASE.replace('rate = "5 kHz"', 'rate = "5 kHz", snapshots = []'))
