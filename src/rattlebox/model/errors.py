@@ -37,11 +37,16 @@ class Hint(CaseError):
     """
 
     def __init__(self, complaint: str, suggestion: str = "", place: Sequence[str | int] = ()) -> None:
-        where = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).removeprefix(".")
+        where = named(place)
         super().__init__(_lines(where, complaint, suggestion) if where else _lines(complaint, suggestion))
         self.complaint = complaint
         self.suggestion = suggestion
         self.place = tuple(place)
+
+
+def named(place: Sequence[str | int]) -> str:
+    """Return "pairs[0].friction" of names of fields and numbers in lists."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).removeprefix(".")
 
 
 @contextmanager
@@ -92,7 +97,7 @@ def translate(
         missing = finding["type"] == "missing"
         place, value = _as_written(given, location, len(finding["loc"]) - missing)
         head = f"{source}: {place}" if place else f"{source}:"
-        if not missing and value is not _NOTHING and not _is_table(value):
+        if not missing and value is not _NOTHING and not _holds_tables(value):
             head += f" = {_shown(value)}"
         block = _lines(head, *_said(finding, value, str(source), vocabulary, place))
         if block not in blocks:
@@ -178,6 +183,10 @@ def _get(node: Any, name: Any) -> Any:
 
 def _is_table(value: Any) -> bool:
     return isinstance(value, Mapping) or hasattr(type(value), "model_fields")
+
+
+def _holds_tables(value: Any) -> bool:
+    return _is_table(value) or (isinstance(value, (list, tuple)) and any(map(_is_table, value)))
 
 
 def _shown(value: Any) -> str:

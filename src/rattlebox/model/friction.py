@@ -116,7 +116,7 @@ class Rolling(Part):
         Damping ratio of the dashpot.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("rolling",)
+    held_as: ClassVar[tuple[str, ...]] = ("rolling", "wall_rolling")
     unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
     coefficient: NotNegative
     stiffness: Annotated[Number, Field(gt=0, le=LARGEST)] = 1.0

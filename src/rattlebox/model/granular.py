@@ -15,7 +15,7 @@ from .base import AlsoTakes, Part
 from .cavities import AnyCavity
 from .contacts import AnyContact, Linear, Thornton
 from .elementwise import Vector
-from .errors import Hint, at, several
+from .errors import Hint, at, named, several
 from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
@@ -91,8 +91,8 @@ class Entry:
         The laws.
     names
         Of the two sides.
-    place, friction_place
-        Where the laws of contact and friction are given, for messages.
+    place, friction_place, rolling_place
+        Where the laws are given, for messages.
     """
 
     pair: Pair
@@ -102,6 +102,7 @@ class Entry:
     names: tuple[str, str]
     place: tuple[str | int, ...]
     friction_place: tuple[str | int, ...]
+    rolling_place: tuple[str | int, ...]
 
 
 @dataclass(frozen=True)
@@ -152,8 +153,8 @@ class ParticleDamper(Part):
         Law among particles, and at walls if it is another one.
     friction, wall_friction
         A law or a coefficient; none if left out. At walls the same unless given.
-    rolling
-        Resistance to rolling, or its coefficient; none if left out.
+    rolling, wall_rolling
+        Resistance to rolling, or its coefficient; none if left out. At walls the same unless given.
     pairs
         Exceptions for pairs of species, or of a species and the wall.
     mixing
@@ -185,6 +186,7 @@ class ParticleDamper(Part):
     friction: AnyFriction | None = None
     wall_friction: AnyFriction | None = None
     rolling: AnyRolling | None = None
+    wall_rolling: AnyRolling | None = None
     pairs: tuple[PairLaws, ...] = ()
     mixing: Mixing | None = None
     gravity: Accelerations = (0.0, 0.0, -9.81)
@@ -210,7 +212,7 @@ class ParticleDamper(Part):
             )
         labels = [species.label for species in self.particles]
         for index, species in enumerate(self.particles):
-            place: list[str | int] = ["particles", index] if len(labels) > 1 else ["particles"]
+            place = self._place(index)
             if labels.index(species.label) != index or species.label == WALL:
                 raise Hint(f"the name {species.label!r} is taken", "a name of its own", [*place, "name"])
             given = isinstance(self.packing, Positions)
@@ -225,6 +227,10 @@ class ParticleDamper(Part):
                     "" if radii else 'radius = "2 mm"',
                     place,
                 )
+
+    def _place(self, index: int) -> list[str | int]:
+        """Where a species is given, for messages."""
+        return ["particles", index] if len(self.particles) > 1 else ["particles"]
 
     def _check_pairs(self) -> None:
         known = [*(species.label for species in self.particles), WALL]
@@ -257,8 +263,8 @@ class ParticleDamper(Part):
         ):
             raise Hint(
                 f"rolling resistance needs friction, and there is none between {between}",
-                "friction = 0.3, or no rolling",
-                ["rolling"],
+                f"{named(entry.friction_place)} = 0.3, or no rolling",
+                entry.rolling_place,
             )
         if isinstance(entry.friction, Mindlin) and entry.friction.coefficient and isinstance(entry.contact, Linear):
             raise Hint(
@@ -275,8 +281,9 @@ class ParticleDamper(Part):
 
     def _check_filling(self) -> None:
         contents = self.contents
-        with at("particles"):
-            check_size(self.cavity, float(contents.radius.max()))
+        largest = int(contents.radius.argmax())
+        with at(*self._place(int(contents.species[largest]))):
+            check_size(self.cavity, float(contents.radius[largest]))
         filled = float(contents.radius @ contents.radius**2) * 4 / 3 * math.pi / self.cavity.volume
         if filled >= 1:
             raise Hint(
@@ -328,7 +335,7 @@ class ParticleDamper(Part):
         if not species.has_amount:
             assert isinstance(self.packing, Positions)
             return len(self.packing.positions)
-        with at("particles", *([index] if len(self.particles) > 1 else [])):
+        with at(*self._place(index)):
             return species.number(self.cavity.volume)
 
     @cached_property
@@ -392,8 +399,8 @@ class ParticleDamper(Part):
     def _entry(self, first: str, second: str, pair: Pair) -> Entry:
         contact, place = self._law("contact", first, second)
         friction, friction_place = self._law("friction", first, second)
-        rolling, _ = self._law("rolling", first, second)
-        return Entry(pair, contact, friction, rolling, (first, second), place, friction_place)
+        rolling, rolling_place = self._law("rolling", first, second)
+        return Entry(pair, contact, friction, rolling, (first, second), place, friction_place, rolling_place)
 
     def _body(self, index: int) -> Body:
         contents, material = self.contents, self.particles[index].material

@@ -62,7 +62,7 @@ class Lattice(Packing):
             When there are more than such a lattice holds.
         """
         generator = np.random.default_rng(self.seed)
-        sites, cell = _sites(cavity, radii.size, float(radii.max()))
+        sites, cell = _sites(cavity, radii)
         chosen = generator.permutation(len(sites))[: radii.size]
         direction = generator.standard_normal((radii.size, 3))
         direction /= np.linalg.norm(direction, axis=1)[:, None]
@@ -293,8 +293,9 @@ def _coarsest(cavity: AnyCavity, count: int, least: float, middle: bool) -> Iter
         yield low, grid
 
 
-def _sites(cavity: AnyCavity, count: int, radius: float) -> tuple[Vector, float]:
-    """Places for spheres up to a radius, at least `count`, and the size of the cell that each has for itself."""
+def _sites(cavity: AnyCavity, radii: Vector) -> tuple[Vector, float]:
+    """Places for spheres, at least as many, and the size of the cell that each has for itself."""
+    count, radius, mixed = radii.size, float(radii.max()), bool(radii.min() < radii.max())
     for middle in (False, True):
         found = list(_coarsest(cavity, count, 2 * radius, middle))
         if found:
@@ -303,7 +304,8 @@ def _sites(cavity: AnyCavity, count: int, radius: float) -> tuple[Vector, float]
     most = max(len(_Grid(count, *kind)(cavity, 2 * radius)) for kind in product((False, True), repeat=2))
     raise Hint(
         f"{count} particles do not fit: a lattice of spheres of {2e3 * radius:.4g} mm holds {most} in this cavity",
-        f"{most} of them, smaller ones, or a larger cavity",
+        ('packing = { kind = "settled" }, which suits many sizes, ' if mixed else "")
+        + f"{most} of them, smaller ones, or a larger cavity",
     )
 
 

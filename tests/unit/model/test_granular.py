@@ -445,7 +445,24 @@ REFUSED = {
     "their volume is 1.88 times that of the cavity\n  try: 1 of them": lambda: damper(
         particles=balls(2, diameter="49 mm"), cavity=CAVITIES["sphere"]
     ),
-    "rolling resistance needs friction": lambda: damper(friction=0, rolling=0.1),
+    "rolling = 0.1\n  rolling resistance needs friction.*\n  try: friction = 0.3": lambda: damper(
+        friction=0, rolling=0.1
+    ),
+    "rolling = 0.1\n.* between steel and wall\n  try: wall_friction = 0.3": lambda: damper(
+        wall_friction=0, rolling=0.1
+    ),
+    "wall_rolling = 0.1\n.* between steel and wall\n  try: friction = 0.3": lambda: damper(
+        friction=0, wall_rolling=0.1
+    ),
+    r"pairs\[0\].rolling\n.* between glass and wall\n  try: pairs\[0\].friction = 0.3": lambda: two_kinds(
+        "wall", friction=0, rolling=0.2
+    ),
+    r"Damper: particles\[1\]\n  a particle of 44 mm is larger than the cavity": lambda: damper(
+        particles=[balls(), rb.Particles(material="glass", diameter="44 mm", count=1)]
+    ),
+    r"Damper: particles\n.* do not fit.*\n  try: packing = { kind = \"settled\" }, which suits many sizes": lambda: (
+        damper(particles=[balls(900), rb.Particles(material="glass", diameter="6 mm", count=10)])
+    ),
     "Mindlin's stiffness belongs to Hertz contacts": lambda: damper(contact=rb.Linear(stiffness=1e6, restitution=0.9)),
     "thornton beside tsuji: one kind of law is needed": lambda: two_kinds(
         "wall", contact=rb.Thornton(yield_pressure="1 GPa")
