@@ -54,6 +54,8 @@ class _Row:
                 return f"{value:.1e}" if value else "0"
             if self.unit == "million":
                 return MISSING if math.isnan(value) else f"{digits(1e-6 * value, 3)} million"
+            if self.unit == "1" and math.isinf(value):
+                return MISSING
             return quantity(value, self.unit)
         return f"{value:,}".replace(",", " ") if isinstance(value, int) else value
 

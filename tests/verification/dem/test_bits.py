@@ -158,6 +158,31 @@ def test_large_beds_give_the_same_bits() -> None:
     assert whole.counters()["memory_bytes"] < 1000 * count
 
 
+@pytest.mark.slow
+def test_a_million_spheres() -> None:
+    """A million spheres that begin to pile up on a floor run as few do: the ledger closes, with less than 1 kB for each."""
+    soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25)
+    count, edge = 1_000_000, 0.32
+    run = rb.simulate(
+        rb.Case(
+            structure=rb.SDOF(mass=50.0, stiffness=2e6, velocity=1.0),
+            damper=rb.ParticleDamper(
+                particles=rb.Particles(material=soft, radius="1.5 mm", count=count),
+                cavity=rb.Box(size=(edge, edge, edge)),
+                contact=rb.Tsuji(restitution=0.7),
+                friction=rb.Mindlin(0.3),
+                packing=rb.Lattice(noise=0.9, seed=2),
+                velocity=(0.5, 0.2, -2.0),
+            ),
+            duration=0.0005,
+            output=rb.Output(rate=10_000.0),
+        )
+    )
+    assert run.ok and run.closure < 0.01
+    assert run.arrays.contacts[-1, 0].min() > 10_000
+    assert run.arrays.counts["memory_bytes"] < 1000 * count
+
+
 def test_restart_in_another_process_gives_the_same_bits(tmp_path: Path) -> None:
     """Another process that goes on from a file of the state ends with the bits of this one."""
     case = shaken("Hertz", duration=0.01)

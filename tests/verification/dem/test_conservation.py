@@ -98,6 +98,39 @@ def test_a_free_cavity_and_its_particles_keep_their_momentum(law: str, cavity: A
     assert arrays.counts["first_touches_wall"] > 50
 
 
+def test_cavities_at_several_points_keep_the_momentum_of_each_mode() -> None:
+    """What three cavities of unlike shape at three points of a free structure take from its modes, their particles have."""
+    shapes = {
+        "a": [[2.0, 0.3, 0.5], [0.2, 1.4, 1.0]],
+        "b": [[0.3, 2.0, 0.1], [1.0, 0.0, -0.5]],
+        "c": [[0.0, 0.2, 2.0], [1.0, 0.3, 0.0]],
+    }
+    free = rb.Modal(frequencies=[0, 0], damping_ratios=[0, 0], shapes=shapes, velocity=[0.2, 0.3])
+    cavities = (
+        rb.Box(size=(0.04,) * 3),
+        rb.Cylinder(radius=0.03, length=0.04, axis="y"),
+        rb.SphericalCavity(radius=0.036),
+    )
+    dampers = [
+        cloud(law, random=1.0, cavity=cavity, gravity=(0, 0, -9.81))
+        .dampers[0]
+        .model_copy(update={"point": point, "name": point})
+        for law, cavity, point in zip(("rough", "rolling", "yielding"), cavities, shapes, strict=True)
+    ]
+    arrays = cases.run(
+        rb.Case(structure=free, dampers=dampers, duration=0.02, output=rb.Output(rate=2000.0), method=rb.Dem())
+    ).arrays
+    points = np.array([shapes[name] for name in arrays.dampers])  # (dampers, modes, axes)
+    moved = arrays.cavity_velocity.reshape(arrays.time.size, -1)
+    modes = np.linalg.lstsq(points.transpose(0, 2, 1).reshape(-1, 2), moved.T, rcond=None)[0].T
+    weight = arrays.particle_mass[:, None] * np.array([0, 0, -9.81])
+    pulled = np.einsum("dmi,di->m", points, weight) * arrays.time[:, None]
+    total = modes + np.einsum("dmi,tdi->tm", points, arrays.momentum) - pulled
+    assert np.abs(total - total[0]).max() < 1e-13 * (np.abs(modes).max() + np.abs(pulled).max())
+    assert np.ptp(modes, axis=0).min() > 1e-3
+    assert arrays.contacts.sum(axis=(0, 2)).min() > 20  # at the samples
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_force_on_the_cavity_is_the_change_of_momentum(law: str) -> None:
     """In each step the mean force on a cavity is the rate at which its particles lose momentum, and their weight."""

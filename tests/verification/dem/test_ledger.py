@@ -16,9 +16,10 @@ LIGHT = rb.SDOF(mass=0.3, stiffness=2e4, damping=3.0, velocity=1.0)
 AT_REST = rb.SDOF(mass=0.3, stiffness=2e4, damping=3.0)
 SWING = rb.Harmonic(amplitude="300 m/s^2", frequency=150, direction="z")
 SWAY = rb.Harmonic(amplitude="200 m/s^2", frequency=90, direction="x", phase=1.0)
+JERK = rb.Harmonic(amplitude="150 m/s^2", frequency=120, direction="y", phase=0.4)
 DRIVES: dict[str, dict[str, Any]] = {
     "a start": {"structure": LIGHT},
-    "a shaker": {"structure": rb.Shaker(motion=[SWING, SWAY])},
+    "a shaker": {"structure": rb.Shaker(motion=[SWING, SWAY, JERK])},
     "a base": {"structure": AT_REST, "base": [SWAY]},
     "loads": {
         "structure": AT_REST,

@@ -1,0 +1,155 @@
+"""Laws of pairs through the engine: each pair meets by its own, told or mixed; softening does what is told of it."""
+
+import math
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+from . import cases
+from .cases import Ball
+
+SHOT, BEAD = Ball(2e-3, material="steel"), Ball(3e-3, material="glass")
+HALF = 0.05
+DT = 2e-8
+LAWS: dict[str, tuple[float, float, float]] = {
+    "all": (0.9, 0.30, 0.04),
+    "walls": (0.8, 0.25, 0.03),
+    "bead and bead": (0.4, 0.60, 0.10),
+    "bead and wall": (0.5, 0.10, 0.02),
+    "shot and bead": (0.7, 0.15, 0.05),
+}
+"""Restitution, friction and rolling resistance."""
+
+
+def laws(name: str) -> dict[str, Any]:
+    """Return laws as fields."""
+    e, friction, rolling = LAWS[name]
+    return {"contact": rb.Tsuji(restitution=e), "friction": friction, "rolling": rolling}
+
+
+def entry(first: str, second: str, name: str) -> Any:
+    """Return the laws of one pair."""
+    return rb.PairLaws(between=(first, second), **laws(name))
+
+
+def meeting(first: Ball, second: Ball | None, **table: Any) -> tuple[Any, ...]:
+    """Return velocities and spins after an oblique impact of two balls, or of one and a wall, in a damper of both kinds."""
+    aside = (0.8 * HALF,) * 3
+    gap = 5.5 * DT * 2.0
+    if second is None:
+        places = [(-HALF + first.radius + gap, 0, 0)]
+        ways, spins = [(-2.0, 1.2, 0.3)], [(200, -300, 400)]
+    else:
+        places = [(0, 0, 0), (first.radius + second.radius + gap, 0, 0)]
+        ways, spins = [(1.0, 0.8, -0.2), (-1.0, -0.4, 0.1)], [(200, -300, 400), (-100, 250, 50)]
+    met = [ball for ball in (first, second) if ball is not None]
+    here = [*met, *(ball for ball in (SHOT, BEAD) if ball not in met)]
+    starts = [*zip(places, ways, spins, strict=True), *[(aside, (0, 0, 0), (0, 0, 0))] * (len(here) - len(met))]
+    rows = sorted(zip(here, starts, strict=True), key=lambda row: row[0] is BEAD)
+    fields = ("positions", "velocities", "spins")
+    packing = rb.Positions(**{field: [start[n] for _, start in rows] for n, field in enumerate(fields)})
+    species = [
+        rb.Particles(name=name, material=ball.material, radius=ball.radius, count=sum(one is ball for one in here))
+        for name, ball in (("shot", SHOT), ("bead", BEAD))
+    ]
+    damper = rb.ParticleDamper(
+        particles=species, cavity=rb.Box(size=(2 * HALF,) * 3), packing=packing, gravity=(0, 0, 0), **table
+    )
+    slowest = max(cases.contact_time(ball, None, 1.0) for ball in met)
+    result = cases.run(
+        rb.Case(
+            structure=rb.Fixed(),
+            damper=damper,
+            duration=4 * slowest,
+            output=rb.Output(times=[4 * slowest]),
+            method=rb.Dem(dt=DT),
+        )
+    ).arrays
+    assert result.counts["first_touches_wall"] == (second is None)
+    assert result.counts["first_touches_particle"] == (second is not None)
+    return result.particle_velocity, result.spin
+
+
+PAIRS = {
+    "shot and shot": (SHOT, SHOT, "all"),
+    "bead and bead": (BEAD, BEAD, "bead and bead"),
+    "shot and bead": (SHOT, BEAD, "shot and bead"),
+    "shot and wall": (SHOT, None, "walls"),
+    "bead and wall": (BEAD, None, "bead and wall"),
+}
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+def test_each_pair_meets_by_its_own_laws(pair: str) -> None:
+    """In a damper with laws of their own for pairs an impact goes as where these were the laws of all."""
+    first, second, own = PAIRS[pair]
+    table = meeting(
+        first,
+        second,
+        **laws("all"),
+        **{f"wall_{field}": law for field, law in laws("walls").items()},
+        pairs=[
+            entry("bead", "bead", "bead and bead"),
+            entry("wall", "bead", "bead and wall"),
+            entry("bead", "shot", "shot and bead"),
+        ],
+    )
+    for ours, alone in zip(table, meeting(first, second, **laws(own)), strict=True):
+        np.testing.assert_allclose(ours, alone, rtol=1e-12, atol=1e-12)
+    other = meeting(first, second, **laws("walls" if own == "all" else "all"))
+    assert np.abs(table[0] - other[0]).max() > 0.01
+
+
+def test_mixed_pairs_meet_by_the_mean_of_their_laws() -> None:
+    """With a mixing rule unlike balls meet as by the mean of what each kind has among its own."""
+    mixed = meeting(SHOT, BEAD, **laws("all"), mixing="geometric", pairs=[entry("bead", "bead", "bead and bead")])
+    e, friction, rolling = (math.sqrt(a * b) for a, b in zip(LAWS["all"], LAWS["bead and bead"], strict=True))
+    alone = meeting(SHOT, BEAD, contact=rb.Tsuji(restitution=e), friction=friction, rolling=rolling)
+    for ours, theirs in zip(mixed, alone, strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-12, atol=1e-12)
+
+
+SOFTENED: dict[str, Any] = {
+    "Hertz": rb.Tsuji(restitution=0.9),
+    "Jackson-Green": rb.Tsuji(restitution=rb.JacksonGreen()),
+    "Johnson": rb.Tsuji(restitution=rb.Johnson()),
+    "yielding": rb.Thornton(),
+    "linear": rb.Linear(stiffness=2e7, restitution=0.9),
+}
+
+
+@pytest.mark.parametrize("law", SOFTENED)
+def test_softening_does_what_is_told(law: str) -> None:
+    """Softened a hundredfold, a contact lasts and overlaps as many times as much as the run says, and rebounds as before."""
+    ball, speed = Ball(3e-3), 0.5
+    found = []
+    for softening in (1.0, 100.0):
+        time = cases.contact_time(ball, None, speed) * softening**0.4
+        case = cases.head_on(
+            ball,
+            None,
+            speed,
+            dt=time / 800,
+            phase=0.5,
+            lasts=6 * time,
+            contact=SOFTENED[law],
+            softening=softening,
+        )
+        result = cases.run(case)
+        dem, last = cases.dem_of(case)
+        touching = 0
+        for step in range(last + 1):
+            dem.run(step)
+            touching += dem.contacts(0)["first"].size > 0
+        overlap = result.arrays.figures["largest_overlap"]
+        found.append((touching * case.method.dt, overlap, cases.rebound(result)))
+    (time, overlap, rebound), (longer, larger, after) = found
+    told = re.search(r"last ([\d.]+) times as long, and overlap ([\d.]+) times as much", result.arrays.notes[1])
+    assert told is not None
+    assert longer / time == pytest.approx(float(told[1]), rel=0.01)
+    assert larger / overlap == pytest.approx(float(told[2]), rel=0.002)
+    assert after == pytest.approx(rebound, rel=1e-4)
