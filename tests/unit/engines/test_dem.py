@@ -389,6 +389,14 @@ def test_a_run_is_the_same_in_a_file(tmp_path: Path) -> None:
         _ = run.impacts
 
 
+def test_without_contacts_there_are_no_steps_in_them() -> None:
+    """The summary of a particle that nothing moves tells no steps in a contact."""
+    still = damper(particles=balls(1), gravity=(0, 0, 0))
+    told = str(simulate(still, structure=rb.Fixed(), duration=1e-3, output=rb.Output()).summary())
+    assert "steps in the shortest contact" in told
+    assert "inf" not in told
+
+
 def test_figures_are_drawn() -> None:
     """Motion and energy of a run with two cavities are drawn with a panel for each cavity."""
     run = simulate(damper(), damper(name="second", particles=balls(10)), duration=0.01)
