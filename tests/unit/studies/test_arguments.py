@@ -85,7 +85,9 @@ OWN: list[tuple[Any, tuple[Any, ...], str, Any]] = [
 ]
 
 
-@pytest.mark.parametrize(("study", "arguments", "name", "value"), OWN, ids=str)
+@pytest.mark.parametrize(
+    ("study", "arguments", "name", "value"), OWN, ids=[f"{row[0].__name__}-{row[2]}-{row[3]}" for row in OWN]
+)
 def test_each_study_refuses_its_own_by_name(study: Any, arguments: tuple[Any, ...], name: str, value: Any) -> None:
     """What only one kind of study has is looked at as in its file, with the name and the value of the argument."""
     with pytest.raises(rb.CaseError, match="^" + re.escape(f"{name} = {value!r}\n")):
