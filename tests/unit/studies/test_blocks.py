@@ -3,12 +3,13 @@
 import math
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rattlebox.studies.blocks import Blocks
 
 
+@settings(derandomize=True, deadline=None)
 @given(st.lists(st.integers(1, 8), max_size=4), st.integers(1, 60))
 def test_blocks_are_boxes_and_ranges_and_cover_all_variants(shape: list[int], size: int) -> None:
     """Every variant is in one block, which is no larger than asked, a box of the grid and a range of numbers."""
