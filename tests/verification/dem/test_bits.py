@@ -125,12 +125,11 @@ def test_teams_on_one_core_give_the_same_bits() -> None:
     assert len(set(told)) == 1
 
 
-def test_large_beds_give_the_same_bits() -> None:
-    """Beds beyond the caches, which take their memory from a store of their own, do not depend on threads or stops."""
+def large_bed(count: int, edge: float, *, mass: float, duration: float, rate: float) -> Any:
+    """Return soft spheres that fall in a cube on a structure that was kicked, of 40 kN/m a kilogram."""
     soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25)
-    count, edge = 21_000, 0.11
-    case = rb.Case(
-        structure=rb.SDOF(mass=5.0, stiffness=2e5, velocity=1.0),
+    return rb.Case(
+        structure=rb.SDOF(mass=mass, stiffness=4e4 * mass, velocity=1.0),
         damper=rb.ParticleDamper(
             particles=rb.Particles(material=soft, radius="1.5 mm", count=count),
             cavity=rb.Box(size=(edge, edge, edge)),
@@ -139,9 +138,15 @@ def test_large_beds_give_the_same_bits() -> None:
             packing=rb.Lattice(noise=0.9, seed=2),
             velocity=(0.5, 0.2, -1.0),
         ),
-        duration=0.008,
-        output=rb.Output(rate=1000.0),
+        duration=duration,
+        output=rb.Output(rate=rate),
     )
+
+
+def test_large_beds_give_the_same_bits() -> None:
+    """Beds beyond the caches, which take their memory from a store of their own, do not depend on threads or stops."""
+    count = 21_000
+    case = large_bed(count, 0.11, mass=5.0, duration=0.008, rate=1000.0)
     one, last = cases.dem_of(case)
     one.run(last // 2)
     kept = one.save()
@@ -161,23 +166,8 @@ def test_large_beds_give_the_same_bits() -> None:
 @pytest.mark.slow
 def test_a_million_spheres() -> None:
     """A million spheres that begin to pile up on a floor run as few do: the ledger closes, with less than 1 kB for each."""
-    soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25)
-    count, edge = 1_000_000, 0.32
-    run = rb.simulate(
-        rb.Case(
-            structure=rb.SDOF(mass=50.0, stiffness=2e6, velocity=1.0),
-            damper=rb.ParticleDamper(
-                particles=rb.Particles(material=soft, radius="1.5 mm", count=count),
-                cavity=rb.Box(size=(edge, edge, edge)),
-                contact=rb.Tsuji(restitution=0.7),
-                friction=rb.Mindlin(0.3),
-                packing=rb.Lattice(noise=0.9, seed=2),
-                velocity=(0.5, 0.2, -2.0),
-            ),
-            duration=0.0005,
-            output=rb.Output(rate=10_000.0),
-        )
-    )
+    count = 1_000_000
+    run = rb.simulate(large_bed(count, 0.32, mass=50.0, duration=0.001, rate=10_000.0))
     assert run.ok and run.closure < 0.01
     assert run.arrays.contacts[-1, 0].min() > 1000
     assert run.arrays.counts["memory_bytes"] < 1000 * count
