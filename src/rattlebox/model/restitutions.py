@@ -12,7 +12,7 @@ from .elementwise import less, pick, power, sqrt
 from .errors import Hint
 from .materials import AnyWall
 from .pairs import Pair, hardness
-from .units import SI, Modulus, PositiveVelocity, not_boolean
+from .units import SI, Modulus, PositiveVelocity, plain
 
 Coefficients = tuple[str, dict[str, Any]]
 _fraction = WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})
@@ -20,7 +20,7 @@ _fraction = WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})
 
 def _restitution(value: Any) -> float:
     try:
-        number = float(not_boolean(value))
+        number = float(plain(value))
     except (TypeError, ValueError, OverflowError):
         raise Hint("a number from 0 to 1 is needed", "0.8") from None
     if not 0 <= number <= 1:
@@ -207,6 +207,7 @@ class Johnson(Restitution):
 
 def as_restitution(value: Any) -> Any:
     """Let a bare number stand for Constant."""
+    value = value if isinstance(value, bool) else plain(value)
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return {"kind": "constant", "e": value}
     if isinstance(value, str):

@@ -320,6 +320,18 @@ def not_boolean(value: Any) -> Any:
     return value
 
 
+def plain(value: Any) -> Any:
+    """Return what is given for a plain number, with percentages such as "36 %" as parts of one.
+
+    Raises
+    ------
+    Hint
+        When it is true or false.
+    """
+    match = _NUMBER.match(value) if isinstance(value, str) else None
+    return float(match[1]) / 100 if match and match[2] == "%" else not_boolean(value)
+
+
 def _make(unit: str, check: Any = None) -> Any:
     read, *rest = quantity(unit)
     checks = [] if check is None else [BeforeValidator(check)]
@@ -344,5 +356,5 @@ PositiveFrequency = Annotated[float, *_make("Hz", _positive)]
 Modulus = Annotated[float, *_make("Pa", _positive)]
 Density = Annotated[float, *_make("kg/m^3", _positive)]
 Angle = Annotated[float, *_make("rad")]
-Number = Annotated[float, Field(allow_inf_nan=False), BeforeValidator(not_boolean)]
+Number = Annotated[float, Field(allow_inf_nan=False), BeforeValidator(plain)]
 Whole = Annotated[int, BeforeValidator(not_boolean)]

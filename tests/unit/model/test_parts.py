@@ -73,6 +73,16 @@ def test_percentages_are_no_angles() -> None:
         assert rb.Harmonic(amplitude=1.0, frequency=1.0, phase=phase).phase == pytest.approx(math.pi / 2, rel=1e-15)
 
 
+def test_percentages_are_parts_of_one() -> None:
+    """A plain number may be given in percent, with the same bits as its part of one."""
+    assert rb.Particles(material="steel", radius=0.001, fill_ratio="36%").fill_ratio == 0.36
+    assert rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio="1 %").damping_ratio == 0.01
+    assert rb.Mindlin("30 %").coefficient == 0.3
+    assert rb.Tsuji(restitution="75 %").restitution == rb.Tsuji(restitution=0.75).restitution
+    with pytest.raises(rb.CaseError, match="restitution = '120 %'"):
+        rb.Tsuji(restitution="120 %")
+
+
 def test_none_is_told_with_its_name() -> None:
     """None where a number is needed is refused with the name of the field."""
     for part in (lambda: rb.Mindlin(None), lambda: rb.TwoStep(dt_flight=None)):
