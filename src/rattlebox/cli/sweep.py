@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 
 from rattlebox.cli.show import statuses
-from rattlebox.model.errors import CaseError
+from rattlebox.model.errors import CaseError, Hint
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.studyfile import read_study
 
@@ -43,6 +43,8 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
         with _cluster(dask) as client:
             where = {"threads": None if client else workers} if client or workers else {}
             result = study.run(store=out, on="gpu" if gpu else client, **where)
+    except Hint as hint:
+        raise CaseError(f"{path}: {hint}") from None
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)
         sys.exit(130)

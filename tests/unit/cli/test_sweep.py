@@ -108,6 +108,21 @@ def test_study_of_which_nothing_is_done(study: Path, answer: Answer) -> None:
 
 
 @pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("measure = []", "there is no measure"),
+        ('measure = ["loss_per_cycle"]', "loss_per_cycle needs a harmonic load"),
+        ('measure = ["impacts"]\nskip = "9 s"', "skip = 9 s leaves nothing of the run to look at"),
+    ],
+)
+def test_what_does_not_fit_the_case_is_told_with_the_file(study: Path, answer: Answer, line: str, said: str) -> None:
+    """A study file that can be read but not run is named, as one that cannot be read is."""
+    study.write_text(STUDY.replace('measure = ["impacts", "impact_share"]', line))
+    code, _, message = answer("sweep", study)
+    assert (code, message.startswith(f"error: study.toml: {said}")) == (2, True), message
+
+
+@pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (("sweep", "nowhere.toml"), "there is no file nowhere.toml"),
