@@ -109,8 +109,17 @@ def _from_numpy(file: Path) -> Mapping[str, Any]:
     loaded = np.load(file, allow_pickle=False)
     if not isinstance(loaded, np.ndarray):
         with loaded:
-            return dict(loaded)
+            return dict(_members(loaded))
     return {"": loaded} if loaded.dtype.names is None else {name: loaded[name] for name in loaded.dtype.names}
+
+
+def _members(loaded: Any) -> Iterator[tuple[str, Any]]:
+    for name in loaded:
+        try:
+            yield name, loaded[name]
+        except ValueError as error:
+            if "Object arrays" not in str(error):
+                raise  # only these would need pickle; nothing else in the file is worse for them
 
 
 def _from_mat(file: Path) -> Mapping[str, Any]:

@@ -295,6 +295,13 @@ def test_a_mat_file_of_version_7_3(tmp_path: Path, part: type[rb.Record] | type[
         part.from_file(tmp_path / "new.mat")
 
 
+def test_python_objects_beside_numbers_are_left_alone(tmp_path: Path) -> None:
+    """An array of Python objects in a NPZ file does not keep the numbers beside it from being read."""
+    np.savez(tmp_path / "beam.npz", M=M, K=K, names=np.array(["foot", None], dtype=object))
+    modes = rb.Matrices.from_file(tmp_path / "beam.npz", points={"tip": 2}).modes()
+    assert modes.decay.shape == (3,)
+
+
 def test_pickles_are_not_opened(tmp_path: Path) -> None:
     """A NPY file of Python objects, which could run code when read, is refused."""
     np.save(tmp_path / "evil.npy", np.array([{"a": 1}], dtype=object), allow_pickle=True)
