@@ -112,11 +112,10 @@ def _by_decrement(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, Float
     t, x, cycle = _oscillation(time, values)
     size = np.abs(x)
     k = find_peaks(size, distance=max(1.0, 0.35 * cycle))[0]
-    # The vertex of the parabola through three samples.
-    left, middle, right = size[k - 1], size[k], size[k + 1]
-    bend = left - 2 * middle + right
-    shift = np.divide(0.5 * (left - right), bend, out=np.zeros(k.size), where=bend != 0)
-    times, peaks = t[k] + shift * step_of(t), middle - 0.25 * (left - right) * shift
+    # The vertex of the sinusoid through three samples.
+    sign, turn = np.sign(x[k]), 2 * np.pi / cycle
+    rise = sign * (x[k + 1] - x[k - 1]) / (2 * np.sin(turn))
+    times, peaks = t[k] + np.arctan2(rise, size[k]) / turn * step_of(t), np.hypot(rise, size[k])
     if k.size < 3:
         raise ValueError(f"values have {k.size} extremes, but the decrement needs at least 3")
     decrement = np.log(peaks[:-2] / peaks[2:])

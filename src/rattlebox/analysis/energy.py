@@ -120,9 +120,11 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
         return complex(2 * frequency / cycles * trapezoid(np.interp(kept, t, x) * turn, kept))
 
     v_amplitude = amplitude(v)
-    if v_amplitude == 0:
+    if not abs(v_amplitude) > 1e-9 * np.abs(v).max():
         raise ValueError(f"velocity has no part at {frequency:g} Hz")
     power = amplitude(f).conjugate() * v_amplitude / 2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        loss_factor = float(np.divide(power.real, abs(power.imag)))
     mass = -2 * power.imag / (2 * np.pi * frequency * abs(v_amplitude) ** 2)
 
     def scalar(value: float, units: str, long_name: str) -> Any:
@@ -133,7 +135,7 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
             "active_power": scalar(power.real, "W", "power taken up"),
             "reactive_power": scalar(power.imag, "W", "reactive power"),
             "effective_mass": scalar(mass, "kg", "effective mass"),
-            "loss_factor": scalar(float(np.divide(power.real, abs(power.imag))), "1", "loss factor"),
+            "loss_factor": scalar(loss_factor, "1", "loss factor"),
         },
         attrs={"frequency": frequency, "cycles": int(cycles)},
     )

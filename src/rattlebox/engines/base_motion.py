@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -57,13 +57,16 @@ def base_motion(signal: Signal, time: NDArray[np.float64]) -> NDArray[np.float64
     h = np.diff(t)
     v_knots = np.concatenate([[0.0], np.cumsum(h * (a[1:] + a[:-1]) / 2)])
     u_knots = np.concatenate([[0.0], np.cumsum(h * v_knots[:-1] + h**2 * (2 * a[:-1] + a[1:]) / 6)])
-    k = np.clip(np.searchsorted(t, time, side="right") - 1, 0, len(t) - 2)
-    s = time - t[k]
-    slope = (a[k + 1] - a[k]) / h[k]
-    v = v_knots[k] + s * (a[k] + s * slope / 2)
-    u = u_knots[k] + s * (v_knots[k] + s * (a[k] / 2 + s * slope / 6))
-    at_zero = np.searchsorted(t, 0.0, side="right") - 1
-    if t[max(at_zero, 0)] != 0.0:
-        v0, u0 = np.interp(0.0, t, v_knots), np.interp(0.0, t, u_knots)
+
+    def moved(at: Any) -> tuple[Any, Any]:
+        k = np.clip(np.searchsorted(t, at, side="right") - 1, 0, len(t) - 2)
+        s = at - t[k]
+        slope = (a[k + 1] - a[k]) / h[k]
+        v = v_knots[k] + s * (a[k] + s * slope / 2)
+        return v, u_knots[k] + s * (v_knots[k] + s * (a[k] / 2 + s * slope / 6))
+
+    v, u = moved(time)
+    if t[0] < 0:  # what went before has not moved the base
+        v0, u0 = moved(0.0)
         v, u = v - v0, u - u0 - v0 * time
     return np.array([u, v, signal.evaluate(time)])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -92,7 +92,7 @@ def _path(path: str | os.PathLike[str] | None) -> Path | None:
     return None if path is None else Path(path)
 
 
-def simulate_many(cases: Sequence[Case], *, threads: int | None = None, on: str | None = None) -> list[Run]:
+def simulate_many(cases: Iterable[Case], *, threads: int | None = None, on: str | None = None) -> list[Run]:
     """Run several cases, each on one thread.
 
     Parameters
@@ -116,6 +116,7 @@ def simulate_many(cases: Sequence[Case], *, threads: int | None = None, on: str 
     """
     if isinstance(cases, Case):
         raise Hint("a list of cases is needed, not one case", "simulate(case)")
+    cases = list(cases)
     for case in cases:
         _check_is_case(case)
     if on is not None and cases and all(case.particle_dampers for case in cases):

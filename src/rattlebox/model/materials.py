@@ -53,7 +53,6 @@ class Material(Part):
         return value
 
 
-@cache
 def materials() -> dict[str, Material]:
     """Return the library, by name.
 
@@ -62,6 +61,11 @@ def materials() -> dict[str, Material]:
     dict of str to Material
         In the order of the file; each material names its source.
     """
+    return dict(_library())
+
+
+@cache
+def _library() -> dict[str, Material]:
     text = resources.files("rattlebox.model").joinpath("materials.toml").read_text(encoding="utf-8")
     return {name: Material(name=name, **values) for name, values in tomllib.loads(text).items()}
 
@@ -69,7 +73,7 @@ def materials() -> dict[str, Material]:
 def find_material(value: Any, info: ValidationInfo) -> Any:
     """Look a name up in the library and among the case file's own; anything else passes."""
     if isinstance(value, str):
-        library = materials() | (info.context or {})
+        library = _library() | (info.context or {})
         if value not in library:
             raise Hint("no material of that name", nearest(value, library))
         return library[value]

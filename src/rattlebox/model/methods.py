@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -143,13 +144,15 @@ def _times(value: Any) -> Any:
 
 
 def _count_or_times(value: Any) -> Any:
-    if isinstance(value, (bool, str, float)):
+    if isinstance(value, (bool, np.bool_, str, float, np.floating)):
         raise Hint("a number of snapshots is needed, or a list of times", "snapshots = 100")
-    if not isinstance(value, int):
+    try:
+        count = operator.index(value)
+    except TypeError:
         return _times(value)
-    if value < 2:
+    if count < 2:
         raise Hint("two snapshots are the least: at 0 and at the end", "snapshots = 100")
-    return value
+    return count
 
 
 class Output(Part):

@@ -98,7 +98,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     Hint
         When there is no finite number, the unit is unknown, or the dimension is another.
     """
-    if isinstance(value, bool):
+    if isinstance(value, (bool, np.bool_, bytes)):
         raise Hint(_wanted(units), _example(units))
     if isinstance(value, (int, float)):
         try:

@@ -158,6 +158,9 @@ class ImpactArrays(_Comparable):
     def __len__(self) -> int:
         return int(self.time.size)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_rebuild_impacts, ({f.name: getattr(self, f.name) for f in fields(self)},))
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RunArrays(_Comparable):
@@ -320,3 +323,7 @@ class RunArrays(_Comparable):
 
 def _rebuild(values: dict[str, Any]) -> RunArrays:
     return RunArrays(**values)
+
+
+def _rebuild_impacts(values: dict[str, Any]) -> ImpactArrays:
+    return ImpactArrays(**values)

@@ -45,6 +45,7 @@ def whole(path: Path) -> Iterator[Path]:
     OSError
         When the file cannot be written; an earlier one is then as it was.
     """
+    path = path.resolve() if path.is_symlink() else path  # a link stays one
     needs_folder(path)
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
     os.close(handle)

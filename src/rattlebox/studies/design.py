@@ -21,14 +21,16 @@ from rattlebox.model.paths import replaced
 from .axes import Design, labels, materials_in
 from .bar import telling
 from .extras import extra
+from .fingerprint import fingerprint
 from .inputs import described
+from .measures import check_names
 from .members import members
 from .parameters import Parameter
 from .runner import Stopped
 from .store import JOURNAL, keep_map, taken
 from .studytables import checked
 from .sweep import known, sweep
-from .task import SweepTask, fingerprint
+from .task import SweepTask
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -262,6 +264,7 @@ class _Search:
             new = Parameter(self.case, path, "parameters", materials_in(self.case))
             new.check_beside(together)
             together.append(new)
+        check_names(goal.measure for goal in self.goals)
         measures = known([goal.measure for goal in self.measured])
         task = SweepTask(self.case, self.members, measures=measures, **self.options)
         assert task.look
@@ -302,11 +305,14 @@ class _Search:
         values = {parameter.path: parameter.propose(trial) for parameter in self.parameters}
         found, mass = np.full(len(self.measured), np.nan), np.nan
         missing = 1.0
+        fitting: Case | None = None
         with suppress(CaseError):  # the parameters do not fit together
             case = replaced(self.case, values)
             mass = sum(ball.weight for damper in case.impact_dampers for ball in damper.balls)
-            if self.limit is None or mass <= self.limit:
-                found, missing = self.judge(case)
+            Design.of(case, self.axes_of(case))
+            fitting = case
+        if fitting and (self.limit is None or mass <= self.limit):
+            found, missing = self.judge(fitting)
         excess = 0.0 if self.limit is None or not mass > self.limit else mass / self.limit - 1
         trial.set_constraint("missing", missing)
         trial.set_constraint(_MASS, excess)

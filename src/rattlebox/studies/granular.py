@@ -151,6 +151,10 @@ class Granular(SweepTask):
             raise Hint("cycles need a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
         if self.cycles is None and self.skip >= self.case.duration:
             raise Hint(f"skip = {self.skip:.6g} s leaves nothing of the run to look at", "a longer duration")
+        window = self.case.duration - self.skip
+        cyclic = [name for name in self.named if MEASURES[name].cyclic]
+        if self.cycles is None and cyclic and window * _frequency(self.case) < 1 - 1e-9:
+            raise Hint(f"skip = {self.skip:.6g} s leaves no whole cycle for {cyclic[0]} to look at", "a longer duration")
         points = self.case.modes.lines()
         if self.point is not None and self.point not in points:
             raise Hint(f"there is no point {self.point!r}", " or ".join(points) or "leave it out", ["point"])
@@ -165,7 +169,8 @@ class Granular(SweepTask):
         row: dict[str, float] = {"status": _NUMBERS[run.status]}
         if run.ok:
             seen = self._seen_in(run, case)
-            row |= {name: _FOUND[name](seen) for name in self.named}
+            whole = not seen.length * seen.frequency < 1 - 1e-9
+            row |= {name: _FOUND[name](seen) if whole or not MEASURES[name].cyclic else np.nan for name in self.named}
             row |= self.own_of(run, index)
         return row
 
@@ -193,7 +198,8 @@ class Granular(SweepTask):
         if self.cycles is not None:
             period = 1 / _frequency(case)
             duration, skip = sum(self.cycles) * period, self.cycles[0] * period
-            samples = samples or 1 + math.ceil(64 * self.cycles[1])
+            each = 64 if samples is None else max(1, math.ceil((samples - 1) / self.cycles[1]))
+            samples = 1 + each * self.cycles[1]  # of which one is where they begin
         if samples is None:
             return case
         output = Output(rate=(samples - 1) / (duration - skip))
@@ -213,13 +219,21 @@ class Granular(SweepTask):
 
 
 def since(run: GranularRun, start: float) -> GranularRun:
-    """Return a run from a time on [s]; work and losses count from its first sample."""
+    """Return a run from a time on [s], between two samples on the line; work and losses count from there."""
     arrays = run.arrays
-    first = int(np.searchsorted(arrays.time, start * (1 - 1e-9)))
-    cut: dict[str, Any] = {"time": arrays.time[first:]}
+    times = arrays.time
+    first = int(np.searchsorted(times, start * (1 - 1e-9)))
+    between = 0 < first < len(times) and times[first] > start * (1 + 1e-9)
+    part = (start - times[first - 1]) / (times[first] - times[first - 1]) if between else 0.0
+    cut: dict[str, Any] = {"time": np.concatenate([[start], times[first:]]) if between else times[first:]}
     for variable in arrays.form.stored:
         if variable.dims[0] == "time":
-            values = getattr(arrays, variable.name)[first:]
+            values = getattr(arrays, variable.name)
+            if between:
+                entry = values[first - 1] + part * (values[first] - values[first - 1])
+                values = np.concatenate([entry[None].astype(values.dtype), values[first:]])
+            else:
+                values = values[first:]
             cut[variable.name] = values - values[0] if variable.name in _SUMS else values
     return GranularRun(replace(arrays, **cut), run.case_toml, run.provenance) if first else run
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from typing import Any, NamedTuple
 
 from rattlebox.model.errors import Hint
@@ -57,19 +58,35 @@ MEASURES: dict[str, Measure] = {
 }
 
 
+_OF_VARIANTS = {"status", "state", "displacement", "velocity", "ball_place", "ball_speed"}
+_OF_IMPACTS = {"last_time", "last_approach_speed", "last_contact"}
+_OF_DESIGNS = {"trial", "front", "case", "missing", "feasible", "added_mass"}
+TAKEN = _OF_VARIANTS | _OF_IMPACTS | _OF_DESIGNS
+"""Names in studies that are no measure's."""
+
+
 def name_of(measure: Any) -> str:
     """Return what a measure is called, which may be a function of a Run."""
-    return measure if isinstance(measure, str) else getattr(measure, "__name__", repr(measure))
+    if isinstance(measure, partial):
+        measure = measure.func
+    return measure if isinstance(measure, str) else getattr(measure, "__name__", type(measure).__name__)
 
 
 def check_names(measures: Iterable[Any]) -> None:
-    """Refuse measures of which two have one name.
+    """Refuse measures of which two have one name, and functions that are called like another part of a study.
 
     Raises
     ------
     Hint
         With the name.
     """
+    measures = list(measures)
+    for measure in measures:
+        if not isinstance(measure, str) and name_of(measure) in TAKEN:
+            raise Hint(
+                f"a function cannot be called {name_of(measure)}: studies hold something else by that name",
+                "another name",
+            )
     names = [name_of(measure) for measure in measures]
     for name in names:
         if names.count(name) > 1:

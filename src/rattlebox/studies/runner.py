@@ -23,7 +23,7 @@ from rattlebox.model.errors import CaseError, Hint
 
 from .bar import telling
 from .blocks import Blocks
-from .store import Memory, Output, Plan, Store
+from .store import IN_STORE, Memory, Output, Plan, Store
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -190,6 +190,8 @@ def run_task(
         about={**task.describe(), "design": dict(design.describe()), "version": __version__, "core": bits},
     )
 
+    _check_names(plan)
+
     def cut() -> Blocks:
         if card:
             return Blocks.of(plan.shape, card.side_by_side(_held(card.size, plan)))
@@ -238,6 +240,16 @@ def _core() -> str:
     from rattlebox.engines.core import instructions
 
     return instructions()
+
+
+def _check_names(plan: Plan) -> None:
+    inner = {name for extra, _, _ in plan.outputs.values() for name, _ in extra} | {*IN_STORE}
+    for name in plan.dims:
+        if name in inner or name in plan.outputs:
+            raise Hint(f"an axis cannot be called {name}: the study holds more by that name", "another name")
+    for name in plan.outputs:
+        if name in inner:
+            raise Hint(f"a function cannot be called {name}: the study holds more by that name", "another name")
 
 
 def _on_card(task: Task, on: str) -> CardTask:

@@ -37,7 +37,8 @@ Output = tuple[tuple[tuple[str, int], ...], Any, Mapping[str, Any]]
 JOURNAL = "trials.journal"
 """In which a design, which has no runs of its own, keeps its trials."""
 
-_PROGRESS, _MAP = "progress", "map"
+_PROGRESS, _MAP = IN_STORE = "progress", "map"
+"""Groups in a store beside the outputs."""
 
 
 @dataclass(frozen=True)

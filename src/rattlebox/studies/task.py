@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from hashlib import sha256
-from inspect import getsource
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +17,7 @@ from rattlebox.engines.pack import Batch, Packed, pack_parts
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
 
+from .fingerprint import fingerprint
 from .inputs import described
 from .measures import MEASURES, name_of
 
@@ -358,11 +357,3 @@ def _period(packed: Packed) -> Any:
         if load["kind"] == "harmonic":
             return 2 * np.pi / np.asarray(load["frequency"])
     return None
-
-
-def fingerprint(function: UserMeasure) -> str:
-    """Return what tells a function from others of its name."""
-    try:
-        return sha256(getsource(function).encode()).hexdigest()[:12]
-    except (OSError, TypeError):
-        return ""
