@@ -119,3 +119,12 @@ def test_bad_method_and_dead_signal_are_refused():
         damping_ratio(TIME, np.where(TIME < 6.0, free_decay(0.01), 0.0))
     with pytest.raises(ValueError, match="extremes"):
         damping_ratio(TIME, np.where(TIME < 0.1, free_decay(0.01), 0.0), method="decrement")
+
+
+@pytest.mark.parametrize("samples", [5.2, 7.3, 10.3])
+def test_decrement_of_few_samples(samples):
+    """The decrement of a light damping is right to an eighth where a cycle has but five samples, and better above."""
+    time = np.arange(0, 20, 0.1 / samples)
+    found = damping_ratio(time, free_decay(1e-3, time), method="decrement")
+    np.testing.assert_allclose(found.damping_ratio, 1e-3, atol=1e-3 / (8 if samples < 7 else 16))
+    np.testing.assert_allclose(found.amplitude, np.exp(-1e-3 * OMEGA * found.time), rtol=5e-3)

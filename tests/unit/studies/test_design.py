@@ -325,3 +325,13 @@ def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     heaviest = rb.Case.from_file(tmp_path / "fastest.toml")
     assert heaviest.dampers[0].gap == pytest.approx(0.85e-3, rel=0.2)
     assert (tmp_path / "design.png").stat().st_size > 5000
+
+
+def test_a_measure_that_gives_no_number_is_told() -> None:
+    """What goes wrong in the runs of a design is told, and is no trial that does not fit."""
+
+    def words(run: rb.Run) -> Any:
+        return "many"
+
+    with pytest.raises(rb.CaseError, match="measure words: of variant 0 it is str"):
+        rb.design(struck(), BOUNDS, words, trials=2, progress=False)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.analysis import shaken_cavity
 from rattlebox.engines import dem_settle
 from rattlebox.results import GranularRun
 from rattlebox.studies import granular
@@ -83,6 +84,37 @@ def test_variants_are_runs() -> None:
         assert float(one.settling_time) == settled < 0.08
     again = rb.sweep(struck(), axes, [*names, turned], threads=1, progress=False)
     assert again.equals(found)
+
+
+@pytest.mark.parametrize("samples", [128, 200, 333])
+def test_windows_hold_whole_cycles(samples: int) -> None:
+    """However many samples are asked for, measures look at just the cycles that are."""
+
+    def in_two_cycles(run: GranularRun) -> float:
+        found = shaken_cavity(run, frequency=50.0, after=0.02 - 1e-12)
+        assert found.attrs["cycles"] == 2
+        return float(found.effective_mass[0])
+
+    found = rb.sweep(
+        shaken(), {FREQUENCY: ["50 Hz"]}, ["effective_mass", in_two_cycles], cycles=(1, 2), samples=samples
+    )
+    assert found.effective_mass.item() == pytest.approx(found.in_two_cycles.item(), rel=1e-9)
+
+
+def test_windows_begin_between_samples() -> None:
+    """A time to skip that is no sample's is where the window begins, with what the line between its neighbours says."""
+    run = rb.simulate(shaken(duration="0.02 s", output=rb.Output(rate=1000)))
+    window = granular.since(run, 0.0104).arrays
+    assert window.time[0] == 0.0104
+    assert window.time[1] == run.arrays.time[11]
+    between = 0.6 * run.arrays.cavity_displacement[10] + 0.4 * run.arrays.cavity_displacement[11]
+    np.testing.assert_allclose(window.cavity_displacement[0], between, rtol=1e-12)
+
+
+def test_too_little_for_a_cycle_is_told_before_anything_runs() -> None:
+    """Measures of a cycle are refused where what is left after the time to skip holds none."""
+    with pytest.raises(rb.CaseError, match="leaves no whole cycle for loss_factor"):
+        rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, "loss_factor", skip="0.055 s")
 
 
 def test_windows_leave_out_what_is_before() -> None:

@@ -1,0 +1,22 @@
+"""The motion of the base that a signal of acceleration means."""
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.engines.base_motion import base_motion
+
+
+@pytest.mark.parametrize(
+    ("times", "values"),
+    [([-1.0, 1.0], [0.0, 2.0]), ([-1.0, 0.0, 1.0], [3.0, 1.0, -2.0]), ([-2.0, -0.3, 0.4, 1.0], [1.0, -4.0, 2.0, 0.5])],
+)
+def test_records_that_begin_before_the_run(times: list[float], values: list[float]) -> None:
+    """A base is at rest at 0 whatever its record held before, and then moves as its acceleration says, integrated twice."""
+    fine = np.linspace(0.0, 1.0, 200_001)
+    displacement, velocity, acceleration = base_motion(rb.Record(times=times, values=values, unit="m/s^2"), fine)
+    np.testing.assert_allclose(acceleration, np.interp(fine, times, values), atol=1e-12)
+    step = np.diff(fine)
+    np.testing.assert_allclose(velocity[1:], np.cumsum(step * (acceleration[1:] + acceleration[:-1]) / 2), atol=1e-9)
+    np.testing.assert_allclose(displacement[1:], np.cumsum(step * (velocity[1:] + velocity[:-1]) / 2), atol=1e-9)
+    assert displacement[0] == velocity[0] == 0
