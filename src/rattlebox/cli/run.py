@@ -82,20 +82,20 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
         if run.status == "interrupted" and case.particle_dampers:
             typer.echo(run.message, err=True)
             sys.exit(STOPPED)
-        console = Console()
-        console.print(run.summary())
         if case.output.snapshots:
             written.append("run.vtkhdf")
         for name in _write(run, out, csv=csv, mat=mat, figures=figures):
             written.append(name)
+        if run.status in ("finished", "ledger_open"):
+            checkpoint.unlink(missing_ok=True)
     except Hint as hint:
         raise CaseError(f"{path}: {hint}") from None
     except KeyboardInterrupt:
         typer.echo(f"stopped; {_kept(checkpoint, out, written)}", err=True)
         sys.exit(STOPPED)
+    console = Console()  # last, since who reads may have gone
+    console.print(run.summary())
     console.print(f"written to {out}: {', '.join(written)}")
-    if run.status in ("finished", "ledger_open"):
-        checkpoint.unlink(missing_ok=True)
     if not run.ok:
         told = Console(stderr=True, highlight=False, soft_wrap=True)
         told.print(f"[bold]{run.status}[/bold]: {run.message}")

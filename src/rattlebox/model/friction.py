@@ -10,7 +10,7 @@ from .base import AlsoTakes, Part
 from .errors import Hint
 from .materials import Material
 from .pairs import Pair
-from .units import LARGEST, Number, PositiveStiffness
+from .units import LARGEST, SI, Number, PositiveStiffness, plain
 
 NotNegative = Annotated[Number, Field(ge=0, le=LARGEST)]
 
@@ -131,20 +131,29 @@ class Rolling(Part):
         return {"rolling": self.coefficient, "rolling_stiffness": self.stiffness, "rolling_damping": self.damping}
 
 
-def _mindlin(value: Any) -> Any:
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return {"kind": "mindlin", "coefficient": value}
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _read(value: Any, table: str) -> Any:
+    value = value if isinstance(value, bool) else plain(value)
+    if isinstance(value, (str, list)):
+        raise Hint("a number is needed, or a table", f"0.3, or {table}")
     return value
+
+
+def _mindlin(value: Any) -> Any:
+    value = _read(value, '{ kind = "mindlin", coefficient = 0.3 }')
+    return {"kind": "mindlin", "coefficient": value} if _is_number(value) else value
 
 
 def _rolling(value: Any) -> Any:
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return {"coefficient": value}
-    return value
+    value = _read(value, "{ coefficient = 0.3 }")
+    return {"coefficient": value} if _is_number(value) else value
 
 
 _number = AlsoTakes({"type": "number", "minimum": 0})
 AnyFriction = Annotated[
-    Annotated[Mindlin | LinearSpring, Field(discriminator="kind")], BeforeValidator(_mindlin), _number
+    Annotated[Mindlin | LinearSpring, Field(discriminator="kind")], SI("1"), BeforeValidator(_mindlin), _number
 ]
-AnyRolling = Annotated[Rolling, BeforeValidator(_rolling), _number]
+AnyRolling = Annotated[Rolling, SI("1"), BeforeValidator(_rolling), _number]

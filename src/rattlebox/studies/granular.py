@@ -154,7 +154,9 @@ class Granular(SweepTask):
         window = self.case.duration - self.skip
         cyclic = [name for name in self.named if MEASURES[name].cyclic]
         if self.cycles is None and cyclic and window * _frequency(self.case) < 1 - 1e-9:
-            raise Hint(f"skip = {self.skip:.6g} s leaves no whole cycle for {cyclic[0]} to look at", "a longer duration")
+            raise Hint(
+                f"skip = {self.skip:.6g} s leaves no whole cycle for {cyclic[0]} to look at", "a longer duration"
+            )
         points = self.case.modes.lines()
         if self.point is not None and self.point not in points:
             raise Hint(f"there is no point {self.point!r}", " or ".join(points) or "leave it out", ["point"])

@@ -20,7 +20,7 @@ from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, get_field, place_of, unit_of
 from rattlebox.model.restitutions import Constant
 from rattlebox.model.signals import Signal
-from rattlebox.model.units import parse
+from rattlebox.model.units import parse, plain
 
 from .designs import Spaced
 
@@ -125,6 +125,9 @@ class Parameter:
             (result,) = result
         if isinstance(result, Constant) and result.maximum == 1:
             result = result.e
+        bare = None if isinstance(value, bool) else plain(value)
+        if isinstance(result, Part) and isinstance(bare, Real):  # which stands for the part
+            result = bare
         if isinstance(result, str) and self.is_start:
             return parse(result, ("m",))[0], "m"
         if isinstance(result, bool) or not isinstance(result, Real):

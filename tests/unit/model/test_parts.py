@@ -79,6 +79,9 @@ def test_percentages_are_parts_of_one() -> None:
     assert rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio="1 %").damping_ratio == 0.01
     assert rb.Mindlin("30 %").coefficient == 0.3
     assert rb.Tsuji(restitution="75 %").restitution == rb.Tsuji(restitution=0.75).restitution
+    box = {"particles": rb.Particles(material="steel", radius=0.001, count=1), "cavity": rb.Box(size=(0.1, 0.1, 0.1))}
+    damper = rb.ParticleDamper(**box, contact=rb.Tsuji(restitution=1), friction="30 %", rolling="1 %")
+    assert (damper.friction, damper.rolling) == (rb.Mindlin(0.3), rb.Rolling(0.01))
     with pytest.raises(rb.CaseError, match="restitution = '120 %'"):
         rb.Tsuji(restitution="120 %")
 

@@ -101,6 +101,18 @@ def test_windows_hold_whole_cycles(samples: int) -> None:
     assert found.effective_mass.item() == pytest.approx(found.in_two_cycles.item(), rel=1e-9)
 
 
+def test_friction_is_a_number_along_an_axis() -> None:
+    """Friction that is given as a number is one in axes and random designs, with the runs that its coefficient gives."""
+    spread = rb.linspace(0.1, 0.5, 3)
+    found = rb.sweep(shaken(), {"damper.friction": spread}, "impact_loss")
+    same = rb.sweep(shaken(), {"damper.friction.coefficient": spread}, "impact_loss")
+    np.testing.assert_allclose(found["damper.friction"], [0.1, 0.3, 0.5], rtol=1e-15)
+    np.testing.assert_array_equal(found.impact_loss, same.impact_loss)
+    bounds = rb.random_design({"damper.friction": (0.1, 0.5), "damper.rolling": (0.01, 0.02)}, 4, seed=1)
+    drawn = rb.sweep(shaken(dampers=[box(rolling=0.01)]), bounds, "impact_loss")
+    assert len({*drawn["damper.friction"].values.tolist()}) == len({*drawn["damper.rolling"].values.tolist()}) == 4
+
+
 def test_windows_begin_between_samples() -> None:
     """A time to skip that is no sample's is where the window begins, with what the line between its neighbours says."""
     run = rb.simulate(shaken(duration="0.02 s", output=rb.Output(rate=1000)))
