@@ -24,10 +24,14 @@ def fingerprint(function: Callable[..., Any]) -> str:
     return _Digest(function).hexdigest()
 
 
+_PLAIN = (str, bytes, bool, int, float, complex, type(None))
+
+
 class _Digest:
     def __init__(self, function: Any) -> None:
         self._sum = sha256()
-        self._told: list[Any] = []
+        self._told: list[Any] = []  # functions and types
+        self._within: list[Any] = []  # other things, of which a part is being told
         of = function
         while isinstance(of, partial):
             of = of.func
@@ -43,9 +47,20 @@ class _Digest:
             self._sum.update(b"%d " % len(text) + text)
 
     def _tell(self, value: Any) -> None:
-        if any(value is told for told in self._told):
-            return
-        self._told.append(value)
+        if isinstance(value, _PLAIN):
+            return self._say(repr(value))
+        known = [number for number, told in enumerate([*self._told, *self._within]) if told is value]
+        if known:  # a function that calls itself, a list that holds itself
+            return self._say("as", known[0])
+        if isinstance(value, (FunctionType, type)):
+            self._told.append(value)
+            return self._tell_inside(value)
+        self._within.append(value)
+        self._tell_inside(value)
+        self._within.pop()
+        return None
+
+    def _tell_inside(self, value: Any) -> None:
         if isinstance(value, (FunctionType, type)) and _package(value) != self._package:
             self._say(value.__module__, value.__qualname__)
         elif isinstance(value, FunctionType):

@@ -69,6 +69,7 @@ def made(text: str) -> Callable[[Any], float]:
         (Above(1e-3), Above(1e-4)),
         (made("1.0"), made("2.0")),
         (partial(max, 1.0), partial(max, 2.0)),
+        (partial(max, (1, 2, 1)), partial(max, (1, 2, 2))),
         (partial(above(1e-3)), partial(above(1e-4))),
         (above(np.arange(2000.0)), above(np.arange(2000.0) * 2)),  # type: ignore[arg-type]
     ],
@@ -76,6 +77,16 @@ def made(text: str) -> Callable[[Any], float]:
 def test_functions_differ_by_what_they_take_along(one: Any, other: Any) -> None:
     """A function is another one when what it takes from a closure, an object or a partial is, or its unwritten text."""
     assert fingerprint(one) == fingerprint(one) != fingerprint(other)
+
+
+def test_equal_functions_are_one() -> None:
+    """Functions that are made anew from equal values are the same, whichever objects hold these."""
+    for make in (
+        lambda: above(float("0.001")),
+        lambda: Above(float("0.001")),
+        lambda: partial(max, [1000, int("1000")]),
+    ):
+        assert fingerprint(make()) == fingerprint(make())
 
 
 def test_functions_differ_by_their_modules_values(monkeypatch: pytest.MonkeyPatch) -> None:
