@@ -397,6 +397,9 @@ public:
         account(now, ledger);
     }
 
+    // The phase at which it opens: past it there is no overlap to take a root of.
+    real last_psi() const { return grid_.end; }
+
     // The phase at a time after first touch, as good as the clock between its nodes.
     real psi_at(real time) const {
         const auto& rule = grid_.rule();

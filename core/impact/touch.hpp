@@ -72,7 +72,7 @@ protected:
             now = sampler_.end();
             const real late = t - state_.t - now.time;
             if (std::fabs(late) <= 2 * epsilon * t) break;
-            psi = std::fmax(psi + late * sampler_.turning(now), 0.5 * psi);
+            psi = std::clamp(psi + late * sampler_.turning(now), 0.5 * psi, lone_.last_psi());
         }
         sampler_.finish(now, at, sampled_);
         clear_contact_samples();

@@ -195,6 +195,8 @@ def complaints(case: rb.Case) -> list[str]:
         found.append("contact steps without events have spent the budget")
     if run.status != "not_finite":
         found += [f"{name} is not finite" for name in strange(a)]
+    elif np.any(np.diff(np.isfinite(a.relative_position).all(axis=1).astype(int)) > 0):
+        found.append("the motion is finite again after it was not")
     ledger = run.ledger
     energy = float(
         np.max(np.abs(ledger.motion)) + np.max(np.abs(ledger.work)) + np.max(np.abs(ledger.gravity - ledger.gravity[0]))
