@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 ROUNDS = 5000
 SWELL = 2e-3  # how much larger particles are made while they are pushed apart, so that in the end none touch
-GROWN = 2e-4  # the same while they fall
+GROWN = 5e-6  # the same while they fall: twice that are the gaps of the bed, less than its weight closes
 SINK = 0.1  # overlap over radius at the largest speed of the fall; it is two hundredths of it under the own weight
-LIGHTER = (0.5, 0.25, 0.12, 0.06, 0.03, 0.015, 0.008, 0.004, 0.002, 0.001)  # parts of the weight, one after the other
+LIGHTER = tuple(0.25**n for n in range(1, 13))  # parts of the weight, one after the other
 CALM = 3  # times twenty contact times under each
 RESTITUTION = 0.1
 STEPS = 20  # in a contact
