@@ -103,6 +103,12 @@ def test_the_good_case_is_accepted() -> None:
         ('amplitude = "5 kN"', 'amplitude = "5 kN"\npoint = "tip"', ["no point 'tip'", "mass"]),
         ('duration = "5 s"', 'duration = "5 s"\nseed = 1.5', ["seed", "integer"]),
         ('duration = "5 s"', 'duration = "5 s', ["not TOML", "line 1"]),
+        ('duration = "5 s"', "duration = 5,5", ["not TOML", "try: a point before decimals: duration = 5.5"]),
+        ('gap = "0.4 mm"', 'gap = "0,4 mm"', ["gap", "decimals follow a point", 'try: "0.4 mm"']),
+        ('amplitude = "5 kN"', 'amplitude = "5,000 N"', ["amplitude", 'try: "5.000 N" or "5000 N"']),
+        ('gap = "0.4 mm"\n', "", ["damper", "gap or cavity_length is needed", 'try: gap = "0.4 mm"']),
+        ("restitution = 0.9", 'ending = "zero_force"', ["damper.contact", "restitution or alpha is needed"]),
+        ('contact = { kind = "tsuji", restitution = 0.9 }', "", ["contact", 'try: contact = { kind = "tsuji", ... }']),
     ],
 )
 def test_one_wrong_thing_is_named(old: str, new: str, said: list[str]) -> None:

@@ -23,6 +23,7 @@ from rattlebox.engines.dem_step import Step, choose_step, expected_speeds, insta
 from rattlebox.engines.pack import pack, restitution
 from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
 from rattlebox.model.contacts import Linear
+from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import CaseError, Hint, at
 from rattlebox.model.in_space import direction_of_base, inertia_along
 from rattlebox.model.methods import Dem, EventDriven, Output
@@ -503,7 +504,7 @@ def _arrays(
             "memory_bytes": counters["memory_bytes"],
         },
         figures=figures,
-        notes=tuple(notes),
+        notes=(*notes, *doubts(case)),
         wall_time=journey.seconds,
     )
 

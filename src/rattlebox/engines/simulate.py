@@ -14,6 +14,7 @@ from rattlebox.engines.core import core
 from rattlebox.engines.pack import pack
 from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
 from rattlebox.model.case import Case
+from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import Hint
 from rattlebox.results.arrays import ImpactArrays, RunArrays
 from rattlebox.results.provenance import Provenance
@@ -247,6 +248,7 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
         status=name,
         message=message,
         counts={**raw["counts"], "impacts": raw["impacts"]["time"].size},
+        notes=doubts(case),
         wall_time=raw["seconds"],
     )
 

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 
 from .base import Part
 from .elementwise import power, sqrt
-from .errors import Hint
+from .errors import Hint, one_of
 from .pairs import Pair
 from .restitutions import AnyRestitution, Constant, Restitution, ThorntonRestitution, yield_pressure
 from .units import LARGEST, Damping, Modulus, Number, PositiveStiffness, PositiveTime
@@ -69,8 +69,7 @@ class Tsuji(Contact):
 
     @model_validator(mode="after")
     def _one_damping(self) -> Tsuji:
-        if (self.restitution is None) == (self.alpha is None):
-            raise Hint("either restitution or alpha is needed, not both", "restitution = 0.9")
+        one_of("restitution = 0.9", restitution=self.restitution, alpha=self.alpha)
         if self.alpha is not None and self.ending == "zero_overlap" and self.alpha >= math.sqrt(5):
             raise Hint("above alpha = sqrt(5) an overlap never returns to zero", 'ending = "zero_force"')
         _soft(self.restitution)
@@ -120,10 +119,8 @@ class Linear(Contact):
 
     @model_validator(mode="after")
     def _determined(self) -> Linear:
-        if (self.stiffness is None) == (self.contact_time is None):
-            raise Hint("either stiffness or contact_time is needed, not both", 'stiffness = "1 MN/m"')
-        if (self.restitution is None) == (self.damping is None):
-            raise Hint("either restitution or damping is needed, not both", "restitution = 0.9")
+        one_of('stiffness = "1 MN/m"', stiffness=self.stiffness, contact_time=self.contact_time)
+        one_of("restitution = 0.9", restitution=self.restitution, damping=self.damping)
         _soft(self.restitution)
         return self
 

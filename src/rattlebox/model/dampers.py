@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from .base import AlsoTakes, Part
 from .contacts import AnyContact
 from .elementwise import Vector, power, stacked
-from .errors import Hint, at
+from .errors import Hint, at, one_of
 from .materials import AnyMaterial, AnyWall
 from .signals import as_several
 from .units import SI, Acceleration, NotNegativeLength, PositiveLength, PositiveMass, parse, text
@@ -44,8 +44,7 @@ class Sphere(Part):
     @classmethod
     def _one_size(cls, values: Any) -> Any:
         if isinstance(values, dict):
-            if (values.get("radius") is None) == (values.get("diameter") is None):
-                raise Hint("either radius or diameter is needed, not both", 'radius = "10 mm"')
+            one_of('radius = "10 mm"', radius=values.get("radius"), diameter=values.get("diameter"))
             if values.get("radius") is None:
                 with at("diameter"):
                     diameter = parse(values["diameter"], ("m",))[0]
@@ -159,12 +158,13 @@ class ImpactDamper(Part):
         if not isinstance(values, dict):
             return values
         values = cls.in_full(values)
-        if (values.get("cavity_length") is None) == (values.get("gap") is None):
-            raise Hint("either gap or cavity_length is needed, not both", 'gap = "0.4 mm"')
+        if values.get("gap") is not None and values.get("cavity_length") is not None:
+            raise Hint("give gap or cavity_length, not both", 'gap = "0.4 mm"')
         return values
 
     @model_validator(mode="after")
     def _gap_of_cavity(self) -> ImpactDamper:
+        one_of('gap = "0.4 mm"', gap=self.gap, cavity_length=self.cavity_length)
         if self.cavity_length is not None:
             row = self.row
             if self.cavity_length < row:

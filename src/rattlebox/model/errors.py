@@ -58,6 +58,21 @@ def at(*place: str | int) -> Iterator[None]:
         raise Hint(hint.complaint, hint.suggestion, (*place, *hint.place)) from None
 
 
+def one_of(advice: str, **alternatives: Any) -> None:
+    """Refuse alternatives of which none is given, or more than one.
+
+    Raises
+    ------
+    Hint
+        That one is needed, and what to try.
+    """
+    given = [name for name, value in alternatives.items() if value is not None]
+    if not given:
+        raise Hint(f"{' or '.join(alternatives)} is needed", advice)
+    if len(given) > 1:
+        raise Hint(f"give {' or '.join(given)}, not both", advice)
+
+
 def several(number: int, thing: str) -> str:
     """Return "1 particle", "2 particles"."""
     return f"{number} {thing}" + "s" * (number != 1)
@@ -233,6 +248,15 @@ _TABLES = ("model_type", "model_attributes_type", "dict_type")
 _TAGS = ("union_tag_not_found", "union_tag_invalid")
 
 
+def _table_of(name: str, vocabulary: Vocabulary, kind: str | None = None) -> str:
+    """What a table of this name looks like; "" where it is none."""
+    if name not in vocabulary:
+        return ""
+    kind = kind or next(iter(vocabulary[name]))
+    inside = f'kind = "{kind}", ...' if kind else "..."
+    return f"{_SPELLINGS.get(name, name)} = {{ {inside} }}"
+
+
 def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: str) -> tuple[str, str]:
     """Complaint and suggestion."""
     raised, what, context = _raised(finding), finding["type"], finding.get("ctx") or {}
@@ -255,10 +279,11 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: 
         name = place.rpartition(".")[2].partition("[")[0]
         if isinstance(value, (list, tuple)):
             return "one table is needed, not a list", f"[{name}] in single brackets"
-        inside = f'kind = "{kind}", ...' if kind and name in vocabulary else "..."
-        return "a table is needed", f"{name} = {{ {inside} }}"
-    if what == "missing" and isinstance(location[-1], int):
-        return "one more is needed", ""
+        return "a table is needed", _table_of(name, vocabulary, kind) or f"{name} = {{ ... }}"
+    if what == "missing":
+        if isinstance(location[-1], int):
+            return "one more is needed", ""
+        return _PLAIN[what], _table_of(location[-1], vocabulary)
     if what == "literal_error" and isinstance(value, str):
         expected = str(context.get("expected", "")).replace(" or ", ", ").split(", ")
         close = difflib.get_close_matches(value, [word.strip("'") for word in expected], n=1)

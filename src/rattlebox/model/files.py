@@ -72,6 +72,9 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
         bare = re.match(r"\s*([\w.-]+)\s*=\s*([-+\d.eE_]+\s*[A-Za-z%µ°][^#,\"']*)", line)
         if bare:
             complaint.append(f'  try: quotes around a number with a unit: {bare[1]} = "{bare[2].strip()}"')
+        comma = re.match(r"\s*([\w.-]+)\s*=\s*([-+]?\d+),(\d+)\s*(?:#|$)", line)
+        if comma:
+            complaint.append(f"  try: a point before decimals: {comma[1]} = {comma[2]}.{comma[3]}")
         raise CaseError("\n".join(complaint)) from None
 
 

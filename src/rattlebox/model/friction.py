@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from .base import AlsoTakes, Part
-from .errors import Hint
+from .errors import one_of
 from .materials import Material
 from .pairs import Pair
-from .units import LARGEST, SI, Number, PositiveStiffness, plain
+from .units import LARGEST, SI, Number, PositiveStiffness, bare_number
 
 NotNegative = Annotated[Number, Field(ge=0, le=LARGEST)]
+Coefficient = Annotated[Number, Field(ge=0, le=10)]
 
 
 def _shear_compliance(material: Material | None) -> float:
@@ -27,7 +28,7 @@ class Friction(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("friction", "wall_friction")
     kind: str
-    coefficient: NotNegative
+    coefficient: Coefficient
     damping: NotNegative = 1.0
 
     def coefficients(self, pair: Pair, normal_stiffness: float) -> dict[str, float]:
@@ -89,8 +90,7 @@ class LinearSpring(Friction):
 
     @model_validator(mode="after")
     def _one_stiffness(self) -> LinearSpring:
-        if (self.stiffness is None) == (self.ratio is None):
-            raise Hint("either stiffness or ratio is needed, not both", "ratio = 0.286")
+        one_of("ratio = 0.286", stiffness=self.stiffness, ratio=self.ratio)
         return self
 
     def coefficients(self, pair: Pair, normal_stiffness: float) -> dict[str, float]:
@@ -118,7 +118,7 @@ class Rolling(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("rolling", "wall_rolling")
     unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
-    coefficient: NotNegative
+    coefficient: Coefficient
     stiffness: Annotated[Number, Field(gt=0, le=LARGEST)] = 1.0
     damping: NotNegative = 0.0
 
@@ -131,27 +131,16 @@ class Rolling(Part):
         return {"rolling": self.coefficient, "rolling_stiffness": self.stiffness, "rolling_damping": self.damping}
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def _read(value: Any, table: str) -> Any:
-    value = value if isinstance(value, bool) else plain(value)
-    if isinstance(value, (str, list)):
-        raise Hint("a number is needed, or a table", f"0.3, or {table}")
-    return value
-
-
 def _mindlin(value: Any) -> Any:
-    value = _read(value, '{ kind = "mindlin", coefficient = 0.3 }')
-    return {"kind": "mindlin", "coefficient": value} if _is_number(value) else value
+    advice = '0.3, or { kind = "mindlin", coefficient = 0.3 }'
+    return bare_number(value, lambda c: {"kind": "mindlin", "coefficient": c}, _NEED, advice)
 
 
 def _rolling(value: Any) -> Any:
-    value = _read(value, "{ coefficient = 0.3 }")
-    return {"coefficient": value} if _is_number(value) else value
+    return bare_number(value, lambda c: {"coefficient": c}, _NEED, "0.3, or { coefficient = 0.3 }")
 
 
+_NEED = "a number is needed, or a table"
 _number = AlsoTakes({"type": "number", "minimum": 0})
 AnyFriction = Annotated[
     Annotated[Mindlin | LinearSpring, Field(discriminator="kind")], SI("1"), BeforeValidator(_mindlin), _number

@@ -316,7 +316,7 @@ def check_size(cavity: AnyCavity, radius: float) -> None:
         large = "larger than" if 2 * radius > widest else "as large as"
         raise Hint(
             f"a particle of {2e3 * radius:.4g} mm is {large} the cavity, which is {1e3 * widest:.4g} mm wide",
-            "smaller particles, or a larger cavity",
+            "smaller particles, or a larger cavity; a number without a unit is in metres",
         )
 
 

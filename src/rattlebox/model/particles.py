@@ -126,7 +126,7 @@ class Sieve(Distribution):
 
     kind: Literal["sieve"] = "sieve"
     sizes: Annotated[tuple[float, ...], SI("m"), BeforeValidator(_lengths)]
-    passing: tuple[float, ...]
+    passing: tuple[Number, ...]
 
     @model_validator(mode="after")
     def _sound(self) -> Sieve:
@@ -246,8 +246,10 @@ class Particles(Part):
         with at("mass" if self.mass is not None else "fill_ratio"):
             count = self._closest(filled)
             if count < 1:
+                mass = self._volume(1) * self.material.density
+                told = f"{mass:.4g} kg" if mass >= 1 else f"{1e3 * mass:.4g} g"
                 raise Hint(
-                    f"this is less than one particle, of {1e3 * self._volume(1) * self.material.density:.4g} g",
+                    f"this is less than one particle of {told} and {1e3 * float(self.diameters(1)[0]):.4g} mm in diameter",
                     "more of them, or smaller ones",
                 )
         return count

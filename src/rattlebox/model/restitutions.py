@@ -12,7 +12,7 @@ from .elementwise import less, pick, power, sqrt
 from .errors import Hint
 from .materials import AnyWall
 from .pairs import Pair, hardness
-from .units import SI, Modulus, PositiveVelocity, plain
+from .units import SI, Modulus, PositiveVelocity, bare_number, plain
 
 Coefficients = tuple[str, dict[str, Any]]
 _fraction = WithJsonSchema({"type": "number", "minimum": 0, "maximum": 1})
@@ -207,12 +207,12 @@ class Johnson(Restitution):
 
 def as_restitution(value: Any) -> Any:
     """Let a bare number stand for Constant."""
-    value = value if isinstance(value, bool) else plain(value)
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return {"kind": "constant", "e": value}
-    if isinstance(value, str):
-        raise Hint("a number from 0 to 1 is needed, or a table", '0.9, or { kind = "jackson_green" }')
-    return value
+    return bare_number(
+        value,
+        lambda e: {"kind": "constant", "e": e},
+        "a number from 0 to 1 is needed, or a table",
+        '0.9, or { kind = "jackson_green" }',
+    )
 
 
 AnyRestitution = Annotated[

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
@@ -21,6 +22,8 @@ LARGEST = 1e30
 """Numbers beyond it, and positive ones below its inverse, are slips: their powers would leave double precision."""
 
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
+
+_COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(.*?)\s*$")
 
 # Factors of the commonest units, so that most case files need no unit registry. Exact powers of ten are applied as one
 # correctly rounded operation: x / 1000 rather than x * 0.001.
@@ -112,6 +115,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         if match is None:
             raise Hint(_wanted(units), _example(units))
         number, text = float(match[1]), match[2]
+        _check_comma(value)
         if not text:
             return _finite(number), None
         for unit in units:
@@ -133,6 +137,15 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         return _finite(float(value)), None
     except (TypeError, ValueError):
         raise Hint(_wanted(units), _example(units)) from None
+
+
+def _check_comma(text: str) -> None:
+    """Refuse a number with a comma in it."""
+    match = _COMMA.match(text)
+    if match:
+        before, after, rest = match.groups()
+        suggestions = [f'"{before}.{after}{rest}"', *([f'"{before}{after}{rest}"'] if len(after) == 3 else [])]
+        raise Hint("decimals follow a point, and nothing parts thousands", " or ".join(suggestions))
 
 
 def as_written(value: Any) -> tuple[float, str] | None:
@@ -330,6 +343,24 @@ def plain(value: Any) -> Any:
     """
     match = _NUMBER.match(value) if isinstance(value, str) else None
     return float(match[1]) / 100 if match and match[2] == "%" else not_boolean(value)
+
+
+def bare_number(value: Any, table: Callable[[float], dict[str, Any]], need: str, advice: str) -> Any:
+    """Let a bare number, or a percentage, stand for the table that is made of it; return any other table as it is.
+
+    Raises
+    ------
+    Hint
+        When it is text or a list: what is needed, and what to try.
+    """
+    if isinstance(value, bool):
+        return value
+    value = plain(value)
+    if isinstance(value, (int, float)):
+        return table(value)
+    if isinstance(value, (str, list)):
+        raise Hint(need, advice)
+    return value
 
 
 def _make(unit: str, check: Any = None) -> Any:

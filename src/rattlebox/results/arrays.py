@@ -215,6 +215,8 @@ class RunArrays(_Comparable):
         One sentence that explains the status and says what to try.
     counts : mapping of str to int
         Numbers of events and steps, by name (an identifier).
+    notes : tuple of str
+        Warnings.
     wall_time : float
         Computing time [s].
 
@@ -262,6 +264,7 @@ class RunArrays(_Comparable):
     status: str = "finished"
     message: str = ""
     counts: Mapping[str, int] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
     wall_time: float = 0.0
 
     def __post_init__(self) -> None:
@@ -282,6 +285,7 @@ class RunArrays(_Comparable):
             put(self, name, array)
         self._check_references(sizes["damper"])
         put(self, "counts", checked_counts(self.counts))
+        put(self, "notes", tuple(self.notes))
         put(self, "wall_time", float(self.wall_time))
 
     def _check_references(self, dampers: int) -> None:

@@ -100,13 +100,13 @@ def _write(run: Run, target: IO[bytes]) -> None:
         file.attrs["wall_time"] = np.float64(arrays.wall_time)
         _write_text(file, "case", run.case_toml, "case that was run, as the text of a case file")
         _write_text(file, "message", arrays.message, "what the status means and what to try")
+        _write_text(file, "notes", "\n".join(arrays.notes), "warnings, and what limits the step where there is one")
         if arrays.counts:
             counts = file.create_group("counts")
             for name, number in arrays.counts.items():
                 counts.create_variable(name, (), "i8", data=np.int64(number))
         if isinstance(run, GranularRun):
             file.attrs["rattlebox_kind"] = _attribute(arrays.form.name)
-            _write_text(file, "notes", "\n".join(run.arrays.notes), "what limits the step, and warnings")
             figures = file.create_group("figures")
             for name, value in run.arrays.figures.items():
                 figures.create_variable(name, (), "f8", data=np.float64(value))
@@ -254,6 +254,7 @@ def _read_variables(file: Any, form: Form) -> dict[str, Any]:
         "time": file.groups["motion"].variables["time"][...],
         "status": _text_attribute(file.attrs["status"]),
         "message": _read_text(file, "message"),
+        "notes": tuple(_read_text(file, "notes").splitlines()),
         "counts": {name: int(variable[...]) for name, variable in counts.items()},
         "wall_time": float(file.attrs["wall_time"]),
     }
@@ -263,7 +264,6 @@ def _read_granular(file: Any) -> GranularArrays:
     return GranularArrays(
         **_read_variables(file, GRANULAR),
         figures={name: float(variable[...]) for name, variable in file.groups["figures"].variables.items()},
-        notes=tuple(_read_text(file, "notes").splitlines()),
     )
 
 

@@ -119,7 +119,7 @@ def _notes(run: Run) -> tuple[str, ...]:
     if run.ok and not run.ledger.closes(_OPEN):
         told = quantity(run.closure, "%")
         steps = (f"warning: the energy ledger is open by {told} of the energy supplied; shorten the time steps",)
-    return message + steps + (run.arrays.notes if isinstance(run, GranularRun) else ())
+    return message + steps + run.arrays.notes
 
 
 def _largest(x: Any) -> float:

@@ -145,6 +145,11 @@ WIDE = {
 }
 
 
+def test_a_sieve_takes_percent() -> None:
+    """Shares that pass may be given in per cent, as sieve tables are."""
+    assert rb.Sieve(sizes=["2 mm", "3 mm", "5 mm"], passing=["0 %", "30 %", "100 %"]) == SIZES["sieve"]
+
+
 @pytest.mark.parametrize("mass", [5e-3, 50e-3, 0.4])
 @pytest.mark.parametrize("name", WIDE)
 def test_wide_distributions_meet_the_mass_as_closely_as_they_can(name: str, mass: float) -> None:
@@ -512,6 +517,13 @@ REFUSED = {
     ),
     "moves along one line only": lambda: case(load=rb.HalfSine(amplitude="1 N", duration="1 ms", direction="y")),
     "must be greater than zero": lambda: rb.Dem(dt=0.0),
+    r"friction = 40\n  must be at most 10": lambda: damper(friction=40),
+    r"less than one particle of 8.878e\+05 kg and 6000 mm in diameter": lambda: damper(
+        particles=balls(count=None, diameter=6, fill_ratio=0.3)
+    ),
+    "larger than the cavity, .*\n  try: .*; a number without a unit is in metres": lambda: damper(
+        particles=balls(diameter=6)
+    ),
 }
 
 

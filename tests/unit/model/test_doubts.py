@@ -1,0 +1,63 @@
+"""What is allowed, but is likely a slip, is told below the numbers of a run."""
+
+import pytest
+
+import rattlebox as rb
+
+BALL = {"ball": rb.Sphere(diameter="20 mm", material="steel"), "gap": "1 mm", "contact": rb.Tsuji(restitution=0.9)}
+TWO_POINTS = rb.Modal(
+    frequencies=[5, 9], damping_ratios=[0.01, 0.01], shapes={"light": [3.0, 4.0], "heavy": [0.3, 0.4]}
+)
+
+
+def notes(structure=None, **changes):
+    """Return what is noted of a short run with one ball."""
+    case = rb.Case(
+        structure=structure or rb.SDOF(mass=20, stiffness=8e4),
+        damper=rb.ImpactDamper(**BALL | changes),
+        duration="1 ms",
+    )
+    return rb.simulate(case).arrays.notes
+
+
+def test_nothing_is_noted_of_what_is_usual():
+    """A small ball on a structure that is heavier than it needs no warning, nor does one on a shaker or a fixed table."""
+    assert notes() == notes(rb.Fixed()) == notes(rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=10))) == ()
+
+
+def test_sizes_in_metres_are_noted():
+    """A ball or a gap of more than a metre is told, with the likely reason."""
+    (wide, heavy) = notes(ball=rb.Sphere(radius=3.317, material="steel"))
+    assert wide == "warning: a ball of damper is 6.634 m wide; a number without a unit is in metres"
+    assert heavy == "warning: the balls of damper weigh 1.2e+06 kg, 6e+04 times as much as the structure at their point"
+    assert notes(gap=2.5) == ("warning: the gap of damper is 2.5 m; a number without a unit is in metres",)
+
+
+@pytest.mark.parametrize(("point", "told"), [("light", 1), ("heavy", 0)])
+def test_the_mass_is_compared_with_what_moves_at_the_point(point, told):
+    """A ball of 0.1 kg outweighs a point where 0.04 kg move, and not one where 4 kg do."""
+    ball = rb.Sphere(diameter="20 mm", material="steel", mass="0.1 kg")
+    assert len(notes(TWO_POINTS, ball=ball, point=point)) == told
+
+
+def test_particles_are_compared_as_well(tmp_path):
+    """Particles in space that outweigh the structure are noted after what limits the step, and the note is kept in files."""
+    grains = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="6 mm", count=20),
+        cavity=rb.Box(size=("30 mm", "30 mm", "30 mm")),
+        contact=rb.Tsuji(restitution=0.9),
+        softening=1000,
+    )
+    case = rb.Case(structure=rb.SDOF(mass=0.01, stiffness=100), damper=grains, duration="1 ms")
+    run = rb.simulate(case)
+    assert run.arrays.notes[0].startswith("step ")
+    assert run.arrays.notes[-1].startswith("warning: the particles of damper weigh 0.01776 kg, 1.78 times as much")
+    assert rb.load(run.save(tmp_path / "run.nc")).arrays.notes == run.arrays.notes
+
+
+def test_notes_of_impacts_are_kept_and_shown(tmp_path):
+    """A warning is below the summary, and in the file of the run."""
+    case = rb.Case(structure=rb.Fixed(), damper=rb.ImpactDamper(**BALL | {"gap": 2.0}), duration="1 ms")
+    run = rb.simulate(case)
+    assert str(run.summary()).splitlines()[-1] == run.arrays.notes[0]
+    assert rb.load(run.save(tmp_path / "run.nc")) == run
