@@ -12,7 +12,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Column, Table
 
-from rattlebox.results.quantities import quantity
+from rattlebox.results.quantities import MISSING, quantity
 from rattlebox.studies.design import trials_in
 from rattlebox.studies.store import Progress, has_map, open_study, progress_of, readable
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _BYTES_AT_ONCE = 2**26
+_MOST_TRIALS = 12
 _PREFIXED = ("m", "s", "m/s", "m/s^2", "N", "N/m", "J", "W", "Pa", "Hz")
 
 
@@ -47,6 +48,8 @@ def show_study(path: Path) -> None:
             console.print(_axes(study))
         if study is not None and some:
             console.print(_results(study))
+            if "front" in study.coords:
+                console.print(_best(study))
             if counts := statuses(study):
                 told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
                 console.print(f"  ended: {told}", soft_wrap=True)
@@ -91,21 +94,46 @@ def _how_far(progress: Progress) -> str:
 def _axes(study: xr.Dataset) -> Table:
     table = Table("axis", "along", Column("values", justify="right"), "from", "to", box=SIMPLE_HEAD)
     dims = list(study.sizes)
-    for name, values in sorted(study.coords.items(), key=lambda item: [dims.index(dim) for dim in item[1].dims]):
-        ends = [_number(values.values.flat[i], values) for i in (0, -1)]
+    axes = [(name, values) for name, values in study.coords.items() if name != "front"]
+    for name, values in sorted(axes, key=lambda item: ([dims.index(dim) for dim in item[1].dims], item[0] not in dims)):
+        ends = [_number(value, values) for value in _ends(values.values.ravel())]
         along = ", ".join(map(str, values.dims))
         table.add_row(str(name), "" if along == name else along, f"{values.size:,}", *ends)
     return table
 
 
+def _ends(values: np.ndarray[Any, Any]) -> tuple[Any, Any]:
+    """The first and the last of what rises or falls, the smallest and the largest of other numbers."""
+    if values.dtype.kind in "fi" and not (np.all(np.diff(values) >= 0) or np.all(np.diff(values) <= 0)):
+        return values.min(), values.max()
+    return values[0], values[-1]
+
+
+def _best(study: xr.Dataset) -> Table:
+    """The trials of a design that none beats, with their parameters and objectives."""
+    names = [str(name) for name, values in study.coords.items() if values.dims == ("trial",) and name != "trial"]
+    names += [str(name) for name, values in study.data_vars.items() if "goal" in values.attrs]
+    right: Any = {"justify": "right"}
+    table = Table(Column("best trial", **right), *(Column(name, **right) for name in names), box=SIMPLE_HEAD)
+    for trial in study.front.values[:_MOST_TRIALS]:
+        row = study.sel(trial=trial)
+        table.add_row(f"{trial}", *(_number(row[name].values[()], study[name]) for name in names))
+    if study.front.size > _MOST_TRIALS:
+        table.caption = f"and {study.front.size - _MOST_TRIALS} more"
+    return table
+
+
 def _results(study: xr.Dataset) -> Table:
     right: Any = {"justify": "right"}
-    table = Table("result", "meaning", Column("smallest", **right), Column("largest", **right), box=SIMPLE_HEAD)
+    numbers = ("smallest", "largest", "values")
+    table = Table("result", "meaning", *(Column(name, **right) for name in numbers), box=SIMPLE_HEAD)
     for name, values in study.data_vars.items():
         if name != "status" and values.dtype.kind in "fiub":
-            ends = [end for part in map(_there, _parts(values)) if part.size for end in (part.min(), part.max())]
-            shown = [_number(end, values) for end in (min(ends), max(ends))] if ends else []
-            table.add_row(str(name), values.attrs.get("long_name", ""), *shown)
+            parts = [part for part in map(_there, _parts(values)) if part.size]
+            ends = [end for part in parts for end in (part.min(), part.max())]
+            shown = [_number(end, values) for end in (min(ends), max(ends))] if ends else [MISSING, MISSING]
+            count = sum(part.size for part in parts)
+            table.add_row(str(name), values.attrs.get("long_name", ""), *shown, f"{count:,}")
     return table
 
 

@@ -358,6 +358,8 @@ class Case(Part):
         given = read_toml(content, source)
         if not given:
             raise CaseError(f"{source}: there is nothing in it\n  try: rattlebox demo, which writes two case files")
+        if "case" in given and "structure" not in given:
+            raise CaseError(f"{source}: this is a study of a case, not a case\n  try: rattlebox sweep {source}")
         try:
             library = _Library.model_validate({"materials": given.get("materials", {})})
             values = {key: value for key, value in given.items() if key != "materials"}

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from .shown import Shown
 from .style import INK, SERIES_COLOURS, PaperFigure, Size, label, legend_above, paper
@@ -64,16 +65,15 @@ def _draw_progress(axes: Axes, found: xr.Dataset, goals: list[str]) -> None:
     best = (np.fmax if found[goals[0]].attrs["goal"] == "max" else np.fmin).accumulate(goal.numbers)
     axes.plot(found.trial, goal.numbers, label="trial", **_DOTS)
     axes.step(found.trial, best, where="post", color=SERIES_COLOURS[1], label="best so far")
-    refused = np.flatnonzero(~found.feasible.values)
-    if refused.size:
-        look: dict[str, Any] = {
-            "color": INK,
-            "linestyle": "",
-            "transform": axes.get_xaxis_transform(),
-            "clip_on": False,
-        }
-        axes.plot(refused, np.zeros(refused.size), marker="x", label=f"not allowed ({refused.size})", **look)
+    limit = json.loads(found.attrs["max_added_mass"])
+    heavy = found.added_mass.values > (np.inf if limit is None else limit)
+    look: dict[str, Any] = {"color": INK, "linestyle": "", "transform": axes.get_xaxis_transform(), "clip_on": False}
+    for told, marker, which in (("too heavy", "|", heavy), ("without a value", "x", ~found.feasible.values & ~heavy)):
+        if np.any(which):
+            trials = found.trial.values[which]
+            axes.plot(trials, np.zeros(trials.size), marker=marker, label=f"{told} ({trials.size})", **look)
     axes.margins(x=0.02)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     label(axes, "x", "Trial", "")
     goal.along(axes, "y")
 

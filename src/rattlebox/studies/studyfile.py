@@ -127,6 +127,10 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
     """
     try:
         given = _read(content, source)
+        if "structure" in given and "case" not in given:
+            raise Hint(
+                "this is a case, not a study of one", f'rattlebox run {source}, or a study with case.file = "{source}"'
+            )
         kind = given.get("kind", "sweep")
         if kind not in KINDS:
             raise Hint(f"kind = {kind!r}: there is no such kind of study", nearest(str(kind), KINDS))

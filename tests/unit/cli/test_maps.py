@@ -209,7 +209,9 @@ def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer)
     code, _, said = answer("plot", "study.zarr", "--kind", kind)
     assert code == 2, said
     assert answer("sweep", "study.toml")[0] == 0
-    assert "goes on" not in answer("show", "study.zarr")[1]
+    finished = answer("show", "study.zarr")[1]
+    assert "goes on" not in finished
+    assert ("best trial" in finished) == (kind == "design")
 
 
 @pytest.mark.parametrize(

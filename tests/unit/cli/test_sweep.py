@@ -96,6 +96,23 @@ def test_runs_that_do_not_finish_are_counted(study: Path, answer: Answer) -> Non
     assert answer("show", "study.zarr")[1].endswith("ended: 6 too_many_events\n")
 
 
+def test_values_that_are_missing_are_counted(study: Path, answer: Answer) -> None:
+    """Show tells how many variants have a value of each measure, and the range of an axis whose values are in no order."""
+    measured = STUDY.replace('"impacts"', '"mean_approach_speed"').replace(
+        "{ from =", '["1 mm", "20 mm", "0.2 mm"] # {'
+    )
+    study.write_text(measured)
+    answer("sweep", study)
+    struck = int(np.isfinite(open_study("study.zarr").mean_approach_speed.values).sum())
+    told = [line.split() for line in answer("show", "study.zarr")[1].splitlines()]
+    (axis,) = (words for words in told if words[:1] == ["damper.gap"])
+    assert axis[-4:] == ["200.0", "µm", "20.00", "mm"]
+    (share,) = (words for words in told if words[:1] == ["impact_share"])
+    (speed,) = (words for words in told if words[:1] == ["mean_approach_speed"])
+    assert (share[-1], speed[-1]) == ("6", f"{struck}")
+    assert 0 < struck < 6
+
+
 def test_study_of_which_nothing_is_done(study: Path, answer: Answer) -> None:
     """Show tells of no last variant where there is none."""
 
@@ -131,6 +148,16 @@ def test_what_does_not_fit_the_case_is_told_with_the_file(study: Path, answer: A
         (("sweep", "study.toml", "--dask", "there"), "no Dask scheduler answers at there"),
         (("sweep", "study.toml", "-o", "study.toml"), "study.toml is a file; a study needs a folder"),
         (("sweep", "study.toml", "-o", "."), "holds other files"),
+        (
+            ("run", "study.toml"),
+            "study.toml: this is a study of a case, not a case try: rattlebox sweep study.toml",
+        ),
+        (
+            ("sweep", str(EXAMPLE)),
+            "this is a case, not a study of one try: rattlebox run",
+        ),
+        (("show", "study.toml"), "study.toml says what to run, not what came of it"),
+        (("plot", "study.toml"), "study.toml says what to run, not what came of it"),
         (("show", "."), "is not a study"),
         (("show", "nowhere.zarr"), "nowhere.zarr is not there"),
     ],

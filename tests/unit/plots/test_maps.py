@@ -159,6 +159,20 @@ def test_clear_refusals(options: dict[str, Any], said: str) -> None:
     assert said in str(caught.value)
 
 
+def test_repeated_values_are_drawn_once() -> None:
+    """Of an axis with the same value several times one is drawn; an axis with nothing else is none."""
+    again = study().isel({"load.amplitude": [0, 1, 1, 2]})
+    (drawn,) = (part for part in rb.plot_map(again, kind="map").axes[0].collections if isinstance(part, QuadMesh))
+    (plain,) = (
+        part
+        for part in rb.plot_map(study().isel({"load.amplitude": [0, 1, 2]}), kind="map").axes[0].collections
+        if isinstance(part, QuadMesh)
+    )
+    assert drawn.get_coordinates().shape == plain.get_coordinates().shape
+    with pytest.raises(rb.CaseError, match="nothing varies"):
+        rb.plot_map(study().isel({"load.amplitude": [1, 1], "damper.gap": [3]}))
+
+
 def test_more_axes_than_two_are_refused() -> None:
     """A study over three axes asks for a value of one of them, and takes it."""
     three = xr.concat([study(), study()], xr.DataArray([1.0, 2.0], dims="structure.mass", name="structure.mass"))
