@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 
 from rattlebox.cli.show import statuses
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.errors import CaseError
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.studyfile import read_study
 
@@ -40,11 +40,9 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
     study = read_study(path)
     out = out or path.with_suffix(".zarr")
     try:
-        with _cluster(dask) as client:
+        with _cluster(dask) as client, _naming(path, out):
             where = {"threads": None if client else workers} if client or workers else {}
             result = study.run(store=out, on="gpu" if gpu else client, **where)
-    except Hint as hint:
-        raise CaseError(f"{path}: {hint}") from None
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)
         sys.exit(130)
@@ -54,6 +52,17 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
     told = f"{sum(counts.values()):,} variants: {told}\n" if counts else ""
     card = f"{result.attrs['gpu']}\n" if "gpu" in result.attrs else ""
     console.print(f"{told}{card}written to {out}", soft_wrap=True, highlight=False)
+
+
+@contextmanager
+def _naming(study: Path, out: Path) -> Iterator[None]:
+    """Add to what is wrong with a study its file, unless it is about the folder of results."""
+    try:
+        yield
+    except CaseError as error:
+        if str(error).startswith((str(study), str(out))):
+            raise
+        raise CaseError(f"{study}: {error}") from None
 
 
 @contextmanager

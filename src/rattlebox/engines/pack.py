@@ -224,7 +224,7 @@ def _numbers(case: Case, axes: int = 0) -> Packed:
     if case.particle_dampers:
         raise Hint(
             "this study computes impact dampers, not particles in space",
-            "rb.sweep, rb.loss_map or rb.sensitivity, or a loop over rb.simulate",
+            "a sweep, a loss map or a sensitivity, or one run after the other",
         )
     modes = case.modes
     return {

@@ -288,6 +288,8 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: 
         expected = str(context.get("expected", "")).replace(" or ", ", ").split(", ")
         close = difflib.get_close_matches(value, [word.strip("'") for word in expected], n=1)
         return _PLAIN[what].format(**context), f'"{close[0]}"' if close else ""
+    if what in ("list_type", "tuple_type") and isinstance(value, (str, int, float)):
+        return _PLAIN[what], "[" + (f'"{value}"' if isinstance(value, str) else f"{value!r}") + "]"
     if what == "greater_than":
         return f"must be greater than {format(context['gt'], 'g') if context['gt'] else 'zero'}", ""
     return _PLAIN[what].format(**context) if what in _PLAIN else finding["msg"], ""

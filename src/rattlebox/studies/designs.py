@@ -39,7 +39,7 @@ class Spaced:
         if not self.log:
             return np.linspace(start, stop, self.count)
         if not start * stop > 0:
-            raise Hint("values that grow by a factor need two ends other than zero, of one sign", "rb.linspace")
+            raise Hint("values that grow by a factor need two ends other than zero, of one sign", "equal steps")
         return np.geomspace(start, stop, self.count)
 
 
@@ -96,7 +96,7 @@ def _spaced(start: Any, stop: Any, count: Any, *, log: bool = False) -> Spaced:
         if unit and other and not are_alike(unit, other):
             raise Hint(f"{told}: ends of one dimension are needed")
         if log and not np.sign(first) * np.sign(last) > 0:
-            raise Hint(f"{told}: values that grow by a factor need ends other than zero, of one sign", "rb.linspace")
+            raise Hint(f"{told}: values that grow by a factor need ends other than zero, of one sign", "equal steps")
     return Spaced(start, stop, whole(count, "count", 1), log)
 
 

@@ -115,7 +115,7 @@ def follow(
     for name in paths:
         if isinstance(name, str) and place_of(case, name)[-1] in _STARTS:
             raise CaseError(
-                f"{name} is a start, which only the first value would have\n  try: it as an axis of rb.sweep"
+                f"{name} is a start, which only the first value would have\n  try: it as an axis of a sweep"
             )
     task = FollowTask(
         case,
@@ -295,7 +295,7 @@ class FollowTask(Walks):
         if walks == 1:
             raise Hint(
                 'on = "gpu": each value goes on from the one before, so there is nothing to run side by side',
-                'the processor, direction = "fresh", or rb.basins or rb.lyapunov, which have work for a card',
+                'the processor, direction = "fresh", or basins or lyapunov, which have work for a card',
             )
         given = {each.name: getattr(self, each.name) for each in fields(self) if each.init}
         return FollowOnCard(**{**given, "gpu": True})

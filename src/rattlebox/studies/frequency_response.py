@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.model.errors import CaseError
+from rattlebox.model.errors import Hint
 from rattlebox.model.signals import Harmonic
 
 from .axes import Design
@@ -107,7 +107,7 @@ def frequency_response(
     ('direction', 'level', 'frequency')
     """
     if direction not in (*get_args(Direction), "both"):
-        raise CaseError(f'direction = {direction!r} is unknown\n  try: "up", "down", "both" or "fresh"')
+        raise Hint(f"direction = {direction!r} is unknown", '"up", "down", "both" or "fresh"')
     given = checked("frequency_response", cycles=cycles, samples=samples, tolerance=tolerance, threads=threads)
     cycles, samples, tolerance, threads = given.values()
     look = cycles[1]
@@ -117,7 +117,7 @@ def frequency_response(
     design = Design.of(case, [level, {at: frequencies}], source="frequency_response")
     hertz = design.coords()[at][1]
     if np.any(np.diff(hertz) <= 0):
-        raise CaseError("frequencies must rise from each to the next\n  try: numpy.unique")
+        raise Hint("frequencies must rise from each to the next", "each once, in order")
     bare = _bare(SweepTask(case, design, cycles=(0, 1), point=point))
     options: dict[str, Any] = {
         "measure": beside(_MEASURES, measure),
@@ -147,13 +147,13 @@ def frequency_response(
 def _driver(case: Case) -> tuple[str, Harmonic]:
     """Path and signal of the one harmonic."""
     if not case.modes.decay.size:
-        raise CaseError(f"a {case.structure.kind} structure does not respond\n  try: rb.SDOF, rb.Modal or rb.Matrices")
+        raise Hint(f"a {case.structure.kind} structure does not respond", "one of kind sdof, modal or matrices")
     signals = [(f"{name}[{i}]", s) for name in ("loads", "base") for i, s in enumerate(getattr(case, name))]
     harmonics = [(place, signal) for place, signal in signals if isinstance(signal, Harmonic)]
     if len(harmonics) != 1:
         given = f"there are {len(harmonics)}: {', '.join(place for place, _ in harmonics)}" if harmonics else "none"
-        raise CaseError(
-            f"a frequency response needs one harmonic load or base motion, but {given} is given\n  try: rb.Harmonic"
+        raise Hint(
+            f"a frequency response needs one harmonic load or base motion, but {given} is given", "kind harmonic"
         )
     return harmonics[0]
 

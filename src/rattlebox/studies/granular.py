@@ -142,7 +142,7 @@ class Granular(SweepTask):
             if name not in _FOUND:
                 raise Hint(f"{name} looks at single impacts, of which particles in space keep none", ", ".join(_FOUND))
             if MEASURES[name].cyclic and math.isnan(_frequency(self.case)):
-                raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "rb.Harmonic")
+                raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "kind harmonic")
         if self.motion or self.last or self.state:
             raise Hint(
                 "of particles in space neither motion nor last impacts are kept", "a function of a Run as measure"

@@ -9,6 +9,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.signals import Harmonic
 from rattlebox.model.structures import Shaker
 
+from .axes import Design
 from .store import keep_map
 from .sweep import sweep
 
@@ -85,15 +86,15 @@ def loss_map(
     """
     motion = case.structure.motion if isinstance(case.structure, Shaker) else ()
     if len(motion) != 1 or not isinstance(motion[0], Harmonic):
-        raise Hint(
-            "a loss map needs a case on a shaker with one harmonic motion",
-            "structure=rb.Shaker(motion=rb.Harmonic(...))",
-        )
+        raise Hint("a loss map needs a case on a shaker with one harmonic motion", "a structure of kind shaker")
     if not case.dampers:
-        raise Hint("a loss map needs a case with a damper", "damper=rb.ImpactDamper(...)")
+        raise Hint("a loss map needs a case with a damper", "a ball in a gap, or particles in a cavity")
+    axes = {"structure.motion.amplitude": amplitudes, "structure.motion.frequency": frequencies}
+    for (path, values), source in zip(axes.items(), ("amplitudes", "frequencies"), strict=True):
+        Design.of(case, {path: values}, source=source)  # for messages, in the words of this map
     found = sweep(
         case,
-        {"structure.motion.amplitude": amplitudes, "structure.motion.frequency": frequencies},
+        axes,
         [name for name in MEASURES if name != "impacts_per_cycle" or not case.particle_dampers],
         cycles=cycles,
         samples=samples,

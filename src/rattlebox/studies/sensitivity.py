@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rattlebox.model.errors import CaseError, Hint
 
+from .axes import Design
 from .designs import RandomDesign, random_design
 from .extras import extra
 from .members import members
@@ -120,6 +121,7 @@ def sensitivity(
         raise Hint("bounds: paths with bounds or choices are needed", '{"damper.gap": ("0.1 mm", "2 mm")}')
     ranges = random_design(bounds, n * (len(bounds) + 2), seed=seed, log=log)
     points = _Crossed(ranges.ranges, ranges.count, ranges.method, ranges.seed, ranges.log)
+    Design.of(case, points, source="bounds")  # for messages, in the words of this study
     runs = sweep(
         case,
         [points, *members(case, levels, starts)],
@@ -167,7 +169,7 @@ def _of_measure(runs: xr.Dataset, name: str, width: int, n: int, confidence: flo
     if left_out > _LEAST * n:
         raise CaseError(
             f"{name}: of {n} base points, {left_out} have a run without a value\n"
-            "  try: narrower bounds or a longer duration; rb.sweep over rb.random_design shows where"
+            "  try: narrower bounds or a longer duration; a sweep over a random design shows where"
         )
     output = by_base[kept].ravel()
     if np.ptp(output) == 0:

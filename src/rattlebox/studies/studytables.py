@@ -92,7 +92,11 @@ def _whole(cycles: Any, least: int) -> tuple[int, int]:
     return skip, look
 
 
-Measures = Annotated[list[str], AfterValidator(_known)]
+def _as_list(value: Any) -> Any:
+    return [value] if isinstance(value, str) else value
+
+
+Measures = Annotated[list[str], BeforeValidator(_as_list), AfterValidator(_known)]
 Cycles = Annotated[tuple[int, int], BeforeValidator(partial(_whole, least=1))]
 CyclesToCompare = Annotated[tuple[int, int], BeforeValidator(partial(_whole, least=2))]
 Part = Annotated[Number, Field(gt=0, lt=1)]

@@ -322,7 +322,7 @@ class SweepTask:
             settings = {**settings, "duration": np.asarray(sum(self.cycles) * period)}
         for name in self.named:
             if MEASURES[name].cyclic and period is None:
-                raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "rb.Harmonic")
+                raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "kind harmonic")
         start = self.skip if self.cycles is None else self.cycles[0] * period
         if np.any(np.asarray(start) >= settings["duration"]):
             raise Hint(f"skip = {np.max(start):.6g} s leaves nothing of the run to look at", "a longer duration")

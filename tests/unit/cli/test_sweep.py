@@ -130,11 +130,17 @@ def test_study_of_which_nothing_is_done(study: Path, answer: Answer) -> None:
         ("measure = []", "there is no measure"),
         ('measure = ["loss_per_cycle"]', "loss_per_cycle needs a harmonic load"),
         ('measure = ["impacts"]\nskip = "9 s"', "skip = 9 s leaves nothing of the run to look at"),
+        (
+            'kind = "frequency_response"\nlevels = [1]\nfrequencies = [9]',
+            "a frequency response needs one harmonic load",
+        ),
+        ('kind = "sensitivity"\nbounds = { "damper.gap" = { from = "2 mm", to = "1 mm" } }', "bounds: damper.gap = ("),
     ],
 )
 def test_what_does_not_fit_the_case_is_told_with_the_file(study: Path, answer: Answer, line: str, said: str) -> None:
     """A study file that can be read but not run is named, as one that cannot be read is."""
-    study.write_text(STUDY.replace('measure = ["impacts", "impact_share"]', line))
+    content = STUDY.partition("[axes]")[0] if "kind" in line else STUDY
+    study.write_text(content.replace('measure = ["impacts", "impact_share"]', line))
     code, _, message = answer("sweep", study)
     assert (code, message.startswith(f"error: study.toml: {said}")) == (2, True), message
 

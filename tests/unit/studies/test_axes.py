@@ -516,7 +516,7 @@ def test_ends_may_be_written_differently(ends: tuple[Any, Any]) -> None:
         (lambda: rb.geomspace(1, 2, 2.5), "count = 2.5"),  # type: ignore[arg-type]
         (
             lambda: rb.geomspace("0 mm", "1 mm", 3),
-            "start = '0 mm', stop = '1 mm': .* other than zero.*\n  try: rb.linspace",
+            "start = '0 mm', stop = '1 mm': .* other than zero.*\n  try: equal steps",
         ),
         (lambda: rb.geomspace(-1, 2.0, 3), "start = -1, stop = 2.0: .* of one sign"),
         (lambda: rb.linspace("1 mm", "1 kN", 3), "start = '1 mm', stop = '1 kN': ends of one dimension"),

@@ -232,7 +232,7 @@ def test_what_does_not_fit_is_refused(complaint: str) -> None:
 
 def test_other_studies_say_that_they_are_for_impact_dampers() -> None:
     """Maps that follow a motion refuse particles in space, and say which studies do not."""
-    with pytest.raises(rb.CaseError, match=r"not particles in space\n  try: rb.sweep, rb.loss_map"):
+    with pytest.raises(rb.CaseError, match=r"not particles in space\n  try: a sweep, a loss map"):
         rb.bifurcation(shaken(), AMPLITUDE, [10.0, 20.0], progress=False)
 
 

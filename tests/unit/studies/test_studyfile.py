@@ -71,6 +71,11 @@ def test_a_study_file_says_what_the_call_says() -> None:
     assert Design.of(study.case, study.axes).describe() == Design.of(study.case, axes).describe()
 
 
+def test_one_measure_needs_no_list() -> None:
+    """The name of one measure is as good as a list of one."""
+    assert study_from_toml('measure = "impacts"\n' + BALL + GAPS, folder=EXAMPLES).options == {"measure": ["impacts"]}
+
+
 def test_paths_need_no_quotes() -> None:
     """What TOML reads as tables in tables is read as paths, also in linked axes, ranges and reaches."""
     bare = """
@@ -160,7 +165,9 @@ def test_files_are_seen_from_the_folder_of_the_study(tmp_path: Path, monkeypatch
         (INLINE.replace("mass", "mas") + GAPS, ["case: structure.mas", "did you mean 'mass'?"]),
         ('mesure = ["impacts"]\n' + BALL + GAPS, ["mesure = ['impacts']", "did you mean 'measure'?"]),
         ('measure = ["impacts", "impactz"]\n' + BALL + GAPS, ["measure[1] = 'impactz'", "did you mean 'impacts'"]),
-        ('measure = "impacts"\n' + BALL + GAPS, ["measure = 'impacts'", "a list is needed"]),
+        ('measure = "impactz"\n' + BALL + GAPS, ["measure = 'impactz'", "did you mean 'impacts'"]),
+        ("measure = 3\n" + BALL + GAPS, ["measure = 3", "a list is needed"]),
+        (BALL + '[axes]\n"damper.gap" = "1 mm"', ["axes.damper.gap = '1 mm'", 'a list is needed\n  try: ["1 mm"]']),
         ('measure = ["peak", "peak"]\n' + BALL + GAPS, ["measure = ['peak', 'peak']", "two measures are called peak"]),
         ("threads = 0\n" + BALL + GAPS, ["threads = 0", "at least 1"]),
         ('skip = "1 kg"\n' + BALL + GAPS, ["skip = '1 kg'", "a time (s) is needed, not a mass"]),
