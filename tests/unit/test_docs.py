@@ -18,6 +18,7 @@ PAGES = (
     "lyapunov",
     "particle_output",
     "particle_dampers",
+    "results",
     "sensitivity",
     "sweep",
 )

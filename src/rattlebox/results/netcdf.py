@@ -2,8 +2,8 @@
 
 Numbers are double, 32-bit integer or byte; texts are arrays of characters (UTF-8), not variable-length
 strings; attributes are plain characters. Groups: `motion`, `energy` and `impacts` hold the datasets of a run,
-`counts` the counters, and the root the case, the message and the provenance. Dimensions of length zero are
-left out together with the variables that need them, except `impact`, which is unlimited.
+`counts` the counters, `figures` the numbers of the step, and the root the case, the message and the provenance.
+Dimensions of length zero are left out together with the variables that need them, except `impact`, which is unlimited.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .arrays import ImpactArrays, RunArrays
 from .datasets import columns, labels
 from .granular import GranularArrays, GranularRun
 from .provenance import Provenance
-from .schema import GRANULAR, IMPACT, IMPACT_VARIABLES, Form, Kind
+from .schema import COUNTS, FIGURES, GRANULAR, IMPACT, IMPACT_VARIABLES, Form, Kind
 from .snapshots import ROOT as SNAPSHOTS
 from .whole import DAMAGE, needs_folder, telling, whole
 
@@ -104,12 +104,15 @@ def _write(run: Run, target: IO[bytes]) -> None:
         if arrays.counts:
             counts = file.create_group("counts")
             for name, number in arrays.counts.items():
-                counts.create_variable(name, (), "i8", data=np.int64(number))
+                variable = counts.create_variable(name, (), "i8", data=np.int64(number))
+                _describe(variable, long_name=COUNTS.get(name, name), units="byte" if name == "memory_bytes" else "1")
         if isinstance(run, GranularRun):
             file.attrs["rattlebox_kind"] = _attribute(arrays.form.name)
             figures = file.create_group("figures")
             for name, value in run.arrays.figures.items():
-                figures.create_variable(name, (), "f8", data=np.float64(value))
+                variable = figures.create_variable(name, (), "f8", data=np.float64(value))
+                units, long_name = FIGURES.get(name, ("1", name))
+                _describe(variable, long_name=long_name, units=units)
         for title in arrays.form.titles:
             group = file.create_group(title)
             _describe(group, title=arrays.form.titles[title])

@@ -257,3 +257,31 @@ GRANULAR = Form(
     },
 )
 """Runs of particle dampers."""
+
+COUNTS: dict[str, str] = {
+    "events": "touches, openings and other turns of a contact",
+    "flights": "flights of balls between contacts",
+    "contact_steps": "integration steps in contacts",
+    "rejected_steps": "integration steps that were tried again, shorter",
+    "collocated": "contacts solved as a whole",
+    "extrapolated": "impacts outside of the measured speeds of a law",
+    "sticks": "balls that came to rest at a wall or a ball",
+    "impacts": "impacts, those that are not kept included",
+    "steps": "time steps",
+    "rebuilds": "neighbour lists made anew",
+    "refreshes": "neighbour lists looked through for pairs that may touch soon",
+    "first_touches_particle": "first touches among particles",
+    "first_touches_wall": "first touches of walls",
+    "memory_bytes": "memory of particles, neighbours and contacts",
+}
+"""What the numbers in `counts` count; memory is in bytes."""
+
+FIGURES: dict[str, tuple[str, str]] = {
+    "step": ("s", "time step"),
+    "longest_automatic_step": ("s", "time step that would have been chosen"),
+    "expected_approach_speed": ("m/s", "approach speed that the step allows for"),
+    "largest_approach_speed": ("m/s", "largest approach speed at a first touch"),
+    "steps_per_contact": ("1", "steps in the shortest contact"),
+    "largest_overlap": ("1", "largest overlap over the smaller radius"),
+}
+"""Units and meanings of the numbers in `figures`."""

@@ -12,9 +12,12 @@ import h5py
 import numpy as np
 import pytest
 
+import rattlebox as rb
 from rattlebox.results import Provenance, Run, RunArrays, load
 from rattlebox.results.schema import GROUPS
 from rattlebox.results.snapshots import Snapshots
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 def test_round_trip_is_exact(any_run: Run, tmp_path: Path) -> None:
@@ -90,6 +93,23 @@ def test_strict_netcdf_reader_finds_everything(run: Run, tmp_path: Path) -> None
         for group in GROUPS:
             for name, variable in file.groups[group].variables.items():
                 assert "long_name" in variable.attrs, name
+
+
+@pytest.mark.parametrize("name", ["steel_ball", "steel_balls_in_a_box"])
+def test_counts_and_figures_tell_what_they_are(name: str, tmp_path: Path) -> None:
+    """Of each number in the groups beside the datasets a file says the unit and, in words of its own, the meaning."""
+    case = rb.Case.from_file(EXAMPLES / f"{name}.toml").model_copy(update={"duration": 2e-3})
+    with h5netcdf.File(rb.simulate(case).save(tmp_path / "run.nc"), "r") as file:
+        told = [
+            item
+            for group in ("counts", "figures")
+            if group in file.groups
+            for item in file.groups[group].variables.items()
+        ]
+        assert len(told) > 6
+        for variable, item in told:
+            assert "units" in item.attrs, variable
+            assert item.attrs["long_name"] not in ("", variable)
 
 
 def test_derived_energies_are_in_the_file(run: Run, tmp_path: Path) -> None:
