@@ -337,6 +337,8 @@ def test_numbers_beyond_all_use() -> None:
         (lambda: rb.chirp("1 N", 1.0, 2.0, None), "duration\n  a time .* is needed"),
         (lambda: rb.simulate("case.toml"), "a Case is needed, not 'case.toml'\n  try: rb.Case.from_file"),
         (lambda: rb.simulate_many(rb.Case(structure=rb.Fixed(), duration=1.0)), "a list of cases is needed"),
+        (lambda: rb.simulate_many([], threads="2"), "threads = '2': a whole number of at least 1"),  # type: ignore[arg-type]
+        (lambda: rb.simulate_many([], threads=0), "threads = 0: a whole number of at least 1"),
     ],
 )
 def test_mistakes_in_python(make: Callable[[], object], said: str) -> None:

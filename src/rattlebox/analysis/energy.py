@@ -42,7 +42,7 @@ def specific_damping_capacity(dissipated: T, stored: T) -> T:
     Parameters
     ----------
     dissipated, stored
-        Energies [J], numbers or arrays that broadcast.
+        Energies [J]: numbers, arrays or DataArrays that broadcast.
 
     Raises
     ------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,7 +49,7 @@ def amplitude_spectrum(
     from scipy.signal import periodogram
 
     t, x = sampled(time, 4, values=values)
-    if padding != int(padding) or padding < 1:
+    if not (isinstance(padding, (int, float, np.number)) and math.isfinite(padding) and padding == int(padding) >= 1):
         raise ValueError(f"padding is {padding}, but it must be a whole number of at least 1")
     size = int(padding) * t.size
     _check_window(window)

@@ -16,6 +16,7 @@ from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, descr
 from rattlebox.model.case import Case
 from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import Hint
+from rattlebox.model.units import whole_number
 from rattlebox.results.arrays import ImpactArrays, RunArrays
 from rattlebox.results.provenance import Provenance
 from rattlebox.results.run import Run
@@ -113,13 +114,16 @@ def simulate_many(cases: Iterable[Case], *, threads: int | None = None, on: str 
     Raises
     ------
     CaseError
-        When something else than cases is given; or when there is no card that can be used, naming what is missing.
+        When something else than cases is given, or no number of threads; or when there is no card that can be used,
+        naming what is missing.
     """
     if isinstance(cases, Case):
         raise Hint("a list of cases is needed, not one case", "simulate(case)")
     cases = list(cases)
     for case in cases:
         _check_is_case(case)
+    if threads is not None:
+        threads = whole_number(threads, "threads", 1)
     if on is not None and cases and all(case.particle_dampers for case in cases):
         from rattlebox.engines.dem import simulate_dem_together
 

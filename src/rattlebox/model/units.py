@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -343,6 +344,23 @@ def plain(value: Any) -> Any:
     """
     match = _NUMBER.match(value) if isinstance(value, str) else None
     return float(match[1]) / 100 if match and match[2] == "%" else not_boolean(value)
+
+
+def whole_number(value: Any, name: str, least: int) -> int:
+    """Return a whole number.
+
+    Raises
+    ------
+    Hint
+        When it is none, or below the least one allowed.
+    """
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = least - 1
+    if number < least or isinstance(value, bool):
+        raise Hint(f"{name} = {value!r}: a whole number of at least {least} is needed")
+    return number
 
 
 def bare_number(value: Any, table: Callable[[float], dict[str, Any]], need: str, advice: str) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint, nearest
-from rattlebox.model.units import are_alike, as_written
+from rattlebox.model.units import are_alike, as_written, whole_number
 
 Vector = NDArray[np.float64]
 Method = Literal["sobol", "halton", "lhs", "random"]
@@ -97,7 +96,7 @@ def _spaced(start: Any, stop: Any, count: Any, *, log: bool = False) -> Spaced:
             raise Hint(f"{told}: ends of one dimension are needed")
         if log and not np.sign(first) * np.sign(last) > 0:
             raise Hint(f"{told}: values that grow by a factor need ends other than zero, of one sign", "equal steps")
-    return Spaced(start, stop, whole(count, "count", 1), log)
+    return Spaced(start, stop, whole_number(count, "count", 1), log)
 
 
 @dataclass(frozen=True)
@@ -166,7 +165,7 @@ def random_design(
     for path in paths:
         if path not in ranges:
             raise Hint(f"log = {path!r}: there is no range of that name", nearest(path, ranges))
-    return RandomDesign(dict(ranges), whole(count, "count", 1), method, whole(seed, "seed", 0), paths)
+    return RandomDesign(dict(ranges), whole_number(count, "count", 1), method, whole_number(seed, "seed", 0), paths)
 
 
 @dataclass(frozen=True)
@@ -207,24 +206,7 @@ def replicas(reach: Mapping[str, Any], count: int, *, seed: int = 0) -> Replicas
     >>> axes = [{"damper.gap": linspace("0.1 mm", "2 mm", 20)}, replicas({"damper.start": "1 um"}, 64)]
     """
     _by_path(reach, "reach", '{"damper.start": "1 um"}')
-    return Replicas(dict(reach), whole(count, "count", 1), whole(seed, "seed", 0))
-
-
-def whole(value: Any, name: str, least: int) -> int:
-    """Return a whole number.
-
-    Raises
-    ------
-    Hint
-        When it is none, or below the least one allowed.
-    """
-    try:
-        number = operator.index(value)
-    except TypeError:
-        number = least - 1
-    if number < least or isinstance(value, bool):
-        raise Hint(f"{name} = {value!r}: a whole number of at least {least} is needed")
-    return number
+    return Replicas(dict(reach), whole_number(count, "count", 1), whole_number(seed, "seed", 0))
 
 
 def _stratified(width: int, count: int, seed: int) -> Vector:

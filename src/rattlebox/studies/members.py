@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox.model.errors import Hint
-
-from .designs import whole
+from rattlebox.model.units import whole_number
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -37,5 +36,5 @@ def members(case: Case, levels: Any = None, starts: int | Sequence[Any] | None =
         if [len(damper.balls) for damper in case.impact_dampers] != [1]:
             raise Hint("starts are of one ball, and the case has not exactly one", 'levels={"dampers[0].start": [...]}')
         one_by_one = hasattr(starts, "__len__")
-        axes.append({"damper.start": starts if one_by_one else np.linspace(-1, 1, whole(starts, "starts", 2))})
+        axes.append({"damper.start": starts if one_by_one else np.linspace(-1, 1, whole_number(starts, "starts", 2))})
     return axes

@@ -1,5 +1,7 @@
 """Spectra of signals whose amplitudes are known."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -82,6 +84,8 @@ def test_result_says_what_it_is():
         ({"window": "hanning-ish"}, "window is 'hanning-ish'.*hann"),
         ({"window": "kaiser"}, "window is 'kaiser'.*parameter"),
         ({"padding": 0}, "padding is 0.*at least 1"),
+        ({"padding": math.inf}, "padding is inf.*whole"),
+        ({"padding": "2"}, "padding is 2.*whole"),
         ({"padding": 1.5}, "padding is 1\\.5.*whole"),
         ({"time": np.concatenate([TIME[:-1], [5.0]])}, "evenly spaced.*Output"),
         ({"time": TIME[::-1]}, "time must increase"),
