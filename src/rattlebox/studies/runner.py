@@ -246,10 +246,10 @@ def _check_names(plan: Plan) -> None:
     inner = {name for extra, _, _ in plan.outputs.values() for name, _ in extra} | {*IN_STORE}
     for name in plan.dims:
         if name in inner or name in plan.outputs:
-            raise Hint(f"an axis cannot be called {name}: the study holds more by that name", "another name")
+            raise Hint(f"an axis cannot be called {name}: studies hold something else by that name", "another name")
     for name in plan.outputs:
         if name in inner:
-            raise Hint(f"a function cannot be called {name}: the study holds more by that name", "another name")
+            raise Hint(f"a function cannot be called {name}: studies hold something else by that name", "another name")
 
 
 def _on_card(task: Task, on: str) -> CardTask:
