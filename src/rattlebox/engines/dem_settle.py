@@ -32,6 +32,7 @@ STEPS = 20  # in a contact
 FALLS = 40  # times that a fall through the cavity takes; common beds rest after three to thirteen
 QUIET = 5  # times twenty contact times
 STOPS = 100  # after that: what nothing slows, as one ball that rolls in a round cavity, is stopped where it is fastest
+ROUGH = 1.0  # friction beyond which hardly anything slides
 REMEMBERED = 8  # beds
 
 
@@ -276,6 +277,6 @@ class _Bed:
 
 
 def _friction(damper: ParticleDamper) -> float:
-    """The largest coefficient of friction among the particles."""
+    """The largest coefficient of friction among the particles, up to where more makes no other bed."""
     entries = damper.contact_table.entries
-    return max((entry.friction.coefficient for entry in entries if entry.friction is not None), default=0.0)
+    return min(max((entry.friction.coefficient for entry in entries if entry.friction is not None), default=0.0), ROUGH)

@@ -1,4 +1,4 @@
-"""What a case may be, but is rarely meant to be: units left out, dampers that outweigh the structure."""
+"""What a case may be, but is rarely meant to be: units left out, dampers that outweigh the structure, huge friction."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ if TYPE_CHECKING:
     from .granular import ParticleDamper
 
 _WIDE = 1.0  # m
+_ROUGH = 3.0  # coefficient of friction
 
 
 def doubts(case: Case) -> tuple[str, ...]:
-    """Return warnings about sizes and masses that a unit may be missing from."""
+    """Return warnings about numbers that a unit may be missing from."""
     return tuple(
         f"warning: {told}"
         for index, damper in enumerate(case.dampers)
@@ -36,6 +37,9 @@ def _of(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> Iterato
         things = "particle"
         diameters = [2 * float(damper.contents.radius.max())]
         mass = float(damper.contents.mass.sum())
+        frictions = [entry.friction.coefficient for entry in damper.contact_table.entries if entry.friction]
+        if max(frictions, default=0.0) > _ROUGH:
+            yield f"the friction in {name} is {max(frictions):g}; per cent need their sign: 40 % is 0.4"
     if max(diameters) > _WIDE:
         yield f"a {things} of {name} is {max(diameters):.4g} m wide; a number without a unit is in metres"
     ease = float(np.max(np.sum(np.square(case.modes.shapes[case.modes.point(damper.point)]), axis=0), initial=0.0))

@@ -13,7 +13,6 @@ from .pairs import Pair
 from .units import LARGEST, SI, Number, PositiveStiffness, bare_number
 
 NotNegative = Annotated[Number, Field(ge=0, le=LARGEST)]
-Coefficient = Annotated[Number, Field(ge=0, le=10)]
 
 
 def _shear_compliance(material: Material | None) -> float:
@@ -28,7 +27,7 @@ class Friction(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("friction", "wall_friction")
     kind: str
-    coefficient: Coefficient
+    coefficient: NotNegative
     damping: NotNegative = 1.0
 
     def coefficients(self, pair: Pair, normal_stiffness: float) -> dict[str, float]:
@@ -118,7 +117,7 @@ class Rolling(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("rolling", "wall_rolling")
     unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
-    coefficient: Coefficient
+    coefficient: NotNegative
     stiffness: Annotated[Number, Field(gt=0, le=LARGEST)] = 1.0
     damping: NotNegative = 0.0
 

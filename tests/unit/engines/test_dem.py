@@ -98,6 +98,14 @@ def test_a_settled_bed_lies_from_the_first_step(shape: Any) -> None:
     assert speed < 1e-3
 
 
+def test_rough_particles_settle() -> None:
+    """Particles that cannot slide come to rest as well, in the bed of those that hardly can."""
+    from rattlebox.engines.dem_settle import settle
+
+    many = {"particles": balls(200), "cavity": rb.Box(size=("30 mm",) * 3), "packing": rb.Settled(seed=1)}
+    assert np.array_equal(settle(damper(**many, friction=3)), settle(damper(**many, friction=1)))
+
+
 def test_settling_is_reproducible() -> None:
     """The same seed gives the same bed, another one another, and no two particles overlap."""
     from rattlebox.engines.dem_settle import settle

@@ -55,6 +55,23 @@ def test_particles_are_compared_as_well(tmp_path):
     assert rb.load(run.save(tmp_path / "run.nc")).arrays.notes == run.arrays.notes
 
 
+@pytest.mark.parametrize(("friction", "told"), [(0.4, 0), ("40 %", 0), (40, 1)])
+def test_friction_in_per_cent_is_noted(friction, told):
+    """A coefficient of 40 is told; a bed settles with it as with any other."""
+    grains = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="6 mm", count=20),
+        cavity=rb.Box(size=("30 mm", "30 mm", "30 mm")),
+        contact=rb.Tsuji(restitution=0.9),
+        friction=friction,
+        packing=rb.Settled(seed=1),
+        softening=1000,
+    )
+    run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=grains, duration="1 ms"))
+    assert [note for note in run.arrays.notes if "friction" in note] == told * [
+        "warning: the friction in damper is 40; per cent need their sign: 40 % is 0.4"
+    ]
+
+
 def test_notes_of_impacts_are_kept_and_shown(tmp_path):
     """A warning is below the summary, and in the file of the run."""
     case = rb.Case(structure=rb.Fixed(), damper=rb.ImpactDamper(**BALL | {"gap": 2.0}), duration="1 ms")

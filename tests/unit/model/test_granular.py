@@ -517,7 +517,6 @@ REFUSED = {
     ),
     "moves along one line only": lambda: case(load=rb.HalfSine(amplitude="1 N", duration="1 ms", direction="y")),
     "must be greater than zero": lambda: rb.Dem(dt=0.0),
-    r"friction = 40\n  must be at most 10": lambda: damper(friction=40),
     r"less than one particle of 8.878e\+05 kg and 6000 mm in diameter": lambda: damper(
         particles=balls(count=None, diameter=6, fill_ratio=0.3)
     ),
