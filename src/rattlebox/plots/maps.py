@@ -342,6 +342,11 @@ def _draw_line(axes: Axes, places: Vector, member: xr.DataArray, look: dict[str,
         low, middle, high = member.where(some, 0.0).quantile([0.1, 0.5, 0.9], _BAND).where(some)
         axes.fill_between(places, low.values, high.values, color=look["color"], alpha=0.25, linewidth=0)
     axes.plot(places, middle.values, **look)
+    there = np.pad(np.isfinite(middle.values), 1)
+    alone = there[1:-1] & ~there[:-2] & ~there[2:]  # between gaps, where a line has no length
+    if alone.any():
+        dots: dict[str, Any] = {"linestyle": "", "marker": "o", "markersize": 2.5, "clip_on": False}
+        axes.plot(places[alone], middle.values[alone], color=look["color"], **dots)
 
 
 def _series(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[dict[str, Any]]:

@@ -159,6 +159,16 @@ def test_clear_refusals(options: dict[str, Any], said: str) -> None:
     assert said in str(caught.value)
 
 
+def test_a_value_between_gaps_is_drawn() -> None:
+    """A value whose neighbours are missing is a dot, since a line of one point cannot be seen."""
+    gappy = study().isel({"load.amplitude": [2]}).squeeze()
+    gappy.share.values[:] = [0.1, np.nan, 0.2, 0.3, np.nan, 0.4, np.nan, *gappy.share.values[7:]]
+    _, dots = rb.plot_map(gappy).axes[0].get_lines()[:2]
+    assert np.asarray(dots.get_xdata()) == pytest.approx(1e3 * GAPS[[0, 5]])
+    assert np.asarray(dots.get_ydata()) == pytest.approx([0.1, 0.4])
+    assert (dots.get_linestyle(), dots.get_marker()) == ("None", "o")
+
+
 def test_repeated_values_are_drawn_once() -> None:
     """Of an axis with the same value several times one is drawn; an axis with nothing else is none."""
     again = study().isel({"load.amplitude": [0, 1, 1, 2]})
