@@ -48,7 +48,7 @@ def show_study(path: Path) -> None:
             console.print(_axes(study))
         if study is not None and some:
             console.print(_results(study))
-            if "front" in study.coords:
+            if "front" in study.coords and study.front.size:
                 console.print(_best(study))
             if counts := statuses(study):
                 told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
@@ -128,7 +128,7 @@ def _results(study: xr.Dataset) -> Table:
     numbers = ("smallest", "largest", "values")
     table = Table("result", "meaning", *(Column(name, **right) for name in numbers), box=SIMPLE_HEAD)
     for name, values in study.data_vars.items():
-        if name != "status" and values.dtype.kind in "fiub":
+        if name != "status" and values.dtype.kind in "fiub" and values.size:
             parts = [part for part in map(_there, _parts(values)) if part.size]
             ends = [end for part in parts for end in (part.min(), part.max())]
             shown = [_number(end, values) for end in (min(ends), max(ends))] if ends else [MISSING, MISSING]

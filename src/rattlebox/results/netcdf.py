@@ -257,7 +257,7 @@ def _read_variables(file: Any, form: Form) -> dict[str, Any]:
         "time": file.groups["motion"].variables["time"][...],
         "status": _text_attribute(file.attrs["status"]),
         "message": _read_text(file, "message"),
-        "notes": tuple(_read_text(file, "notes").splitlines()),
+        "notes": tuple(_read_text(file, "notes").split("\n")) if "notes" in file.variables else (),
         "counts": {name: int(variable[...]) for name, variable in counts.items()},
         "wall_time": float(file.attrs["wall_time"]),
     }

@@ -193,6 +193,17 @@ def test_quantities_of_a_diagram(answer: Answer) -> None:
     assert code == 2 and "did you mean 'impact_phase'" in said
 
 
+def test_a_design_without_a_best_trial_is_shown(answer: Answer) -> None:
+    """Where every trial is too heavy there is no best one to list, and nothing is told of its case."""
+    Path("study.toml").write_text(
+        study("design").replace('kind = "design"', 'kind = "design"\nmax_added_mass = "1 mg"')
+    )
+    assert answer("sweep", "study.toml")[0] == 0
+    code, out, _ = answer("show", "study.zarr")
+    assert code == 0 and "best trial" not in out and "case file" not in out
+    assert answer("plot", "study.zarr")[0] == 0
+
+
 @pytest.mark.parametrize(("kind", "after", "told"), [("bifurcation", 1, "9 of 18 variants"), ("design", 2, "2 trials")])
 def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer) -> None:
     """A map that was stopped tells how far it is, cannot be drawn as one yet, and the command finishes it."""
