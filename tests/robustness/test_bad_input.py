@@ -106,6 +106,8 @@ def test_the_good_case_is_accepted() -> None:
         ('duration = "5 s"', "duration = 5,5", ["not TOML", "try: a point before decimals: duration = 5.5"]),
         ('gap = "0.4 mm"', 'gap = "0,4 mm"', ["gap", "decimals follow a point", 'try: "0.4 mm"']),
         ('amplitude = "5 kN"', 'amplitude = "5,000 N"', ["amplitude", 'try: "5.000 N" or "5000 N"']),
+        ('amplitude = "5 kN"', 'amplitude = "1,234,567 N"', ["amplitude = '1,234,567 N'", "nothing parts thousands"]),
+        ("restitution = 0.9", 'restitution = "0,9"', ["restitution", 'try: "0.9"']),
         ('gap = "0.4 mm"\n', "", ["damper", "gap or cavity_length is needed", 'try: gap = "0.4 mm"']),
         ("restitution = 0.9", 'ending = "zero_force"', ["damper.contact", "restitution or alpha is needed"]),
         ('contact = { kind = "tsuji", restitution = 0.9 }', "", ["contact", 'try: contact = { kind = "tsuji", ... }']),

@@ -71,18 +71,16 @@ def sweep(
     run_sweep(study, out, workers, dask, gpu=gpu)
 
 
-def _check_results(path: Path) -> None:
+def _check_results(path: Path, wanted: str) -> None:
     """Refuse what says what to run, where what came of it is needed."""
     if path.suffix == ".toml" and path.is_file():
-        raise CaseError(
-            f"{path} says what to run, not what came of it\n  try: the file or folder written by 'rattlebox run' or 'sweep'"
-        )
+        raise CaseError(f"{path} says what to run, not what came of it\n  try: {wanted}")
 
 
 @app.command()
 def show(study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")]) -> None:
     """Tell what is in a study, and how far it is."""
-    _check_results(study)
+    _check_results(study, "the folder that 'rattlebox sweep -o' wrote")
     from rattlebox.cli.show import show_study
 
     show_study(study)
@@ -110,7 +108,7 @@ def plot(
     size: Annotated[str | None, typer.Option(help="column, page or slide.")] = None,
 ) -> None:
     """Draw a study: its own figure, or a measure over one or two of its axes. Draw a run, or film its particles."""
-    _check_results(study)
+    _check_results(study, "run.nc or run.vtkhdf that 'rattlebox run' wrote, or the folder of 'rattlebox sweep'")
     if study.is_file() or (study.suffix in (".nc", ".vtkhdf") and not study.exists()):
         from rattlebox.cli.plot_run import plot_run
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from rattlebox.engines.core import core
 from rattlebox.model.errors import Hint
-from rattlebox.model.packing import Settled, check_packing, overlapping
+from rattlebox.model.packing import TOUCHING, Settled, check_packing, overlapping
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 ROUNDS = 5000
 SWELL = 2e-3  # how much larger particles are made while they are pushed apart, so that in the end none touch
-GROWN = 5e-6  # the same while they fall: twice that are the gaps of the bed, less than its weight closes
+GROWN = 5e-6  # the same while they fall: twice that are the gaps of the bed
 SINK = 0.1  # overlap over radius at the largest speed of the fall; it is two hundredths of it under the own weight
 LIGHTER = tuple(0.25**n for n in range(1, 13))  # parts of the weight, one after the other
 CALM = 3  # times twenty contact times under each
@@ -235,9 +235,10 @@ class _Bed:
     def expand(self, places: Array, cavity: Cavity) -> Array:
         """Lift the weight little by little, until no particle in its true size overlaps another one."""
         radii = self._contents.radius
+        told = radii - 0.5 * TOUCHING * radii.min()  # a row as long as the cavity overlaps by its rounding for ever
         for weight in LIGHTER:
             for now, _ in self._followed(places, weight, CALM):
-                if cavity.room(now, radii).min() >= 0 and not overlapping(now, radii)[0].size:
+                if cavity.room(now, told).min() >= 0 and not overlapping(now, told)[0].size:
                     return now
             places = now
         return push_apart(cavity, places, radii, SWELL)

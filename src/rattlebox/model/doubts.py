@@ -22,7 +22,7 @@ def doubts(case: Case) -> tuple[str, ...]:
     return tuple(
         f"warning: {told}"
         for index, damper in enumerate(case.dampers)
-        for told in _of(case, damper, damper.label(index))
+        for told in _of(case, damper, " ".join(damper.label(index).split()))
     )
 
 

@@ -249,12 +249,9 @@ _TAGS = ("union_tag_not_found", "union_tag_invalid")
 
 
 def _table_of(name: str, vocabulary: Vocabulary, kind: str | None = None) -> str:
-    """What a table of this name looks like; "" where it is none."""
-    if name not in vocabulary:
-        return ""
-    kind = kind or next(iter(vocabulary[name]))
-    inside = f'kind = "{kind}", ...' if kind else "..."
-    return f"{_SPELLINGS.get(name, name)} = {{ {inside} }}"
+    """What a table of this name looks like; "" where it has no kinds."""
+    kind = kind or next(iter(vocabulary.get(name, ())), "")
+    return f'{_SPELLINGS.get(name, name)} = {{ kind = "{kind}", ... }}' if kind else ""
 
 
 def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: str) -> tuple[str, str]:
@@ -288,7 +285,7 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: 
         expected = str(context.get("expected", "")).replace(" or ", ", ").split(", ")
         close = difflib.get_close_matches(value, [word.strip("'") for word in expected], n=1)
         return _PLAIN[what].format(**context), f'"{close[0]}"' if close else ""
-    if what in ("list_type", "tuple_type") and isinstance(value, (str, int, float)):
+    if what in ("list_type", "tuple_type") and isinstance(value, (str, int, float)) and not isinstance(value, bool):
         return _PLAIN[what], "[" + (f'"{value}"' if isinstance(value, str) else f"{value!r}") + "]"
     if what == "greater_than":
         return f"must be greater than {format(context['gt'], 'g') if context['gt'] else 'zero'}", ""

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -145,8 +146,10 @@ def _check_comma(text: str) -> None:
     match = _COMMA.match(text)
     if match:
         before, after, rest = match.groups()
-        suggestions = [f'"{before}.{after}{rest}"', *([f'"{before}{after}{rest}"'] if len(after) == 3 else [])]
-        raise Hint("decimals follow a point, and nothing parts thousands", " or ".join(suggestions))
+        readings = [f'"{before}.{after}{rest}"'] if "," not in rest else []
+        if readings and len(after) == 3 and before.lstrip("+-") != "0":
+            readings.append(f'"{before}{after}{rest}"')
+        raise Hint("decimals follow a point, and nothing parts thousands", " or ".join(readings))
 
 
 def as_written(value: Any) -> tuple[float, str] | None:
@@ -340,8 +343,10 @@ def plain(value: Any) -> Any:
     Raises
     ------
     Hint
-        When it is true or false.
+        When it is true or false, or text with a comma in a number.
     """
+    if isinstance(value, str):
+        _check_comma(value)
     match = _NUMBER.match(value) if isinstance(value, str) else None
     return float(match[1]) / 100 if match and match[2] == "%" else not_boolean(value)
 
@@ -374,9 +379,9 @@ def bare_number(value: Any, table: Callable[[float], dict[str, Any]], need: str,
     if isinstance(value, bool):
         return value
     value = plain(value)
-    if isinstance(value, (int, float)):
-        return table(value)
-    if isinstance(value, (str, list)):
+    if isinstance(value, Real):
+        return table(value if isinstance(value, (int, float)) else float(value))
+    if isinstance(value, (str, list, tuple)):
         raise Hint(need, advice)
     return value
 

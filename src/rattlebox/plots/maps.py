@@ -89,7 +89,8 @@ def plot_map(
         raise CaseError(f"kind = {kind!r}: there is no such kind\n  {nearest(str(kind), ('map', 'lines'))}")
     name = _measure(study, of)
     chosen, told = select(study, at or {})
-    repeated = [dim for dim in chosen[name].dims if dim in chosen.coords]  # the same value twice is drawn once
+    along = [coord.dims for coord in chosen.coords.values()]  # of linked parameters another one tells them apart
+    repeated = [dim for dim in chosen[name].dims if dim in chosen.coords and along.count((dim,)) == 1]
     chosen = chosen.drop_duplicates(repeated).squeeze(drop=True)
     dims = [str(dim) for dim in chosen[name].dims if dim != _BAND]
     _check_axes(chosen, name, dims, kind)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from rattlebox.model.errors import Hint
@@ -89,6 +89,7 @@ def loss_map(
         raise Hint("a loss map needs a case on a shaker with one harmonic motion", "a structure of kind shaker")
     if not case.dampers:
         raise Hint("a loss map needs a case with a damper", "a ball in a gap, or particles in a cavity")
+    amplitudes, frequencies = (list(x) if isinstance(x, Iterator) else x for x in (amplitudes, frequencies))
     axes = {"structure.motion.amplitude": amplitudes, "structure.motion.frequency": frequencies}
     for (path, values), source in zip(axes.items(), ("amplitudes", "frequencies"), strict=True):
         Design.of(case, {path: values}, source=source)  # for messages, in the words of this map

@@ -181,6 +181,9 @@ def test_repeated_values_are_drawn_once() -> None:
     assert drawn.get_coordinates().shape == plain.get_coordinates().shape
     with pytest.raises(rb.CaseError, match="nothing varies"):
         rb.plot_map(study().isel({"load.amplitude": [1, 1], "damper.gap": [3]}))
+    linked = study().isel({"load.amplitude": [0, 0, 1, 1], "damper.gap": 3})
+    linked = linked.assign_coords({"load.duration": ("load.amplitude", [1e-3, 2e-3, 1e-3, 2e-3])})
+    assert len(np.asarray(rb.plot_map(linked).axes[0].get_lines()[0].get_xdata())) == 4
 
 
 def test_more_axes_than_two_are_refused() -> None:
