@@ -91,7 +91,8 @@ template <class T> struct Holding {
     Vector<T> ahead;         // the spring half a step later
     T gives;                 // 1 / stiffness
     T loss;                  // energy lost in this step
-    T stored;                // in the spring, mean of half a step before and after
+    T stored;                // in the spring at this step
+    T beyond;                // what half a step before and after it holds on average more: what slips away
 };
 
 // `before` is the spring's force half a step ago, when it gave by `gave` times its force: half of the stretch
@@ -118,7 +119,10 @@ RATTLEBOX_INLINE Holding<T> hold(const Vector<T>& before, const T& gave, const V
     // What the spring took up in this step and does not hold: by slipping, and by its change of stiffness.
     const T held = half * was * gave, holds = half * dot(h.ahead, h.ahead) * h.gives;
     h.loss = dashpot * slip * dt + larger(held - holds - dot(h.spring, velocity) * dt, zero);
-    h.stored = half * (held + holds);
+    // Where it slips, the spring half a step from here is stretched further than friction allows.
+    const T mean = half * (held + holds), most = half * h.loss;
+    h.beyond = smaller(most, larger(zero - most, mean - half * dot(h.spring, h.spring) * h.gives));
+    h.stored = mean - h.beyond;
     return h;
 }
 
@@ -191,7 +195,7 @@ template <class T> struct Tangential {
     Vector<T> force, couple; // on the first; the couple over its radius
     Four<T> friction;        // what the spring remembers
     T stiffness;
-    T lost, stored;
+    T lost, stored, beyond;
 };
 
 template <class T, class Row>
@@ -210,13 +214,14 @@ RATTLEBOX_INLINE Tangential<T> rub(const Meeting<T>& m, const Push<T>& push, con
             {h.ahead.x, h.ahead.y, h.ahead.z, h.gives},
             stiffness,
             h.loss,
-            h.stored};
+            h.stored,
+            h.beyond};
 }
 
 template <class T> struct Rolling {
     Vector<T> torque; // on the first
     Four<T> rolling;  // what the spring remembers
-    T lost, stored;
+    T lost, stored, beyond;
 };
 
 // `law` holds mu_r R*, k_r / k_t, c_r.
@@ -228,7 +233,7 @@ RATTLEBOX_INLINE Rolling<T> roll(const Meeting<T>& m, const Push<T>& push, const
     const Vector<T> turning = m.spin - dot(m.spin, m.normal) * m.normal;
     const T spring = law.y * stiffness;
     const auto r = hold(past.vector(), past.w, m.normal, spring, law.z * drag, turning, law.x * pressed, dt);
-    return {r.force, {r.ahead.x, r.ahead.y, r.ahead.z, r.gives}, r.loss, r.stored};
+    return {r.force, {r.ahead.x, r.ahead.y, r.ahead.z, r.gives}, r.loss, r.stored, r.beyond};
 }
 
 } // namespace rattlebox::dem

@@ -21,15 +21,16 @@ struct Wall {
 struct Encounter {
     NormalLaw normal;
     RestitutionLaw restitution;
-    real radius = 1, mass = 1;         // R* [m] and m* [kg] of the reference pair
-    bool by_time = false;              // linear spring of given contact time: stiffness grows with m*
-    real friction = 0;                 // mu
-    real shear = 0;                    // 8 G* [Pa]: Mindlin's stiffness is 8 G* a, a = sqrt(R* d)
-    real tangential_stiffness = 0;     // [N/m] of a linear spring
-    real tangential_damping = 1;       // damping ratio of the tangential dashpot over that of the normal one
-    real rolling = 0;                  // mu_r
-    real rolling_stiffness = 0;        // over k_t R*^2
-    real rolling_damping = 0;          // damping ratio
+    real radius = 1, mass = 1;     // R* [m] and m* [kg] of the reference pair
+    bool by_time = false;          // linear spring of given contact time: stiffness grows with m*
+    real friction = 0;             // mu
+    real shear = 0;                // 8 G* [Pa]: Mindlin's stiffness is 8 G* a, a = sqrt(R* d)
+    real tangential_stiffness = 0; // [N/m] of a linear spring
+    real tangential_ratio = 0;     // of a linear spring: to the stiffness of the pair's own linear contact
+    real tangential_damping = 1;   // damping ratio of the tangential dashpot over that of the normal one
+    real rolling = 0;              // mu_r
+    real rolling_stiffness = 0;    // over k_t R*^2
+    real rolling_damping = 0;      // damping ratio
     real constant_zeta = not_a_number; // where neither speed nor size changes it
 };
 

@@ -219,7 +219,10 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             group_of(tally.sliding[partner], part) += weight * h.lost;
             force = force + h.force;
             store(Columns{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&Action::couple));
-            if (sampled) group_of(tally.stored, part) += weight * h.stored;
+            if (sampled) {
+                group_of(tally.stored, part) += weight * h.stored;
+                group_of(tally.slid[partner], part) += weight * h.beyond;
+            }
             if constexpr (rolls) {
                 const auto r = roll(m, push, h.stiffness, columns(rolling(&KeptRolling::law)),
                                     columns(rolling(&KeptRolling::spring)), how.mindlin, dt);
@@ -227,7 +230,10 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
                 store(Columns{r.torque.x, r.torque.y, r.torque.z, zero},
                       [&](int l) { return &at(actions.torque, a[l]); });
                 group_of(tally.rolling[partner], part) += weight * r.lost;
-                if (sampled) group_of(tally.stored, part) += weight * r.stored;
+                if (sampled) {
+                    group_of(tally.stored, part) += weight * r.stored;
+                    group_of(tally.rolled[partner], part) += weight * r.beyond;
+                }
             }
         } else
             store(Columns{zero, zero, zero, zero}, acting(&Action::couple));

@@ -23,6 +23,7 @@ inline Losses losses(const Bed& bed) {
 struct Totals {
     Losses before, now; // of the step
     real kinetic = 0, rotation = 0, stored = 0, mass = 0;
+    real slid[2] = {}, rolled[2] = {};        // by then, beyond half of what the step loses
     Row place{}, momentum{}, push{}, twist{}; // mass times position; on the cavity
     std::int64_t contacts[2] = {};
 };
@@ -40,8 +41,7 @@ struct Records {
         before_.clear();
         for (Bed& bed : beds) {
             before_.push_back(losses(bed));
-            for (Chunk& c : bed.chunks)
-                c.tally.stored = Lanes{}, c.tally.contacts[0] = c.tally.contacts[1] = 0;
+            for (Chunk& c : bed.chunks) c.tally.begin_sample();
         }
     }
 
@@ -60,7 +60,10 @@ struct Records {
                 const Tally& one = c.tally;
                 sum.kinetic += one.kinetic, sum.rotation += one.rotation, sum.stored += total(one.stored);
                 sum.place += one.mass_moment, sum.twist += one.wall_moment;
-                for (int k = 0; k < 2; ++k) sum.contacts[k] += one.contacts[k];
+                for (int k = 0; k < 2; ++k) {
+                    sum.contacts[k] += one.contacts[k];
+                    sum.slid[k] += total(one.slid[k]), sum.rolled[k] += total(one.rolled[k]);
+                }
             }
             sum.mass = bed.mass;
             take(sum, gravity);
@@ -74,14 +77,14 @@ struct Records {
             centre.push_back(sum.place[a] / sum.mass), momentum.push_back(sum.momentum[a]);
             force.push_back(sum.push[a]), moment.push_back(sum.twist[a]);
         }
-        // What a step loses is half lost at its instant.
+        // What a step loses is half lost at its instant, but for what slips.
         const Losses &then = sum.before, &now = sum.now;
         for (int k = 0; k < 2; ++k) {
             contacts.push_back(sum.contacts[k]);
             normal.push_back(0.5 * (then.normal[k] + now.normal[k]));
             plastic.push_back(now.plastic[k]);
-            sliding.push_back(0.5 * (then.sliding[k] + now.sliding[k]));
-            rolling.push_back(0.5 * (then.rolling[k] + now.rolling[k]));
+            sliding.push_back(0.5 * (then.sliding[k] + now.sliding[k]) + sum.slid[k]);
+            rolling.push_back(0.5 * (then.rolling[k] + now.rolling[k]) + sum.rolled[k]);
         }
     }
 };

@@ -56,6 +56,7 @@ class Simulation {
     } asked_, taken_;
     bool must_build_ = true, builds_soon_ = false; // before the next step, and before the one after it
     bool goes_ahead_ = false;                      // who waits at the end of the step
+    long told_ = -1;                               // the step whose single contacts are still known
     long builds_ = 0, late_builds_ = 0;
     Rest rest_;
     long lone_steps_ = 0; // by one for a team that was held up
@@ -357,7 +358,7 @@ class Simulation {
             momentum += momentum_of(bed);
         }
         if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity)) status_ = Status::not_finite;
-        structure().work_on_particles(momentum);
+        if (!first) structure().work_on_particles(momentum);
         if (sample) records_.take(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
         structure().work_on_particles(momentum);
         check();
@@ -374,6 +375,7 @@ class Simulation {
             advance(team, first, sample, step_ == until);
             team.sync(
                 [&] {
+                    if (step_ == until) told_ = step_;
                     conclude(first, sample);
                     prepare();
                     taken_ = std::exchange(asked_, {stop, pause()});
@@ -467,7 +469,7 @@ public:
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
         archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, late_builds_, must_build_,
-                builds_soon_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_,
+                builds_soon_, told_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_,
                 viscous_);
         for (Bed& bed : beds_) bed.keep(archive);
     }
@@ -477,6 +479,8 @@ public:
         for (Bed& bed : beds_) place(bed);
     }
 
+    // Are forces of single contacts known, of the last step? They are where a run was asked to end.
+    bool tells_contacts() const { return told_ >= 0 && told_ == step_ - 1; }
     const Problem& problem() const { return problem_; }
     const std::vector<ModeState>& modes() const { return modes_shown_; }
     Row body_shown() const { return body_before_; }

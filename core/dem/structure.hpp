@@ -101,7 +101,7 @@ struct Structure {
         }
     }
 
-    // Half of the work of the base on the particles in this step.
+    // Half of the work of the base on the particles in this step: before its instant, or after it.
     void work_on_particles(Row momentum) {
         for (int l = 0; l < loads; ++l)
             if (base[l]) base_work[l] -= 0.5 * dt * value[l] * dot(direction[l], momentum);

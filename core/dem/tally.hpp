@@ -44,8 +44,13 @@ struct alignas(64) Tally {
     // at a sample
     Row wall_moment{}, mass_moment{};
     real kinetic = 0, rotation = 0;
-    Lanes stored{};
+    Lanes stored{}, slid[2]{}, rolled[2]{}; // lost by then, beyond half of what the step loses
     long contacts[2]{};
+
+    void begin_sample() {
+        stored = Lanes{};
+        for (int p = 0; p < 2; ++p) slid[p] = rolled[p] = Lanes{}, contacts[p] = 0;
+    }
 };
 
 } // namespace rattlebox::dem

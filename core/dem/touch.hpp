@@ -145,7 +145,8 @@ inline Begun begin(const Touch& t, real dt) {
     scaled(e, t).visit([&](const auto& law) {
         using Law = std::decay_t<decltype(law)>;
         // Without friction any stiffness will do.
-        const real own = e.shear > 0 ? e.shear * std::sqrt(t.radius) : e.tangential_stiffness;
+        const real linear = e.tangential_stiffness + e.tangential_ratio * law.stiffness;
+        const real own = e.shear > 0 ? e.shear * std::sqrt(t.radius) : linear;
         const real tangential = own > 0 ? own : 1;
         if constexpr (std::is_same_v<Law, Thornton>) {
             b.kept.law = row(law.stiffness, law.plastic_slope(), tangential, law.yield_overlap());

@@ -67,17 +67,16 @@ public:
     nb::dict contacts(std::size_t number) const {
         const Bed& b = bed(number);
         Touching touching;
+        if (!simulation_->tells_contacts())
+            throw std::logic_error("single contacts are known where a run was asked to end");
         for (const Chunk& chunk : b.chunks)
-            for (const Contacts* list : {&chunk.pairs, &chunk.walls}) {
-                if (list->actions.all.size() != static_cast<std::size_t>(list->actives))
-                    throw std::logic_error("single contacts are known where a run was asked to end");
+            for (const Contacts* list : {&chunk.pairs, &chunk.walls})
                 for (int a = 0; a < list->actives; ++a) {
                     const int k = at(list->active, a), j = at(list->second, k);
                     touching.add(at(b.name, at(list->first, k)),
                                  list == &chunk.pairs ? at(b.name, j) : b.particles() + j,
                                  at(list->actions.all, a).force);
                 }
-            }
         return touching.write();
     }
 

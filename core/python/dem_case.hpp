@@ -91,6 +91,7 @@ inline dem::Problem read_dem(rattlebox::Problem& storage, const nb::dict& d) {
         reader.number(e.friction, entry, "friction");
         reader.number(e.shear, entry, "shear");
         reader.number(e.tangential_stiffness, entry, "tangential_stiffness");
+        reader.number(e.tangential_ratio, entry, "tangential_ratio");
         reader.number(e.tangential_damping, entry, "tangential_damping");
         reader.number(e.rolling, entry, "rolling");
         reader.number(e.rolling_stiffness, entry, "rolling_stiffness");

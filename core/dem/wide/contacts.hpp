@@ -152,7 +152,7 @@ template <bool sampled> class OwnContacts {
     template <class Law> void collide(int s, int partner, const Late& late) {
         const Kind k = kind_of(bed_, partner);
         const real dt = world_.structure.dt;
-        real stored = 0;
+        real stored = 0, slid = 0, rolled = 0;
         const auto m = k.rough ? meeting<true>(partner) : meeting<false>(partner);
         Four<real> dent{};
         if constexpr (Law::plastic) {
@@ -180,7 +180,7 @@ template <bool sampled> class OwnContacts {
             force = force + h.force;
             bed_.action[s].couple = row((1 + late.share) * h.couple);
             lose(partner, 0, h.lost - late.share * dt * dot(row(force), late.slip));
-            stored += h.stored;
+            stored += h.stored, slid = h.beyond;
             if (k.rolls) {
                 KeptRolling& kept = bed_.rolling[s];
                 const auto r =
@@ -188,14 +188,16 @@ template <bool sampled> class OwnContacts {
                 kept.spring = row(r.rolling);
                 bed_.torque[s] = torque = row(r.torque);
                 lose_more(partner, 0, r.lost);
-                stored += r.stored;
+                stored += r.stored, rolled = r.beyond;
             }
         }
         const Row whole = row(force) * rattlebox::row(1 + late.share);
         bed_.action[s].force = whole;
         if constexpr (sampled) {
             ContactSum& seen = bed_.seen[i_];
-            seen.stored += stored, ++seen.contacts[partner < 0 ? wall : particle];
+            const Partner with = partner < 0 ? wall : particle;
+            seen.stored += stored, seen.slid[with] += slid, seen.rolled[with] += rolled;
+            ++seen.contacts[with];
             if (partner >= 0) return;
             const Near at = own().near(-1 - partner);
             const Row arm = place_ - bed_.motion.displacement + at.normal * at.distance;

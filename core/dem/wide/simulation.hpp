@@ -286,6 +286,8 @@ public:
                         .rotation = motions.rotation,
                         .stored = contacts.stored,
                         .mass = w.bed[b].mass,
+                        .slid = {contacts.slid[0], contacts.slid[1]},
+                        .rolled = {contacts.rolled[0], contacts.rolled[1]},
                         .place = row(motions.place),
                         .momentum = row(motions.step.momentum),
                         .push = row(motions.step.push),

@@ -156,7 +156,7 @@ RATTLEBOX_COLD inline void conclude(World& w) {
     show(w);
     Row momentum{};
     for (int b = 0; b < w.beds; ++b) momentum += row(w.bed[b].step.momentum);
-    s.work_on_particles(momentum);
+    if (c.step > 0) s.work_on_particles(momentum);
     if (sample) write_sample(w);
     s.work_on_particles(momentum);
     check(w);

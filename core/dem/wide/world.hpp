@@ -60,7 +60,8 @@ struct LossSum {
 };
 struct ContactSum {
     real stored = 0;
-    real twist[3] = {}; // moment on the cavity
+    real slid[2] = {}, rolled[2] = {}; // lost by then, beyond half of what the step loses
+    real twist[3] = {};                // moment on the cavity
     real contacts[2] = {};
 
     static real join(int, real a, real b) { return a + b; }

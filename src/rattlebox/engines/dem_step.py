@@ -249,7 +249,7 @@ def _sideways(damper: ParticleDamper, entry: Entry, values: Mapping[str, Any], s
     laws = damper.softened_friction(entry)
     if not laws["friction"] or not math.isfinite(duration):
         return 1.0
-    firm = laws["tangential_stiffness"]
+    firm = laws["tangential_stiffness"] + laws["tangential_ratio"] * values["stiffness"]
     if laws["shear"]:
         radius = values["radius"]
         deepest = speed * duration / HERTZ_TIME

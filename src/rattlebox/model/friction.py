@@ -30,8 +30,8 @@ class Friction(Part):
     coefficient: NotNegative
     damping: NotNegative = 1.0
 
-    def coefficients(self, pair: Pair, normal_stiffness: float) -> dict[str, float]:
-        """Return what the core reads, for a pair of bodies whose contact law has this stiffness."""
+    def coefficients(self, pair: Pair) -> dict[str, float]:
+        """Return what the core reads for a pair of bodies."""
         raise NotImplementedError
 
 
@@ -53,13 +53,14 @@ class Mindlin(Friction):
 
         def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
 
-    def coefficients(self, pair: Pair, normal_stiffness: float) -> dict[str, float]:
+    def coefficients(self, pair: Pair) -> dict[str, float]:
         """Return 8 G* [Pa] besides coefficient and damping."""
         modulus = 1 / (_shear_compliance(pair.below.material) + _shear_compliance(pair.above.material))
         return {
             "friction": self.coefficient,
             "shear": 8 * modulus,
             "tangential_stiffness": 0.0,
+            "tangential_ratio": 0.0,
             "tangential_damping": self.damping,
         }
 
@@ -72,7 +73,7 @@ class LinearSpring(Friction):
     coefficient
         Of friction.
     stiffness, ratio
-        Of the tangential spring [N/m]; or its ratio to the stiffness of a linear contact.
+        Of the tangential spring [N/m]; or its ratio to the stiffness of the linear contact of the pair that touches.
     damping
         Damping ratio of the tangential dashpot over that of the normal one.
     """
@@ -92,12 +93,13 @@ class LinearSpring(Friction):
         one_of("ratio = 0.286", stiffness=self.stiffness, ratio=self.ratio)
         return self
 
-    def coefficients(self, pair: Pair, normal_stiffness: float) -> dict[str, float]:
-        """Return the stiffness besides coefficient and damping."""
+    def coefficients(self, pair: Pair) -> dict[str, float]:
+        """Return stiffness and ratio besides coefficient and damping."""
         return {
             "friction": self.coefficient,
             "shear": 0.0,
-            "tangential_stiffness": self.stiffness or (self.ratio or 0.0) * normal_stiffness,
+            "tangential_stiffness": self.stiffness or 0.0,
+            "tangential_ratio": self.ratio or 0.0,
             "tangential_damping": self.damping,
         }
 

@@ -431,12 +431,10 @@ class ParticleDamper(Part):
 
     def softened_friction(self, entry: Entry) -> dict[str, float]:
         """Return the core's coefficients of friction and rolling resistance, with moduli divided by the softening."""
-        _, normal = self.softened(entry)
-        values = dict.fromkeys(("friction", "shear", "tangential_stiffness"), 0.0) | {"tangential_damping": 1.0}
+        names = ("friction", "shear", "tangential_stiffness", "tangential_ratio")
+        values = dict.fromkeys(names, 0.0) | {"tangential_damping": 1.0}
         if entry.friction is not None:
-            values |= entry.friction.coefficients(entry.pair, normal["stiffness"])
+            values |= entry.friction.coefficients(entry.pair)
             values |= {name: values[name] / self.softening for name in ("shear", "tangential_stiffness")}
-            if isinstance(entry.friction, LinearSpring) and entry.friction.ratio is not None:  # of what is soft already
-                values["tangential_stiffness"] *= self.softening
         rolling = Rolling(coefficient=0.0) if entry.rolling is None else entry.rolling
         return values | rolling.coefficients()

@@ -47,7 +47,7 @@ def shaken(
         ],
         load=[
             rb.Harmonic(amplitude=50.0, frequency=40.0),
-            rb.Record(times=[0, 0.002, 0.0035, 0.005, 0.009, 0.02], values=[0, 40, -30, 60, -20, 0]),
+            rb.Record(times=[0, 0.002, 0.0035, 0.005, 0.009, max(0.02, duration)], values=[0, 40, -30, 60, -20, 0]),
             rb.HalfSine(amplitude=100.0, duration="4 ms", start="1 ms"),
         ],
         duration=duration,
@@ -230,17 +230,18 @@ def test_contacts_of_a_stopped_run_are_not_told_in_part() -> None:
     )
     dem, last = cases.dem_of(at_rest)
     dem.run(2000)  # however soon it is stopped then, all that lie on each other touch
-    assert not dem.run(last, lambda _: False)
-    with pytest.raises(RuntimeError, match="asked to end"):
-        dem.contacts(0)
-    dem.run(dem.step + 1)
-    assert len(dem.contacts(0)["first"]) > 50
+    for _ in range(3):  # at times as many touch as before
+        assert not dem.run(last, lambda _: False)
+        with pytest.raises(RuntimeError, match="asked to end"):
+            dem.contacts(0)
+        dem.run(dem.step + 1)
+        assert len(dem.contacts(0)["first"]) > 50
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_a_run_that_is_stopped_again_and_again_gives_the_same_bits(threads: int) -> None:
     """Wherever a team is asked to stop, none of it is ahead, and the run goes on from there as if it never had."""
-    case = shaken("Hertz", rate=500.0)
+    case = shaken("Hertz", rate=500.0, duration=0.1)  # many times as long as it takes to be heard
     whole, last = cases.dem_of(case)
     whole.run(last)
     dem, _ = cases.dem_of(case, threads=threads)

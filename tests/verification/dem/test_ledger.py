@@ -79,3 +79,46 @@ def test_ledger_of_one_impact_closes(law: str, e: float) -> None:
         )
         run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration=4e-3, output=rb.Output(times=[4e-3])))
         assert run.ok and run.closure < 0.01
+
+
+@pytest.mark.parametrize("law", ["rough", "rolling"])
+def test_work_on_balls_that_are_thrown_begins_at_nothing(law: str) -> None:
+    """Balls that fly at the start on a shaken base have had no work done on them then, and the ledger closes from there."""
+    closures = []
+    for dt in (2e-6, 2.5e-7):
+        case = cloud(law, random=1.0, duration=0.0048, rate=6250.0, method=rb.Dem(dt=dt * (1 + 1e-9)))
+        parts = {"dampers": case.dampers, "duration": case.duration, "output": case.output, "method": case.method}
+        swing = rb.Harmonic(amplitude="300 m/s^2", frequency=150, direction="x", phase=np.pi / 2)
+        run = cases.run(rb.Case(**parts, structure=AT_REST, base=swing), closes=False)
+        assert run.arrays.base_work[0] == 0
+        closures.append(run.closure)
+    assert np.log2(closures[0] / closures[1]) / 3 == pytest.approx(2, abs=0.35)
+
+
+@pytest.mark.parametrize("law", ["sliding", "rolling"])
+def test_springs_of_sliding_contacts_hold_what_friction_allows(law: str) -> None:
+    """Of a ball that slides, or rolls against resistance, springs hold (mu N)^2 / (2 k_t) and alike, to the second order."""
+    rolls = law == "rolling"
+    radius, pull, stiffness, ratio, half = 5e-3, 1000.0, 1e6, 0.3, 0.05
+    friction, resistance = (0.5, 0.02) if rolls else (0.05, 0.0)
+    ball = Ball(radius, (-half / 2, 0, radius - half), (1, 0, 0), (0, 1 / radius if rolls else 0, 0))
+    weight = ball.mass * pull
+    rubbing = 5 / 7 * resistance * weight if rolls else friction * weight
+    pressed = weight**2 / (2 * stiffness)
+    held = (rubbing**2 + (resistance * weight) ** 2) / (2 * ratio * stiffness)
+    excess = []
+    for dt in (4e-7, 1e-7):
+        case = cases.case(
+            [ball],
+            dt=dt,
+            steps=round(0.005 / dt),
+            samples=5,
+            cavity=rb.Box(size=(2 * half,) * 3),
+            contact=rb.Linear(stiffness=stiffness, restitution=0.5),
+            friction=rb.LinearSpring(friction, ratio=ratio),
+            rolling=rb.Rolling(resistance, damping=0.3) if rolls else None,
+            gravity=(0, 0, -pull),
+        )
+        excess.append((cases.run(case).arrays.contact_energy[3:, 0] - pressed) / held - 1)
+    assert np.all(np.abs(excess[0]) < (0.35 if rolls else 0.025))
+    assert np.all(np.abs(excess[1]) < np.abs(excess[0]) / 12)

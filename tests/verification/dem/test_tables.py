@@ -9,6 +9,7 @@ import pytest
 
 import rattlebox as rb
 
+from ..exact import oblique
 from . import cases
 from .cases import Ball
 
@@ -111,6 +112,40 @@ def test_mixed_pairs_meet_by_the_mean_of_their_laws() -> None:
     alone = meeting(SHOT, BEAD, contact=rb.Tsuji(restitution=e), friction=friction, rolling=rolling)
     for ours, theirs in zip(mixed, alone, strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("radii", [(2e-3, 2e-3), (2e-3, 6e-3), (6e-3, 6e-3), (2e-3, None), (6e-3, None)])
+def test_a_ratio_of_stiffnesses_holds_for_every_pair(radii: tuple[float, float | None]) -> None:
+    """Of balls of two sizes whose linear contacts last alike each pair that sticks rebounds sideways as its ratio tells."""
+    first, second = radii
+    ratio, lasts, speed, aside, half = 0.3, 1e-4, 0.05, 0.01, 0.1
+    dt = lasts / 1000
+    e, gap = oblique.sticking(ratio), 5.5 * dt * speed
+    balls = [Ball(first, (half - first - gap, 0, 0), (speed, aside, 0))]
+    if second is not None:
+        balls = [
+            Ball(first, (-first - gap / 2, 0, 0), (speed / 2, aside / 2, 0)),
+            Ball(second, (second + gap / 2, 0, 0), (-speed / 2, -aside / 2, 0)),
+        ]
+    others = [Ball(2e-3, (0, half / 2, half / 2)), Ball(6e-3, (0, -half / 2, -half / 2))]  # so that the mean is neither
+    arrays = cases.run(
+        cases.case(
+            [*balls, *others],
+            dt=dt,
+            steps=1020,
+            cavity=rb.Box(size=(2 * half,) * 3),
+            contact=rb.Linear(contact_time=lasts, restitution=1.0),
+            friction=rb.LinearSpring(1e6, ratio=ratio),
+            one_kind=True,
+        )
+    ).arrays
+    touches = [arrays.counts[f"first_touches_{partner}"] for partner in ("particle", "wall")]
+    assert touches == [int(second is not None), int(second is None)]
+    velocity, spin = arrays.particle_velocity, arrays.spin[:, 2]
+    sliding = velocity[0, 1] + spin[0] * first
+    if second is not None:
+        sliding += spin[1] * second - velocity[1, 1]
+    assert sliding == pytest.approx(aside * (1 - 3.5 * (1 - e)), abs=0.01 * aside)
 
 
 SOFTENED: dict[str, Any] = {
