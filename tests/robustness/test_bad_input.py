@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.model.base import vocabulary
+from rattlebox.model.synonyms import MEANT
 
 GOOD = """\
 duration = "5 s"
@@ -118,6 +120,33 @@ def test_one_wrong_thing_is_named(old: str, new: str, said: list[str]) -> None:
     message = refused(changed(old, new))
     for words in said:
         assert words in message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "meant"),
+    [
+        ("mass =", "m =", "mass"),
+        ("stiffness =", "k =", "stiffness"),
+        ("damping =", "c =", "damping"),
+        ("radius =", "r =", "radius"),
+        ("gap =", "clearance =", "gap"),
+        ('amplitude = "5 kN"', 'force = "5 kN"', "amplitude"),
+        ("restitution = 0.9", "COR = 0.9", "restitution"),
+        ('duration = "5 s"', 't_end = "5 s"', "duration"),
+    ],
+)
+def test_names_that_others_use_are_understood(old: str, new: str, meant: str) -> None:
+    """A field by the name it has elsewhere is told by ours, once, without a word on what is missing then."""
+    message = refused(changed(old, new))
+    assert message.endswith(f"there is no such field here\n  try: did you mean {meant!r}?")
+    assert message.count("try:") == 1
+
+
+def test_names_that_others_use_are_ours() -> None:
+    """Each suggestion for a name that others use is a field or a kind of ours."""
+    places = [names for kinds in vocabulary().values() for names in (set(kinds), *kinds.values())]
+    for name, ours in MEANT.items():
+        assert all(any(word in names for names in places) for word in ours), name
 
 
 def test_overlapping_balls() -> None:

@@ -112,7 +112,17 @@ ANSWERS = {
     ),
     "unknown kind": (
         changed("tsuji", "tsui"),
-        "damper.contact.kind = 'tsui'\n  there is no such kind here\n  try: did you mean 'tsuji'?",
+        "damper.contact.kind = 'tsui'\n  there is no such kind here\n"
+        "  try: did you mean 'tsuji'? known: linear, thornton, tsuji",
+    ),
+    "kind by another name": (
+        changed('"half_sine"', '"pulse"'),
+        "load.kind = 'pulse'\n  there is no such kind here\n"
+        "  try: did you mean 'half_sine'? known: half_sine, harmonic, record",
+    ),
+    "field by another name": (
+        changed("stiffness", "k"),
+        "structure.k = '80 kN/m'\n  there is no such field here\n  try: did you mean 'stiffness'?",
     ),
     "kind instead of a table": (
         'method = "newton"\n' + GOOD,

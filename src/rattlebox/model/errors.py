@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from .synonyms import MEANT
+
 if TYPE_CHECKING:
     from pydantic import ValidationError
 
@@ -78,13 +80,20 @@ def several(number: int, thing: str) -> str:
     return f"{number} {thing}" + "s" * (number != 1)
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Return "did you mean ...?" for the closest known names, or the list of them."""
+def nearest(name: str, known: Iterable[str], *, listed: bool = False) -> str:
+    """Return "did you mean ...?" for the known names that are meant or closest; else, or if `listed`, the list of them."""
     known = sorted(known)
-    close = difflib.get_close_matches(name, known, n=2, cutoff=0.6)
-    if close:
-        return "did you mean " + " or ".join(repr(word) for word in close) + "?"
-    return "known: " + ", ".join(known)
+    close = _close(name, known)
+    told = ["did you mean " + " or ".join(repr(word) for word in close) + "?"] if close else []
+    if listed or not close:
+        told.append("known: " + ", ".join(known))
+    return " ".join(told)
+
+
+def _close(name: str, known: Sequence[str]) -> list[str]:
+    """Known names that others call so, or else those that look alike."""
+    meant = [word for word in (*MEANT.get(name, ()), *MEANT.get(name.lower().replace("-", "_"), ())) if word in known]
+    return list(dict.fromkeys(meant)) or difflib.get_close_matches(name, known, n=2, cutoff=0.6)
 
 
 def translate(
@@ -147,16 +156,13 @@ def _spelt(findings: Sequence[Any], source: str, vocabulary: Vocabulary) -> list
 
 
 def _without_echoes(findings: Sequence[Any], vocabulary: Vocabulary) -> list[Any]:
-    """Leave out that a field is missing where it is there, but misspelt."""
+    """Leave out that a field is missing where it is there by another name."""
     extra = [finding["loc"] for finding in findings if finding["type"] == "extra_forbidden"]
     return [
         finding
         for finding in findings
         if finding["type"] != "missing"
-        or not any(
-            loc[:-1] == finding["loc"][:-1] and difflib.get_close_matches(str(loc[-1]), [str(finding["loc"][-1])])
-            for loc in extra
-        )
+        or not any(loc[:-1] == finding["loc"][:-1] and _close(str(loc[-1]), [str(finding["loc"][-1])]) for loc in extra)
     ]
 
 
@@ -270,7 +276,7 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: 
     if what in _TAGS:
         if what == "union_tag_not_found":
             return f"'kind' is needed: {', '.join(kinds)}", f'kind = "{kinds[0]}"' if kinds else ""
-        return "there is no such kind here", nearest(str(value), kinds)
+        return "there is no such kind here", nearest(str(value), kinds, listed=True)
     if what in _TABLES:
         kind = value if isinstance(value, str) and value in kinds else next(iter(kinds), None)
         name = place.rpartition(".")[2].partition("[")[0]

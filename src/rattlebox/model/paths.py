@@ -333,9 +333,9 @@ def _words(steps: Sequence[str | int]) -> Iterator[str]:
 
 def _suggested(case: Case, path: str, step: str, known: set[str]) -> str:
     """Paths like one that leads nowhere."""
-    near = get_close_matches(step, known, n=2, cutoff=0.6)
-    if near:
-        return "did you mean " + " or ".join(map(repr, near)) + "?"
+    near = nearest(step, known)
+    if near.startswith("did"):
+        return near
     everywhere = all_paths(case)
     like = [other for other in everywhere if re.split(r"[.\[]", other)[-1] == re.split(r"[.\[]", path)[-1]]
     like = like or get_close_matches(path, everywhere, n=2, cutoff=0.6)
