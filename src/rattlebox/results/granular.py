@@ -35,7 +35,8 @@ class GranularArrays(_Comparable):
     """Everything the engine of particles computed in one run, in SI units and the frame of the base.
 
     Sizes: T times, P points, D dampers, L loads, m modes, N particles of all dampers, three axes x, y, z, two partners
-    (another particle, the wall). Fields left out are zero. Arrays become read-only; equality compares every value.
+    (another particle, the wall). Fields left out are zero. Arrays become read-only; equality compares every value
+    but the computing time and the memory taken, NaN equals NaN.
 
     Attributes
     ----------

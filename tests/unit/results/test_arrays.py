@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rattlebox.results import ImpactArrays, Run, RunArrays
+import rattlebox as rb
+from rattlebox.paper.seed import seed_case
+from rattlebox.results import GranularArrays, ImpactArrays, Run, RunArrays
 
 
 def test_missing_fields_are_zero() -> None:
@@ -83,8 +85,64 @@ def test_equality_sees_one_bit(run: Run) -> None:
 
 
 def test_runs_travel_between_processes(two_dampers: Run) -> None:
-    """A pickled run comes back equal."""
-    assert pickle.loads(pickle.dumps(two_dampers)) == two_dampers
+    """A pickled run comes back equal, with its computing time and provenance."""
+    again = pickle.loads(pickle.dumps(two_dampers))
+    assert again == two_dampers
+    assert again.arrays.wall_time == two_dampers.arrays.wall_time
+    assert again.provenance == two_dampers.provenance
+
+
+def test_how_a_run_was_computed_does_not_count(run: Run) -> None:
+    """Runs differ by their case, counts and results, not by when, where, how fast and in how much memory they came to be."""
+    counts = {**run.arrays.counts, "memory_bytes": 1000}
+    arrays = replace(run.arrays, counts=counts, wall_time=5.0)
+    elsewhere = replace(run.provenance, version="9.9", created="2031-01-01", platform="elsewhere")
+    assert Run(arrays, run.case_toml, elsewhere) == run
+    assert Run(arrays, run.case_toml + "seed = 2\n") != run
+    for changes in ({"counts": {**counts, "flights": 0}}, {"counts": {"memory_bytes": 1000}}, {"notes": ("beware",)}):
+        assert Run(replace(arrays, **changes), run.case_toml) != run
+    assert run.__eq__(run.arrays) is NotImplemented
+    assert run.arrays.__eq__(run) is NotImplemented
+    assert run != "run" and run != run.arrays
+
+
+def test_the_same_case_again_is_the_same_run() -> None:
+    """A case that is simulated twice gives equal runs, another gap another run."""
+    first, again = (rb.simulate(seed_case(duration=0.05)) for _ in "12")
+    assert first == again
+    case = seed_case(duration=0.05)
+    wider = case.dampers[0].model_copy(update={"gap": 1.1 * case.dampers[0].gap})
+    other = rb.simulate(case.model_copy(update={"dampers": (wider,)}))
+    assert other != first
+    assert other.arrays != first.arrays
+
+
+def test_particles_again_are_the_same_run() -> None:
+    """Particles that are simulated twice, on one thread and on two, give equal results; another seed does not."""
+
+    def beads(seed: int = 1, threads: int = 1) -> rb.Case:
+        damper = rb.ParticleDamper(
+            particles=rb.Particles(material="glass", diameter="3 mm", count=30),
+            cavity=rb.SphericalCavity(diameter="20 mm"),
+            contact=rb.Tsuji(restitution=0.8),
+            packing=rb.Lattice(noise=0.2, seed=seed),
+            softening=100,
+        )
+        structure = rb.SDOF(mass="0.1 kg", stiffness="10 kN/m", velocity="0.5 m/s")
+        return rb.Case(structure=structure, damper=damper, duration="5 ms", method=rb.Dem(threads=threads))
+
+    first, again = (rb.simulate(beads()) for _ in "12")
+    assert first == again
+    assert rb.simulate(beads(threads=2)).arrays == first.arrays
+    assert rb.simulate(beads(seed=2)) != first
+
+
+def test_what_is_not_a_number_is_equal_in_figures_too() -> None:
+    """Figures that are not numbers in both of two runs do not make them differ."""
+    first, again = (GranularArrays(time=np.zeros(1), figures={"largest_overlap": float("nan")}) for _ in "12")
+    assert first == again
+    assert first != GranularArrays(time=np.zeros(1), figures={"largest_overlap": 0.0})
+    assert first != GranularArrays(time=np.zeros(1))
 
 
 def test_contacts_have_names(two_dampers: Run) -> None:

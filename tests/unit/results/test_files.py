@@ -26,6 +26,7 @@ def test_round_trip_is_exact(any_run: Run, tmp_path: Path) -> None:
     again = load(path)
     assert again == any_run
     assert again.arrays.counts == any_run.arrays.counts
+    assert again.arrays.wall_time == any_run.arrays.wall_time
     assert again.provenance == any_run.provenance
     assert [p.name for p in tmp_path.iterdir()] == ["run.nc"]
 
@@ -42,6 +43,7 @@ def test_round_trip_of_odd_values(tmp_path: Path) -> None:
     run = Run(arrays, "", Provenance("", "größe", 2**40, "", ""))
     again = load(run.save(tmp_path / "odd.nc"))
     assert again == run
+    assert again.provenance == run.provenance
     assert np.signbit(again.arrays.displacement[4, 0])
 
 
