@@ -78,17 +78,26 @@ def _check_results(path: Path, wanted: str) -> None:
 
 
 @app.command()
-def show(study: Annotated[Path, typer.Argument(help="Folder that sweep wrote.")]) -> None:
-    """Tell what is in a study, and how far it is."""
-    _check_results(study, "the folder that 'rattlebox sweep -o' wrote")
+def show(results: Annotated[Path, typer.Argument(help="Folder that run or sweep wrote; or run.nc.")]) -> None:
+    """Tell what is in a study, and how far it is; or the summary, notes and files of a run."""
+    _check_results(results, "the folder that 'rattlebox run -o' or 'rattlebox sweep -o' wrote")
+    from rattlebox.cli.folder import is_run
+
+    if is_run(results):
+        from rattlebox.cli.show_run import show_run
+
+        show_run(results)
+        return
     from rattlebox.cli.show import show_study
 
-    show_study(study)
+    show_study(results)
 
 
 @app.command()
 def plot(
-    study: Annotated[Path, typer.Argument(help="Folder that sweep wrote; or run.nc or run.vtkhdf that run wrote.")],
+    results: Annotated[
+        Path, typer.Argument(help="Folder that run or sweep wrote; or one of the files run.nc and run.vtkhdf.")
+    ],
     out: Annotated[
         Path, typer.Option("--out", "-o", help="File to write: PNG, SVG or PDF; a film of snapshots as GIF or MP4.")
     ] = Path("study.png"),
@@ -108,15 +117,17 @@ def plot(
     size: Annotated[str | None, typer.Option(help="column, page or slide.")] = None,
 ) -> None:
     """Draw a study: its own figure, or a measure over one or two of its axes. Draw a run, or film its particles."""
-    _check_results(study, "run.nc or run.vtkhdf that 'rattlebox run' wrote, or the folder of 'rattlebox sweep'")
-    if study.is_file() or (study.suffix in (".nc", ".vtkhdf") and not study.exists()):
+    _check_results(results, "the folder that 'rattlebox run -o' or 'rattlebox sweep -o' wrote")
+    from rattlebox.cli.folder import is_run
+
+    if is_run(results):
         from rattlebox.cli.plot_run import plot_run
 
-        plot_run(study, out, kind=kind, of=of, at=at or (), number=number, size=size)
+        plot_run(results, out, kind=kind, of=of, at=at or (), number=number, size=size)
         return
     from rattlebox.cli.plot import plot_study
 
-    plot_study(study, out, kind=kind, of=of, at=at or (), number=number, size=size)
+    plot_study(results, out, kind=kind, of=of, at=at or (), number=number, size=size)
 
 
 @app.command()

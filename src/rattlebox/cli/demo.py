@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rich.console import Console
-
-from rattlebox.cli.run import make_folder
+from rattlebox.cli.folder import make_folder
+from rattlebox.cli.terminal import terminal
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.case import Case
 from rattlebox.model.contacts import Tsuji
@@ -42,11 +41,11 @@ def run_demo(out: Path) -> None:
     }
     make_folder(out)
     runs = dict(zip(cases, simulate_many(list(cases.values())), strict=True))
-    console = Console()
+    console = terminal()
     console.print(compare(runs))
     for name, run in runs.items():
         stem = name.lower().replace(" ", "_").replace("-", "_")
         run.save(out / f"{stem}.nc")
         cases[name].to_file(out / f"{stem}.toml")
     draw(runs).savefig(out / "demo.png")
-    console.print(f"written to {out}: demo.png, and a netCDF and a case file of each model")
+    console.print(f"written to {out}: demo.png, and a netCDF and a case file of each model", soft_wrap=True)

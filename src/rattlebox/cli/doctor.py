@@ -7,10 +7,11 @@ import platform
 from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
 
-from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from rattlebox import __version__
+from rattlebox.cli.terminal import terminal
 from rattlebox.engines.card import Card
 from rattlebox.engines.core import built, choice, core, supported
 from rattlebox.engines.gpu import nvrtc
@@ -35,8 +36,8 @@ def examine() -> None:
         try:
             table.add_row(name, version(name))
         except PackageNotFoundError:
-            table.add_row(name, "[bold]missing[/bold]: python -m pip install " + name)
-    Console().print(table)
+            table.add_row(name, Text.assemble(("missing", "bold"), f": python -m pip install {name}"))
+    terminal().print(table)
 
 
 def _card() -> Iterator[tuple[str, str]]:

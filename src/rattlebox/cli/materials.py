@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from rich.console import Console
 from rich.table import Column, Table
 
+from rattlebox.cli.terminal import terminal
 from rattlebox.model.materials import materials
 
 
@@ -17,4 +17,4 @@ def show_materials() -> None:
         strength = "" if m.yield_stress is None else f"{m.yield_stress / 1e6:g}"
         table.add_row(name, m.title, f"{m.density:g}", f"{m.young / 1e9:g}", f"{m.poisson:g}", strength)
         sources.add_row(name, m.source)
-    Console().print(table, sources)
+    terminal().print(table, sources)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import typer
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+from rattlebox.cli.terminal import terminal
 from rattlebox.paper.report import choose, write_report
 from rattlebox.studies.runner import cores
 
@@ -29,7 +29,7 @@ def make_report(out: Path, only: Sequence[str], workers: int | None) -> None:
         figures = choose(only)
     except ValueError as error:
         raise typer.BadParameter(str(error), param_hint="--only") from None
-    console = Console()
+    console = terminal()
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("reproducing the paper", total=len(figures))

@@ -7,9 +7,8 @@ from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-
 import rattlebox
+from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import CaseError, nearest
 from rattlebox.plots.maps import plot_map, select
 from rattlebox.plots.style import WIDTHS
@@ -60,8 +59,6 @@ def plot_study(
         When an argument does not fit, or there is no such study.
     """
     check_target(out, size)
-    if (study / "run.nc").is_file():
-        raise CaseError(f"there is a run in {study}, not a study\n  try: {study / 'run.nc'}")
     if number is not None:
         raise CaseError(f"--number {number}: this applies to snapshots of a run, run.vtkhdf\n  try: leave it out")
     data, options = open_study(study), {"of": of, "size": size}
@@ -75,7 +72,7 @@ def plot_study(
         raise CaseError(f"--kind {kind}: there is no such kind\n  {nearest(kind, ('map', 'lines', *MAPS))}")
     with telling(out, "the same command once there is room"):
         figure.savefig(out)
-    Console(highlight=False).print(f"written: {out}", soft_wrap=True)
+    terminal().print(f"written: {out}", soft_wrap=True)
 
 
 def check_target(out: Path, size: str | None, formats: Sequence[str] = FORMATS) -> None:

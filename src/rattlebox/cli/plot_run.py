@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
-from rich.console import Console
 from rich.progress import Progress
 
+from rattlebox.cli.folder import RUN, SNAPSHOTS
 from rattlebox.cli.main import STOPPED
 from rattlebox.cli.plot import FORMATS, check_target
+from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import CaseError, nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
 from rattlebox.plots.spheres import usual_renderer
@@ -39,7 +40,7 @@ def plot_run(
     Parameters
     ----------
     path
-        run.nc or run.vtkhdf.
+        run.nc, run.vtkhdf, or the folder that holds them: a film, and a snapshot by its number, are of the latter.
     out
         File to write: PNG, SVG or PDF, or of snapshots GIF or MP4.
     kind
@@ -57,6 +58,8 @@ def plot_run(
         When an argument does not fit, or there is no such file.
     """
     check_target(out, size, (*FORMATS, *FILMS))
+    if path.is_dir():
+        path /= SNAPSHOTS if out.suffix in FILMS or number is not None else RUN
     for option, value in (("--of", of), ("--at", at and at[0])):
         if value:
             what = "--number" if path.suffix == ".vtkhdf" else "--kind"
@@ -65,14 +68,17 @@ def plot_run(
     try:
         run = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
     except FileNotFoundError as error:
-        raise CaseError(f"{error}\n  try: run.nc or run.vtkhdf that 'rattlebox run' wrote") from None
+        advice = (
+            "output.snapshots in the case" if path.name == SNAPSHOTS else "the folder that 'rattlebox run -o' wrote"
+        )
+        raise CaseError(f"{error}\n  try: {advice}") from None
     except ValueError as error:
         raise CaseError(str(error)) from None
     if number is not None and not isinstance(run, Snapshots):
         raise CaseError(
             "--number: a run has no snapshots\n  try: run.vtkhdf beside it, with output.snapshots in the case"
         )
-    console = Console(highlight=False)
+    console = terminal()
     try:
         if out.suffix in FILMS:
             _check_film(out, kind, number)
@@ -85,7 +91,7 @@ def plot_run(
         raise CaseError(str(error)) from None
     if (kind == "particles" or isinstance(run, Snapshots)) and usual_renderer() == "plain":
         console.print(
-            "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox\\[3d]'",
+            "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'",
             soft_wrap=True,
         )
     console.print(f"written: {out}", soft_wrap=True)
@@ -103,7 +109,7 @@ def _check_film(out: Path, kind: str | None, number: int | None) -> None:
 def _film(of: Any, out: Path, options: dict[str, Any]) -> None:
     if not isinstance(of, Snapshots):
         raise CaseError(f"-o {out}: a film needs snapshots\n  try: run.vtkhdf, with output.snapshots in the case")
-    console = Console(stderr=True)
+    console = terminal(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         line = bar.add_task("pictures", total=len(of))
         try:

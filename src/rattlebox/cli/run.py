@@ -7,10 +7,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import typer
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+from rich.text import Text
 
+from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, make_folder
 from rattlebox.cli.main import STOPPED
+from rattlebox.cli.terminal import terminal
 from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.model.errors import CaseError, Hint
@@ -19,30 +21,14 @@ from rattlebox.results import GranularRun, Run
 _RESULTS = (".nc", ".vtkhdf", ".mat", ".csv", ".png")
 
 
-def make_folder(out: Path) -> None:
-    """Make a folder for results.
-
-    Raises
-    ------
-    CaseError
-        When it cannot be made.
-    """
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except FileExistsError:
-        raise CaseError(f"{out} is a file; results need a folder\n  try: --out results") from None
-    except OSError as error:
-        raise CaseError(f"the folder {out} cannot be made: {error.strerror}\n  try: --out results") from None
-
-
 def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
     """Run a case; one with particles shows on a terminal how far it is, and goes on where it was stopped."""
     if not case.particle_dampers:
         return simulate(case)
-    console = Console(stderr=True, highlight=False)
+    console = terminal(stderr=True)
     if checkpoint.is_file():
         console.print(f"going on from {checkpoint}", soft_wrap=True)
-    snapshots = out / "run.vtkhdf" if case.output.snapshots else None
+    snapshots = out / SNAPSHOTS if case.output.snapshots else None
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         line = bar.add_task("filling in", total=None)
@@ -73,9 +59,9 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
             "--checkpoint: there are no particles in space, and other runs take no time\n  try: leave it out"
         )
     if checkpoint is not None and checkpoint.suffix in _RESULTS and checkpoint.parent.resolve() == out.resolve():
-        raise CaseError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / 'run.checkpoint'}")
+        raise CaseError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / CHECKPOINT}")
     make_folder(out)
-    checkpoint = checkpoint or out / "run.checkpoint"
+    checkpoint = checkpoint or out / CHECKPOINT
     written: list[str] = []
     try:
         run = _simulated(case, out, checkpoint)
@@ -83,7 +69,7 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
             typer.echo(run.message, err=True)
             sys.exit(STOPPED)
         if case.output.snapshots:
-            written.append("run.vtkhdf")
+            written.append(SNAPSHOTS)
         for name in _write(run, out, csv=csv, mat=mat, figures=figures):
             written.append(name)
         if run.status in ("finished", "ledger_open"):
@@ -93,21 +79,24 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
     except KeyboardInterrupt:
         typer.echo(f"stopped; {_kept(checkpoint, out, written)}", err=True)
         sys.exit(STOPPED)
-    console = Console()  # last, since who reads may have gone
+    console = terminal()  # last, since who reads may have gone
     console.print(run.summary())
-    console.print(f"written to {out}: {', '.join(written)}")
+    console.print(f"written to {out}: {', '.join(written)}", soft_wrap=True)
     if not run.ok:
-        told = Console(stderr=True, highlight=False, soft_wrap=True)
-        told.print(f"[bold]{run.status}[/bold]: {run.message}")
+        told = terminal(stderr=True)
+        told.print(Text.assemble((run.status, "bold"), f": {run.message}"), soft_wrap=True)
         if checkpoint.is_file():
-            told.print(f"{checkpoint} is kept; a case that you have changed needs it removed, or another folder")
+            told.print(
+                f"{checkpoint} is kept; a case that you have changed needs it removed, or another folder",
+                soft_wrap=True,
+            )
         sys.exit(1)
 
 
 def _write(run: Run, out: Path, *, csv: bool, mat: bool, figures: bool) -> Iterator[str]:
     """Write files one after the other, and give the name of each when it is there."""
-    run.save(out / "run.nc")
-    yield "run.nc"
+    run.save(out / RUN)
+    yield RUN
     if mat:
         run.to_mat(out / "run.mat")
         yield "run.mat"

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Column, Table
+from rich.text import Text
 
+from rattlebox.cli.terminal import terminal
 from rattlebox.results.quantities import MISSING, quantity
 from rattlebox.studies.design import trials_in
 from rattlebox.studies.store import Progress, has_map, open_study, progress_of, readable
@@ -32,7 +33,7 @@ def show_study(path: Path) -> None:
     path
         Folder of the study.
     """
-    console = Console(highlight=False)
+    console = terminal()
     trials = trials_in(path)
     if trials is None:
         progress = progress_of(path)
@@ -42,7 +43,7 @@ def show_study(path: Path) -> None:
     study = open_study(path) if some or trials is None else None
     kind = "design" if study is None else str(study.attrs.get("study", "sweep"))
     said = "" if kind == "sweep" else f"{kind.replace('_', ' ')}, "
-    console.print(f"[bold]{path}[/bold]: {said}{far}", soft_wrap=True)
+    console.print(Text.assemble((str(path), "bold"), f": {said}{far}"), soft_wrap=True)
     with readable(path):
         if study is not None:
             console.print(_axes(study))

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import typer
-from rich.console import Console
 
 from rattlebox.cli.show import statuses
+from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import CaseError
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.studyfile import read_study
@@ -46,12 +46,12 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)
         sys.exit(130)
-    console = Console()
+    console = terminal()
     counts = statuses(result)
     told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
     told = f"{sum(counts.values()):,} variants: {told}\n" if counts else ""
     card = f"{result.attrs['gpu']}\n" if "gpu" in result.attrs else ""
-    console.print(f"{told}{card}written to {out}", soft_wrap=True, highlight=False)
+    console.print(f"{told}{card}written to {out}", soft_wrap=True)
 
 
 @contextmanager

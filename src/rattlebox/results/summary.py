@@ -200,22 +200,21 @@ class _Report:
     def __rich__(self) -> Group:
         from rich import box
         from rich.console import Group
-        from rich.markup import escape
         from rich.padding import Padding
         from rich.table import Table
         from rich.text import Text
 
         table = Table(
-            title=escape(self._title) or None,
+            title=Text(self._title, "table.title") if self._title else None,
             box=box.SIMPLE_HEAD,
             show_header=any(self._columns),
             title_justify="left",
         )
         table.add_column("")
         for column in self._columns:
-            table.add_column(escape(column), justify="right", no_wrap=True)
-        for label, *texts in self._cells():
-            table.add_row(escape(label), *(escape(text) for text in texts))
+            table.add_column(Text(column), justify="right", no_wrap=True)
+        for row in self._cells():
+            table.add_row(*map(Text, row))
         notes = (Padding(Text(note, "italic dim"), (0, 2)) for note in self._notes)
         return Group(table, *notes)
 

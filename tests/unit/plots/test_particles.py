@@ -211,6 +211,24 @@ def test_the_command_draws_and_films(
     assert Path("a.gif").read_bytes().startswith(b"GIF89a")
 
 
+def test_the_command_draws_what_is_in_a_folder(
+    run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The folder of a run is drawn as run.nc is, and filmed as run.vtkhdf is; where that is not there it is told."""
+    monkeypatch.chdir(tmp_path)
+    folder = run[1].parent
+    for file, options in (("run.nc", ["--kind", "energy"]), ("run.vtkhdf", ["--number", 1])):
+        for of, name in ((folder, "a.png"), (folder / file, "b.png")):
+            assert answer(monkeypatch, capsys, of, *options, "-o", name)[0] == 0
+        assert Path("a.png").read_bytes() == Path("b.png").read_bytes()
+    assert answer(monkeypatch, capsys, folder, "-o", "a.gif")[0] == 0
+    assert Path("a.gif").read_bytes().startswith(b"GIF89a")
+    Path("bare").mkdir()
+    Path("bare/run.nc").write_bytes((folder / "run.nc").read_bytes())
+    said = "error: there is no file bare/run.vtkhdf\n  try: output.snapshots in the case\n"
+    assert answer(monkeypatch, capsys, "bare", "-o", "b.gif") == (2, "", said)
+
+
 @pytest.mark.parametrize("name", ["film.gif", "film.mp4"])
 @pytest.mark.parametrize("pictures", [0, 3])
 def test_films_that_are_stopped_leave_the_earlier_ones(
@@ -259,8 +277,8 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
         ),
         (["run.nc", "--of", "loss"], "--of loss: this applies to a study, and run.nc is a run\n  try: --kind"),
         (["run.vtkhdf", "--at", "x=1"], "--at x=1: this applies to a study, and run.vtkhdf is a run\n  try: --number"),
-        (["nope.nc"], "there is no file nope.nc\n  try: run.nc or run.vtkhdf that 'rattlebox run' wrote"),
-        (["."], "there is a run in ., not a study\n  try: run.nc"),
+        (["nope.nc"], "there is no file nope.nc\n  try: the folder that 'rattlebox run -o' wrote"),
+        ([".", "--kind", "impacts"], "--kind impacts: there is no such kind here\n  known: energy, motion, particles"),
     ],
 )
 def test_wrong_arguments_are_told(

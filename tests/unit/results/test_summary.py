@@ -166,9 +166,10 @@ def test_show_is_a_table_in_a_terminal(run: Run) -> None:
             return True
 
     target = Terminal()
-    compare({"one [a]": run}, "Title").show(target)
+    compare({"[red]a[1] :smile:": run}, "[bold]Title").show(target)
     assert "─" in target.getvalue()
-    assert "one [a]" in target.getvalue()
+    assert "[red]a[1] :smile:" in target.getvalue()
+    assert "[bold]Title" in target.getvalue()
     assert "25.79 %" in target.getvalue()
 
 

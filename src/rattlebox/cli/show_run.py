@@ -1,0 +1,45 @@
+"""`rattlebox show` of a run on disk: how it ended, its numbers and its files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.text import Text
+
+from rattlebox.cli.folder import RUN, files_in
+from rattlebox.cli.terminal import terminal
+from rattlebox.model.errors import CaseError
+from rattlebox.results import load
+
+
+def show_run(path: Path) -> None:
+    """Print where a run comes from, its summary with its notes, and the files beside it.
+
+    Parameters
+    ----------
+    path
+        run.nc, or the folder of the run.
+
+    Raises
+    ------
+    CaseError
+        When there is no such file, or it holds something else.
+    """
+    console, file = terminal(), path / RUN if path.is_dir() else path
+    files = f"  files: {', '.join(files_in(file.parent))}" if file.name == RUN else ""
+    if path.is_dir() and not file.is_file():
+        console.print(Text.assemble((str(path), "bold"), ": a run that is not over"), soft_wrap=True)
+        console.print(f"{files}\n  The command that began it goes on.", soft_wrap=True)
+        return
+    try:
+        run = load(file)
+    except FileNotFoundError as error:
+        raise CaseError(f"{error}\n  try: the folder that 'rattlebox run -o' wrote") from None
+    except ValueError as error:
+        raise CaseError(str(error)) from None
+    came = run.provenance
+    made = f"run of {came.created[:16].replace('T', ' ')} UTC, Rattlebox {came.version}, {came.platform}"
+    console.print(Text.assemble((str(path), "bold"), f": {made}"), soft_wrap=True)
+    console.print(run.summary())
+    if files:
+        console.print(files, soft_wrap=True)
