@@ -46,11 +46,14 @@ def run(
         Path | None,
         typer.Option(help="File that keeps a run with particles on its way; default run.checkpoint in the folder."),
     ] = None,
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Remove the files of an earlier run from the folder first.")
+    ] = False,
 ) -> None:
     """Run a case file: summary on the terminal, netCDF and figures in a folder. The same command goes on after a stop."""
     from rattlebox.cli.run import run_case
 
-    run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint)
+    run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint, replace=replace)
 
 
 @app.command()

@@ -10,9 +10,10 @@ import typer
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
-from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, make_folder
+from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, take_over
 from rattlebox.cli.main import STOPPED
 from rattlebox.cli.terminal import terminal
+from rattlebox.engines.checkpoint import AnotherRun
 from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.model.errors import CaseError, Hint
@@ -39,7 +40,16 @@ def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
         return simulate(case, checkpoint=checkpoint, snapshots=snapshots, progress=progress)
 
 
-def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, checkpoint: Path | None = None) -> None:
+def run_case(
+    path: Path,
+    out: Path,
+    *,
+    csv: bool,
+    mat: bool,
+    figures: bool,
+    checkpoint: Path | None = None,
+    replace: bool = False,
+) -> None:
     """Run a case file and write what comes back.
 
     Parameters
@@ -52,6 +62,8 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
         What to write besides run.nc.
     checkpoint
         From which a run with particles goes on; default run.checkpoint in the folder. Removed when the results are written.
+    replace
+        Remove the files of an earlier run from the folder first.
     """
     case = Case.from_file(path)
     if checkpoint is not None and not case.particle_dampers:
@@ -60,7 +72,7 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
         )
     if checkpoint is not None and checkpoint.suffix in _RESULTS and checkpoint.parent.resolve() == out.resolve():
         raise CaseError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / CHECKPOINT}")
-    make_folder(out)
+    take_over(out, case, replace=replace)
     checkpoint = checkpoint or out / CHECKPOINT
     written: list[str] = []
     try:
@@ -74,6 +86,9 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
             written.append(name)
         if run.status in ("finished", "ledger_open"):
             checkpoint.unlink(missing_ok=True)
+    except AnotherRun as refused:
+        replacing = "--replace, " if checkpoint == out / CHECKPOINT else ""
+        raise CaseError(f"{refused.complaint}\n  try: another -o folder, {replacing}{refused.suggestion}") from None
     except Hint as hint:
         raise CaseError(f"{path}: {hint}") from None
     except KeyboardInterrupt:
@@ -86,10 +101,8 @@ def run_case(path: Path, out: Path, *, csv: bool, mat: bool, figures: bool, chec
         told = terminal(stderr=True)
         told.print(Text.assemble((run.status, "bold"), f": {run.message}"), soft_wrap=True)
         if checkpoint.is_file():
-            told.print(
-                f"{checkpoint} is kept; a case that you have changed needs it removed, or another folder",
-                soft_wrap=True,
-            )
+            needed = "another -o folder, or --replace" if checkpoint == out / CHECKPOINT else "another --checkpoint"
+            told.print(f"{checkpoint} is kept; a case that you have changed needs {needed}", soft_wrap=True)
         sys.exit(1)
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rattlebox.engines.core import instructions
 from rattlebox.model.differences import differences
-from rattlebox.model.errors import CaseError
+from rattlebox.model.errors import CaseError, Hint
 from rattlebox.results.provenance import Provenance
 from rattlebox.results.whole import clear_remains, needs_folder, telling, whole
 
@@ -32,6 +32,10 @@ _FREE: dict[str, tuple[str, ...]] = {"method": ("threads", "checkpoint", "checkp
 """Fields of the case that may change: the bits do not depend on them."""
 
 _LOST = "make room and give the same command again, which goes on from the last checkpoint"
+
+
+class AnotherRun(Hint):
+    """What is said of a checkpoint that belongs to something else than what is run."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +83,7 @@ class Checkpoint:
         self.path = Path(path)
         self.time: float | None = None  # of what is in the file
         self._numbers = ""
-        self._about = {"case": _bare(case), "version": Provenance.now().version, "core": on or instructions()}
+        self._about = {"case": bare(case), "version": Provenance.now().version, "core": on or instructions()}
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -143,9 +147,10 @@ class Checkpoint:
     def check(self, kept: Kept, packed: Mapping[str, Any]) -> None:
         """Refuse a checkpoint of a case that reads the same but has other numbers."""
         if kept.numbers != self._fingerprint(packed):
-            raise CaseError(
+            raise AnotherRun(
                 f"{self.path} holds another run\n  the case reads the same but has other numbers: a file that it names has "
-                "changed, or a library that prepares it\n  try: another file, or remove this one"
+                "changed, or a library that prepares it",
+                "another file, or remove this one",
             )
 
     def write(self, dem: Any, packed: Mapping[str, Any], records: Mapping[str, NDArray[Any]], seconds: float) -> None:
@@ -178,7 +183,7 @@ class Checkpoint:
                 if "gpu" in (there["core"], self._about["core"]):
                     began = 'on="gpu"' if there["core"] == "gpu" else "the processor, where it began"
                 hint = f"{began}, or another file"
-            raise CaseError("\n".join([f"{self.path} holds another run", *lines, f"  try: {hint}"]))
+            raise AnotherRun("\n".join([f"{self.path} holds another run", *lines]), hint)
 
 
 def joined(pieces: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
@@ -192,8 +197,14 @@ def joined(pieces: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[An
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
 
-def _bare(case: Case) -> str:
-    """The text of a case file without what may change."""
+def bare(case: Case) -> str:
+    """Return the text of a case file without the fields that the results do not depend on.
+
+    Parameters
+    ----------
+    case
+        What is run.
+    """
     update = {part: getattr(case, part).model_copy(update=dict.fromkeys(names)) for part, names in _FREE.items()}
     return case.model_copy(update=update).to_toml()
 

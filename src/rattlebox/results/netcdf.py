@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Callable
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -26,6 +27,8 @@ from .whole import DAMAGE, needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from .run import Run
+
+Read = TypeVar("Read")
 
 FORMAT = 1
 """Number of the layout; files with a higher one are refused."""
@@ -192,9 +195,34 @@ def load(path: str | os.PathLike[str]) -> Run:
     ValueError
         When the file is not a run of Rattlebox, is not whole, or is one of a later version.
     """
+    return _from(Path(path), _read_run)
+
+
+def read_case(path: str | os.PathLike[str]) -> str:
+    """Read from a file that `Run.save` wrote which case was run, and leave the results where they are.
+
+    Parameters
+    ----------
+    path
+        netCDF-4 file.
+
+    Returns
+    -------
+    str
+        The case, as the text of a case file.
+
+    Raises
+    ------
+    FileNotFoundError, OSError, ValueError
+        As `load` does.
+    """
+    return _from(Path(path), lambda file: _read_text(file, "case"))
+
+
+def _from(path: Path, read: Callable[[Any], Read]) -> Read:
+    """What is read from the file of a run; anything else is refused."""
     import h5netcdf
 
-    path = Path(path)
     if path.is_dir():
         raise ValueError(f"{path} is a folder, not a file")
     if not path.is_file():
@@ -205,7 +233,7 @@ def load(path: str | os.PathLike[str]) -> Run:
         with h5netcdf.File(path, "r") as file:
             refused = _refused(file, path)
             if not refused:
-                return _read_run(file)
+                return read(file)
     except DAMAGE as error:
         raise ValueError(f"{path} is not a netCDF-4 file that is whole") from error
     raise ValueError(refused)

@@ -116,7 +116,7 @@ def test_a_run_that_fails_says_so_beside_its_results(tmp_path: Path) -> None:
     assert done.returncode == 1
     assert done.stderr.startswith("escaped: Particle 0, in 'damper', left its cavity at")
     checkpoint = tmp_path / "out" / "run.checkpoint"
-    assert f"{checkpoint} is kept; a case that you have changed needs it removed" in done.stderr
+    assert f"{checkpoint} is kept; a case that you have changed needs another -o folder, or --replace\n" in done.stderr
     assert checkpoint.is_file() and rb.load(tmp_path / "out" / "run.nc").status == "escaped"
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from unittest.mock import Mock
@@ -11,7 +10,6 @@ from unittest.mock import Mock
 import pytest
 
 import rattlebox as rb
-from rattlebox.cli.main import main
 from rattlebox.model.errors import CaseError
 
 Answer = Callable[..., tuple[int | str | None, str, str]]
@@ -40,10 +38,9 @@ softening = 1e6
 FAST = PARTICLES + 'velocity = ["100 m/s", 0, 0]\n'
 
 
-@pytest.fixture
-def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Answer:
-    """Run a command in an empty folder; return its exit code, what it prints, and what it says."""
-    monkeypatch.chdir(tmp_path)
+@pytest.fixture(autouse=True)
+def files(answer: Answer) -> None:
+    """Case files and a study file in the current folder."""
     Path("case.toml").write_text(DAMPER, encoding="utf-8")
     Path("particles.toml").write_text(PARTICLES, encoding="utf-8")
     Path("fast.toml").write_text(FAST, encoding="utf-8")
@@ -51,14 +48,6 @@ def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captu
     Path("study.toml").write_text(
         f'measure = "impacts"\n[case]\nfile = "case.toml"\n[axes]\n{axes}\n', encoding="utf-8"
     )
-
-    def command(*arguments: object) -> tuple[int | str | None, str, str]:
-        monkeypatch.setattr(sys, "argv", ["rattlebox", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        return stop.value.code or 0, *capsys.readouterr()
-
-    return command
 
 
 def test_a_run_is_shown_from_its_folder_and_its_file(answer: Answer) -> None:

@@ -1,0 +1,25 @@
+"""The command in an empty folder."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from rattlebox.cli.main import main
+
+Answer = Callable[..., tuple[int | str | None, str, str]]
+
+
+@pytest.fixture
+def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Answer:
+    """Run the command in an empty folder; return its exit code, what it prints, and what it says."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: object) -> tuple[int | str | None, str, str]:
+        monkeypatch.setattr(sys, "argv", ["rattlebox", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        return stop.value.code or 0, *capsys.readouterr()
+
+    return run
