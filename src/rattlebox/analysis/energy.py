@@ -42,13 +42,15 @@ def specific_damping_capacity(dissipated: T, stored: T) -> T:
     Parameters
     ----------
     dissipated, stored
-        Energies [J]: numbers, arrays or DataArrays that broadcast.
+        Energies [J]: numbers, lists, arrays or DataArrays that broadcast.
 
     Raises
     ------
     ValueError
         When an energy is not finite, or the stored energy is not above zero.
     """
+    if isinstance(dissipated, (list, tuple)) or isinstance(stored, (list, tuple)):
+        return specific_damping_capacity(np.asarray(dissipated, float), np.asarray(stored, float))
     if not np.all(np.isfinite(dissipated)) or not np.all(np.isfinite(stored)):
         raise ValueError("dissipated and stored energies must be finite; drop cycles that are not")
     if not np.all(np.asarray(stored) > 0):

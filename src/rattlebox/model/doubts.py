@@ -1,4 +1,4 @@
-"""What a case may be, but is rarely meant to be: units left out, dampers that outweigh the structure, huge friction."""
+"""What a case may be, but is rarely meant to be: units left out, dampers that outweigh the structure, late loads."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .dampers import ImpactDamper
+from .signals import HalfSine, Harmonic
 
 if TYPE_CHECKING:
     from .case import Case
@@ -15,18 +16,52 @@ if TYPE_CHECKING:
 
 _WIDE = 1.0  # m
 _ROUGH = 3.0  # coefficient of friction
+_FEW = 4.0  # samples in a period
 
 
 def doubts(case: Case) -> tuple[str, ...]:
-    """Return warnings about numbers that a unit may be missing from."""
-    return tuple(
-        f"warning: {told}"
+    """Return warnings about numbers that are likely slips."""
+    dampers = (
+        told
         for index, damper in enumerate(case.dampers)
-        for told in _of(case, damper, " ".join(damper.label(index).split()))
+        for told in _of_damper(case, damper, " ".join(damper.label(index).split()))
     )
+    return tuple(f"warning: {told}" for told in (*_of_structure(case), *_of_signals(case), *dampers))
 
 
-def _of(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> Iterator[str]:
+def _of_structure(case: Case) -> Iterator[str]:
+    modes = case.modes
+    swings = modes.stiffness > 0
+    ratio = float(np.max(modes.decay[swings] / np.sqrt(modes.stiffness[swings]), initial=0.0))
+    if ratio > 1:
+        yield f"the structure's damping ratio is {ratio:.3g}, so that it creeps back; per cent need their sign: 2 % is 0.02"
+
+
+def _of_signals(case: Case) -> Iterator[str]:
+    signals = [
+        (f"{field} {number}" if len(part) > 1 else field, signal)
+        for field, part in (("load", case.loads), ("base", case.base), ("motion", case.shaker_motion))
+        for number, signal in enumerate(part, 1)
+    ]
+    for name, signal in signals:
+        if isinstance(signal, (HalfSine, Harmonic)) and signal.start >= case.duration:
+            yield f"{name} begins at {signal.start:.4g} s, when the run of {case.duration:.4g} s is over"
+    if case.output.rate is None:
+        return
+    stiffness = case.modes.stiffness[case.modes.stiffness > 0]
+    periods = [(f"{name}, at {s.frequency:.4g} Hz,", s.frequency) for name, s in signals if isinstance(s, Harmonic)]
+    if stiffness.size:
+        lowest = float(np.sqrt(stiffness.min())) / (2 * np.pi)
+        periods.append((f"the structure's lowest mode, at {lowest:.4g} Hz,", lowest))
+    what, frequency = max(periods, key=lambda period: period[1], default=("", 0.0))
+    if case.output.rate < _FEW * frequency:
+        yield (
+            f"output.rate is {case.output.rate:.4g} Hz, {case.output.rate / frequency:.3g} samples in a period of {what}"
+            " so that figures and spectra of the motion are not true; the run itself is"
+        )
+
+
+def _of_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> Iterator[str]:
     if isinstance(damper, ImpactDamper):
         things = "ball"
         diameters = [2 * ball.half for ball in damper.balls]

@@ -213,7 +213,7 @@ class Particles(Part):
     @property
     def label(self) -> str:
         """Name of the species."""
-        return self.name or self.material.name
+        return self.name or self.material.name or "particles"
 
     @property
     def has_size(self) -> bool:

@@ -64,6 +64,12 @@ def test_loss_factor_under_a_harmonic_motion():
     assert found == pytest.approx(c * omega / k)
 
 
+def test_lists_of_energies_are_taken():
+    """Lists give what arrays of the same numbers give."""
+    np.testing.assert_array_equal(specific_damping_capacity([1, 2.0], [2, 8]), [0.5, 0.25])
+    np.testing.assert_array_equal(loss_factor([1.0, 2.0], 2), np.array([0.5, 1.0]) / (2 * np.pi))
+
+
 @pytest.mark.parametrize(
     ("dissipated", "stored", "said"),
     [

@@ -3,6 +3,7 @@
 import pytest
 
 import rattlebox as rb
+from rattlebox.model.doubts import doubts
 
 BALL = {"ball": rb.Sphere(diameter="20 mm", material="steel"), "gap": "1 mm", "contact": rb.Tsuji(restitution=0.9)}
 TWO_POINTS = rb.Modal(
@@ -78,3 +79,34 @@ def test_notes_of_impacts_are_kept_and_shown(tmp_path):
     run = rb.simulate(case)
     assert str(run.summary()).splitlines()[-1] == run.arrays.notes[0]
     assert rb.load(run.save(tmp_path / "run.nc")) == run
+
+
+@pytest.mark.parametrize(("ratio", "told"), [(0.02, 0), (1.0, 0), ("2 %", 0), (2, 1)])
+def test_overdamped_structures_are_noted(ratio, told):
+    """A damping ratio of 2 is told; one that is just critical, and a free body with a dashpot, are not."""
+    assert notes(rb.SDOF(mass=20, stiffness=8e4, damping_ratio=ratio)) == told * (
+        "warning: the structure's damping ratio is 2, so that it creeps back; per cent need their sign: 2 % is 0.02",
+    )
+    assert notes(rb.SDOF(mass=20, stiffness=0, damping=10)) == ()
+
+
+def test_loads_that_come_too_late_are_noted():
+    """Pulses and shakers that begin when the run is over are told by field, and by number where there are several."""
+    pulses = [rb.HalfSine(amplitude="1 N", duration="1 ms", start=start) for start in ("0.5 ms", "20 ms")]
+    late = rb.Case(structure=rb.SDOF(mass=1, stiffness=1e4), loads=pulses, duration="1 ms")
+    assert doubts(late) == ("warning: load 2 begins at 0.02 s, when the run of 0.001 s is over",)
+    shaker = rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=10, start="1 s"))
+    assert notes(shaker) == ("warning: motion begins at 1 s, when the run of 0.001 s is over",)
+
+
+@pytest.mark.parametrize(("rate", "told"), [(None, 0), (200, 0), (199, 1)])
+def test_few_samples_in_a_period_are_noted(rate, told):
+    """Less than four samples in a period of the fastest load or the lowest mode are told, where they were asked for."""
+    load = rb.Harmonic(amplitude="1 N", frequency="50 Hz")
+    case = rb.Case(structure=rb.SDOF(mass=20, stiffness=8e4), load=load, duration=1, output=rb.Output(rate=rate))
+    assert doubts(case) == told * (
+        "warning: output.rate is 199 Hz, 3.98 samples in a period of load, at 50 Hz,"
+        " so that figures and spectra of the motion are not true; the run itself is",
+    )
+    slow = rb.Case(structure=rb.SDOF(mass=20, stiffness=8e4), duration=1, output=rb.Output(rate=40))
+    assert len(doubts(slow)) == 1 and "the structure's lowest mode, at 10.07 Hz," in doubts(slow)[0]

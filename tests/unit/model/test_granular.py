@@ -591,3 +591,10 @@ def test_points_of_matrices_move_in_space(tmp_path: Path) -> None:
         rb.Matrices(**BEAM, points={"tip": TIP}, influence=[1, 1, 1, 1])
     with pytest.raises(rb.CaseError, match="3 weights, but there are 4 degrees of freedom"):
         rb.Matrices(**BEAM, points={"tip": np.eye(3)})
+
+
+def test_a_material_without_a_name_is_told_as_particles() -> None:
+    """What limits the step of particles whose material has no name is a contact of particles."""
+    stuff = rb.Material(density=2500, young=5e7, poisson=0.25)
+    assert rb.Particles(material=stuff, radius="1 mm", count=1).label == "particles"
+    assert rb.Particles(name="shot", material=stuff, radius="1 mm", count=1).label == "shot"
