@@ -324,6 +324,12 @@ def test_ball_without_play() -> None:
     assert run.ok and run.closure <= 1e-11
 
 
+def test_a_function_is_no_load() -> None:
+    """A function that is given as a load is refused with how to make a record of it."""
+    with pytest.raises(rb.CaseError, match=r"load = <function .*\n  a function is no signal .*\n  try: rb\.Record\("):
+        rb.Case(structure=rb.SDOF(mass=1, stiffness=1), load=lambda t: t, duration=1)
+
+
 def test_numbers_beyond_all_use() -> None:
     """Finite numbers whose powers leave double precision are refused where they stand, also where laws combine them."""
     with pytest.raises(rb.CaseError, match=r"radius = 1e\+150\n  no more than 1e\+30"):

@@ -267,7 +267,26 @@ ANSWERS = {
     ),
     "too few damping ratios": (
         MODES + "damping_ratios = [0]\nshapes = { tip = [1, 1] }\n",
-        "structure.damping_ratios = [0]\n  1 numbers, but there are 2 frequencies\n  try: one number for each mode",
+        "structure.damping_ratios = [0]\n  1 number, but there are 2 frequencies\n  try: one number for each mode",
+    ),
+    "one damping ratio for all": (
+        MODES + "damping_ratios = 0.003\nshapes = { tip = [1, 1] }\n",
+        "structure.damping_ratios = 0.003\n  a list is needed, with one number for each mode\n"
+        "  try: damping_ratios = [0.003, 0.003] for two modes",
+    ),
+    "unit with a prefix": (
+        changed('amplitude = "5 kN"', 'amplitude = 5\nunit = "kN"'),
+        "load.unit = 'kN'\n  must be 'N', 'm/s^2' or 'm', without a prefix\n  try: amplitude = \"5 kN\"",
+    ),
+    "record in a unit with a prefix": (
+        'duration = 1\nstructure = { kind = "sdof", mass = 1, stiffness = 1 }\n'
+        'load = { kind = "record", times = [0, 1], values = [0, 1], unit = "kN" }\n',
+        "load.unit = 'kN'\n  must be 'N', 'm/s^2' or 'm', without a prefix\n  try: unit = \"N\", scale = 1000",
+    ),
+    "record with units": (
+        'duration = 1\nstructure = { kind = "sdof", mass = 1, stiffness = 1 }\n'
+        'load = { kind = "record", times = ["0 s", "1 s"], values = [0, 1] }\n',
+        "load.times[0] = '0 s'\n  a finite number is needed\n  try: numbers alone: times in s, values in `unit`",
     ),
     "shape with text": (
         MODES + 'damping_ratios = [0, 0]\nshapes = { tip = [1, "x"] }\n',

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox.engines.checkpoint import fingerprint
+from rattlebox.model.errors import Hint
 from rattlebox.results.snapshots import SnapshotFile
 
 if TYPE_CHECKING:
@@ -38,8 +39,17 @@ def snapshots_of(case: Case, packed: Mapping[str, Any], path: Path) -> tuple[Sna
         The file, not yet made.
     list of int
         Steps at which they are taken, each once.
+
+    Raises
+    ------
+    Hint
+        When there are more than steps.
     """
     dt, last = packed["dt"], packed["steps"]
+    asked = case.output.snapshots
+    if isinstance(asked, int) and asked > last + 1:
+        place = ("output", "snapshots")
+        raise Hint(f"{asked} are asked for, but the run has {last} steps", f"snapshots = {min(last + 1, 1001)}", place)
     times = case.output.snapshot_times(case.duration)
     shots = np.unique(np.clip(np.rint(times / dt).astype(np.int64), 0, last))
     contents = [damper.contents for damper in case.particle_dampers]

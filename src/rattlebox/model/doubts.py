@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .dampers import ImpactDamper
+from .materials import Material
 from .signals import HalfSine, Harmonic
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 _WIDE = 1.0  # m
 _ROUGH = 3.0  # coefficient of friction
 _FEW = 4.0  # samples in a period
+_SOFT = 1e5  # Pa
+_LIGHT, _HEAVY = 20.0, 25e3  # kg/m^3
 
 
 def doubts(case: Case) -> tuple[str, ...]:
@@ -62,19 +65,28 @@ def _of_signals(case: Case) -> Iterator[str]:
 
 
 def _of_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> Iterator[str]:
+    materials: list[Material | str | None]
     if isinstance(damper, ImpactDamper):
         things = "ball"
+        materials = [*(ball.material for ball in damper.balls), damper.wall]
         diameters = [2 * ball.half for ball in damper.balls]
         mass = float(sum(damper.masses))
         if damper.clearance > 2 * _WIDE:
             yield f"the gap of {name} is {damper.clearance / 2:.4g} m; a number without a unit is in metres"
     else:
         things = "particle"
+        materials = [*(species.material for species in damper.particles), damper.wall]
         diameters = [2 * float(damper.contents.radius.max())]
         mass = float(damper.contents.mass.sum())
         frictions = [entry.friction.coefficient for entry in damper.contact_table.entries if entry.friction]
         if max(frictions, default=0.0) > _ROUGH:
             yield f"the friction in {name} is {max(frictions):g}; per cent need their sign: 40 % is 0.4"
+    for material in dict.fromkeys(m for m in materials if isinstance(m, Material)):
+        what = " ".join(material.name.split()) or "a material"
+        if material.young < _SOFT:
+            yield f"the modulus of {what} in {name} is {material.young:g} Pa; a number without a unit is in pascals"
+        if not _LIGHT <= material.density <= _HEAVY:
+            yield f"the density of {what} in {name} is {material.density:g} kg/m^3, which no solid has"
     if max(diameters) > _WIDE:
         yield f"a {things} of {name} is {max(diameters):.4g} m wide; a number without a unit is in metres"
     ease = float(np.max(np.sum(np.square(case.modes.shapes[case.modes.point(damper.point)]), axis=0), initial=0.0))

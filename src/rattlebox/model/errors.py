@@ -273,7 +273,12 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: 
     kinds = [kind for kind in _kinds(location, source, vocabulary) if kind]
     if what in (*_TAGS, *_TABLES) and _is_table(value) and not isinstance(value, Mapping):
         return f"{type(value).__name__} does not belong here", f"one of kind {' or '.join(kinds)}" if kinds else ""
+    if what in (*_TAGS, *_TABLES) and callable(value) and "record" in kinds:
+        return "a function is no signal that a file could hold", "rb.Record(times=t, values=f(t)) with many times t"
     if what in _TAGS:
+        apart = f"wall_{location[-1]}" if location else ""
+        if what == "union_tag_not_found" and "wall" in value and apart in _fields(location[:-1], source, vocabulary):
+            return f"laws at walls have a field of their own, {apart}", f"{location[-1]} = ... and {apart} = ..."
         if what == "union_tag_not_found":
             return f"'kind' is needed: {', '.join(kinds)}", f'kind = "{kinds[0]}"' if kinds else ""
         return "there is no such kind here", nearest(str(value), kinds, listed=True)

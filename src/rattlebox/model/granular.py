@@ -28,6 +28,16 @@ from .units import Number
 WALL = "wall"
 
 
+def _two_names(value: Any) -> Any:
+    """One name is no pair: not even of a species with itself."""
+    names = [value] if isinstance(value, str) else value
+    if isinstance(names, (list, tuple)) and len(names) == 1 and isinstance(names[0], str):
+        raise Hint(
+            "two names are needed", f'["{names[0]}", "{WALL}"], or ["{names[0]}", "{names[0]}"] among themselves'
+        )
+    return value
+
+
 class PairLaws(Part):
     """Laws of two species, or of a species and the wall, instead of those of all.
 
@@ -40,7 +50,7 @@ class PairLaws(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("pairs",)
-    between: tuple[str, str]
+    between: Annotated[tuple[str, str], BeforeValidator(_two_names)]
     contact: AnyContact | None = None
     friction: AnyFriction | None = None
     rolling: AnyRolling | None = None

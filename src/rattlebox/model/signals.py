@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_serializer, model_validator
 
 from .base import Part
 from .elementwise import power
@@ -72,6 +72,18 @@ class Signal(Part):
     unit: Unit | None = None
     point: str | None = None
     direction: Direction | None = None
+
+    @field_validator("unit", mode="before")
+    @classmethod
+    def _without_prefix(cls, value: Any) -> Any:
+        if not isinstance(value, str) or value in _UNITS:
+            return value
+        try:
+            factor, unit = parse(f"1 {value}", _UNITS)
+        except Hint:
+            return value
+        advice = f'unit = "{unit}", scale = {factor:g}' if "scale" in cls.model_fields else f'amplitude = "5 {value}"'
+        raise Hint(f"must be {', '.join(map(repr, _UNITS[:-1]))} or {_UNITS[-1]!r}, without a prefix", advice)
 
     @model_validator(mode="before")
     @classmethod
@@ -204,7 +216,11 @@ class Harmonic(Signal):
 
 
 def _column(value: Any) -> tuple[float, ...]:
-    array = numbers(value)
+    try:
+        array = numbers(value)
+    except Hint as hint:
+        advice = 'numbers alone: times in s, values in `unit` ("N"), which are multiplied by `scale`'
+        raise Hint(hint.complaint, hint.suggestion or advice, hint.place) from None
     if array.ndim != 1:
         raise Hint(f"one row of numbers is needed, not shape {array.shape}")
     return tuple(array.tolist())

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, mo
 
 from .base import AlsoTakes, Part
 from .elementwise import Vector, power, stacked
-from .errors import Hint, at, nearest
+from .errors import Hint, at, nearest, several
 from .files import absolute, check_finite, existing, read_arrays
 from .modes import ModalModel
 from .signals import AnySignal, Signal, Unit, signals_in
@@ -117,6 +117,13 @@ class SDOF(Part):
         )
 
 
+def _one_each(value: Any) -> Any:
+    if isinstance(value, (int, float, str)) and not isinstance(value, bool):
+        one = f'"{value}"' if isinstance(value, str) else f"{value}"
+        raise Hint("a list is needed, with one number for each mode", f"damping_ratios = [{one}, {one}] for two modes")
+    return value
+
+
 class Modal(Part):
     """A structure given by its modes.
 
@@ -139,7 +146,7 @@ class Modal(Part):
     held_as: ClassVar[tuple[str, ...]] = ("structure",)
     kind: Literal["modal"] = "modal"
     frequencies: list[Frequency]
-    damping_ratios: list[Ratio]
+    damping_ratios: Annotated[list[Ratio], BeforeValidator(_one_each)]
     shapes: Annotated[dict[str, Shape], SI("kg^-0.5")]
     participation: Annotated[Shape | None, SI("kg^0.5")] = None
     displacement: Annotated[Numbers | None, SI("kg^0.5 m")] = None
@@ -155,8 +162,9 @@ class Modal(Part):
         rows |= {f"shapes.{name}": row for name, row in self.shapes.items()}
         for name, row in rows.items():
             if row is not None and len(row) != count:
+                modes = "there is 1 frequency" if count == 1 else f"there are {count} frequencies"
                 raise Hint(
-                    f"{len(row)} numbers, but there are {count} frequencies",
+                    f"{several(len(row), 'number')}, but {modes}",
                     "one number for each mode",
                     name.split(".", 1),
                 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from rattlebox.model.errors import Hint
+from rattlebox.model.errors import CaseError, Hint
 from rattlebox.model.signals import Harmonic
 from rattlebox.model.structures import Shaker
 
@@ -92,7 +92,10 @@ def loss_map(
     amplitudes, frequencies = (list(x) if isinstance(x, Iterator) else x for x in (amplitudes, frequencies))
     axes = {"structure.motion.amplitude": amplitudes, "structure.motion.frequency": frequencies}
     for (path, values), source in zip(axes.items(), ("amplitudes", "frequencies"), strict=True):
-        Design.of(case, {path: values}, source=source)  # for messages, in the words of this map
+        column = Design.of(case, {path: values}, source=source).columns[path]  # for messages, in the words of this map
+        for number, value in enumerate(column):
+            if not value > 0:
+                raise CaseError(f"{source}: {path}[{number}] = {value:g}\n  must be greater than zero")
     found = sweep(
         case,
         axes,

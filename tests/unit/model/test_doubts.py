@@ -110,3 +110,25 @@ def test_few_samples_in_a_period_are_noted(rate, told):
     )
     slow = rb.Case(structure=rb.SDOF(mass=20, stiffness=8e4), duration=1, output=rb.Output(rate=40))
     assert len(doubts(slow)) == 1 and "the structure's lowest mode, at 10.07 Hz," in doubts(slow)[0]
+
+
+@pytest.mark.parametrize(
+    ("young", "density", "told"),
+    [
+        ("210 GPa", 7850, []),
+        (70, 2700, ["the modulus of a material in damper is 70 Pa; a number without a unit is in pascals"]),
+        ("70 GPa", 2.7, ["the density of a material in damper is 2.7 kg/m^3, which no solid has"]),
+    ],
+)
+def test_absurd_materials_are_noted(young, density, told):
+    """Moduli in gigapascals and densities in grams that lost their units are told, once, of balls and of particles."""
+    stuff = rb.Material(young=young, density=density, poisson=0.3)
+    damper = rb.ImpactDamper(**BALL | {"ball": rb.Sphere(diameter="20 mm", material=stuff)})
+    grains = rb.ParticleDamper(
+        particles=rb.Particles(material=stuff, diameter="3 mm", count=2),
+        cavity=rb.Box(size=("30 mm", "30 mm", "30 mm")),
+        contact=rb.Tsuji(restitution=0.9),
+    )
+    for each in (damper, grains):
+        case = rb.Case(structure=rb.Fixed(), damper=each, duration=1)
+        assert doubts(case) == tuple(f"warning: {said}" for said in told)

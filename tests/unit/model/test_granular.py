@@ -420,7 +420,13 @@ def test_walls_may_have_laws_of_another_kind() -> None:
 
 AT = rb.Positions(positions=[[0, 0, 0], [0, 0, 0.003]])
 REFUSED = {
-    r"pairs\[0\].between\n  one more is needed": lambda: damper(pairs=[{"between": ["wall"], "friction": 0.1}]),
+    r"pairs\[0\].between = \['wall'\]\n  two names are needed": lambda: damper(
+        pairs=[{"between": ["wall"], "friction": 0.1}]
+    ),
+    r"between = 'steel'\n  two names are needed\n  try: \[\"steel\", \"wall\"\]": lambda: rb.PairLaws(
+        between="steel", friction=0.1
+    ),
+    r"friction\n  laws at walls have a field of their own, wall_friction": lambda: damper(friction={"wall": 0.1}),
     "an empty damper": lambda: damper(particles=[]),
     "there is nothing in it": lambda: balls(count=0),
     "their volume is 1.05 times that of the cavity": lambda: damper(particles=balls(2000)),

@@ -215,6 +215,27 @@ def test_wrong_choices_are_told(value: Any, said: str) -> None:
         rb.Output(snapshots=value)
 
 
+def test_more_snapshots_than_steps_are_refused(tmp_path: Path) -> None:
+    """A run of three steps, which has four instants, is not asked for five of them, and nothing is written."""
+    case = rb.Case(
+        structure=rb.Fixed(),
+        damper=rb.ParticleDamper(
+            particles=rb.Particles(material="steel", diameter="3 mm", count=2),
+            cavity=rb.Box(size=("30 mm",) * 3),
+            contact=rb.Tsuji(restitution=0.9),
+            velocity=(0.1, 0, 0),
+        ),
+        duration=3e-7,
+        output=rb.Output(snapshots=5, times=[3e-7]),
+        method=rb.Dem(dt=1e-7),
+    )
+    path = tmp_path / "run.vtkhdf"
+    said = r"output\.snapshots\n  5 are asked for, but the run has 3 steps\n  try: snapshots = 4"
+    with pytest.raises(rb.CaseError, match=said):
+        rb.simulate(case, snapshots=path)
+    assert not path.exists()
+
+
 def test_snapshots_are_no_run(written: Any) -> None:
     """Where a run is to be loaded from the file of snapshots, what it holds is told."""
     with pytest.raises(ValueError, match=r"run\.vtkhdf holds snapshots of particles, not a run"):

@@ -80,11 +80,13 @@ def test_plot(found: Any, size: Any, tmp_path: Path) -> None:
         ({"structure": rb.Fixed()}, ["1 mm"], "a shaker with one harmonic motion"),
         ({"damper": []}, ["1 mm"], "a case with a damper"),
         ({}, ["1 m/s^2"], "a length"),
+        ({}, ["1 mm", "-1 mm"], r"amplitudes: structure.motion.amplitude\[1\] = -0.001\n  must be greater than zero"),
+        ({}, ["0 mm", "1 mm"], r"amplitudes: structure.motion.amplitude\[0\] = 0\n  must be greater than zero"),
         ({}, ["-1 mm", "0 mm", 1e400], r"amplitudes: structure.motion.amplitude\[2\] = inf\n.*finite"),
     ],
 )
 def test_clear_refusals(changes: dict[str, Any], amplitudes: Any, said: str) -> None:
-    """A case without a shaker or a damper, or amplitudes in another unit, are refused with what to try."""
+    """A case without a shaker or a damper, or amplitudes in another unit or of nothing, are refused with what to try."""
     with pytest.raises(rb.CaseError, match=said):
         rb.loss_map(shaken(**changes), amplitudes, ["10 Hz"])
 
