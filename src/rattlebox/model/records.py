@@ -195,7 +195,10 @@ def _rows(file: Path, lines: list[tuple[int, list[str]]], places: list[int]) -> 
     rows: list[list[float]] = []
     for number, cells in lines:
         if len(cells) != width:
-            raise Hint(f"{file}, line {number}: {len(cells)} columns, but {width} in line {lines[0][0]}")
+            cut = "the whole file: its last line is cut short" if number == lines[-1][0] and len(cells) < width else ""
+            raise Hint(
+                f"{file}, line {number}: {several(len(cells), 'column')}, but {width} in line {lines[0][0]}", cut
+            )
         try:
             rows.append([float(cells[k]) for k in places])
         except ValueError:
@@ -213,8 +216,9 @@ def _lines(file: Path) -> list[tuple[int, list[str], bool]]:
         raise Hint(f"{file} is not text", "CSV, or a file that ends in .npy, .npz or .mat") from None
     except OSError as error:
         raise Hint(f"{file} cannot be read: {error.strerror or error}") from None
-    last = next((line for line in reversed(text) if line.strip() and line.lstrip()[0] not in "#%"), "")
-    delimiter = next((mark for mark in ";\t," if mark in last), None)
+    data = [line for line in text if line.strip() and line.lstrip()[0] not in "#%"][-3:]
+    # The very last line may be cut short.
+    delimiter = next((mark for mark in ";\t," if 2 * sum(mark in line for line in data) >= max(1, len(data))), None)
     lines = []
     for number, line in enumerate(text, start=1):
         marked = line.lstrip()[:1] in ("#", "%")

@@ -270,7 +270,7 @@ def test_positions_from_a_file_with_a_suffix_in_capitals(tmp_path: Path) -> None
     ("text", "said"),
     [
         ("x,y,z\n0,0,0\n0,0,abc\n", r"bed.csv, line 3: 'abc' is not a number"),
-        ("x,y,z\n0,0,0\n0,0\n", r"bed.csv, line 3: 2 columns, but 3 in line 2"),
+        ("x,y,z\n0,0,0\n0,0\n", r"bed.csv, line 3: 2 columns, but 3 in line 2\n  try: the whole file"),
         ("a bed, settled\nx,y,z\n0,0\n", r"bed.csv, line 3: 2 columns, but 3 in line 2"),
         ("x,y,z,radius,vz\n0,0,0,0.001\n", r"bed.csv, line 2: 4 columns, but 5 in line 1"),
         ("x,y,z,x\n0,0,0,0\n", r"bed.csv has two columns 'x'"),
