@@ -27,17 +27,26 @@ def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
     if not case.particle_dampers:
         return simulate(case)
     console = terminal(stderr=True)
-    if checkpoint.is_file():
-        console.print(f"going on from {checkpoint}", soft_wrap=True)
     snapshots = out / SNAPSHOTS if case.output.snapshots else None
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         line = bar.add_task("filling in", total=None)
+        going_on = checkpoint.is_file()
+
+        def tell() -> None:
+            """Say where the run goes on from, once the checkpoint has proved to be of this case."""
+            nonlocal going_on
+            if going_on:
+                console.print(f"going on from {checkpoint}", soft_wrap=True)
+            going_on = False
 
         def progress(done: int, total: int) -> None:
+            tell()
             bar.update(line, description="steps", completed=done, total=total)
 
-        return simulate(case, checkpoint=checkpoint, snapshots=snapshots, progress=progress)
+        run = simulate(case, checkpoint=checkpoint, snapshots=snapshots, progress=progress)
+        tell()
+        return run
 
 
 def run_case(
