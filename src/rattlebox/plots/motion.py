@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..results import GranularArrays, Run, RunArrays
+from ..results.summary import shown_points
 from .style import (
     FAINT,
     INK,
@@ -115,7 +116,7 @@ def row_places(arrays: RunArrays, damper: int) -> Any:
 
 
 def draw_structure(axes: Axes, arrays: RunArrays | GranularArrays, shown: slice, time: Scale, length: Scale) -> None:
-    """Draw the displacement of the structure's points, of many those that move most.
+    """Draw the displacement of the structure's points that move, of many those that move most.
 
     Parameters
     ----------
@@ -129,15 +130,14 @@ def draw_structure(axes: Axes, arrays: RunArrays | GranularArrays, shown: slice,
         Scales of the axes.
     """
     x = arrays.displacement[shown]
-    most = np.sort(np.argsort(-np.abs(x).max(axis=0), kind="stable")[:MOST_SERIES])
     axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
-    for k, point in enumerate(most):
+    for k, point in enumerate(shown_points(np.abs(x).max(axis=0), MOST_SERIES)):
         axes.plot(
             arrays.time[shown] / time.divisor,
             x[:, point] / length.divisor,
             color=SERIES_COLOURS[k],
             linestyle=SERIES_STYLES[k],
-            label=arrays.points[point] if most.size > 1 else None,
+            label=arrays.points[point] if len(arrays.points) > 1 else None,
         )
     label(axes, "y", "Displacement", length.unit)
     legend_above(axes)

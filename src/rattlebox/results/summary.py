@@ -13,6 +13,7 @@ from .granular import GranularRun
 from .quantities import MISSING, digits, quantity
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
     from rich.console import Group
 
     from .run import Run
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 Value = float | int | str
 
 _MOST_POINTS = 4
+_STILL = 1e-9
+"""Of the largest motion of any point: a point that moves no more stands still but for rounding."""
 _OPEN = 0.01  # of the energy supplied: beyond it a run does not show what it says
 _CHANNEL_LABELS = {
     "viscous": "lost in the structure",
@@ -162,14 +165,34 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
     peaks = dict.fromkeys(key for values in all_values for key in values if key.startswith("peak_displacement["))
     points = [key.partition("[")[2][:-1] for key in peaks]
     highest = [max(float(values.get(key, 0.0)) for values in all_values) for key in peaks]
-    most = set(sorted(range(len(points)), key=lambda k: -highest[k])[:_MOST_POINTS])
-    for point in (point for k, point in enumerate(points) if k in most):
+    for point in (points[k] for k in shown_points(highest, _MOST_POINTS)):
         where = f", {point}" if len(points) > 1 else ""
         rows.append(_Row(f"peak_displacement[{point}]", f"peak displacement{where}", "m"))
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
     rows.append(_Row("computing_time", "computing time", "s"))
     rows.append(_Row("particle_steps_per_second", "particle-steps a second", "million"))
     return [row for row in rows if any(row.key in values for values in all_values)]
+
+
+def shown_points(peaks: ArrayLike, most: int) -> list[int]:
+    """Choose the points of a structure that are shown: those that move, of many those that move most.
+
+    Parameters
+    ----------
+    peaks
+        Largest displacement of each point, (P,) [m].
+    most
+        How many at most.
+
+    Returns
+    -------
+    list of int
+        Numbers of points, in their order; where all stand still, they count as if they moved.
+    """
+    highest = np.asarray(peaks, dtype=float)
+    moves = ~(highest <= _STILL * highest.max(initial=0.0, where=np.isfinite(highest)))
+    order = np.argsort(-highest, kind="stable")
+    return sorted(order[moves[order] | ~moves.any()][:most].tolist())
 
 
 class _Report:
@@ -239,7 +262,8 @@ class Summary(_Report):
     """The numbers of one run that one looks at first.
 
     `print(summary)` writes plain text, `rich.print(summary)` a table, `summary.show()` whichever fits. Peak
-    and RMS displacement are taken at the output times, relative to the base.
+    and RMS displacement are taken at the output times, relative to the base; points that stand still are left out of
+    the text, and of many points those that move less.
 
     Parameters
     ----------

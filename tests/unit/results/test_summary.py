@@ -79,6 +79,43 @@ def test_of_many_points_those_that_move_most_are_shown() -> None:
     assert [text.get_text() for text in legend.get_texts()] == ["p1", "p3", "p5", "p6", "p7", "p8"]
 
 
+def _swinging(*peaks: float) -> Run:
+    """A structure whose points swing with these peaks."""
+    time = np.linspace(0.0, 1.0, 5)
+    names = tuple(f"p{k}" for k in range(len(peaks)))
+    return Run(RunArrays(time=time, points=names, mode_frequency=[1.0], displacement=np.outer(time, peaks)))
+
+
+@pytest.mark.parametrize(
+    ("peaks", "shown"),
+    [
+        ((0.0, 1e-3, 3e-20, 2e-3), ["p1", "p3"]),
+        ((0.0, 1e-3, 0.0), ["p1"]),
+        ((1e-3, 1e-11), ["p0", "p1"]),
+        ((0.0, 0.0), ["p0", "p1"]),
+        ((1e-20, 0.0, 2e-20), ["p0", "p2"]),
+        ((np.nan, 0.0, 1e-3), ["p0", "p2"]),
+    ],
+)
+def test_points_that_stand_still_are_left_out(peaks: tuple[float, ...], shown: list[str]) -> None:
+    """The table and the legend name the points that move by more than rounding, or all where none does; values hold all."""
+    run = _swinging(*peaks)
+    summary = run.summary()
+    names = [f"p{k}" for k in range(len(peaks))]
+    for told in ("peak displacement", "RMS displacement"):
+        assert [name for name in names if f"{told}, {name}" in str(summary)] == shown
+    assert all(f"peak_displacement[{name}]" in summary.values for name in names)
+    legend = run.plot.motion().axes[0].get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == shown
+
+
+def test_a_point_that_moves_in_one_of_several_runs_is_compared() -> None:
+    """Side by side, a point is left out where it stands still in all of the runs."""
+    table = str(compare({"a": _swinging(1e-3, 0.0, 0.0), "b": _swinging(0.0, 1e-3, 0.0)}))
+    assert [name for name in ("p0", "p1", "p2") if f"peak displacement, {name}" in table] == ["p0", "p1"]
+
+
 def test_numbers_of_a_run(run: Run) -> None:
     """The summary holds the largest force and speed of the log and shares that add up to one."""
     values = run.summary().values
