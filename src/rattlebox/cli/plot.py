@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import rattlebox
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import CaseError, nearest
-from rattlebox.plots.maps import plot_map, select
+from rattlebox.plots.maps import plot_map, select, taken_instead
 from rattlebox.plots.style import WIDTHS
 from rattlebox.results.whole import telling
 from rattlebox.studies.store import open_study
@@ -61,17 +61,19 @@ def plot_study(
     check_target(out, size)
     if number is not None:
         raise CaseError(f"--number {number}: this applies to snapshots of a run, run.vtkhdf\n  try: leave it out")
-    data, options = open_study(study), {"of": of, "size": size}
+    data, options, chosen = open_study(study), {"of": of, "size": size}, _values(at)
     own = str(data.attrs.get("study", "sweep"))
     options = {name: value for name, value in options.items() if value is not None}
     if (kind or own) in MAPS:
-        figure = _map(data, kind or own, own, options, _values(at))
+        figure = _map(data, kind or own, own, options, chosen)
     elif kind in (None, "map", "lines"):
-        figure = plot_map(data, kind=kind, at=_values(at), **options)  # type: ignore[arg-type]
+        figure = plot_map(data, kind=kind, at=chosen, **options)  # type: ignore[arg-type]
     else:
         raise CaseError(f"--kind {kind}: there is no such kind\n  {nearest(kind, ('map', 'lines', *MAPS))}")
     with telling(out, "the same command once there is room"):
         figure.savefig(out)
+    for line in taken_instead(data, chosen):
+        terminal().print(line, soft_wrap=True)
     terminal().print(f"written: {out}", soft_wrap=True)
 
 

@@ -18,6 +18,8 @@ from .units import LARGEST
 
 Array = NDArray[np.float64]
 BINARY = (".npy", ".npz", ".mat")
+_SEVERAL = {"damper": "dampers", "load": "loads", "ball": "balls", "particles": "particles", "base": "base"}
+"""Tables of which there may be several, and what they are called then."""
 
 
 def absolute(path: Any) -> str:
@@ -75,6 +77,11 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
         comma = re.match(r"\s*([\w.-]+)\s*=\s*([-+]?\d+),(\d+)\s*(?:#|$)", line)
         if comma:
             complaint.append(f"  try: a point before decimals: {comma[1]} = {comma[2]}.{comma[3]}")
+        twice = re.search(r"Cannot declare \((.*)\) twice", str(error))
+        names = re.findall(r"'([\w-]+)'", twice[1]) if twice else []
+        if names and names[-1] in _SEVERAL:
+            table = ".".join([*names[:-1], _SEVERAL[names[-1]]])
+            complaint.append(f"  try: [[{table}]] in double brackets, for each of them")
         raise CaseError("\n".join(complaint)) from None
 
 

@@ -139,6 +139,38 @@ def select(study: xr.Dataset, at: Mapping[str, Any]) -> tuple[xr.Dataset, str]:
     return study, ", ".join(words)
 
 
+def taken_instead(study: xr.Dataset, at: Mapping[str, Any]) -> list[str]:
+    """Tell where `select` takes another value than the one that is asked for.
+
+    Parameters
+    ----------
+    study, at
+        As for `select`, which takes them.
+
+    Returns
+    -------
+    list of str
+        A line for each axis where the two differ as they are written in figures.
+    """
+    lines = []
+    for name, value in at.items():
+        coord = study[name]
+        taken = value_of(coord, coord.values[_position(coord, name, value)])
+        if taken != value_of(coord, _asked(coord, name, value)):
+            lines.append(f"{name} = {taken}, the nearest to {value} in the study")
+    return lines
+
+
+def _asked(coord: xr.DataArray, name: str, value: Any) -> Any:
+    """The number that is asked for in the unit of a coordinate; of names the name."""
+    if coord.dtype.kind not in "fiu":
+        return value
+    try:
+        return parse(value, (unit_of(coord) or "1",))[0]
+    except Hint as hint:
+        raise CaseError(f"at: {name} = {value!r}\n  {hint}") from None
+
+
 def _position(coord: xr.DataArray, name: str, value: Any) -> int:
     """Number of the value of a coordinate that is nearest."""
     values = coord.values
@@ -146,10 +178,7 @@ def _position(coord: xr.DataArray, name: str, value: Any) -> int:
         if value not in values.tolist():
             raise CaseError(f"at: {name} = {value!r} is not in the study\n  {nearest(str(value), map(str, values))}")
         return int(values.tolist().index(value))
-    try:
-        number = parse(value, (unit_of(coord) or "1",))[0]
-    except Hint as hint:
-        raise CaseError(f"at: {name} = {value!r}\n  {hint}") from None
+    number = _asked(coord, name, value)
     low, high = float(values.min()), float(values.max())
     if not low - 1e-6 * abs(low) <= number <= high + 1e-6 * abs(high):
         shown = f"{value_of(coord, low)} to {value_of(coord, high)}"

@@ -75,6 +75,19 @@ def test_clear_refusals(study: Path, answer: Answer, options: list[str], said: s
     assert list(Path().iterdir()) == []
 
 
+def test_the_value_that_is_taken_is_told(study: Path, answer: Answer) -> None:
+    """Where the study lacks the value of --at, the nearest is drawn and told; one that it holds is not told."""
+    near = ["--at", "damper.start=-0.9", "--at", "load.amplitude=4.5 kN"]
+    told = (
+        "damper.start = -1.000, the nearest to -0.9 in the study\n"
+        "load.amplitude = 5.000 kN, the nearest to 4.5 kN in the study\n"
+    )
+    assert answer(study, *near, "-o", "a.png") == (0, f"{told}written: a.png\n", "")
+    exact = ["--at", "damper.start=-1.0", "--at", "load.amplitude=5000"]
+    assert answer(study, *exact, "-o", "b.png") == (0, "written: b.png\n", "")
+    assert Path("a.png").read_bytes() == Path("b.png").read_bytes()
+
+
 def test_figure_that_cannot_be_written(study: Path, answer: Answer) -> None:
     """The message names the file, the reason and what to try."""
     Path("a.png").mkdir()

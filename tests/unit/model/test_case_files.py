@@ -125,6 +125,39 @@ def test_one_and_several_may_be_written_alike() -> None:
     assert one == rb.Case(structure=structure, loads=[load], duration=1.0)
 
 
+HEAD = 'duration = "1 s"\nstructure = { kind = "sdof", mass = "1 kg", stiffness = "1 kN/m" }\n'
+CAVITY = 'gap = "1 mm"\ncontact = { kind = "tsuji", restitution = 0.9 }\n'
+PULSE = 'kind = "half_sine"\nduration = "1 ms"\n'
+
+
+@pytest.mark.parametrize(
+    ("above", "table", "content", "several"),
+    [
+        ("", "damper", CAVITY + 'ball = { radius = "5 mm", material = "steel" }\n', "dampers"),
+        ("", "load", PULSE + 'amplitude = "1 N"\n', "loads"),
+        ("", "base", PULSE + 'amplitude = "1 m/s^2"\n', "base"),
+        (f"[damper]\n{CAVITY}", "damper.ball", 'radius = "5 mm"\nmaterial = "steel"\n', "damper.balls"),
+    ],
+)
+def test_a_table_that_is_written_twice(above: str, table: str, content: str, several: str) -> None:
+    """A part that is described twice is told with its line and how several are written; written so, they are taken."""
+    first = f"{HEAD}{above}[{table}]\n{content}"
+    with pytest.raises(rb.CaseError, match=f"line {len(first.splitlines()) + 1}") as told:
+        rb.Case.from_toml(f"{first}[{table}]\n{content}")
+    said = str(told.value).splitlines()
+    assert said[1:] == [f"  [{table}]", f"  try: [[{several}]] in double brackets, for each of them"]
+    case = rb.Case.from_toml(HEAD + above + 2 * f"[[{several}]]\n{content}")
+    assert 2 in (len(case.loads), len(case.base), len(case.dampers), *(len(each.balls) for each in case.dampers))
+
+
+def test_other_tables_that_are_written_twice() -> None:
+    """Of tables of which there is one, and of names with quotation marks, the line is told and nothing else."""
+    for name in ("structure", '"it\'s"'):
+        with pytest.raises(rb.CaseError, match="twice") as told:
+            rb.Case.from_toml(f"[{name}]\na = 1\n[{name}]\n")
+        assert "try" not in str(told.value)
+
+
 def test_schema_names_every_field_and_its_units() -> None:
     """The JSON Schema is JSON, lists the kinds, and tells the unit of a quantity."""
     schema = json.loads(json.dumps(rb.Case.json_schema()))
