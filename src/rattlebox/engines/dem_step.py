@@ -435,10 +435,7 @@ def outcome(
         "steps_per_contact": steps,
         "largest_overlap": max(overlaps),
     }
-    assert isinstance(case.method, Dem)
-    how = "limited by the" if case.method.dt == "auto" else "as given; an automatic one would be limited by the"
-    notes = [f"step {_time(step.dt)}, {how} {step.limit.what}"]
-    notes += _softened(case)
+    notes = [_limited(case, step), *_softened(case)]
     if math.isfinite(steps) and steps < FEWEST_STEPS:
         notes.append(
             f"warning: only {steps:.3g} steps in the shortest contact, that of {shortest.what.removeprefix('contact of ')}; "
@@ -459,6 +456,21 @@ def outcome(
                 + ("less softening or a stiffer contact" if damper.softening > 1 else "a stiffer contact")
             )
     return figures, notes
+
+
+def _limited(case: Case, step: Step) -> str:
+    """What the step is, and what limits it: steps are no longer than samples are apart."""
+    assert isinstance(case.method, Dem)
+    told = f"step {_time(step.dt)}, "
+    if case.method.dt == "auto":
+        longest, why = step.limit.step, f"the {step.limit.what}"
+        limited, else_ = f"limited by {why}", f"for {why}"
+    else:
+        longest = float(case.method.dt)
+        limited = else_ = f"as given; an automatic one would be limited by the {step.limit.what}"
+    if step.every == 1 and step.dt < (1 - 1e-9) * longest:
+        return f"{told}limited by the samples; without them {_time(longest)}, {else_}"
+    return told + limited
 
 
 def _softened(case: Case) -> list[str]:

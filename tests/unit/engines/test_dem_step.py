@@ -221,6 +221,29 @@ def test_outcomes_are_judged() -> None:
     assert figures["steps_per_contact"] == pytest.approx(step.shortest.duration / step.dt * 100**-0.2, rel=1e-6)
 
 
+def test_samples_that_limit_the_step_are_told() -> None:
+    """Where samples are closer than steps need be, the note names them, and what else would limit; else that alone."""
+
+    def note(rate: float, dt: str = "auto") -> tuple[float, float, str]:
+        made = case(duration=0.01, output=rb.Output(rate=rate), method=rb.Dem(dt=dt))
+        step = choose_step(made, tables(made), (1.0,))
+        _, (told,) = outcome(made, tables(made), step, (1e-3,), (1.0,))
+        return step.dt, step.limit.step, told
+
+    _, longest, alone = note(1e4)
+    contact = alone.partition(", limited by the ")[2]
+    assert contact.startswith("contact of fine and fine (diameter 2 mm) at 1 m/s, ")
+    assert longest > 1.1e-7
+    without = f"without them {1e9 * longest:.0f} ns, for the {contact}"
+    assert note(1e7)[::2] == (pytest.approx(1e-7), f"step 100 ns, limited by the samples; {without}")
+    assert note(1.001 / longest)[2] == f"step {1e9 * longest:.0f} ns, limited by the samples; {without}"
+    assert note(0.999 / longest)[2].endswith(f" ns, limited by the {contact}")
+    given = f"as given; an automatic one would be limited by the {contact}"
+    for rate in (1e4, 1.25e7):
+        assert note(rate, "80 ns")[2] == f"step 80.0 ns, {given}"
+    assert note(2e7, "80 ns")[2] == f"step 50.0 ns, limited by the samples; without them 80.0 ns, {given}"
+
+
 def test_the_damper_that_overlaps_too_much_is_named() -> None:
     """Of several dampers each is judged by its own overlap, speed and softening, and named."""
     parts = [case({"name": name, "softening": factor}).dampers[0] for name, factor in (("box", 1), ("can", 100))]
