@@ -227,7 +227,6 @@ def test_names_among_other_lines_above_the_data(tmp_path: Path, text: str) -> No
         ("t;f\n0;1,5\n1;2\n2;3\n", r"line 2: '1,5' is not a number\n  try: a decimal point, not a comma"),
         ("t,f\n0,soft\n1,2\n2,3\n", r"line 2: 'soft' is not a number"),
         ("t,f\n0,1\n1,2\n2", r"line 4: 1 column, but 2 in line 2\n  try: the whole file: its last line is cut short"),
-        ("t;f;g\n0;1;2\n1;2;3\n2;0.", r"line 4: 2 columns, but 3 in line 2\n  try: the whole file"),
     ],
 )
 def test_faults_in_the_first_lines_of_data(tmp_path: Path, text: str, said: str) -> None:
