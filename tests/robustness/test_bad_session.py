@@ -288,6 +288,12 @@ ANSWERS = {
         'load = { kind = "record", times = ["0 s", "1 s"], values = [0, 1] }\n',
         "load.times[0] = '0 s'\n  a finite number is needed\n  try: numbers alone: times in s, values in `unit`",
     ),
+    "file that is cut off": (
+        GOOD[: GOOD.index("steel") + 3],
+        "not TOML: Unterminated string (at end of document)\n"
+        '  ball = { radius = "33.17 mm", material = "ste\n'
+        "  try: the whole file, which seems cut off at line 16",
+    ),
     "shape with text": (
         MODES + 'damping_ratios = [0, 0]\nshapes = { tip = [1, "x"] }\n',
         "structure.shapes.tip[1] = 'x'\n  a finite number is needed",

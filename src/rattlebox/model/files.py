@@ -68,7 +68,10 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
     except (ValueError, RecursionError) as error:  # ValueError: also an integer of thousands of digits
         complaint = [f"{source}: not TOML: {error or 'nested too deep'}"]
         place = re.search(r"at line (\d+), column (\d+)", str(error))
-        line = content.splitlines()[int(place[1]) - 1] if place and int(place[1]) <= len(content.splitlines()) else ""
+        lines = content.rstrip().splitlines()
+        is_cut = str(error).endswith("(at end of document)")
+        number = len(lines) if is_cut else int(place[1]) if place else 0
+        line = lines[number - 1] if 0 < number <= len(lines) else ""
         if line.strip():
             complaint.append("  " + "".join(mark if mark.isprintable() else " " for mark in line[:100]))
         bare = re.match(r"\s*([\w.-]+)\s*=\s*([-+\d.eE_]+\s*[A-Za-z%µ°][^#,\"']*)", line)
@@ -77,6 +80,8 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
         comma = re.match(r"\s*([\w.-]+)\s*=\s*([-+]?\d+),(\d+)\s*(?:#|$)", line)
         if comma:
             complaint.append(f"  try: a point before decimals: {comma[1]} = {comma[2]}.{comma[3]}")
+        if is_cut:
+            complaint.append(f"  try: the whole file, which seems cut off at line {number}")
         twice = re.search(r"Cannot declare \((.*)\) twice", str(error))
         names = re.findall(r"'([\w-]+)'", twice[1]) if twice else []
         if names and names[-1] in _SEVERAL:
