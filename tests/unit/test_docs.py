@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+import rattlebox as rb
+from rattlebox.model.base import Part
+
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = (
     "analysis",
@@ -42,3 +45,44 @@ def test_examples_print_what_the_page_says(name, tmp_path, monkeypatch):
             exec(code, names)
         assert printed.getvalue() == said
     assert any(said for _, said in found)
+
+
+def test_examples_of_the_first_page_run(tmp_path, monkeypatch, capsys):
+    """The examples of the first page run from top to bottom; what they print tells times that differ."""
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for code, _ in examples(DOCS / "start.md"):
+        exec(code, names)
+    assert "energy supplied" in capsys.readouterr().out and (tmp_path / "run.nc").is_file()
+
+
+def test_every_public_name_has_a_page():
+    """Each name of the package is on the page of the API, of the fields of a case, or of analysis."""
+    pages = "".join((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in ("api", "case_file", "analysis"))
+    assert [name for name in rb.__all__ if not re.search(rf"\b{name}\b", pages)] == []
+
+
+def test_every_field_of_a_case_is_described():
+    """What the page of fields shows of a part, its docstring, names all its fields in the list of parameters."""
+    shown = re.findall(
+        r"autoclass:: rattlebox\.(\w+)$", (DOCS / "case_file.md").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    parts = [getattr(rb, name) for name in shown]
+    public = [getattr(rb, name) for name in rb.__all__]
+    assert {part for part in public if isinstance(part, type) and issubclass(part, Part)} <= set(parts)
+    for part in parts:
+        told = "".join(each.__doc__ or "" for each in part.__mro__ if issubclass(each, Part))
+        lists = set(re.findall(r"\w+", " ".join(re.findall(r"^    (\w+(?:, \w+)*)$", told, re.MULTILINE))))
+        assert set(part.model_fields) - {"kind"} <= lists, part.__name__
+
+
+def test_cases_on_the_page_of_fields_run(tmp_path):
+    """The case files that the page shows are whole, and run to their end."""
+    files = re.findall(
+        r"^```toml\n(.*?)^```$", (DOCS / "case_file.md").read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
+    )
+    assert len(files) == 2
+    for number, content in enumerate(files):
+        case = rb.Case.from_toml(content)
+        run = rb.simulate(case, snapshots=tmp_path / f"{number}.vtkhdf" if case.output.snapshots else None)
+        assert run.status == "finished"

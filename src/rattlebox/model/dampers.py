@@ -119,12 +119,14 @@ class ImpactDamper(Part):
         a length. One number for the whole row packed together, or one for each ball, rising.
     velocity
         Of each ball at the start, relative to the base [m/s].
-    contact
-        Law of the walls, and of the balls among themselves unless `ball_contact` is given.
+    contact, ball_contact
+        Law of the walls, and of the balls among themselves; left out, the latter is the same.
     gravity
         Along the line, with sign [m/s^2].
     point
         Of the structure; not needed where there is one only.
+    name
+        What results and messages call it; "damper", "damper2", ... if left out.
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")

@@ -183,6 +183,8 @@ class ParticleDamper(Part):
     softening
         Moduli are divided by this factor in contacts (not in laws of restitution), which allows longer steps. Contacts last
         longer and overlap more; the run tells how much.
+    name
+        What results and messages call it; "damper", "damper2", ... if left out.
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")

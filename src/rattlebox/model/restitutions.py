@@ -52,7 +52,13 @@ class Restitution(Part):
 
 
 class Constant(Restitution):
-    """The same restitution at every speed."""
+    """The same restitution at every speed.
+
+    Parameters
+    ----------
+    e
+        Rebound speed over approach speed.
+    """
 
     unnamed: ClassVar[tuple[str, ...]] = ("e",)
     kind: Literal["constant"] = "constant"

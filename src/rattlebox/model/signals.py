@@ -233,8 +233,8 @@ class Record(Signal):
     ----------
     times
         Strictly increasing [s].
-    values
-        As many, in `unit`, multiplied by `scale`.
+    values, scale
+        As many, in `unit`, and what they are multiplied by.
     file, columns
         Instead of both: a CSV, NPY, NPZ or MAT file, and its columns of times and values, by number counted from 1 or by
         name: `columns=(1, 3)`, `columns=("t", "a")`. Variables count in the order of the file. They may be left out where
