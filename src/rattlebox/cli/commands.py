@@ -102,12 +102,18 @@ def plot(
         Path, typer.Argument(help="Folder that run or sweep wrote; or one of the files run.nc and run.vtkhdf.")
     ],
     out: Annotated[
-        Path, typer.Option("--out", "-o", help="File to write: PNG, SVG or PDF; a film of snapshots as GIF or MP4.")
-    ] = Path("study.png"),
+        Path | None,
+        typer.Option(
+            "--out",
+            "-o",
+            help="File to write: PNG, SVG or PDF; a film of snapshots as GIF or MP4. Default study.png or run.png here.",
+        ),
+    ] = None,
     kind: Annotated[
         str | None,
         typer.Option(
-            help="map or lines of a measure, or the kind that the study file names; default that. "
+            help="map or lines of a measure, or the kind that the study file names; default that, and of a sweep a map "
+            "where both axes have more than six values. "
             "Of a run motion, energy, impacts or particles."
         ),
     ] = None,

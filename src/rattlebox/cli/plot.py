@@ -26,7 +26,7 @@ MAPS = tuple(kind for kind in KINDS if kind != "sweep")
 
 def plot_study(
     study: Path,
-    out: Path,
+    out: Path | None,
     *,
     kind: str | None,
     of: str | None,
@@ -41,7 +41,7 @@ def plot_study(
     study
         Folder of the study.
     out
-        File to write, as PNG, SVG or PDF.
+        File to write, as PNG, SVG or PDF; default study.png in the current folder.
     kind
         "map" or "lines" of one measure, or the name of a ready map; default that of the study.
     of
@@ -58,7 +58,7 @@ def plot_study(
     CaseError
         When an argument does not fit, or there is no such study.
     """
-    check_target(out, size)
+    out, told = target(out, "study.png", size)
     if number is not None:
         raise CaseError(f"--number {number}: this applies to snapshots of a run, run.vtkhdf\n  try: leave it out")
     data, options, chosen = open_study(study), {"of": of, "size": size}, _values(at)
@@ -74,16 +74,18 @@ def plot_study(
         figure.savefig(out)
     for line in taken_instead(data, chosen):
         terminal().print(line, soft_wrap=True)
-    terminal().print(f"written: {out}", soft_wrap=True)
+    terminal().print(told, soft_wrap=True)
 
 
-def check_target(out: Path, size: str | None, formats: Sequence[str] = FORMATS) -> None:
-    """Refuse what cannot be written.
+def target(out: Path | None, usual: str, size: str | None, formats: Sequence[str] = FORMATS) -> tuple[Path, str]:
+    """Return the file to write, and what is said when it is written; refuse what cannot be.
 
     Parameters
     ----------
     out
         File to write.
+    usual
+        Its name in the current folder when none is given.
     size
         Width, if one is asked for.
     formats
@@ -92,8 +94,11 @@ def check_target(out: Path, size: str | None, formats: Sequence[str] = FORMATS) 
     Raises
     ------
     CaseError
-        When it cannot.
+        When it cannot be written.
     """
+    over = out is None and Path(usual).exists()
+    out = out or Path(usual)
+    told = f"written: {out}" + ", in the place of an earlier one; -o names another file" * over
     if out.suffix not in formats:
         raise CaseError(
             f"-o {out}: the ending must be one of {', '.join(formats)}\n  try: -o {out.stem or 'study'}.png"
@@ -102,6 +107,7 @@ def check_target(out: Path, size: str | None, formats: Sequence[str] = FORMATS) 
         raise CaseError(f"--size {size}: there is no such size\n  try: {', '.join(WIDTHS)}")
     if not out.parent.is_dir():
         raise CaseError(f"-o {out}: there is no folder {out.parent}")
+    return out, told
 
 
 def _map(data: xr.Dataset, kind: str, own: str, options: dict[str, Any], at: dict[str, str]) -> Figure:

@@ -12,7 +12,7 @@ from rich.progress import Progress
 
 from rattlebox.cli.folder import RUN, SNAPSHOTS
 from rattlebox.cli.main import STOPPED
-from rattlebox.cli.plot import FORMATS, check_target
+from rattlebox.cli.plot import FORMATS, target
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import CaseError, nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 def plot_run(
     path: Path,
-    out: Path,
+    out: Path | None,
     *,
     kind: str | None,
     of: str | None,
@@ -42,7 +42,7 @@ def plot_run(
     path
         run.nc, run.vtkhdf, or the folder that holds them: a film, and a snapshot by its number, are of the latter.
     out
-        File to write: PNG, SVG or PDF, or of snapshots GIF or MP4.
+        File to write: PNG, SVG or PDF, or of snapshots GIF or MP4; default run.png in the current folder.
     kind
         "motion", "energy", "impacts" or "particles"; default the first, of snapshots the last.
     of, at
@@ -57,7 +57,7 @@ def plot_run(
     CaseError
         When an argument does not fit, or there is no such file.
     """
-    check_target(out, size, (*FORMATS, *FILMS))
+    out, told = target(out, "run.png", size, (*FORMATS, *FILMS))
     if path.is_dir():
         path /= SNAPSHOTS if out.suffix in FILMS or number is not None else RUN
     for option, value in (("--of", of), ("--at", at and at[0])):
@@ -94,7 +94,7 @@ def plot_run(
             "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'",
             soft_wrap=True,
         )
-    console.print(f"written: {out}", soft_wrap=True)
+    console.print(told, soft_wrap=True)
 
 
 def _check_film(out: Path, kind: str | None, number: int | None) -> None:

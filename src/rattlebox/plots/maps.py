@@ -19,6 +19,7 @@ from .style import (
     FAINT,
     INK,
     SERIES_COLOURS,
+    SERIES_MARKERS,
     SERIES_STYLES,
     PaperFigure,
     Size,
@@ -37,6 +38,7 @@ _BAND = "replica"
 _HATCHES = ("////", "....", "xxxx", "\\\\\\\\", "++++", "oooo", "****")
 _MARKERS = ("x", "+", "1", "2", "3", "4", "*")
 _GREY = "#c8c8c8"
+_FEW = 30  # points of a line, each of which is marked
 
 
 def plot_map(
@@ -50,7 +52,8 @@ def plot_map(
     """Draw a measure of a study over one or two of its axes.
 
     Axes whose values grow by a factor are logarithmic. Of replicas, a map shows the median, and lines the median within the
-    band from 10 to 90 %. Runs that did not finish are hatched in a map and crossed on the axis below lines, and named.
+    band from 10 to 90 %. Points of a line are marked where there are at most 30. Runs that did not finish are hatched in a
+    map and crossed on the axis below lines, and named.
 
     Parameters
     ----------
@@ -60,7 +63,7 @@ def plot_map(
         Name of the measure; default the first.
     kind
         "map" in colours over two axes, "lines" over one, one line for each value of the other; default a map where both
-        axes have more than six values.
+        axes have more than six values, and lines, from which values can be read, where one has fewer.
     at
         Values of further axes, {"load.amplitude": "5 kN"}; the nearest one in the study is taken.
     size
@@ -348,12 +351,17 @@ def _lines_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> 
     along, *others = sorted(dims, key=lambda dim: study.sizes[dim], reverse=True)
     across, values = _Axis.of(study[along]), study[name]
     measure = Shown.of(values)
-    looks: list[dict[str, Any]] = [{"color": SERIES_COLOURS[0]}]
+    looks: list[dict[str, Any]] = [{"color": SERIES_COLOURS[0], "marker": SERIES_MARKERS[0]}]
     for other in others:
         looks = _series(figure, axes, study[other])
         values = values.transpose(other, ...)
     for member, look in zip(values if others else [values], looks, strict=True):
-        look |= {"linestyle": "", "marker": "o"} if across.shown.names else {}
+        if across.shown.names:
+            look |= {"linestyle": "", "marker": "o"}
+        elif across.shown.numbers.size <= _FEW:
+            look |= {"markersize": pen(2.4)}
+        else:
+            del look["marker"]
         _draw_line(axes, across.shown.numbers, member / measure.divisor, look)
     marks = _mark_gaps(axes, study, name, along, across)
     across.finish(axes, "x")
@@ -371,7 +379,9 @@ def _draw_line(axes: Axes, places: Vector, member: xr.DataArray, look: dict[str,
         some = member.notnull().any(_BAND)
         low, middle, high = member.where(some, 0.0).quantile([0.1, 0.5, 0.9], _BAND).where(some)
         axes.fill_between(places, low.values, high.values, color=look["color"], alpha=0.25, linewidth=0)
-    axes.plot(places, middle.values, **look)
+    axes.plot(places, middle.values, clip_on="marker" not in look, **look)
+    if "marker" in look:
+        return
     there = np.pad(np.isfinite(middle.values), 1)
     alone = there[1:-1] & ~there[:-2] & ~there[2:]  # between gaps, where a line has no length
     if alone.any():
@@ -385,8 +395,8 @@ def _series(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[dict[str, A
 
     if coord.size <= len(SERIES_COLOURS):
         names = [f"{name_of(coord)} {value_of(coord, value)}" for value in coord.values]
-        looks = zip(SERIES_COLOURS, SERIES_STYLES, names, strict=False)
-        return [{"color": colour, "linestyle": style, "label": text} for colour, style, text in looks]
+        looks = zip(SERIES_COLOURS, SERIES_STYLES, SERIES_MARKERS, names, strict=False)
+        return [dict(zip(("color", "linestyle", "marker", "label"), look, strict=True)) for look in looks]
     axis = _Axis.of(coord)
     dark = LinearSegmentedColormap.from_list("dark", colours()(np.linspace(0, 0.85, 256)))
     places = axis.shown.numbers
@@ -396,7 +406,7 @@ def _series(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[dict[str, A
         bar.ax.yaxis.set_major_formatter(plain)
     bar.outline.set_visible(False)
     bar.set_label(axis.shown.with_unit)
-    return [{"color": dark(norm(value))} for value in places]
+    return [{"color": dark(norm(value)), "marker": SERIES_MARKERS[0]} for value in places]
 
 
 def _mark_gaps(axes: Axes, study: xr.Dataset, name: str, along: str, across: _Axis) -> list[Line2D]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 Vector = NDArray[np.float64]
 
 _LETTERS = 16  # of names beside ticks
+_EXACT = 2**53  # whole numbers below are written with all their digits
 
 
 class Shown(NamedTuple):
@@ -99,11 +101,14 @@ def unit_of(values: xr.DataArray) -> str:
 
 
 def value_of(coord: xr.DataArray, value: Any) -> str:
-    """Write one value of a coordinate with its unit."""
+    """Write one value of a coordinate with its unit, without zeros behind the last decimal."""
     if coord.dtype.kind not in "fiu":
         return str(value)
     unit, factor = _prefixable(unit_of(coord))
-    return quantity(factor * float(value), unit)
+    number = factor * float(value)
+    if not unit and number.is_integer() and abs(number) < _EXACT:
+        return f"{number:.0f}"
+    return re.sub(r"\.0+(?!\d)|(\.\d*[1-9])0+(?!\d)", r"\1", quantity(number, unit))
 
 
 def _prefixable(unit: str) -> tuple[str, float]:

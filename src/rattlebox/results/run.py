@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from .arrays import RunArrays
 from .ledger import Ledger
@@ -211,6 +211,12 @@ class RunPlots:
 
     def __init__(self, run: Run) -> None:
         self._run = run
+
+    if not TYPE_CHECKING:  # which knows what there is
+
+        def __getattr__(self, name: str) -> NoReturn:
+            known = [figure for figure in dir(type(self)) if not figure.startswith("_")]
+            raise AttributeError(f"this run has no figure {name!r}; it has {', '.join(known)}")
 
     def energy(self, **options: Any) -> Figure:
         """Energies against time, and the ledger stacked up to the energy supplied.

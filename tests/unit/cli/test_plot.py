@@ -79,13 +79,26 @@ def test_the_value_that_is_taken_is_told(study: Path, answer: Answer) -> None:
     """Where the study lacks the value of --at, the nearest is drawn and told; one that it holds is not told."""
     near = ["--at", "damper.start=-0.9", "--at", "load.amplitude=4.5 kN"]
     told = (
-        "damper.start = -1.000, the nearest to -0.9 in the study\n"
-        "load.amplitude = 5.000 kN, the nearest to 4.5 kN in the study\n"
+        "damper.start = -1, the nearest to -0.9 in the study\n"
+        "load.amplitude = 5 kN, the nearest to 4.5 kN in the study\n"
     )
     assert answer(study, *near, "-o", "a.png") == (0, f"{told}written: a.png\n", "")
     exact = ["--at", "damper.start=-1.0", "--at", "load.amplitude=5000"]
     assert answer(study, *exact, "-o", "b.png") == (0, "written: b.png\n", "")
     assert Path("a.png").read_bytes() == Path("b.png").read_bytes()
+
+
+def test_the_usual_file_is_told(study: Path, answer: Answer) -> None:
+    """Without -o a figure is study.png or run.png in the current folder; where that takes the place of a file it is told."""
+    rb.simulate(rb.Case.from_file(EXAMPLE).model_copy(update={"duration": 0.05})).save("first.nc")
+    at = ["--at", "damper.start=0", "--kind", "lines"]
+    for name, arguments in (("study.png", [study, *at]), ("run.png", ["first.nc"])):
+        assert answer(*arguments) == (0, f"written: {name}\n", "")
+        Path(name).write_text("somebody's")
+        told = f"written: {name}, in the place of an earlier one; -o names another file\n"
+        assert answer(*arguments) == (0, told, "")
+        assert Path(name).read_bytes().startswith(b"\x89PNG")
+        assert answer(*arguments, "-o", name) == (0, f"written: {name}\n", "")
 
 
 def test_figure_that_cannot_be_written(study: Path, answer: Answer) -> None:

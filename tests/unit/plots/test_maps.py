@@ -101,9 +101,9 @@ def test_lines_show_the_values() -> None:
         assert np.asarray(line.get_xdata()) == pytest.approx(1e3 * GAPS)
         assert np.asarray(line.get_ydata()) == pytest.approx(values, nan_ok=True)
     assert [line.get_label() for line in lines] == [
-        "load amplitude 100.0 N",
+        "load amplitude 100 N",
         "load amplitude 707.1 N",
-        "load amplitude 5.000 kN",
+        "load amplitude 5 kN",
     ]
     assert "too many events (1)" in told(figure)
 
@@ -146,7 +146,7 @@ def test_at_takes_the_nearest_value() -> None:
         ({"of": "sharre"}, "did you mean 'share'"),
         ({"kind": "mapp"}, "did you mean 'map'"),
         ({"at": {"load.amplitud": 1}}, "did you mean 'load.amplitude'"),
-        ({"at": {"load.amplitude": "9 kN"}}, "try: 100.0 N to 5.000 kN"),
+        ({"at": {"load.amplitude": "9 kN"}}, "try: 100 N to 5 kN"),
         ({"at": {"load.amplitude": "9 mm"}}, "a force (N) is needed, not a length"),
         ({"at": {"load.amplitude": "1 kN"}, "kind": "map"}, "try: kind lines"),
         ({"at": {"load.amplitude": "1 kN", "damper.gap": "1 mm"}}, "nothing varies"),
@@ -161,12 +161,47 @@ def test_clear_refusals(options: dict[str, Any], said: str) -> None:
 
 def test_a_value_between_gaps_is_drawn() -> None:
     """A value whose neighbours are missing is a dot, since a line of one point cannot be seen."""
-    gappy = study().isel({"load.amplitude": [2]}).squeeze()
-    gappy.share.values[:] = [0.1, np.nan, 0.2, 0.3, np.nan, 0.4, np.nan, *gappy.share.values[7:]]
-    _, dots = rb.plot_map(gappy).axes[0].get_lines()[:2]
-    assert np.asarray(dots.get_xdata()) == pytest.approx(1e3 * GAPS[[0, 5]])
+    gaps = np.linspace(1e-4, 2e-3, 31)
+    gappy = study().isel({"load.amplitude": 2}).reindex({"damper.gap": gaps}, method="nearest")
+    gappy.share.values[:7] = [0.1, np.nan, 0.2, 0.3, np.nan, 0.4, np.nan]
+    line, dots = rb.plot_map(gappy).axes[0].get_lines()[:2]
+    assert line.get_marker() == "None"
+    assert np.asarray(dots.get_xdata()) == pytest.approx(1e3 * gaps[[0, 5]])
     assert np.asarray(dots.get_ydata()) == pytest.approx([0.1, 0.4])
     assert (dots.get_linestyle(), dots.get_marker()) == ("None", "o")
+
+
+def test_few_points_of_lines_are_marked() -> None:
+    """Lines of thirty points and fewer have a mark at each, another one for each line that is named."""
+    for size, marked in ((30, True), (31, False)):
+        gaps = np.linspace(1e-4, 2e-3, size)
+        for amplitudes in ([0], [0, 4, 8], list(range(9))):
+            few = study().isel({"load.amplitude": amplitudes}).reindex({"damper.gap": gaps}, method="nearest")
+            lines = rb.plot_map(few, "share", kind="lines").axes[0].get_lines()[: len(amplitudes)]
+            marks = ["o"] * len(lines) if len(lines) != 3 else ["o", "^", "s"]
+            assert [line.get_marker() for line in lines] == (marks if marked else ["None"] * len(lines))
+            assert all(line.get_clip_on() is not marked for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "shown"),
+    [
+        ([1, 2, 3], "1", ["1", "2", "3"]),
+        ([1.0, 2.0, 3.0], "", ["1", "2", "3"]),
+        ([20000.0, 123456789.0, -7.0], "", ["20000", "123456789", "-7"]),
+        ([0.5, 1.0, 1e-9], "", ["0.5", "1", "1e-09"]),
+        ([0.0025, 1.23e-7, 4.0e20], "", ["0.0025", "1.23e-07", "4e+20"]),
+        ([2e3, 3.4e3, 100.0], "N", ["2 kN", "3.4 kN", "100 N"]),
+        ([0.02, 1.0, 0.0], "kg", ["20 g", "1 kg", "0 g"]),
+    ],
+)
+def test_numbers_in_legends(values: list[float], unit: str, shown: list[str]) -> None:
+    """Numbers in legends have no zeros behind their last decimal; whole ones without a unit have all their digits."""
+    coord = ("load.amplitude", values, {"units": unit, "long_name": "it"})
+    few = study().isel({"load.amplitude": [0, 1, 2]}).assign_coords({"load.amplitude": coord})
+    legend = rb.plot_map(few).axes[0].get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == [f"it {text}" for text in shown]
 
 
 def test_repeated_values_are_drawn_once() -> None:

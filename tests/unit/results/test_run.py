@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import subprocess
 import sys
 from dataclasses import replace
@@ -9,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rattlebox.results import Run, RunArrays
+from rattlebox.results import GranularArrays, GranularRun, Run, RunArrays
 from rattlebox.results.schema import GROUPS
 
 TIME = np.array([0.0, 1.0, 2.0])
@@ -142,6 +143,20 @@ def test_import_is_light() -> None:
         "assert not heavy, heavy\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_figures_that_a_run_lacks_are_answered_with_those_it_has(run: Run) -> None:
+    """A figure of another kind of run, or of none, is refused with the names of those that there are."""
+    beads = GranularRun(GranularArrays(time=TIME))
+    for plots, name, known in (
+        (beads.plot, "impacts", "energy, motion, particles"),
+        (beads.plot, "phase_portrait", "energy, motion, particles"),
+        (run.plot, "particles", "energy, impacts, motion, phase_portrait"),
+    ):
+        with pytest.raises(AttributeError, match=f"^this run has no figure '{name}'; it has {known}$"):
+            getattr(plots, name)()
+        assert not hasattr(plots, name)
+    assert copy.copy(run.plot).energy().axes
 
 
 def test_unknown_ball_is_answered_with_the_known(run: Run) -> None:
