@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
+from datetime import timedelta
 from pathlib import Path
+from time import monotonic
 
 import typer
+from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
@@ -20,10 +23,30 @@ from rattlebox.model.errors import CaseError, Hint
 from rattlebox.results import GranularRun, Run
 
 _RESULTS = (".nc", ".vtkhdf", ".mat", ".csv", ".png")
+_MINUTE = 60.0  # s
+
+
+class _Lines:
+    """Lines on how far a run is, one a minute, where there is no terminal for a bar."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._last: tuple[float, int] | None = None  # time of the last line or of the first steps, and steps done
+
+    def tell(self, done: int, total: int) -> None:
+        """Print a line if it is time."""
+        now = monotonic()
+        if self._console.is_terminal or (self._last and (now < self._last[0] + _MINUTE or done <= self._last[1])):
+            return
+        if self._last:
+            then, before = self._last
+            left = timedelta(seconds=round((total - done) * (now - then) / (done - before)))
+            self._console.print(f"{done:,} of {total:,} steps ({done / total:.0%}), {left} left", soft_wrap=True)
+        self._last = now, done
 
 
 def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
-    """Run a case; one with particles shows on a terminal how far it is, and goes on where it was stopped."""
+    """Run a case; one with particles tells how far it is, and goes on where it was stopped."""
     if not case.particle_dampers:
         return simulate(case)
     console = terminal(stderr=True)
@@ -31,6 +54,7 @@ def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         line = bar.add_task("filling in", total=None)
+        lines = _Lines(console)
         going_on = checkpoint.is_file()
 
         def tell() -> None:
@@ -42,6 +66,7 @@ def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
 
         def progress(done: int, total: int) -> None:
             tell()
+            lines.tell(done, total)
             bar.update(line, description="steps", completed=done, total=total)
 
         run = simulate(case, checkpoint=checkpoint, snapshots=snapshots, progress=progress)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -128,6 +129,20 @@ def test_checkpoints_of_another_case_are_refused_and_replaced(answer: Answer) ->
     assert names() == {"run.nc"}
     at_once = rb.simulate(rb.Case.from_file("rougher.toml"))
     assert np.array_equal(rb.load("out/run.nc").arrays.displacement, at_once.arrays.displacement)
+
+
+def test_a_run_tells_how_far_it_is_where_there_is_no_terminal(answer: Answer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once a minute a line where errors go; a run that is done before says nothing."""
+    assert answer("run", "beads.toml", "--no-figures")[::2] == (0, "")
+    monkeypatch.setattr("rattlebox.cli.run._MINUTE", 0.0)
+    code, _, errors = answer("run", "beads.toml", "--no-figures")
+    steps = rb.load("out/run.nc").arrays.counts["steps"] - 1
+    line = re.compile(rf"([\d,]+) of {steps:,} steps \((\d+)%\), (\d+:\d\d:\d\d) left")
+    told = [line.fullmatch(text) for text in errors.splitlines()]
+    assert code == 0 and all(told)
+    done = [int(found[1].replace(",", "")) for found in told if found]
+    assert len(done) > 2 and done == sorted(set(done)) and done[-1] <= steps
+    assert told[0] and int(told[0][2]) == round(100 * done[0] / steps)
 
 
 def test_a_run_says_where_it_goes_on_from(answer: Answer) -> None:
