@@ -88,7 +88,7 @@ struct Contacts {
 
     real skin = 0;         // candidates were closer than that at the scan,
     real since = infinity; // and since then no two have come nearer to each other than that
-    int age = 0;           // in steps
+    std::int64_t age = 0;  // in steps
     real rate = 0;         // nearer in a step, between the last two scans
 
     // Candidates, tier by tier; lanes may read a few past the end.

@@ -53,7 +53,7 @@ class Neighbours {
     // For some steps, if they go on as since the last scan.
     static void choose_skin(Contacts& list, real smallest, real largest) {
         constexpr real steps = 9; // a scan costs as much as some steps: measured, and flat about this number
-        if (list.age > 0 && list.since < infinity) list.rate = list.since / list.age;
+        if (list.age > 0 && list.since < infinity) list.rate = list.since / static_cast<real>(list.age);
         list.skin = list.rate > 0 ? std::clamp(list.rate * steps, 2e-3 * smallest, largest) : 0.1 * largest;
         list.since = 0, list.age = 0;
     }
