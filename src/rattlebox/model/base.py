@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError, WithJsonSchema
+from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
@@ -94,9 +96,9 @@ class Part(BaseModel, metaclass=_Explaining):
         return schema
 
 
-def vocabulary() -> dict[str, dict[str, set[str]]]:
-    """Return the names of fields, by the field that holds a part or the name of its class, and by its kind."""
-    known: dict[str, dict[str, set[str]]] = {}
+def vocabulary() -> dict[str, dict[str, dict[str, str]]]:
+    """Return names of fields, each with an example or "", by the field that holds a part or its class, and by its kind."""
+    known: dict[str, dict[str, dict[str, str]]] = {}
     stack: list[type[Part]] = [Part]
     while stack:
         part = stack.pop()
@@ -106,5 +108,26 @@ def vocabulary() -> dict[str, dict[str, set[str]]]:
             continue  # what several kinds share
         for holder in (*part.held_as, part.__name__):
             tag = "" if kind is None else str(kind.default)
-            known.setdefault(holder, {}).setdefault(tag, set()).update(part.model_fields, part.spellings)
+            fields = known.setdefault(holder, {}).setdefault(tag, {})
+            fields |= dict.fromkeys(part.spellings, "") | examples(part)
     return known
+
+
+def examples(part: type[BaseModel]) -> dict[str, str]:
+    """Return the names of fields as they are written, each with an example as a file would hold it, or ""."""
+    return {field.alias or name: _example(field) for name, field in part.model_fields.items()}
+
+
+def _example(field: FieldInfo) -> str:
+    schemas = [told.json_schema or {} for told in field.metadata if isinstance(told, WithJsonSchema)]
+    told = [*(field.examples or []), *(example for schema in schemas for example in schema.get("examples", []))]
+    return _in_a_file(told[0]) if told else ""
+
+
+def _in_a_file(value: Any) -> str:
+    if isinstance(value, Mapping):
+        rows = (
+            f"{name if name.isidentifier() else json.dumps(name)} = {_in_a_file(row)}" for name, row in value.items()
+        )
+        return "{ " + ", ".join(rows) + " }"
+    return json.dumps(value)

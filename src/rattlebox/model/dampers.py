@@ -37,7 +37,7 @@ class Sphere(Part):
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("radius", "diameter"),)
     radius: PositiveLength | None = None
     diameter: PositiveLength | None = Field(default=None, exclude=True)
-    material: AnyMaterial
+    material: AnyMaterial = Field(examples=["steel"])
     mass: PositiveMass | None = None
 
     @model_validator(mode="before")
@@ -134,7 +134,9 @@ class ImpactDamper(Part):
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("gap", "cavity_length"),)
     kind: Literal["impact"] = "impact"
     name: str = ""
-    balls: Annotated[tuple[Sphere, ...], BeforeValidator(as_several), AlsoTakes()]
+    balls: Annotated[tuple[Sphere, ...], BeforeValidator(as_several), AlsoTakes()] = Field(
+        examples=[{"radius": "10 mm", "material": "steel"}]
+    )
     gap: NotNegativeLength | None = None
     cavity_length: PositiveLength | None = Field(default=None, exclude=True)
     wall: AnyWall | None = None

@@ -13,8 +13,8 @@ from .synonyms import MEANT
 if TYPE_CHECKING:
     from pydantic import ValidationError
 
-Vocabulary = Mapping[str, Mapping[str, set[str]]]
-"""Names of fields, by the field that holds the part and by the part's kind."""
+Vocabulary = Mapping[str, Mapping[str, Mapping[str, str]]]
+"""Names of fields with an example where there is one, by the field that holds the part and by the part's kind."""
 
 _LIMIT = 4  # findings that are told
 _SPELLINGS = {"loads": "load", "dampers": "damper", "balls": "ball", "radius": "diameter"}
@@ -218,7 +218,7 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:28]}...{text[-28:]}"
 
 
-def _kinds(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> Mapping[str, set[str]]:
+def _kinds(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> Mapping[str, Mapping[str, str]]:
     """Kinds that a place takes, with their fields; only the one that is written there, if it is known."""
     for number in range(len(location) - 1, -1, -1):
         if location[number] in vocabulary:
@@ -260,6 +260,13 @@ def _table_of(name: str, vocabulary: Vocabulary, kind: str | None = None) -> str
     return f'{_SPELLINGS.get(name, name)} = {{ kind = "{kind}", ... }}' if kind else ""
 
 
+def _example_of(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> str:
+    """What a value of this name looks like; "" where that is not told."""
+    parts = _kinds(location[:-1], source, vocabulary).values()
+    example = next((part[location[-1]] for part in parts if part.get(location[-1])), "")
+    return example and f"{location[-1]} = {example}"
+
+
 def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: str) -> tuple[str, str]:
     """Complaint and suggestion."""
     raised, what, context = _raised(finding), finding["type"], finding.get("ctx") or {}
@@ -291,7 +298,7 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: 
     if what == "missing":
         if isinstance(location[-1], int):
             return "one more is needed", ""
-        return _PLAIN[what], _table_of(location[-1], vocabulary)
+        return _PLAIN[what], _table_of(location[-1], vocabulary) or _example_of(location, source, vocabulary)
     if what == "literal_error" and isinstance(value, str):
         expected = str(context.get("expected", "")).replace(" or ", ", ").split(", ")
         close = difflib.get_close_matches(value, [word.strip("'") for word in expected], n=1)

@@ -27,7 +27,7 @@ class Friction(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("friction", "wall_friction")
     kind: str
-    coefficient: NotNegative
+    coefficient: NotNegative = Field(examples=[0.3])
     damping: NotNegative = 1.0
 
     def coefficients(self, pair: Pair) -> dict[str, float]:
@@ -119,7 +119,7 @@ class Rolling(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("rolling", "wall_rolling")
     unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
-    coefficient: NotNegative
+    coefficient: NotNegative = Field(examples=[0.02])
     stiffness: Annotated[Number, Field(gt=0, le=LARGEST)] = 1.0
     damping: NotNegative = 0.0
 

@@ -50,7 +50,7 @@ class PairLaws(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("pairs",)
-    between: Annotated[tuple[str, str], BeforeValidator(_two_names)]
+    between: Annotated[tuple[str, str], BeforeValidator(_two_names)] = Field(examples=[["shot", "wall"]])
     contact: AnyContact | None = None
     friction: AnyFriction | None = None
     rolling: AnyRolling | None = None
@@ -190,7 +190,9 @@ class ParticleDamper(Part):
     held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")
     kind: Literal["granular"] = "granular"
     name: str = ""
-    particles: Annotated[tuple[Particles, ...], BeforeValidator(as_species), AlsoTakes()]
+    particles: Annotated[tuple[Particles, ...], BeforeValidator(as_species), AlsoTakes()] = Field(
+        examples=[{"material": "steel", "diameter": "4 mm", "count": 100}]
+    )
     cavity: AnyCavity
     wall: AnyWall | None = None
     contact: AnyContact

@@ -7,7 +7,7 @@ from functools import cache
 from importlib import resources
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Discriminator, Tag, ValidationInfo, field_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
 from .base import AlsoTakes, Part
 from .errors import Hint, nearest
@@ -41,7 +41,7 @@ class Material(Part):
     title: str = ""
     density: Density
     young: Modulus
-    poisson: Number
+    poisson: Number = Field(examples=[0.3])
     yield_stress: Modulus | None = None
     source: str = ""
 

@@ -124,7 +124,7 @@ class Positions(Packing):
 
     in_file: ClassVar[tuple[str, ...]] = ("positions", "radii", "velocities", "spins")
     kind: Literal["positions"] = "positions"
-    positions: Annotated[tuple[Row, ...], *_table(3, "m", "centres")]
+    positions: Annotated[tuple[Row, ...], *_table(3, "m", "centres")] = Field(examples=[[["0 mm", "0 mm", "5 mm"]]])
     radii: Annotated[tuple[float, ...] | None, *_table(1, "m", "radii")] = None
     velocities: Annotated[tuple[Row, ...] | None, *_table(3, "m/s", "velocities")] = None
     spins: Annotated[tuple[Row, ...] | None, *_table(3, "rad/s", "spins")] = None

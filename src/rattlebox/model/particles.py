@@ -90,7 +90,7 @@ class LogNormal(_Bounded):
 
     kind: Literal["log_normal"] = "log_normal"
     median: PositiveLength
-    spread: Annotated[Number, Field(le=100)]
+    spread: Annotated[Number, Field(le=100, examples=[1.2])]
 
     @model_validator(mode="after")
     def _spreads(self) -> LogNormal:
@@ -125,8 +125,8 @@ class Sieve(Distribution):
     """
 
     kind: Literal["sieve"] = "sieve"
-    sizes: Annotated[tuple[float, ...], SI("m"), BeforeValidator(_lengths)]
-    passing: tuple[Number, ...]
+    sizes: Annotated[tuple[float, ...], SI("m"), BeforeValidator(_lengths)] = Field(examples=[["3 mm", "4 mm", "6 mm"]])
+    passing: tuple[Number, ...] = Field(examples=[[0, 0.4, 1]])
 
     @model_validator(mode="after")
     def _sound(self) -> Sieve:
@@ -177,7 +177,7 @@ class Particles(Part):
         ("mass", "fill_ratio"),
     )
     name: str = ""
-    material: AnyMaterial
+    material: AnyMaterial = Field(examples=["steel"])
     radius: PositiveLength | None = None
     diameter: PositiveLength | None = Field(default=None, exclude=True)
     distribution: AnyDistribution | None = None

@@ -62,7 +62,7 @@ class Constant(Restitution):
 
     unnamed: ClassVar[tuple[str, ...]] = ("e",)
     kind: Literal["constant"] = "constant"
-    e: Fraction
+    e: Fraction = Field(examples=[0.8])
 
     if TYPE_CHECKING:  # the first field may be given without its name
 
@@ -85,8 +85,8 @@ class Tabulated(Restitution):
     """
 
     kind: Literal["table"] = "table"
-    speeds: tuple[PositiveVelocity, ...]
-    values: tuple[Fraction, ...]
+    speeds: tuple[PositiveVelocity, ...] = Field(examples=[["0.1 m/s", "1 m/s"]])
+    values: tuple[Fraction, ...] = Field(examples=[[0.9, 0.8]])
 
     @model_validator(mode="after")
     def _sound(self) -> Tabulated:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Annotated, Any
 
 import numpy as np
@@ -32,7 +33,14 @@ def triple(unit: str, what: str, example: str) -> Any:
         return read[0], read[1], read[2]
 
     item = {"anyOf": [{"type": "number"}, {"type": "string"}]}
-    schema = {"type": "array", "items": item, "minItems": 3, "maxItems": 3, "description": f"{what}, in {unit}"}
+    schema = {
+        "type": "array",
+        "items": item,
+        "minItems": 3,
+        "maxItems": 3,
+        "description": f"{what}, in {unit}",
+        "examples": [json.loads(example)],
+    }
     return SI(unit), BeforeValidator(read), WithJsonSchema(schema)
 
 

@@ -145,9 +145,9 @@ class Modal(Part):
 
     held_as: ClassVar[tuple[str, ...]] = ("structure",)
     kind: Literal["modal"] = "modal"
-    frequencies: list[Frequency]
-    damping_ratios: Annotated[list[Ratio], BeforeValidator(_one_each)]
-    shapes: Annotated[dict[str, Shape], SI("kg^-0.5")]
+    frequencies: list[Frequency] = Field(examples=[["10 Hz", "62 Hz"]])
+    damping_ratios: Annotated[list[Ratio], BeforeValidator(_one_each)] = Field(examples=[[0.01, 0.01]])
+    shapes: Annotated[dict[str, Shape], SI("kg^-0.5")] = Field(examples=[{"tip": [0.7, -0.7]}])
     participation: Annotated[Shape | None, SI("kg^0.5")] = None
     displacement: Annotated[Numbers | None, SI("kg^0.5 m")] = None
     velocity: Annotated[Numbers | None, SI("kg^0.5 m/s")] = None
@@ -222,10 +222,10 @@ class Matrices(Part):
     held_as: ClassVar[tuple[str, ...]] = ("structure",)
     in_file: ClassVar[tuple[str, ...]] = ("M", "C", "K")
     kind: Literal["matrices"] = "matrices"
-    M: Annotated[Matrix, SI("kg")]
+    M: Annotated[Matrix, SI("kg")] = Field(examples=[[[2, 0], [0, 1]]])
     C: Annotated[Matrix | None, SI("N s/m")] = None
-    K: Annotated[Matrix, SI("N/m")]
-    points: dict[str, Point]
+    K: Annotated[Matrix, SI("N/m")] = Field(examples=[[[3e4, -1e4], [-1e4, 1e4]]])
+    points: dict[str, Point] = Field(examples=[{"tip": 1}])
     file: str | None = None
     influence: Weights | None = None
     displacement: Annotated[Numbers | None, SI("m")] = None

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pydantic import ValidationError
 
+from rattlebox.model.base import examples
 from rattlebox.model.case import Case
 from rattlebox.model.errors import CaseError, Hint, nearest, translate
 from rattlebox.model.files import existing, read_toml
@@ -140,7 +141,7 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
         axes = _axes(study, own)
         options = _options(study, own)
     except ValidationError as error:
-        raise translate(error, source, {"": {"": {*KINDS[kind].model_fields}}, **INSIDE}, given) from None
+        raise translate(error, source, {"": {"": examples(KINDS[kind])}, **INSIDE}, given) from None
     except Hint as hint:
         raise CaseError(f"{source}: {hint}") from None
     if study.axes_needed and not axes:

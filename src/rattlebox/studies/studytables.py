@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationError
 
+from rattlebox.model.base import examples
 from rattlebox.model.errors import CaseError, Hint, nearest, translate
 from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, Whole
 
@@ -32,7 +33,7 @@ class Range(Table):
 class Spaced(Range):
     """Values from one to another."""
 
-    count: Annotated[Whole, Field(ge=1)]
+    count: Annotated[Whole, Field(ge=1, examples=[20])]
 
 
 def shape_of(value: Any) -> str:
@@ -58,8 +59,8 @@ Axis = Annotated[
 class Random(Table):
     """A random design."""
 
-    ranges: dict[str, list[Any]]
-    count: Annotated[Whole, Field(ge=1)]
+    ranges: dict[str, list[Any]] = Field(examples=[{"damper.gap": ["0.1 mm", "2 mm"]}])
+    count: Annotated[Whole, Field(ge=1, examples=[1000])]
     method: Method = "sobol"
     seed: Annotated[Whole, Field(ge=0)] = 0
     log: list[str] = []
@@ -68,8 +69,8 @@ class Random(Table):
 class Replicas(Table):
     """Replicas of each variant."""
 
-    reach: dict[str, Any]
-    count: Annotated[Whole, Field(ge=1)]
+    reach: dict[str, Any] = Field(examples=[{"load.amplitude": "50 N"}])
+    count: Annotated[Whole, Field(ge=1, examples=[50])]
     seed: Annotated[Whole, Field(ge=0)] = 0
 
 
@@ -109,7 +110,7 @@ class Study(Table):
 
     axes_needed: ClassVar[bool] = False
     kind: str = "sweep"
-    case: Any
+    case: Any = Field(examples=["case.toml"])
     threads: Count | None = None
 
 
@@ -141,8 +142,11 @@ class _Bifurcation(Study):
     point: str | None = None
 
 
+_FREQUENCIES: Any = Field(examples=[{"from": "9 Hz", "to": "11 Hz", "count": 50}])
+
+
 class _FrequencyResponse(Study):
-    frequencies: Values
+    frequencies: Values = _FREQUENCIES
     levels: Values | None = None
     direction: Literal["up", "down", "both", "fresh"] = "both"
     cycles: Cycles = (200, 32)
@@ -172,8 +176,8 @@ class _Lyapunov(_OverAxes):
 
 
 class _LossMap(Study):
-    amplitudes: Values
-    frequencies: Values
+    amplitudes: Values = Field(examples=[["1 mm", "2 mm"]])
+    frequencies: Values = _FREQUENCIES
     cycles: Cycles = (50, 50)
     samples: Annotated[Whole, Field(ge=2)] | None = None
 
@@ -190,8 +194,11 @@ class _Judged(Study):
     point: str | None = None
 
 
+_BOUNDS: Any = Field(examples=[{"damper.gap": {"from": "0.1 mm", "to": "2 mm"}}])
+
+
 class _Design(_Judged):
-    parameters: dict[str, Bounds]
+    parameters: dict[str, Bounds] = _BOUNDS
     objective: str | list[str] | dict[str, Literal["min", "max"]] = "settling_time"
     robust: Literal["worst", "mean", "median"] = "worst"
     max_added_mass: PositiveMass | None = None
@@ -199,7 +206,7 @@ class _Design(_Judged):
 
 
 class _Sensitivity(_Judged):
-    bounds: dict[str, Bounds]
+    bounds: dict[str, Bounds] = _BOUNDS
     measure: Measures = ["impact_share"]
     n: Annotated[Whole, Field(ge=8)] = 256
     confidence: Part = 0.95
@@ -246,8 +253,8 @@ def checked(kind: str, **given: Any) -> dict[str, Any]:
 
 
 INSIDE = {
-    "spaced": {"": {"from", "to", "count", "spacing"}},
-    "design": {"": {*Random.model_fields}},
-    "replicas": {"": {*Replicas.model_fields}},
+    "spaced": {"": examples(Spaced)},
+    "design": {"": examples(Random)},
+    "replicas": {"": examples(Replicas)},
 }
-"""Names of the fields of tables, for messages."""
+"""Names of the fields of tables with examples, for messages."""

@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pint
 import pytest
+from pydantic import ValidationError
 
 import rattlebox as rb
+from rattlebox.model.base import Part, vocabulary
+from rattlebox.model.errors import translate
 
 BALL = rb.Sphere(radius="5 mm", material="steel")
 
@@ -34,6 +38,39 @@ BALL = rb.Sphere(radius="5 mm", material="steel")
 def test_ways_to_write_a_quantity(mass: object) -> None:
     """Numbers, texts, pairs and pint quantities of the same mass are the same mass."""
     assert rb.SDOF(mass=mass, stiffness=0.0).mass == 20.0
+
+
+def kinds_of(part: type[Part]) -> set[type[Part]]:
+    """Return the parts of a case that a user may write."""
+    own = {part} if part.__module__.startswith("rattlebox.") and "kind" not in required(part) else set()
+    return own.union(*map(kinds_of, part.__subclasses__()))
+
+
+def required(part: type[Part]) -> list[str]:
+    """Return the names of fields without a default."""
+    return [name for name, field in part.model_fields.items() if field.is_required()]
+
+
+NEEDED = [(part, name) for part in sorted({rb.Case, *kinds_of(Part)}, key=str) for name in required(part)]
+
+
+@pytest.mark.parametrize(("part", "name"), NEEDED)
+def test_a_field_that_is_needed_is_told_with_an_example_that_is_taken(part: type[Part], name: str) -> None:
+    """What the message says to try is TOML, and a value of that field."""
+    finding = {"type": "missing", "loc": (name,), "input": {}}
+    error = ValidationError.from_exception_data(part.__name__, [finding])
+    *_, advice = str(translate(error, part.__name__, vocabulary())).partition("try: ")
+    given = tomllib.loads(advice.replace(", ...", ""))
+    assert given.keys() == {name}
+    if "..." in advice:
+        assert given[name]["kind"] in vocabulary()[name]
+        return
+    wrong: list[Any] = []
+    try:
+        part.model_validate(given)
+    except ValidationError as refused:
+        wrong += refused.errors()
+    assert [found for found in wrong if found["loc"][:1] == (name,)] == []
 
 
 def test_units_that_only_pint_knows() -> None:
