@@ -120,8 +120,8 @@ RATTLEBOX_INLINE Holding<T> hold(const Vector<T>& before, const T& gave, const V
     const T held = half * was * gave, holds = half * dot(h.ahead, h.ahead) * h.gives;
     h.loss = dashpot * slip * dt + larger(held - holds - dot(h.spring, velocity) * dt, zero);
     // Where it slips, the spring half a step from here is stretched further than friction allows.
-    const T mean = half * (held + holds), most = half * h.loss;
-    h.beyond = smaller(most, larger(zero - most, mean - half * dot(h.spring, h.spring) * h.gives));
+    const T mean = half * (held + holds), most = half * h.loss, pulls = smaller(size, limit);
+    h.beyond = smaller(most, larger(zero - most, mean - half * pulls * pulls * h.gives));
     h.stored = mean - h.beyond;
     return h;
 }
