@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 WAYS = ("complex power", "energy")
 
 
+class StillCavity(ValueError):
+    """A cavity has no motion at the frequency that is looked at."""
+
+
 def shaken_cavity(
     run: GranularRun, *, frequency: float, damper: str | None = None, after: float = 0.0
 ) -> xarray.Dataset:
@@ -86,7 +90,7 @@ def shaken_cavity(
     v = 2 / span * trapezoid(velocity * turn, kept, axis=0)
     size = float(np.linalg.norm(v))
     if not size > 1e-9 * float(np.abs(velocity).max(initial=0.0)):
-        raise ValueError(f"the cavity does not move at {frequency:g} Hz")
+        raise StillCavity(f"the cavity does not move at {frequency:g} Hz")
     step = np.diff(kept)
     middle = 0.5 * (kept[1:] + kept[:-1])
     # The weight has no part at the frequency over whole cycles, so the change of momentum is all that is needed.

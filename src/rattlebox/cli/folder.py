@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import NamedTuple
 
 from rattlebox.engines.checkpoint import Checkpoint, bare
 from rattlebox.model.case import Case
@@ -44,8 +47,16 @@ def make_folder(out: Path) -> None:
         raise CaseError(f"the folder {out} cannot be made: {error.strerror}\n  try: --out results") from None
 
 
-def take_over(out: Path, case: Case, *, replace: bool) -> None:
-    """Make a folder for the results of a case, which may hold those of an earlier run of it.
+class Earlier(NamedTuple):
+    """Names of files of an earlier run in a folder: those that go when results are written, and those written anew."""
+
+    gone: tuple[str, ...]
+    anew: tuple[str, ...]
+
+
+@contextmanager
+def taken(out: Path, case: Case, *, checkpoint: Path | None, replace: bool) -> Iterator[Earlier]:
+    """Hold a folder for the results of a case, which may have those of an earlier run of it.
 
     Parameters
     ----------
@@ -53,27 +64,81 @@ def take_over(out: Path, case: Case, *, replace: bool) -> None:
         Folder.
     case
         What is to be run.
+    checkpoint
+        From which it goes on, if that is not in the folder.
     replace
-        Remove the files of an earlier run, of whatever case; other files stay.
+        Take the place of a run of another case. Its files go when the new results are written; a checkpoint of the same case
+        stays, since the run goes on from it.
 
     Raises
     ------
     CaseError
-        When the folder cannot be made, or holds the results of another case, with what differs; when these are in use by
-        another process, or no results of Rattlebox.
+        When the folder cannot be made, holds a study, a run of another case, with what differs, or what is no run; when
+        another process uses it, or the case reads a file that results would be written over.
     """
     make_folder(out)
-    file = out / RUN
+    if (out / "zarr.json").exists():
+        raise CaseError(f"{out} holds a study\n  try: another -o folder")
+    _check_inputs(out, case)
+    own = Checkpoint(out / CHECKPOINT, case)
+    goes_on = bool(case.particle_dampers) and checkpoint is None
+    with ExitStack() as stack:
+        with own.held():
+            earlier, there = _case_in(out / RUN), files_in(out)
+            lines = differences({"case": _bare(earlier)}, {"case": bare(case)}) if earlier is not None else []
+            if lines and not replace:
+                raise CaseError("\n".join([f"{out / RUN} holds another run", *lines, _ADVICE]))
+            if own.path.is_file() and not (goes_on and (not replace or _is_of(own))):
+                if not replace:
+                    raise CaseError(f"{own.path} is of a run that is not over\n{_ADVICE}")
+                stack.enter_context(_aside(own.path))
+        if not goes_on:  # else the run holds it
+            stack.enter_context(own.held())
+        yield Earlier(tuple(there) if lines else (), () if lines or earlier is None else tuple(there))
+
+
+_ADVICE = "  try: another -o folder, or --replace"
+
+
+def _case_in(file: Path) -> str | None:
     try:
-        earlier = read_case(file) if file.is_file() else None
+        return read_case(file) if file.is_file() else None
     except ValueError as error:
         raise CaseError(f"{error}\n  try: another -o folder, or remove this file") from None
-    if replace and (earlier is not None or (out / CHECKPOINT).is_file()):
-        with Checkpoint(out / CHECKPOINT, case).held():
-            for name in files_in(out):
-                (out / name).unlink()
-    elif earlier is not None and (lines := differences({"case": _bare(earlier)}, {"case": bare(case)})):
-        raise CaseError("\n".join([f"{file} holds another run", *lines, "  try: another -o folder, or --replace"]))
+
+
+def _is_of(checkpoint: Checkpoint) -> bool:
+    try:
+        return checkpoint.read() is not None
+    except CaseError:
+        return False
+
+
+@contextmanager
+def _aside(path: Path) -> Iterator[None]:
+    """Put a file out of the way; it comes back unless something took its place, or all went well."""
+    aside = path.with_name(f".{path.name}.earlier")
+    path.replace(aside)
+    try:
+        yield
+    except BaseException:
+        if not path.exists():
+            aside.replace(path)
+        raise
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def _check_inputs(out: Path, case: Case) -> None:
+    """Refuse a case that reads what would be written over."""
+    signals = (*case.loads, *case.base, *case.shaker_motion)
+    packings = [damper.packing for damper in case.particle_dampers]
+    for part in (case.structure, *signals, *packings):
+        file = getattr(part, "file", None)
+        if file and Path(file).name in WRITTEN and Path(file).resolve().parent == out.resolve():
+            raise CaseError(
+                f"{out / Path(file).name} is read by the case, and results go there\n  try: another -o folder"
+            )
 
 
 def _bare(text: str) -> str:

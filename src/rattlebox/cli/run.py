@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
-from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, take_over
+from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, Earlier, taken
 from rattlebox.cli.main import STOPPED
 from rattlebox.cli.terminal import terminal
 from rattlebox.engines.checkpoint import AnotherRun
@@ -97,7 +97,7 @@ def run_case(
     checkpoint
         From which a run with particles goes on; default run.checkpoint in the folder. Removed when the results are written.
     replace
-        Remove the files of an earlier run from the folder first.
+        Take the place of a run of another case in the folder.
     """
     case = Case.from_file(path)
     if checkpoint is not None and not case.particle_dampers:
@@ -106,8 +106,14 @@ def run_case(
         )
     if checkpoint is not None and checkpoint.suffix in _RESULTS and checkpoint.parent.resolve() == out.resolve():
         raise CaseError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / CHECKPOINT}")
-    take_over(out, case, replace=replace)
-    checkpoint = checkpoint or out / CHECKPOINT
+    with taken(out, case, checkpoint=checkpoint, replace=replace) as earlier:
+        _run_in(path, out, case, checkpoint or out / CHECKPOINT, earlier, csv=csv, mat=mat, figures=figures)
+
+
+def _run_in(
+    path: Path, out: Path, case: Case, checkpoint: Path, earlier: Earlier, *, csv: bool, mat: bool, figures: bool
+) -> None:
+    """Run a case in a folder that is held."""
     written: list[str] = []
     try:
         run = _simulated(case, out, checkpoint)
@@ -116,9 +122,14 @@ def run_case(
             sys.exit(STOPPED)
         if case.output.snapshots:
             written.append(SNAPSHOTS)
+        for name in {*earlier.gone} - {CHECKPOINT, *written}:
+            (out / name).unlink(missing_ok=True)
+        csv |= "motion.csv" in earlier.anew  # so that all files are of one run
+        mat |= "run.mat" in earlier.anew
+        figures |= "motion.png" in earlier.anew
         for name in _write(run, out, csv=csv, mat=mat, figures=figures):
             written.append(name)
-        if run.status in ("finished", "ledger_open"):
+        if case.particle_dampers and run.status in ("finished", "ledger_open"):
             checkpoint.unlink(missing_ok=True)
     except AnotherRun as refused:
         replacing = "--replace, " if checkpoint == out / CHECKPOINT else ""

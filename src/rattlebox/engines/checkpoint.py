@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 FORMAT = 1
 """Number of the layout; files with a higher one are refused."""
 
-_FREE: dict[str, tuple[str, ...]] = {"method": ("threads", "checkpoint", "checkpoint_every"), "output": ("snapshots",)}
+_FREE: dict[str, set[str]] = {"method": {"threads", "checkpoint", "checkpoint_every"}, "output": {"snapshots"}}
 """Fields of the case that may change: the bits do not depend on them."""
 
 _LOST = "make room and give the same command again, which goes on from the last checkpoint"
@@ -205,8 +205,9 @@ def bare(case: Case) -> str:
     case
         What is run.
     """
-    update = {part: getattr(case, part).model_copy(update=dict.fromkeys(names)) for part, names in _FREE.items()}
-    return case.model_copy(update=update).to_toml()
+    parts = {name: getattr(case, name) for name in _FREE}
+    free = {name: dict.fromkeys(_FREE[name] & type(part).model_fields.keys()) for name, part in parts.items()}
+    return case.model_copy(update={name: part.model_copy(update=free[name]) for name, part in parts.items()}).to_toml()
 
 
 def fingerprint(packed: Mapping[str, Any]) -> str:

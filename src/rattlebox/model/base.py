@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from .errors import Hint, translate
+from .errors import Hint, nearest, translate
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass as _ModelType
@@ -65,11 +65,25 @@ class Part(BaseModel, metaclass=_Explaining):
     )
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return a copy with other values, unchecked; what was computed from the former ones is forgotten."""
+        """Return a copy with other values, unchecked; what was computed from the former ones is forgotten.
+
+        Raises
+        ------
+        CaseError
+            When there is no such field.
+        """
+        for name in (update or {}).keys() - type(self).model_fields.keys():
+            raise Hint(f"{type(self).__name__} has no field {name!r}", nearest(name, type(self).model_fields))
         copy = super().model_copy(update=update, deep=deep)
         for name in copy.__dict__.keys() - type(self).model_fields.keys():
             del copy.__dict__[name]
         return copy
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise Hint(
+            f"{name}: a {type(self).__name__} stays as it is",
+            'another one; or a new case with other values, case.replaced({"duration": "2 s", "damper.friction": 0.5})',
+        )
 
     @classmethod
     def in_full(cls, values: dict[str, Any]) -> dict[str, Any]:

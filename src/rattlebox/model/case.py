@@ -369,6 +369,26 @@ class Case(Part):
         except ValidationError as error:
             raise translate(error, source, vocabulary(), given) from None
 
+    def replaced(self, values: Mapping[str, Any]) -> Case:
+        """Return a case with other values in places; this one stays as it is.
+
+        What excludes a value goes: a case with damping becomes one with a damping ratio when that is given.
+
+        Parameters
+        ----------
+        values
+            New values by path, as studies name them and as one would write them in the case:
+            `case.replaced({"damper.friction": 0.5, "duration": "2 s"})`.
+
+        Raises
+        ------
+        CaseError
+            When a path leads nowhere, or the new case does not fit, with the reason.
+        """
+        from .paths import replaced
+
+        return replaced(self, values)
+
     def to_toml(self) -> str:
         """Return the case as the text of a case file that reads back equal; files in it are named by their full path."""
         return self._toml(str)

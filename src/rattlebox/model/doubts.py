@@ -9,7 +9,8 @@ import numpy as np
 
 from .dampers import ImpactDamper
 from .materials import Material
-from .signals import HalfSine, Harmonic
+from .signals import HalfSine, Harmonic, Record
+from .space import Direction, unit_vector
 
 if TYPE_CHECKING:
     from .case import Case
@@ -19,6 +20,9 @@ _WIDE = 1.0  # m
 _ROUGH = 3.0  # coefficient of friction
 _FEW = 4.0  # samples in a period
 _SOFT = 1e5  # Pa
+_LONG = 100.0  # times what the run takes of a record
+_ACROSS = 1e-6
+_THIN = 1e-4  # of a cavity
 _LIGHT, _HEAVY = 20.0, 25e3  # kg/m^3
 
 
@@ -49,6 +53,13 @@ def _of_signals(case: Case) -> Iterator[str]:
     for name, signal in signals:
         if isinstance(signal, (HalfSine, Harmonic)) and signal.start >= case.duration:
             yield f"{name} begins at {signal.start:.4g} s, when the run of {case.duration:.4g} s is over"
+    for name, signal in signals:
+        if isinstance(signal, Record) and signal.times[-1] - signal.times[0] > _LONG * case.duration:
+            yield (
+                f"{name} is a record of {signal.times[-1] - signal.times[0]:.4g} s, of which the run takes"
+                f" {case.duration:.4g} s; its times are in seconds"
+            )
+    yield from _of_directions(case)
     if case.output.rate is None:
         return
     stiffness = case.modes.stiffness[case.modes.stiffness > 0]
@@ -62,6 +73,25 @@ def _of_signals(case: Case) -> Iterator[str]:
             f"output.rate is {case.output.rate:.4g} Hz, {case.output.rate / frequency:.3g} samples in a period of {what}"
             " so that figures and spectra of the motion are not true; the run itself is"
         )
+
+
+def _of_directions(case: Case) -> Iterator[str]:
+    """Tell of a base that moves across the only direction in which the structure does."""
+    particles = [damper for damper in case.particle_dampers if case.modes.point(damper.point) not in case.modes.spatial]
+    for number, signal in enumerate(case.base, 1):
+        if signal.direction is None or not particles:
+            continue
+        along = [abs(unit_vector(damper.direction) @ unit_vector(signal.direction)) for damper in particles]
+        if max(along) < _ACROSS:
+            name = f"base {number}" if len(case.base) > 1 else "base"
+            yield (
+                f"{name} moves along {_named(signal.direction)}, across the structure, which moves along"
+                f" {_named(particles[0].direction)}, the direction of {particles[0].label(0)}"
+            )
+
+
+def _named(direction: Direction) -> str:
+    return direction if isinstance(direction, str) else "({:g}, {:g}, {:g})".format(*direction)
 
 
 def _of_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> Iterator[str]:
@@ -78,6 +108,9 @@ def _of_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> 
         materials = [*(species.material for species in damper.particles), damper.wall]
         diameters = [2 * float(damper.contents.radius.max())]
         mass = float(damper.contents.mass.sum())
+        filled = float(np.sum(4 / 3 * np.pi * damper.contents.radius**3)) / damper.cavity.volume
+        if 0 < filled < _THIN:
+            yield f"the particles of {name} fill {filled:.2g} of the cavity; a number without a unit is in metres"
         frictions = [entry.friction.coefficient for entry in damper.contact_table.entries if entry.friction]
         if max(frictions, default=0.0) > _ROUGH:
             yield f"the friction in {name} is {max(frictions):g}; per cent need their sign: 40 % is 0.4"

@@ -63,7 +63,8 @@ class ModalModel:
         point = self.point(name)
         if point not in self.spatial:
             if direction is not None:
-                raise Hint(f"the point {point!r} moves along one line only", "leave direction out", ["direction"])
+                advice = 'leave it out; direction = "z" of a damper with particles is that of the line'
+                raise Hint(f"the point {point!r} moves along one line only", advice, ["direction"])
             return self.shapes[point]
         if direction is None:
             raise Hint(f"the point {point!r} moves in space", 'direction = "z"', ["direction"])

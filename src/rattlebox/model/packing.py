@@ -22,6 +22,7 @@ from .records import read_table
 from .units import SI, Number, Whole, in_si, numbers
 
 TOUCHING = 1e-9  # overlap, in parts of a radius, that rounding may make
+_FAR = 100.0  # times the size of the cavity: places are in other units
 
 
 class Packing(Part):
@@ -341,9 +342,10 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
     worst = int(room.argmin())
     if room[worst] < -TOUCHING * radii[worst]:
         place = ", ".join(f"{1e3 * x:.4g}" for x in positions[worst])
+        far = float(np.abs(positions).max()) > _FAR * cavity.volume ** (1 / 3)
         raise Hint(
             f"particle {worst} at ({place}) mm sticks out of the cavity by {-1e3 * room[worst]:.4g} mm",
-            "positions counted from the centre of the cavity",
+            "positions in metres, or with units" if far else "positions counted from the centre of the cavity",
         )
     first, second, apart = overlapping(positions, radii)
     if apart.size:

@@ -134,7 +134,9 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
                 if unit == "rad/s" and not angular:
                     return _finite(float(value.to("Hz").magnitude) * (2 * math.pi)), unit
                 return _finite(float(value.to(_pint_unit(unit)).magnitude)), unit
-        raise Hint(f"{_wanted(units)}, not {_described(value)}", _example(units))
+        grams = "m/s^2" in units and str(value.units) == "gram"  # and g is meant
+        advice = f'"{value.magnitude:.12g} g_0"' if grams else _example(units)
+        raise Hint(f"{_wanted(units)}, not {_described(value)}", advice)
     try:
         return _finite(float(value)), None
     except (TypeError, ValueError):

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
 from rattlebox.analysis import settling_time, shaken_cavity
+from rattlebox.analysis.granular import StillCavity
 from rattlebox.engines import dem_gpu
 from rattlebox.engines.batch import Look
 from rattlebox.engines.card import Card
@@ -51,13 +52,22 @@ class Seen:
     motion, speed : (T,) float
         Of the point that is watched [m], [m/s].
     frequency
-        Of the first harmonic load or motion [Hz], NaN without one.
+        Of the first harmonic load or motion [Hz], NaN without one that acts.
     """
 
     run: GranularRun
     motion: NDArray[np.float64]
     speed: NDArray[np.float64]
     frequency: float
+
+    def value(self, name: str) -> float:
+        """Return a measure; NaN of one that refers to cycles where there is no whole one, or the cavity stands still."""
+        if MEASURES[name].cyclic and not self.length * self.frequency >= 1 - 1e-9:
+            return math.nan
+        try:
+            return _FOUND[name](self)
+        except StillCavity:
+            return math.nan
 
     @property
     def length(self) -> float:
@@ -149,6 +159,8 @@ class Granular(SweepTask):
             )
         if self.cycles is not None and math.isnan(_frequency(self.case)):
             raise Hint("cycles need a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
+        if self.cycles is not None:
+            _check_begun(self.case, self.cycles[0] / _frequency(self.case))
         if self.cycles is None and self.skip >= self.case.duration:
             raise Hint(f"skip = {self.skip:.6g} s leaves nothing of the run to look at", "a longer duration")
         window = self.case.duration - self.skip
@@ -171,8 +183,7 @@ class Granular(SweepTask):
         row: dict[str, float] = {"status": _NUMBERS[run.status]}
         if run.ok:
             seen = self._seen_in(run, case)
-            whole = not seen.length * seen.frequency < 1 - 1e-9
-            row |= {name: _FOUND[name](seen) if whole or not MEASURES[name].cyclic else np.nan for name in self.named}
+            row |= {name: seen.value(name) for name in self.named}
             row |= self.own_of(run, index)
         return row
 
@@ -200,6 +211,7 @@ class Granular(SweepTask):
         if self.cycles is not None:
             period = 1 / _frequency(case)
             duration, skip = sum(self.cycles) * period, self.cycles[0] * period
+            _check_begun(case, skip)
             each = 64 if samples is None else max(1, math.ceil((samples - 1) / self.cycles[1]))
             samples = 1 + each * self.cycles[1]  # of which one is where they begin
         if samples is None:
@@ -210,6 +222,8 @@ class Granular(SweepTask):
     def _seen_in(self, run: GranularRun, case: Case) -> Seen:
         frequency = _frequency(case)
         window = since(run, self.skip if self.cycles is None else self.cycles[0] / frequency)
+        if (driver := _driver(case)) and driver.amplitude == 0:
+            frequency = math.nan  # nothing has cycles
         arrays = window.arrays
         if self.point is None:
             along = unit_vector(case.particle_dampers[0].direction)
@@ -244,12 +258,26 @@ def _particles(case: Case) -> int:
     return sum(damper.contents.mass.size for damper in case.particle_dampers)
 
 
+def _driver(case: Case) -> Harmonic | None:
+    """The first harmonic load or motion, whose cycles are counted."""
+    signals = (*case.loads, *case.base, *case.shaker_motion)
+    return next((signal for signal in signals if isinstance(signal, Harmonic)), None)
+
+
 def _frequency(case: Case) -> float:
     """Of the first harmonic load or motion [Hz], NaN without one."""
-    for signal in (*case.loads, *case.base, *case.shaker_motion):
-        if isinstance(signal, Harmonic):
-            return signal.frequency
-    return math.nan
+    driver = _driver(case)
+    return driver.frequency if driver else math.nan
+
+
+def _check_begun(case: Case, skip: float) -> None:
+    """Refuse cycles to look at of what has not begun when they do."""
+    driver = _driver(case)
+    if driver and driver.start > skip * (1 + 1e-9):
+        raise Hint(
+            f"the cycles that are looked at begin at {skip:.4g} s, and what shakes at {driver.start:.4g} s",
+            "start = 0, or more cycles to skip",
+        )
 
 
 # ---- where it runs

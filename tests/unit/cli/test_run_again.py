@@ -141,7 +141,7 @@ def test_a_run_tells_how_far_it_is_where_there_is_no_terminal(answer: Answer, mo
     told = [line.fullmatch(text) for text in errors.splitlines()]
     assert code == 0 and all(told)
     done = [int(found[1].replace(",", "")) for found in told if found]
-    assert len(done) > 2 and done == sorted(set(done)) and done[-1] <= steps
+    assert done and done == sorted(set(done)) and done[-1] <= steps
     assert told[0] and int(told[0][2]) == round(100 * done[0] / steps)
 
 
@@ -177,3 +177,71 @@ def test_an_earlier_case_whose_file_is_gone_is_told(answer: Answer) -> None:
     assert code == 2
     assert errors.startswith("error: out/run.nc holds another run\n")
     assert "  case.loads: " in errors and errors.endswith("try: another -o folder, or --replace\n")
+
+
+def test_a_run_that_is_not_over_is_kept_from_others(answer: Answer) -> None:
+    """A run of impacts, and one that goes on from elsewhere, are refused in the folder of a run that is not over."""
+    begin()
+    before = Path("out/run.checkpoint").read_bytes()
+    said = "error: out/run.checkpoint is of a run that is not over\n  try: another -o folder, or --replace\n"
+    assert answer("run", "case.toml", "--no-figures") == (2, "", said)
+    assert answer("run", "rougher.toml", "--no-figures", "--checkpoint", "new.checkpoint") == (2, "", said)
+    with Checkpoint(Path("out/run.checkpoint"), rb.Case.from_file("beads.toml")).held():
+        assert "in use by process" in answer("run", "case.toml", "--no-figures", "--replace")[2]
+    assert names() == {"run.checkpoint"} and Path("out/run.checkpoint").read_bytes() == before
+    assert answer("run", "case.toml", "--no-figures", "--replace")[0] == 0
+    assert names() == {"run.nc"}
+
+
+def test_a_stopped_run_that_replaces_another_goes_on(answer: Answer) -> None:
+    """The same command with --replace goes on from the checkpoint of its own case, and what it replaces goes in the end."""
+    assert answer("run", "case.toml", "--csv", "--no-figures")[0] == 0
+    begin()
+    code, _, errors = answer("run", "beads.toml", "--no-figures", "--replace")
+    assert (code, errors) == (0, "going on from out/run.checkpoint\n")
+    assert names() == {"run.nc"}
+    assert rb.load("out/run.nc") == rb.simulate(rb.Case.from_file("beads.toml"))
+
+
+def test_a_refused_run_replaces_nothing(answer: Answer) -> None:
+    """Where a case turns out not to fit once it has begun to be read, --replace leaves the folder as it was."""
+    assert answer("run", "case.toml", "--csv", "--no-figures")[0] == 0
+    begin()
+    before = {name: Path("out", name).read_bytes() for name in names()}
+    Path("full.toml").write_text(BEADS.replace("count = 20", "count = 2000"), encoding="utf-8")
+    code, _, errors = answer("run", "full.toml", "--no-figures", "--replace")
+    assert code == 2 and "do not fit" in errors
+    assert {name: Path("out", name).read_bytes() for name in names()} == before
+
+
+def test_what_a_case_reads_is_not_written_over(answer: Answer) -> None:
+    """A case whose record lies where results go is refused, with and without --replace."""
+    Path("out").mkdir()
+    Path("out/motion.csv").write_text("0,0\n0.05,1\n")
+    load = '[load]\nkind = "record"\nfile = "out/motion.csv"\nunit = "N"\n'
+    Path("own.toml").write_text(CASE + load, encoding="utf-8")
+    said = "error: out/motion.csv is read by the case, and results go there\n  try: another -o folder\n"
+    for options in ([], ["--replace"], ["--csv"]):
+        assert answer("run", "own.toml", *options) == (2, "", said)
+    assert names() == {"motion.csv"}
+
+
+def test_all_files_of_a_run_are_of_one_run(answer: Answer) -> None:
+    """Where a record was changed between two runs of a case, tables and figures that lie there are written anew."""
+    Path("push.csv").write_text("0,0\n0.05,1\n")
+    load = '[load]\nkind = "record"\nfile = "push.csv"\nunit = "N"\n'
+    Path("pushed.toml").write_text(CASE + load, encoding="utf-8")
+    assert answer("run", "pushed.toml", "--csv", "--mat")[0] == 0
+    before = {name: Path("out", name).read_bytes() for name in names()}
+    Path("push.csv").write_text("0,0\n0.05,500\n")
+    assert answer("run", "pushed.toml", "--no-figures")[0] == 0
+    changed = {name for name in names() if Path("out", name).read_bytes() != before[name]}
+    assert changed >= {"run.nc", "motion.csv", "energy.csv", "run.mat", "motion.png", "energy.png"}
+
+
+def test_a_study_is_no_place_for_a_run(answer: Answer) -> None:
+    """The folder of a study is refused."""
+    rb.sweep(rb.Case.from_file("case.toml"), {"damper.gap": [1e-4, 2e-4]}, store="study.zarr", progress=False)
+    told = answer("run", "case.toml", "-o", "study.zarr", "--replace")
+    assert told == (2, "", "error: study.zarr holds a study\n  try: another -o folder\n")
+    assert not Path("study.zarr/run.nc").exists()
