@@ -47,7 +47,7 @@ def run(
         typer.Option(help="File that keeps a run with particles on its way; default run.checkpoint in the folder."),
     ] = None,
     replace: Annotated[
-        bool, typer.Option("--replace", help="Take the place of a run of another case; its files go when new ones are written.")
+        bool, typer.Option("--replace", help="Take the place of a run of another case, once the new one is over.")
     ] = False,
 ) -> None:
     """Run a case file: summary on the terminal, netCDF and figures in a folder. The same command goes on after a stop."""

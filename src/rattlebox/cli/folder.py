@@ -158,7 +158,7 @@ def is_run(path: Path) -> bool:
         What a user names.
     """
     if path.exists():
-        return path.is_file() or any((path / name).is_file() for name in (RUN, CHECKPOINT))
+        return path.is_file() or any((path / name).is_file() for name in (RUN, CHECKPOINT, SNAPSHOTS))
     return path.suffix in (".nc", ".vtkhdf")
 
 

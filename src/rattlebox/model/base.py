@@ -56,6 +56,9 @@ class Part(BaseModel, metaclass=_Explaining):
     unnamed: ClassVar[tuple[str, ...]] = ()  # fields that may be given without their names
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = ()  # fields that say the same thing: one of each pair
     in_file: ClassVar[tuple[str, ...]] = ()  # fields that a file stands for
+    examples_in: ClassVar[
+        dict[str, dict[str, str]]
+    ] = {}  # of fields, as a file has them, where the part is held as such
     model_config = ConfigDict(
         frozen=True,
         extra="forbid",
@@ -123,7 +126,7 @@ def vocabulary() -> dict[str, dict[str, dict[str, str]]]:
         for holder in (*part.held_as, part.__name__):
             tag = "" if kind is None else str(kind.default)
             fields = known.setdefault(holder, {}).setdefault(tag, {})
-            fields |= dict.fromkeys(part.spellings, "") | examples(part)
+            fields |= dict.fromkeys(part.spellings, "") | examples(part) | part.examples_in.get(holder, {})
     return known
 
 

@@ -23,7 +23,7 @@ _SOFT = 1e5  # Pa
 _LONG = 100.0  # times what the run takes of a record
 _ACROSS = 1e-6
 _THIN = 1e-4  # of a cavity
-_LIGHT, _HEAVY = 20.0, 25e3  # kg/m^3
+_LIGHT, _HEAVY = 5.0, 25e3  # kg/m^3
 
 
 def doubts(case: Case) -> tuple[str, ...]:
@@ -119,7 +119,7 @@ def _of_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> 
         if material.young < _SOFT:
             yield f"the modulus of {what} in {name} is {material.young:g} Pa; a number without a unit is in pascals"
         if not _LIGHT <= material.density <= _HEAVY:
-            yield f"the density of {what} in {name} is {material.density:g} kg/m^3, which no solid has"
+            yield f"the density of {what} in {name} is {material.density:g} kg/m^3, which hardly a solid has"
     if max(diameters) > _WIDE:
         yield f"a {things} of {name} is {max(diameters):.4g} m wide; a number without a unit is in metres"
     ease = float(np.max(np.sum(np.square(case.modes.shapes[case.modes.point(damper.point)]), axis=0), initial=0.0))

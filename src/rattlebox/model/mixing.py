@@ -37,9 +37,10 @@ def mixed(one: Any, other: Any, rule: Mixing) -> Any:
     """
     if one is None or other is None:
         law = other if one is None else one
-        assert law is None or isinstance(law, (Friction, Rolling))
         if law is None:
             return None
+        if not isinstance(law, (Friction, Rolling)):
+            raise TypeError("laws that are told by other fields")
         one, other = law, law.model_copy(update={"coefficient": 0.0})
     if one == other:
         return one

@@ -35,8 +35,8 @@ class _Bounded(Distribution):
     """A distribution between two sizes."""
 
     kind: str
-    smallest: PositiveLength
-    largest: PositiveLength
+    smallest: PositiveLength = Field(examples=["3 mm"])
+    largest: PositiveLength = Field(examples=["6 mm"])
 
     @model_validator(mode="after")
     def _in_order(self) -> _Bounded:
@@ -66,8 +66,8 @@ class Normal(_Bounded):
     """
 
     kind: Literal["normal"] = "normal"
-    mean: PositiveLength
-    deviation: PositiveLength
+    mean: PositiveLength = Field(examples=["4 mm"])
+    deviation: PositiveLength = Field(examples=["0.5 mm"])
 
     def diameters(self, share: Vector) -> Vector:
         """Return quantiles of the diameter [m], (n,)."""
@@ -89,7 +89,7 @@ class LogNormal(_Bounded):
     """
 
     kind: Literal["log_normal"] = "log_normal"
-    median: PositiveLength
+    median: PositiveLength = Field(examples=["4 mm"])
     spread: Annotated[Number, Field(le=100, examples=[1.2])]
 
     @model_validator(mode="after")

@@ -68,6 +68,10 @@ class Signal(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("load", "loads", "base", "motion")
+    examples_in: ClassVar[dict[str, dict[str, str]]] = {
+        "base": {"amplitude": '"9.81 m/s^2"'},
+        "motion": {"amplitude": '"1 mm"'},
+    }
     kind: str
     unit: Unit | None = None
     point: str | None = None

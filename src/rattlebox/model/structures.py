@@ -120,7 +120,7 @@ class SDOF(Part):
 def _one_each(value: Any) -> Any:
     if isinstance(value, (int, float, str)) and not isinstance(value, bool):
         one = f'"{value}"' if isinstance(value, str) else f"{value}"
-        raise Hint("a list is needed, with one number for each mode", f"damping_ratios = [{one}, {one}] for two modes")
+        raise Hint("a list is needed, with one number for each mode", f"[{one}] for one mode, [{one}, {one}] for two")
     return value
 
 

@@ -105,7 +105,7 @@ def value_of(coord: xr.DataArray, value: Any) -> str:
     if coord.dtype.kind not in "fiu":
         return str(value)
     unit, factor = _prefixable(unit_of(coord))
-    number = factor * float(value)
+    number = factor * float(value) + 0.0  # no minus before a zero
     if not unit and number.is_integer() and abs(number) < _EXACT:
         return f"{number:.0f}"
     return re.sub(r"\.0+(?!\d)|(\.\d*[1-9])0+(?!\d)", r"\1", quantity(number, unit))

@@ -117,7 +117,7 @@ def test_few_samples_in_a_period_are_noted(rate, told):
     [
         ("210 GPa", 7850, []),
         (70, 2700, ["the modulus of a material in damper is 70 Pa; a number without a unit is in pascals"]),
-        ("70 GPa", 2.7, ["the density of a material in damper is 2.7 kg/m^3, which no solid has"]),
+        ("70 GPa", 2.7, ["the density of a material in damper is 2.7 kg/m^3, which hardly a solid has"]),
     ],
 )
 def test_absurd_materials_are_noted(young, density, told):
@@ -132,3 +132,44 @@ def test_absurd_materials_are_noted(young, density, told):
     for each in (damper, grains):
         case = rb.Case(structure=rb.Fixed(), damper=each, duration=1)
         assert doubts(case) == tuple(f"warning: {said}" for said in told)
+
+
+def grains(**changes):
+    """Return a damper with a few balls."""
+    usual = {
+        "particles": rb.Particles(material="steel", diameter="5 mm", count=12),
+        "cavity": rb.Box(size=("20 mm", "20 mm", "20 mm")),
+        "contact": rb.Tsuji(restitution=0.7),
+    }
+    return rb.ParticleDamper(**usual | changes)
+
+
+def of(damper, **changes):
+    """Return what is noted of a case."""
+    return doubts(rb.Case(**{"structure": rb.SDOF(mass=1, stiffness=1e4), "damper": damper, "duration": 0.1} | changes))
+
+
+def test_a_base_across_the_structure_is_noted():
+    """A base that moves at right angles to the only direction of the structure is told; one along it, or askew, is not."""
+    told = {
+        direction: of(grains(), base=rb.Harmonic(amplitude=1, frequency=16, direction=direction))
+        for direction in ("x", (1, 0, 1), "z")
+    }
+    assert told["x"] == told[(1, 0, 1)] == of(grains(), base=rb.Harmonic(amplitude=1, frequency=16)) == ()
+    said = "warning: base moves along z, across the structure, which moves along x, the direction of damper"
+    assert told["z"] == (said,)
+    assert of(grains(direction="z"), base=rb.Harmonic(amplitude=1, frequency=16, direction="z")) == ()
+
+
+def test_a_cavity_in_metres_is_noted():
+    """Balls that fill next to nothing of their cavity are told with the likely reason."""
+    (told,) = of(grains(cavity=rb.Box(size=(20, 20, 20))))
+    assert told.startswith("warning: the particles of damper fill 9.8e-11 of the cavity; a number without a unit")
+
+
+def test_a_record_in_milliseconds_is_noted():
+    """A record that is more than a hundred times as long as the run is told, one that is as long as need be is not."""
+    for length, notes in ((0.2, 0), (10.0, 0), (600.0, 1)):
+        told = of(grains(), load=rb.Record(times=[0, length], values=[0, 1], unit="N"))
+        assert len(told) == notes
+    assert told == ("warning: load is a record of 600 s, of which the run takes 0.1 s; its times are in seconds",)

@@ -436,6 +436,9 @@ REFUSED = {
         particles=balls(count=None, fill_ratio=0.7), packing=rb.Settled()
     ),
     "particles 0 and 1 overlap by 1 mm": lambda: damper(particles=balls(2), packing=AT),
+    "sticks out of the cavity by .*\n  try: positions in metres, or with units": lambda: damper(
+        particles=balls(2), packing=rb.Positions(positions=[(0, 0, 0), (0, 0, -7)])
+    ),
     "particle 1 at .* mm sticks out of the cavity by 1 mm": lambda: damper(
         particles=balls(2), packing=rb.Positions(positions=[[0, 0, 0], [0, 0.019, 0]])
     ),

@@ -73,6 +73,14 @@ def test_a_field_that_is_needed_is_told_with_an_example_that_is_taken(part: type
     assert [found for found in wrong if found["loc"][:1] == (name,)] == []
 
 
+def test_accelerations_in_g_are_told_how() -> None:
+    """What is given in g, which is grams, is told with the sign and the unit that means gravity; a mass in grams is not."""
+    with pytest.raises(rb.CaseError, match='not a mass\n  try: "-5 g_0"'):
+        rb.Harmonic(amplitude="-5 g", frequency=1)
+    with pytest.raises(rb.CaseError, match=r'not a mass\n  try: "0\.4 mm"'):
+        rb.Sphere(radius="5 g", material="steel")
+
+
 def test_units_that_only_pint_knows() -> None:
     """Inches, pounds of force and revolutions per minute are converted."""
     assert rb.Sphere(diameter="1 inch", material="steel").radius == pytest.approx(0.0127, rel=1e-14)
@@ -406,9 +414,22 @@ def test_a_ball_that_was_weighed_and_timed() -> None:
 
 
 def test_parts_do_not_change() -> None:
-    """A part of a case cannot be assigned to."""
-    with pytest.raises(ValueError, match="frozen"):
+    """A part of a case cannot be assigned to, nor copied with a field that there is not; the message tells another way."""
+    with pytest.raises(rb.CaseError, match=r"^radius: a Sphere stays as it is\n  try: .*case\.replaced"):
         BALL.radius = 1.0  # type: ignore[misc]
+    with pytest.raises(rb.CaseError, match=r"Case has no field 'damper'\n  try: did you mean 'dampers'"):
+        rb.Case(structure=rb.Fixed(), duration=1).model_copy(update={"damper": None})
+
+
+def test_a_case_with_other_values_is_another_case() -> None:
+    """Values are put in by path, as they are written; the case itself stays, and what does not fit is refused."""
+    damper = rb.ImpactDamper(ball=BALL, gap="1 mm", contact=rb.Tsuji(restitution=0.9))
+    case = rb.Case(structure=rb.SDOF(mass=1, stiffness=4e3, damping=1), damper=damper, duration=1)
+    other = case.replaced({"damper.gap": "2 mm", "duration": "2 s", "structure.damping_ratio": "1 %"})
+    assert (other.dampers[0].gap, other.duration, case.dampers[0].gap, case.duration) == (2e-3, 2, 1e-3, 1)
+    assert other.replaced({"damper.gap": 1e-3, "duration": 1, "structure.damping": 1}) == case
+    with pytest.raises(rb.CaseError, match=r"damper.gap = '2 kg'\n  a length \(m\) is needed"):
+        case.replaced({"damper.gap": "2 kg"})
 
 
 def test_a_changed_copy_forgets_what_was_computed() -> None:

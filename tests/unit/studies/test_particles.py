@@ -129,6 +129,32 @@ def test_too_little_for_a_cycle_is_told_before_anything_runs() -> None:
         rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, "loss_factor", skip="0.055 s")
 
 
+def test_a_cavity_that_stands_still_has_no_cycles() -> None:
+    """Of a shaker or a load without amplitude, measures of cycles are NaN, and the others are what they are."""
+    measures = ["rms", "loss_factor", "reduced_loss", "effective_mass", "loss_per_cycle"]
+    load = {"load": rb.Harmonic(amplitude="10 N", frequency=50)}
+    for case, axis, unit in ((shaken(), AMPLITUDE, "m/s^2"), (struck(**load), "load.amplitude", "N")):
+        still = rb.sweep(case, {axis: [f"0 {unit}", f"20 {unit}"]}, measures, cycles=(1, 1), progress=False)
+        assert (still.status == 0).all()
+        assert np.isfinite(still.rms).all()
+        for name in measures[1:]:
+            assert np.isnan(still[name].values).tolist() == [True, False]
+
+
+def test_what_has_not_begun_has_no_cycles() -> None:
+    """Cycles that are looked at before a harmonic load or motion begins are refused, those of one variant by its status."""
+    late = shaken(structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=50, direction="z", start="1 s")))
+    for study in (
+        lambda: rb.sweep(late, {"damper.packing.seed": [1, 2]}, ["rms"], cycles=(1, 1)),
+        lambda: rb.loss_map(late, ["1 mm"], [50], cycles=(1, 1)),
+    ):
+        with pytest.raises(rb.CaseError, match=r"begin at 0.02 s, and what shakes at 1 s\n  try: start = 0"):
+            study()
+    starts = {"structure.motion.start": ["20 ms", "21 ms"]}
+    some = rb.sweep(shaken(), starts, ["loss_factor"], cycles=(1, 1), progress=False)
+    assert some.status.values.tolist() == [0, 9] and np.isfinite(some.loss_factor.values[0])
+
+
 def test_windows_leave_out_what_is_before() -> None:
     """Work, losses and shares count from the begin of the window, whose ledger closes by itself."""
     found = rb.sweep(
