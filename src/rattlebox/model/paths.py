@@ -19,6 +19,7 @@ from .units import SI, parse
 
 Place = tuple[str | int, ...]
 
+_EDGES = {"length": 0, "width": 1, "depth": 1, "height": 2}  # of a box, by the names that others give them
 _STEP = re.compile(r"\.?([^.\[\]]+)|\[(\d+)\]")
 
 
@@ -333,6 +334,8 @@ def _words(steps: Sequence[str | int]) -> Iterator[str]:
 
 def _suggested(case: Case, path: str, step: str, known: set[str]) -> str:
     """Paths like one that leads nowhere."""
+    if step in _EDGES and "size" in known:
+        return f"did you mean '{path.removesuffix(step)}size[{_EDGES[step]}]'?"
     near = nearest(step, known)
     if near.startswith("did"):
         return near

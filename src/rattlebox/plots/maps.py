@@ -51,9 +51,9 @@ def plot_map(
 ) -> Figure:
     """Draw a measure of a study over one or two of its axes.
 
-    Axes whose values grow by a factor are logarithmic. Of replicas, a map shows the median, and lines the median within the
-    band from 10 to 90 %. Points of a line are marked where there are at most 30. Runs that did not finish are hatched in a
-    map and crossed on the axis below lines, and named.
+    Axes whose values grow by a factor are logarithmic. Of replicas, and along an axis of seeds, a map shows the median, and
+    lines the median within the band from 10 to 90 %. Points of a line are marked where there are at most 30. Runs that did
+    not finish are hatched in a map and crossed on the axis below lines, and named.
 
     Parameters
     ----------
@@ -92,6 +92,7 @@ def plot_map(
         raise CaseError(f"kind = {kind!r}: there is no such kind\n  {nearest(str(kind), ('map', 'lines'))}")
     name = _measure(study, of)
     chosen, told = select(study, at or {})
+    chosen = _seeds_as_replicas(chosen, name)
     along = [coord.dims for coord in chosen.coords.values()]  # of linked parameters another one tells them apart
     repeated = [dim for dim in chosen[name].dims if dim in chosen.coords and along.count((dim,)) == 1]
     chosen = chosen.drop_duplicates(repeated).squeeze(drop=True)
@@ -108,6 +109,13 @@ def plot_map(
                 shorten(told[0].upper() + told[1:], letters(figure.axes[0])), x=0.01, ha="left", fontsize="medium"
             )
     return figure
+
+
+def _seeds_as_replicas(study: xr.Dataset, name: str) -> xr.Dataset:
+    """Members of an axis of seeds are replicas, where there is another axis to draw along."""
+    dims = [str(dim) for dim in study[name].dims if study.sizes[dim] > 1]
+    seeds = [dim for dim in dims if dim.rpartition(".")[2] == "seed"]
+    return study.rename({seeds[0]: _BAND}) if len(seeds) == 1 < len(dims) and _BAND not in dims else study
 
 
 def select(study: xr.Dataset, at: Mapping[str, Any]) -> tuple[xr.Dataset, str]:

@@ -25,6 +25,15 @@ CASE = rb.Case(
     load=rb.HalfSine(amplitude="5 kN", duration="1 ms"),
     duration="1 s",
 )
+BOX = rb.Case(
+    structure=rb.Fixed(),
+    damper=rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="5 mm", count=1),
+        cavity=rb.Box(size=("20 mm", "20 mm", "20 mm")),
+        contact=rb.Tsuji(restitution=0.7),
+    ),
+    duration=1,
+)
 TWO = rb.Case(
     structure=rb.Modal(
         frequencies=[10.0, 63.0], damping_ratios=[0.01, 0.02], shapes={"tip": [1.0, -1.0]}, participation=[1.0, 0.5]
@@ -84,6 +93,11 @@ def test_numbers_of_restitution_have_no_unit() -> None:
     ("case", "path", "parts"),
     [
         (CASE, "damper.gpa", ["damper.gpa: there is no 'gpa' in damper", "did you mean 'gap'?"]),
+        (
+            BOX,
+            "damper.cavity.height",
+            ["there is no 'height' in damper.cavity", "did you mean 'damper.cavity.size[2]'?"],
+        ),
         (CASE, "damper.radius", ["there is no 'radius' in damper", "did you mean 'damper.ball.radius'?"]),
         (CASE, "dampr.gap", ["there is no 'dampr' in a case", "did you mean 'damper' or 'dampers'?"]),
         (CASE, "gap", ["there is no 'gap' in a case", "did you mean 'damper.gap'?"]),

@@ -108,6 +108,17 @@ def test_lines_show_the_values() -> None:
     assert "too many events (1)" in told(figure)
 
 
+def test_seeds_are_replicas() -> None:
+    """An axis of seeds is drawn as replicas are, but for where nothing else varies, or replicas are there as well."""
+    many = study(5).isel({"load.amplitude": 0}, drop=True)
+    seeds = many.rename(replica="damper.packing.seed").assign_coords({"damper.packing.seed": np.arange(5)})
+    drawn, asked = (rb.plot_map(data, "share").axes[0].get_lines()[0] for data in (seeds, many))
+    assert np.array_equal(np.asarray(drawn.get_ydata()), np.asarray(asked.get_ydata()), equal_nan=True)
+    alone = study(5).isel({"load.amplitude": 0, "damper.gap": 3}, drop=True).rename(replica="damper.packing.seed")
+    line = rb.plot_map(alone.assign_coords({"damper.packing.seed": np.arange(5)}), "share").axes[0].get_lines()[0]
+    assert np.asarray(line.get_xdata()) == pytest.approx(np.arange(5))
+
+
 def test_replicas_give_median_and_band() -> None:
     """Of replicas, lines show the median within 10 to 90 %, and maps the median."""
     many = study(21)
