@@ -272,7 +272,7 @@ ANSWERS = {
     "one damping ratio for all": (
         MODES + "damping_ratios = 0.003\nshapes = { tip = [1, 1] }\n",
         "structure.damping_ratios = 0.003\n  a list is needed, with one number for each mode\n"
-        "  try: damping_ratios = [0.003, 0.003] for two modes",
+        "  try: [0.003] for one mode, [0.003, 0.003] for two",
     ),
     "unit with a prefix": (
         changed('amplitude = "5 kN"', 'amplitude = 5\nunit = "kN"'),
