@@ -299,10 +299,11 @@ class ParticleDamper(Part):
         with at(*self._place(int(contents.species[largest]))):
             check_size(self.cavity, float(contents.radius[largest]))
         filled = float(contents.radius @ contents.radius**2) * 4 / 3 * math.pi / self.cavity.volume
-        if filled >= 1:
+        fewer = f"at most {max(1, math.floor(0.58 * contents.radius.size / filled))} of them"
+        if filled >= 1 and not isinstance(self.packing, Lattice):  # which tells how many it holds
             raise Hint(
                 f"{contents.radius.size} particles do not fit: their volume is {filled:.3g} times that of the cavity",
-                f"{max(1, math.floor(0.58 * contents.radius.size / filled))} of them, or a larger cavity",
+                f"{fewer}, or a larger cavity",
                 ["particles"],
             )
         if isinstance(self.packing, Settled):
@@ -312,7 +313,7 @@ class ParticleDamper(Part):
                 raise Hint(
                     f"{contents.radius.size} particles fill {100 * filled:.3g} % of the cavity; "
                     "inserted at random they fill 60 % or a little more",
-                    'packing = { kind = "lattice" }, or fewer of them',
+                    f'packing = {{ kind = "lattice" }}, or {fewer}',
                     ["particles"],
                 )
         else:

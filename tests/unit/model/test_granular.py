@@ -429,8 +429,11 @@ REFUSED = {
     r"friction\n  laws at walls have a field of their own, wall_friction": lambda: damper(friction={"wall": 0.1}),
     "an empty damper": lambda: damper(particles=[]),
     "there is nothing in it": lambda: balls(count=0),
-    "their volume is 1.05 times that of the cavity": lambda: damper(particles=balls(2000)),
-    "a lattice of spheres of 4 mm holds 1099": lambda: damper(particles=balls(1100)),
+    "their volume is 1.05 times that of the cavity\n  try: at most 1": lambda: damper(
+        particles=balls(2000), packing=rb.Settled(), gravity=(0, 0, -9.81)
+    ),
+    "a lattice of spheres of 4 mm holds 1099.*\n  try: 1099 of them": lambda: damper(particles=balls(1100)),
+    "2000 particles do not fit: a lattice of spheres of 4 mm holds 1099": lambda: damper(particles=balls(2000)),
     "a particle of 44 mm is larger than the cavity": lambda: damper(particles=balls(1, diameter="44 mm")),
     "inserted at random they fill 60 %": lambda: damper(
         particles=balls(count=None, fill_ratio=0.7), packing=rb.Settled()
@@ -456,8 +459,8 @@ REFUSED = {
     "holds 1 in this cavity\n  try: 1 of them": lambda: damper(
         particles=balls(2, diameter="30 mm"), cavity=CAVITIES["sphere"]
     ),
-    "their volume is 1.88 times that of the cavity\n  try: 1 of them": lambda: damper(
-        particles=balls(2, diameter="49 mm"), cavity=CAVITIES["sphere"]
+    "their volume is 1.88 times that of the cavity\n  try: at most 1 of them": lambda: damper(
+        particles=balls(2, diameter="49 mm"), cavity=CAVITIES["sphere"], packing=rb.Settled(), gravity=(0, 0, -9.81)
     ),
     "rolling = 0.1\n  rolling resistance needs friction.*\n  try: friction = 0.3": lambda: damper(
         friction=0, rolling=0.1
@@ -540,6 +543,15 @@ def test_what_does_not_fit_is_refused(complaint: str) -> None:
     """Bad input is refused with its reason."""
     with pytest.raises(rb.CaseError, match=complaint):
         REFUSED[complaint]()
+
+
+def test_as_many_as_a_lattice_is_said_to_hold_fit() -> None:
+    """The number that is told where particles do not fit is one that fits, in cavities of any form."""
+    for cavity in CAVITIES.values():
+        with pytest.raises(rb.CaseError, match="do not fit") as caught:
+            damper(particles=balls(2000), cavity=cavity)
+        most = int(str(caught.value).rpartition("try: ")[2].split()[0])
+        assert damper(particles=balls(most), cavity=cavity).start.positions.shape == (most, 3)
 
 
 def test_a_file_needs_no_kind_of_damper() -> None:
