@@ -41,7 +41,8 @@ def _of_structure(case: Case) -> Iterator[str]:
     swings = modes.stiffness > 0
     ratio = float(np.max(modes.decay[swings] / np.sqrt(modes.stiffness[swings]), initial=0.0))
     if ratio > 1:
-        yield f"the structure's damping ratio is {ratio:.3g}, so that it creeps back; per cent need their sign: 2 % is 0.02"
+        told = f"{ratio:.3g}" if ratio >= 1.005 else "above 1"
+        yield f"the structure's damping ratio is {told}, so that it creeps back; per cent need their sign: 2 % is 0.02"
 
 
 def _of_signals(case: Case) -> Iterator[str]:

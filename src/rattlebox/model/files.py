@@ -84,7 +84,9 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
             complaint.append(f"  try: the whole file, which seems cut off at line {number}")
         twice = re.search(r"Cannot declare \((.*)\) twice", str(error))
         names = re.findall(r"'([\w-]+)'", twice[1]) if twice else []
-        if names and names[-1] in _SEVERAL:
+        if names and names[0] == "materials":
+            complaint.append("  try: another name for one of them, since each has a table of its own")
+        elif names and names[-1] in _SEVERAL:
             table = ".".join([*names[:-1], _SEVERAL[names[-1]]])
             complaint.append(f"  try: [[{table}]] in double brackets, for each of them")
         raise CaseError("\n".join(complaint)) from None

@@ -32,9 +32,9 @@ def _two_names(value: Any) -> Any:
     """One name is no pair: not even of a species with itself."""
     names = [value] if isinstance(value, str) else value
     if isinstance(names, (list, tuple)) and len(names) == 1 and isinstance(names[0], str):
-        raise Hint(
-            "two names are needed", f'["{names[0]}", "{WALL}"], or ["{names[0]}", "{names[0]}"] among themselves'
-        )
+        one = names[0]
+        like = f'["{one}", "{WALL}"], or ["{one}", "{one}"] among themselves' if one != WALL else f'["steel", "{WALL}"]'
+        raise Hint("two names are needed", like)
     return value
 
 

@@ -150,6 +150,13 @@ def test_a_table_that_is_written_twice(above: str, table: str, content: str, sev
     assert 2 in (len(case.loads), len(case.base), len(case.dampers), *(len(each.balls) for each in case.dampers))
 
 
+def test_a_material_that_is_written_twice() -> None:
+    """Two tables of one material are told with their line, and to give one another name."""
+    table = "[materials.base]\ndensity = 7800\n"
+    with pytest.raises(rb.CaseError, match="another name for one of them"):
+        rb.Case.from_toml(HEAD + 2 * table)
+
+
 def test_other_tables_that_are_written_twice() -> None:
     """Of tables of which there is one, and of names with quotation marks, the line is told and nothing else."""
     for name in ("structure", '"it\'s"'):

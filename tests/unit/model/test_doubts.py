@@ -81,11 +81,11 @@ def test_notes_of_impacts_are_kept_and_shown(tmp_path):
     assert rb.load(run.save(tmp_path / "run.nc")) == run
 
 
-@pytest.mark.parametrize(("ratio", "told"), [(0.02, 0), (1.0, 0), ("2 %", 0), (2, 1)])
+@pytest.mark.parametrize(("ratio", "told"), [(0.02, ""), (1.0, ""), ("2 %", ""), (2, "2"), (1.0000001, "above 1")])
 def test_overdamped_structures_are_noted(ratio, told):
     """A damping ratio of 2 is told; one that is just critical, and a free body with a dashpot, are not."""
-    assert notes(rb.SDOF(mass=20, stiffness=8e4, damping_ratio=ratio)) == told * (
-        "warning: the structure's damping ratio is 2, so that it creeps back; per cent need their sign: 2 % is 0.02",
+    assert notes(rb.SDOF(mass=20, stiffness=8e4, damping_ratio=ratio)) == bool(told) * (
+        f"warning: the structure's damping ratio is {told}, so that it creeps back; per cent need their sign: 2 % is 0.02",
     )
     assert notes(rb.SDOF(mass=20, stiffness=0, damping=10)) == ()
 

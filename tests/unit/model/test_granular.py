@@ -420,7 +420,7 @@ def test_walls_may_have_laws_of_another_kind() -> None:
 
 AT = rb.Positions(positions=[[0, 0, 0], [0, 0, 0.003]])
 REFUSED = {
-    r"pairs\[0\].between = \['wall'\]\n  two names are needed": lambda: damper(
+    r"pairs\[0\].between = \['wall'\]\n  two names are needed\n  try: \[\"steel\", \"wall\"\]": lambda: damper(
         pairs=[{"between": ["wall"], "friction": 0.1}]
     ),
     r"between = 'steel'\n  two names are needed\n  try: \[\"steel\", \"wall\"\]": lambda: rb.PairLaws(
@@ -551,7 +551,7 @@ def test_as_many_as_a_lattice_is_said_to_hold_fit() -> None:
         with pytest.raises(rb.CaseError, match="do not fit") as caught:
             damper(particles=balls(2000), cavity=cavity)
         most = int(str(caught.value).rpartition("try: ")[2].split()[0])
-        assert damper(particles=balls(most), cavity=cavity).start.positions.shape == (most, 3)
+        assert damper(particles=balls(most), cavity=cavity).start.position.shape == (most, 3)
 
 
 def test_a_file_needs_no_kind_of_damper() -> None:
