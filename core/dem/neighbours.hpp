@@ -14,6 +14,7 @@
 
 #include "base/masks.hpp"
 #include "dem/bed.hpp"
+#include "dem/cells.hpp"
 #include "dem/walls.hpp"
 
 namespace rattlebox::dem {
@@ -37,18 +38,9 @@ class Neighbours {
     Paged<int> numbers_;
     Paged<char> flags_;
 
-    std::vector<int> order_, place_, cell_, cell_start_;
+    Cells cells_;
     Paged<real> along_[4];         // places and radii once more, axis by axis: searched in lanes
     std::vector<Leaving> leaving_; // by chunk before the sort
-    real largest_ = 0, low_[3] = {}, size_ = 0;
-    // Along lines of cells, across them in a plane, across planes. Short axes come first, so that neighbours
-    // in other lines and planes are near in memory too.
-    int axis_[3] = {}, cells_[3] = {};
-
-    int cell_along(const Row& p, int a) const {
-        const int c = static_cast<int>((p[axis_[a]] - low_[a]) / size_);
-        return std::clamp(c, 0, cells_[a] - 1);
-    }
 
     // For some steps, if they go on as since the last scan.
     static void choose_skin(Contacts& list, real smallest, real largest) {
@@ -60,21 +52,19 @@ class Neighbours {
 
 public:
     void start(Bed& bed) {
-        largest_ = 0;
+        cells_.start(bed);
         leaving_.resize(bed.chunks.size());
         const auto n = static_cast<std::size_t>(bed.particles());
         const auto pages = bed.position.get_allocator();
         rows_ = Paged<Row>(n, pages), numbers_ = Paged<int>(n, pages), flags_ = Paged<char>(n, pages);
         for (auto& values : along_) values = Paged<real>(n + lane_count, pages);
-        for (const Row& p : bed.position) largest_ = larger(largest_, p[3]);
     }
 
     std::size_t memory() const {
         std::size_t bytes =
             rows_.capacity() * sizeof(Row) + numbers_.capacity() * sizeof(int) + flags_.capacity();
-        for (const auto* v : {&order_, &place_, &cell_, &cell_start_}) bytes += v->capacity() * sizeof(int);
         for (const auto& values : along_) bytes += values.capacity() * sizeof(real);
-        return bytes;
+        return bytes + cells_.memory();
     }
 
     // ---- a build: contacts leave their chunks, particles are sorted, each chunk is searched, contacts
@@ -103,45 +93,11 @@ public:
             low = from.low < low ? from.low : low;
             high = from.high > high ? from.high : high;
         }
-        const Row span = high - low;
-        const auto order = [&](int& inner, int& outer) {
-            if (span[inner] > 1.5 * span[outer]) std::swap(inner, outer);
-        };
-        auto& [line, plane, rest] = axis_;
-        line = 0, plane = 1, rest = 2;
-        order(line, plane), order(plane, rest), order(line, plane);
-        size_ = (2 * largest_ + bed.reach) * (1 + 1e-12);
-        for (;;
-             size_ *= 1.25) { // few particles in a large cavity need no more cells than there are particles
-            real total = 1;
-            for (int a = 0; a < 3; ++a) total *= std::floor(span[a] / size_) + 1;
-            if (total <= 4.0 * bed.particles() + 64) break;
-        }
-        for (int a = 0; a < 3; ++a) {
-            low_[a] = low[axis_[a]];
-            cells_[a] = static_cast<int>(span[axis_[a]] / size_) + 1;
-        }
-        cell_start_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2] + 1), 0);
-        for (auto* v : {&order_, &place_, &cell_}) v->resize(bed.position.size());
+        cells_.lay(bed, low, high);
     }
 
-    void find_cells(const Bed& bed, const Chunk& chunk) {
-        for (int i = chunk.begin; i < chunk.end; ++i) {
-            const Row& p = at(bed.position, i);
-            at(cell_, i) = (cell_along(p, 2) * cells_[1] + cell_along(p, 1)) * cells_[0] + cell_along(p, 0);
-        }
-    }
-
-    // The order of the particles by cell.
-    void find_order() {
-        const int n = static_cast<int>(cell_.size());
-        for (const int c : cell_) ++at(cell_start_, c + 1);
-        for (std::size_t c = 1; c < cell_start_.size(); ++c) cell_start_[c] += cell_start_[c - 1];
-        for (int i = 0; i < n; ++i) at(place_, i) = at(cell_start_, at(cell_, i))++;
-        for (std::size_t c = cell_start_.size() - 1; c > 0; --c) cell_start_[c] = cell_start_[c - 1];
-        cell_start_[0] = 0;
-        for (int i = 0; i < n; ++i) at(order_, at(place_, i)) = i;
-    }
+    void find_cells(const Bed& bed, const Chunk& chunk) { cells_.find(bed, chunk); }
+    void find_order(const Bed& bed) { cells_.find_order(bed); }
 
     static constexpr int turns = 6;
 
@@ -149,7 +105,7 @@ public:
     // order, all wait for each other, and it is put in its place.
     void sort(Bed& bed, int turn, int first, int until) {
         const auto lay = [&](auto& list, auto&& from) {
-            for (int i = first; i < until; ++i) at(list, i) = from(at(order_, i));
+            for (int i = first; i < until; ++i) at(list, i) = from(cells_.order(i));
         };
         const auto put = [&](Row Rates::* part) {
             for (int i = first; i < until; ++i) at(bed.rates, i).*part = at(rows_, i);
@@ -190,29 +146,54 @@ public:
             firsts.resize(2 * room), seconds.resize(2 * room);
             first = firsts.data(), second = seconds.data();
         };
+        const auto& layers = cells_.layers();
+        const Layer& fine = layers.front();
+        const Group fits = Group::all(fine.largest);
+        const bool mixed = layers.size() > 1;
         for (int i = chunk.begin; i < chunk.end; ++i) {
             const Row& p = at(bed.position, i);
+            const real reach = p[3] + bed.reach;
             const Vector<Group> place = {Group::all(p[0]), Group::all(p[1]), Group::all(p[2])};
-            const Group around = Group::all(p[3] + bed.reach);
-            const int cx = cell_along(p, 0), cy = cell_along(p, 1), cz = cell_along(p, 2);
-            const auto range = [&](int y, int z, bool own) {
-                if (y < 0 || y >= cells_[1] || z >= cells_[2]) return;
-                const int line = (z * cells_[1] + y) * cells_[0];
-                const int from = own ? i + 1 : at(cell_start_, line + std::max(cx - 1, 0));
-                const int to = at(cell_start_, line + std::min(cx + 1, cells_[0] - 1) + 1);
+            const Group around = Group::all(reach);
+            const auto look = [&](int from, int to) {
                 for (int j = from; j < to; j += group) {
                     make_room();
                     const auto others = [&](int a) { return unaligned(&at(along_[a], j)); };
                     const Vector<Group> apart = place - Vector<Group>{others(0), others(1), others(2)};
                     const Group near = around + others(3);
-                    const unsigned found = positive(near * near - dot(apart, apart));
+                    unsigned found = positive(near * near - dot(apart, apart));
+                    if (mixed) found &= ~positive(others(3) - fits); // they come below
                     for (int l = 0; l < lane_count; ++l) first[count + l] = i - chunk.begin;
                     count += list_lanes(found & first_lanes(std::min(group, to - j)), j, second + count);
                 }
             };
-            range(cy, cz, true);
-            range(cy + 1, cz, false);
-            for (int y = cy - 1; y <= cy + 1; ++y) range(y, cz + 1, false);
+            const Cell own = cells_.cell(fine, p);
+            const CellBox box = p[3] <= fine.largest ? cells_.next_to(fine, own)
+                                                     : cells_.around(fine, p, reach + fine.largest);
+            for (int z = own[2]; z <= box.high[2]; ++z)
+                for (int y = z == own[2] ? own[1] : box.low[1]; y <= box.high[1]; ++y) {
+                    const int line = fine.line(y, z);
+                    const bool has_own = z == own[2] && y == own[1];
+                    look(has_own ? i + 1 : at(fine.begin, line + box.low[0]),
+                         at(fine.begin, line + box.high[0] + 1));
+                }
+            for (std::size_t k = 1; k < layers.size(); ++k) {
+                const Layer& layer = layers[k];
+                const CellBox there = cells_.around(layer, p, reach + layer.largest);
+                for (int z = there.low[2]; z <= there.high[2]; ++z)
+                    for (int y = there.low[1]; y <= there.high[1]; ++y) {
+                        const int line = layer.line(y, z), to = at(layer.begin, line + there.high[0] + 1);
+                        for (int m = at(layer.begin, line + there.low[0]); m < to; ++m) {
+                            const int j = at(layer.member, m);
+                            const Row apart = p - at(bed.position, j);
+                            if (j <= i || !(square(reach + at(bed.position, j)[3]) > dot(apart, apart)))
+                                continue;
+                            make_room();
+                            first[count] = i - chunk.begin, second[count] = j;
+                            ++count;
+                        }
+                    }
+            }
         }
         chunk.near_first.resize(static_cast<std::size_t>(count));
         std::transform(first, first + count, chunk.near_first.begin(),
@@ -227,7 +208,7 @@ public:
         const int walls = static_cast<int>(bed.cavity->walls.size());
         for (const Leaving& from : leaving_)
             for (const Moving& m : from.moving) {
-                int i = at(place_, m.first), j = m.wall == none ? at(place_, m.second) : i;
+                int i = cells_.place(m.first), j = m.wall == none ? cells_.place(m.second) : i;
                 const bool turned = i > j;
                 if (turned) std::swap(i, j);
                 if (i < first || i >= until) continue;

@@ -181,7 +181,7 @@ class Simulation {
         });
         each_chunk([](Neighbours& n, const Bed& bed, int c) { n.find_cells(bed, at(bed.chunks, c)); });
         team.sync([&] {
-            for (Neighbours& n : neighbours_) n.find_order();
+            for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].find_order(beds_[b]);
         });
         const Part& part = division_.part(team.rank());
         const auto each_bed = [&](auto&& f) {

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.engines.dem_settle import insert
 
 from . import brute, cases
 
@@ -119,6 +120,30 @@ def test_nothing_is_missed_among_many_sizes(name: str) -> None:
     """So it is where the largest sphere is ten times the smallest."""
     seen = follow(gas(CAVITIES[name], WIDE, 110, 1.0), checks=200)
     assert seen["pairs"] > 40 and seen["walls"] > 40
+
+
+def of_sizes(cavity: Any, sizes: dict[str, int], speed: float) -> Any:
+    """Return soft elastic spheres of some diameters, so many of each, that fly about at random in a cavity."""
+    kinds = [rb.Particles(name=size, material=SOFT, diameter=size, count=count) for size, count in sizes.items()]
+    radii = np.repeat([kind.radius for kind in kinds], list(sizes.values()))
+    start = rb.Positions(
+        positions=insert(cavity, radii, seed=2),
+        velocities=speed * np.random.default_rng(1).standard_normal((radii.size, 3)),
+    )
+    damper = rb.ParticleDamper(particles=kinds, cavity=cavity, contact=rb.Tsuji(restitution=1.0), packing=start)
+    return rb.Case(structure=rb.Fixed(), damper=damper, duration=0.01, output=rb.Output(rate=20e3))
+
+
+@pytest.mark.parametrize("cavity", ["box", "flat box", "sphere"])
+@pytest.mark.parametrize(
+    "sizes",
+    [{"1.5 mm": 1500, "14 mm": 4}, {"1.2 mm": 800, "1.9 mm": 600, "3 mm": 60, "7 mm": 8, "13 mm": 2}],
+    ids=["two", "five"],
+)
+def test_nothing_is_missed_among_a_few_large_and_many_small(cavity: str, sizes: dict[str, int]) -> None:
+    """So it is where cells fit the small ones only, and the large ones lie in layers of their own."""
+    seen = follow(of_sizes(CAVITIES[cavity], sizes, 2.0), checks=25)
+    assert seen["pairs"] > 300 and seen["walls"] > 200 and seen["builds"] > 3
 
 
 def test_each_pair_has_its_own_stiffness() -> None:
