@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 ROUNDS = 5000
+KISSING = 12  # equal spheres that touch one
 SWELL = 2e-3  # how much larger particles are made while they are pushed apart, so that in the end none touch
 GROWN = 5e-6  # the same while they fall: twice that are the gaps of the bed
 SINK = 0.1  # overlap over radius at the largest speed of the fall; it is two hundredths of it under the own weight
@@ -103,13 +104,33 @@ def insert(cavity: Cavity, radii: Array, seed: int) -> Array:
     generator = np.random.default_rng(seed)
     half = cavity.lengths / 2
     places = np.zeros((radii.size, 3))
-    left = np.arange(radii.size)
-    for _ in range(1000):
-        places[left] = generator.uniform(-half, half, (left.size, 3)) @ cavity.frame
-        left = left[cavity.room(places[left], radii[left]) < 0]
-        if not left.size:
-            break
-    return push_apart(cavity, places, radii, SWELL)
+    there = np.zeros(0, int)
+    octave = np.log2(radii.max() / radii).astype(int)
+    for k in np.unique(octave):  # the largest first: they do not get through many small ones
+        left = new = np.flatnonzero(octave == k)
+        for _ in range(1000):
+            places[left] = generator.uniform(-half, half, (left.size, 3)) @ cavity.frame
+            outside = cavity.room(places[left], radii[left]) < 0
+            left = left[outside | _overlap(places[left], radii[left], places[there], radii[there])]
+            if not left.size:
+                break
+        there = np.sort(np.concatenate([there, new]))
+        places[there] = push_apart(cavity, places[there], radii[there], SWELL)
+    return places
+
+
+def _overlap(places: Array, radii: Array, others: Array, other_radii: Array) -> NDArray[np.bool_]:
+    """Whether spheres overlap others, larger ones, (n,)."""
+    from scipy.spatial import cKDTree
+
+    found = np.zeros(radii.size, bool)
+    octave = np.log2(other_radii / other_radii.min(initial=math.inf)).astype(int)
+    for k in np.unique(octave):
+        large = np.flatnonzero(octave == k)
+        reach = float(radii.max() + other_radii[large].max())
+        near = cKDTree(places).sparse_distance_matrix(cKDTree(others[large]), reach, output_type="ndarray")
+        found[near["i"][near["v"] < radii[near["i"]] + other_radii[large[near["j"]]]]] = True
+    return found
 
 
 def push_apart(cavity: Cavity, places: Array, radii: Array, swell: float) -> Array:
@@ -154,6 +175,8 @@ def push_apart(cavity: Cavity, places: Array, radii: Array, swell: float) -> Arr
         force = _off_walls(walls, places, depth)
         np.add.at(force, first, push)
         np.add.at(force, second, -push)
+        around = np.bincount(first, minlength=radii.size) + np.bincount(second, minlength=radii.size)
+        force /= np.maximum(around / KISSING, 1.0)[:, None]  # a large one among many small ones is stiffly held
         if np.sum(force * move) > 0:
             move = (1 - mixing) * move + mixing * force * np.linalg.norm(move) / np.linalg.norm(force)
             downhill += 1

@@ -110,6 +110,17 @@ def test_rough_particles_settle() -> None:
     assert np.array_equal(settle(damper(**many, friction=3)), settle(damper(**many, friction=1)))
 
 
+def test_a_large_ball_among_many_small_ones_settles() -> None:
+    """A ball settles among small ones of a sixteenth of its size; none overlap, and all lie from the first step."""
+    kinds = [
+        rb.Particles(name=size, material="steel", diameter=size, count=n) for size, n in (("1 mm", 1500), ("16 mm", 1))
+    ]
+    cavity = rb.Box(size=("18 mm", "18 mm", "30 mm"))
+    bed = damper(particles=kinds, cavity=cavity, packing=rb.Settled(seed=1), softening=1)
+    run = simulate(bed, structure=rb.Fixed(), duration=1e-3)
+    assert np.ptp(run.motion["centre_of_mass"].sel(axis="z").values) < 1e-6
+
+
 def test_settling_is_reproducible() -> None:
     """The same seed gives the same bed, another one another, and no two particles overlap."""
     from rattlebox.engines.dem_settle import settle

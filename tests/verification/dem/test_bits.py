@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.engines.dem_settle import insert
 
 from . import cases
 
@@ -106,6 +107,36 @@ def test_restart_gives_the_same_bits(law: str) -> None:
     unbroken.run(last)
     assert end(unbroken) == end(whole)
     assert len(early["time"]) < len(unbroken.records()["time"])
+
+
+def test_very_different_sizes_give_the_same_bits() -> None:
+    """A few large spheres among many small ones: any number of threads, and a run that goes on, give the same bits."""
+    soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25)
+    counts = {"1.5 mm": 1500, "3.5 mm": 40, "12 mm": 4}
+    kinds = [rb.Particles(name=size, material=soft, diameter=size, count=count) for size, count in counts.items()]
+    cavity, radii = rb.Box(size=("36 mm",) * 3), np.repeat([each.radius for each in kinds], list(counts.values()))
+    places = rb.Positions(positions=insert(cavity, radii, seed=1), velocities=np.tile((0.5, 0.2, -2), (radii.size, 1)))
+    case = rb.Case(
+        structure=rb.SDOF(mass=0.5, stiffness=2e4, velocity=1.0),
+        damper=rb.ParticleDamper(
+            particles=kinds, cavity=cavity, contact=rb.Tsuji(restitution=0.7), friction=0.3, packing=places
+        ),
+        duration=0.008,
+        output=rb.Output(rate=2000.0),
+    )
+    told = []
+    for threads in (1, 2, 3):
+        dem, last = cases.dem_of(case, threads)
+        dem.run(last // 2)
+        again, _ = cases.dem_of(case, threads)
+        again.restore(dem.save())
+        dem.records()  # those so far
+        for each in (dem, again):
+            each.run(last)
+            assert each.status == 0
+            told.append(flat(each.records()) + flat(each.state()) + flat(each.contacts(0)))
+    assert dem.counters()["rebuilds"] > 3 and len(dem.contacts(0)["first"]) > 100
+    assert len(set(told)) == 1
 
 
 @pytest.mark.skipif(CORES == 0, reason="cores of a process can be chosen on Linux only")
