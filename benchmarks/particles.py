@@ -8,6 +8,7 @@ peers     one start, step and physics in this and other programs: `peers FOLDER 
           (particle_peers.py); what is not installed is left out. `--program NAME=PATH` adds another LAMMPS (lmp of another
           environment, say). Beds are made by LAMMPS first; `--beds FOLDER` keeps them (shaken_1000.csv, rest_1000.csv), and
           takes those that are there
+sizes     10,000 particles in the box with a third of the fill in larger ones, two, five and ten times as large
 wide      what a particle and step cost in a bed, and in wide ones of the same depth and state, so that memory's share is
           told from density's: `wide BED`, with one of these files
 
@@ -39,6 +40,7 @@ from particle_peers import PROGRAMS, Program, another_lammps, set_out
 import rattlebox as rb
 from rattlebox.engines.core import core
 from rattlebox.engines.dem import pack_dem
+from rattlebox.engines.dem_settle import insert
 
 DT, PERIOD, LONG = 1.4549e-5, 0.02, 100.0
 DIAMETER, DENSITY, FILL = 3e-3, 7850.0, 0.36
@@ -62,24 +64,38 @@ def edge_of(count: float) -> float:
     return float((count * np.pi * DIAMETER**3 / 6 / FILL) ** (1 / 3))
 
 
-def shaken(count: int, amplitude: float = AMPLITUDES["shaken"], across: int = 1) -> rb.Case:
-    """Return the box, some times as wide as it is high, on a shaker that starts from rest."""
+def shaken(count: int, amplitude: float = AMPLITUDES["shaken"], across: int = 1, larger: float = 1) -> rb.Case:
+    """Return the box, some times as wide as it is high, on a shaker that starts from rest.
+
+    With `larger` a third of the fill is in particles that are larger by that.
+    """
     edge = edge_of(count / across**2)
+    particles = [rb.Particles(material=MATERIAL, diameter=DIAMETER, count=count)]
+    if larger > 1:
+        few = max(1, round(count / 2 / larger**3))
+        particles.append(rb.Particles(name="large", material=MATERIAL, diameter=larger * DIAMETER, count=few))
+        edge = edge_of(count + few * larger**3)
     motion = rb.Harmonic(amplitude=f"{amplitude} m/s^2", frequency=1 / PERIOD, phase=np.pi / 2, direction="z")
     return rb.Case(
         structure=rb.Shaker(motion=motion),
         damper=rb.ParticleDamper(
-            particles=rb.Particles(material=MATERIAL, diameter=DIAMETER, count=count),
+            particles=particles,
             cavity=rb.Box(size=(across * edge, across * edge, edge)),
             contact=rb.Tsuji(restitution=0.75),
             friction=rb.Mindlin(0.3),
             direction="z",
-            packing=rb.Lattice(noise=0.45),
+            packing=rb.Lattice(noise=0.45) if larger == 1 else at_random(edge, particles),
         ),
         duration=1000.0,
         method=rb.Dem(dt=DT),
         output=rb.Output(rate=50),
     )
+
+
+def at_random(edge: float, particles: list[rb.Particles]) -> rb.Positions:
+    """Return places in the box at random."""
+    radii = np.concatenate([np.full(each.count, each.radius) for each in particles])
+    return rb.Positions(positions=insert(rb.Box(size=(edge,) * 3), radii, seed=1))
 
 
 def window_of(count: int) -> tuple[float, float]:
@@ -139,6 +155,12 @@ def one(kind: str, count: str, cores: str, start: str = "") -> None:
     print(json.dumps(timed(packed, steps_of(warm), steps_of(window), int(cores))))
 
 
+def one_mixed(larger: str) -> None:
+    """Print the JSON line of particles among larger ones; what `apart` runs."""
+    packed, _, _ = pack_dem(shaken(10_000, larger=float(larger)))
+    print(json.dumps(timed(packed, steps_of(1), steps_of(4), threads=1)))
+
+
 def one_wide(kind: str, bed: str, across: str, window: str) -> None:
     """Print the JSON line of a bed beside its mirror images, with no walls between them; what `apart` runs."""
     columns, n = np.loadtxt(bed, delimiter=",", ndmin=2), int(across)
@@ -154,6 +176,15 @@ def one_wide(kind: str, bed: str, across: str, window: str) -> None:
     put(packed, np.concatenate(parts))
     warm, steps = (steps_of(periods) for periods in WIDE[kind][int(window)])
     print(json.dumps(timed(packed, warm, steps, threads=1)))
+
+
+def sizes(turns: int) -> Iterator[tuple[str, str]]:
+    """Rate over the size of the larger ones, in turns."""
+    found = [{n: apart("one_mixed", str(n), cores=1) for n in (1, 2, 5, 10)} for _ in range(turns)]
+    for n in found[0]:
+        rates = [turn[n]["rate"] / 1e6 for turn in found]
+        told = f"{statistics.median(rates):.1f} million particle-steps/s, {found[0][n]['contacts']:.2f} contacts a particle"
+        yield f"10,000 particles among some {n} times as large" if n > 1 else "10,000 particles, one core", told
 
 
 def scaling(kind: str = "shaken", turns: int = 3) -> Iterator[tuple[str, str]]:
@@ -309,10 +340,14 @@ def _compared(
         yield title + name, f"{statistics.median(theirs):.1f} million particle-steps/s, 1/{ratio:.2f}"
 
 
+ONE = {"one": one, "one_mixed": one_mixed, "one_wide": one_wide}
+"""Jobs in a process of their own."""
+
+
 def main() -> None:
     """Print a table of what was asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("job", nargs="?", choices=["scaling", "rest", "cores", "peers", "wide", "one", "one_wide"])
+    parser.add_argument("job", nargs="?", choices=["scaling", "rest", "cores", "peers", "sizes", "wide", *ONE])
     parser.add_argument("arguments", nargs="*")
     parser.add_argument("--beds", type=Path)
     parser.add_argument("--program", type=another_lammps, action="append", default=[])
@@ -320,8 +355,8 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=100.0, help="for each bed of `cores`")
     parser.add_argument("--cores", type=int, nargs="+", choices=[1, 2], default=[1, 2])
     given = parser.parse_intermixed_args()
-    if given.job in ("one", "one_wide"):
-        (one if given.job == "one" else one_wide)(*given.arguments)
+    if given.job in ONE:
+        ONE[given.job](*given.arguments)
         return
     rows: list[Iterator[tuple[str, str]]]
     if given.job in ("peers", "wide") and not given.arguments:
@@ -336,6 +371,8 @@ def main() -> None:
     elif given.job == "cores":
         kind = "rest" if "rest" in given.arguments else "shaken"
         rows = [cores(kind, [int(word) for word in given.arguments if word != kind], given.seconds)]
+    elif given.job == "sizes":
+        rows = [sizes(given.turns)]
     elif given.job == "wide":
         rows = [wide(given.arguments[0], given.turns)]
     else:
