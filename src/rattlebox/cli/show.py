@@ -13,7 +13,9 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from rattlebox.cli.terminal import terminal
+from rattlebox.engines.dem_step import WARNINGS
 from rattlebox.results.quantities import MISSING, quantity
+from rattlebox.results.schema import HOW_ENDED
 from rattlebox.studies.design import trials_in
 from rattlebox.studies.store import Progress, has_map, open_study, progress_of, readable
 
@@ -54,6 +56,8 @@ def show_study(path: Path) -> None:
             if counts := statuses(study):
                 told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
                 console.print(f"  ended: {told}", soft_wrap=True)
+            for told in warned(study):
+                console.print(f"  {told}", soft_wrap=True)
     if not whole:
         console.print("  The command that began it goes on.")
 
@@ -79,6 +83,23 @@ def statuses(study: xr.Dataset) -> dict[str, int]:
         names[number] if number < len(names) else f"status {number}": int(count)
         for number, count in zip(numbers, counts, strict=True)
     }
+
+
+def warned(study: xr.Dataset) -> list[str]:
+    """Tell how many runs of a study left their bounds, and in what.
+
+    Parameters
+    ----------
+    study
+        From `open_study` or `sweep`.
+    """
+    if "warnings" not in study or "flag_masks" not in study.warnings.attrs:
+        return []
+    about = study.warnings.attrs
+    flags = np.concatenate([_there(part) for part in _parts(study.warnings)])
+    counts = [np.count_nonzero(flags & mask) for mask in about["flag_masks"]]
+    names = [WARNINGS.get(name, name) for name in about["flag_meanings"].split()]
+    return [f"warning: {count:,} with {name}" for count, name in zip(counts, names, strict=True) if count]
 
 
 def _how_far(progress: Progress) -> str:
@@ -129,7 +150,7 @@ def _results(study: xr.Dataset) -> Table:
     numbers = ("smallest", "largest", "values")
     table = Table("result", "meaning", *(Column(name, **right) for name in numbers), box=SIMPLE_HEAD)
     for name, values in study.data_vars.items():
-        if name != "status" and values.dtype.kind in "fiub" and values.size:
+        if name not in HOW_ENDED and values.dtype.kind in "fiub" and values.size:
             parts = [part for part in map(_there, _parts(values)) if part.size]
             ends = [end for part in parts for end in (part.min(), part.max())]
             shown = [_number(end, values) for end in (min(ends), max(ends))] if ends else [MISSING, MISSING]

@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import typer
+from rich.text import Text
 
-from rattlebox.cli.show import statuses
+from rattlebox.cli.show import statuses, warned
 from rattlebox.cli.terminal import terminal
+from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import CaseError
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.studyfile import read_study
@@ -39,6 +41,8 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
         raise typer.BadParameter("runs on the graphics card of this machine; leave --workers and --dask out")
     study = read_study(path)
     out = out or path.with_suffix(".zarr")
+    for told in doubts(study.case, signals=False):
+        typer.echo(f"{path}: {told}", err=True)
     try:
         with _cluster(dask) as client, _naming(path, out):
             where = {"threads": None if client else workers} if client or workers else {}
@@ -51,7 +55,9 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
     told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
     told = f"{sum(counts.values()):,} variants: {told}\n" if counts else ""
     card = f"{result.attrs['gpu']}\n" if "gpu" in result.attrs else ""
-    console.print(f"{told}{card}written to {out}", soft_wrap=True)
+    refused = f"refused, as with {result.attrs['refused']}\n" if "refused" in result.attrs else ""
+    warnings = "".join(f"{line}\n" for line in warned(result))
+    console.print(Text(f"{told}{refused}{warnings}{card}written to {out}"), soft_wrap=True)
 
 
 @contextmanager

@@ -287,6 +287,16 @@ def settled(case: Case, go_on: Callable[[], bool]) -> bool:
     )
 
 
+def objection(case: Case) -> str:
+    """Return why a case is refused before its first step; nothing where it can be run."""
+    try:
+        settled(case, lambda: True)
+        pack_dem(case)
+    except CaseError as error:
+        return str(error)
+    return ""
+
+
 def useful_threads(packed: Packed) -> int:
     """Return how many threads have enough to do, at most as many as there are cores."""
     particles: int = sum(cavity["radius"].size for cavity in packed["cavities"])
@@ -498,6 +508,7 @@ def _arrays(
             "steps": counters["steps"],
             "rebuilds": counters["rebuilds"],
             "refreshes": counters["refreshes"],
+            "late_builds": counters.get("late_builds", 0),
             "first_touches_particle": int(touches[:, 0].sum()),
             "first_touches_wall": int(touches[:, 1].sum()),
             "extrapolated": counters["extrapolated"],

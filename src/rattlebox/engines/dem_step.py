@@ -35,6 +35,13 @@ MOST_OVERLAP = 0.01
 FEWEST_STEPS = 20.0
 """In the shortest contact."""
 
+WARNINGS = {
+    "few_steps": f"fewer than {FEWEST_STEPS:g} steps in the shortest contact",
+    "deep_overlap": f"overlaps above {100 * MOST_OVERLAP:g} % of the radius",
+    "late_contact": "contacts that may have begun a step late",
+}
+"""What a run can leave its bounds in."""
+
 HERTZ_TIME = 2.9432752
 """Duration of a Hertz contact over its largest overlap by the approach speed."""
 
@@ -436,12 +443,13 @@ def outcome(
         "largest_overlap": max(overlaps),
     }
     notes = [_limited(case, step), *_softened(case)]
-    if math.isfinite(steps) and steps < FEWEST_STEPS:
+    warned = warnings_of(figures, late)
+    if "few_steps" in warned:
         notes.append(
             f"warning: only {steps:.3g} steps in the shortest contact, that of {shortest.what.removeprefix('contact of ')}; "
             f"at least {FEWEST_STEPS:g} are good"
         )
-    if late:
+    if "late_contact" in warned:
         often = "once" if late == 1 else f"{late} times"
         notes.append(
             f"warning: particles sped up within a step beyond what neighbours allow for, {often}; contacts may have "
@@ -456,6 +464,21 @@ def outcome(
                 + ("less softening or a stiffer contact" if damper.softening > 1 else "a stiffer contact")
             )
     return figures, notes
+
+
+def warnings_of(figures: Mapping[str, float], late: int) -> list[str]:
+    """Return in what a run left its bounds, names of `WARNINGS`.
+
+    Parameters
+    ----------
+    figures
+        From `outcome`.
+    late
+        Steps after which neighbours should have been known already.
+    """
+    steps = figures["steps_per_contact"]
+    found = (math.isfinite(steps) and steps < FEWEST_STEPS, figures["largest_overlap"] > MOST_OVERLAP, late > 0)
+    return [name for name, is_so in zip(WARNINGS, found, strict=True) if is_so]
 
 
 def _limited(case: Case, step: Step) -> str:

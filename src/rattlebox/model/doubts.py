@@ -26,14 +26,16 @@ _THIN = 1e-4  # of a cavity
 _LIGHT, _HEAVY = 5.0, 25e3  # kg/m^3
 
 
-def doubts(case: Case) -> tuple[str, ...]:
-    """Return warnings about numbers that are likely slips."""
+def doubts(case: Case, *, signals: bool = True) -> tuple[str, ...]:
+    """Return warnings about numbers that are likely slips, without signals those of structure and dampers only."""
     dampers = (
         told
         for index, damper in enumerate(case.dampers)
         for told in _of_damper(case, damper, " ".join(damper.label(index).split()))
     )
-    return tuple(f"warning: {told}" for told in (*_of_structure(case), *_of_signals(case), *dampers))
+    return tuple(
+        f"warning: {told}" for told in (*_of_structure(case), *(_of_signals(case) if signals else ()), *dampers)
+    )
 
 
 def _of_structure(case: Case) -> Iterator[str]:

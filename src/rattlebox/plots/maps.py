@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 
 from ..model.errors import CaseError, Hint, nearest
 from ..model.units import parse
+from ..results.schema import HOW_ENDED
 from .shown import Shown, Vector, name_of, plain, unit_of, value_of
 from .style import (
     FAINT,
@@ -198,7 +199,8 @@ def _position(coord: xr.DataArray, name: str, value: Any) -> int:
 
 
 def _measure(study: xr.Dataset, of: str | None) -> str:
-    numbers = [str(name) for name, values in study.data_vars.items() if values.dtype.kind in "fiu" and name != "status"]
+    results = ((str(name), values) for name, values in study.data_vars.items() if name not in HOW_ENDED)
+    numbers = [name for name, values in results if values.dtype.kind in "fiu"]
     if of is None:
         if not numbers:
             raise CaseError("there is no measure in this study")

@@ -258,6 +258,9 @@ GRANULAR = Form(
 )
 """Runs of particle dampers."""
 
+HOW_ENDED = ("status", "warnings")
+"""What studies hold of each run beside its measures."""
+
 COUNTS: dict[str, str] = {
     "events": "touches, openings and other turns of a contact",
     "flights": "flights of balls between contacts",
@@ -270,6 +273,7 @@ COUNTS: dict[str, str] = {
     "steps": "time steps",
     "rebuilds": "neighbour lists made anew",
     "refreshes": "neighbour lists looked through for pairs that may touch soon",
+    "late_builds": "neighbour lists made anew when contacts may have begun a step before",
     "first_touches_particle": "first touches among particles",
     "first_touches_wall": "first touches of walls",
     "memory_bytes": "memory of particles, neighbours and contacts",

@@ -118,6 +118,14 @@ class Design:
         """
         return replaced(case, self.values_at(index))
 
+    def told(self, case: Case, index: int) -> str:
+        """Return what is different in one variant in a line, with units; arguments as of `case_at`."""
+        units = {path: unit_of(case, path) for path in self.columns}
+        return ", ".join(
+            f"{path} = {_label(value)}" + (f" {units[path]}" if units[path] not in (None, "1") else "")
+            for path, value in self.values_at(index).items()
+        )
+
     def describe(self) -> dict[str, Any]:
         """Return what JSON can hold of the design; equal designs have equal descriptions, however they were spelt."""
         return {
@@ -295,12 +303,8 @@ class _Reader:
             try:
                 design.case_at(self.case, index)
             except CaseError as error:
-                units = {path: unit_of(self.case, path) for path in design.columns}
-                told = ", ".join(
-                    f"{path} = {_label(value)}" + (f" {units[path]}" if units[path] not in (None, "1") else "")
-                    for path, value in design.values_at(index).items()
-                )
                 said = str(error).removeprefix("case: ").replace("\n", "\n  ")
+                told = design.told(self.case, index)
                 raise CaseError(f"{self.source}: variant {index} does not fit: {told}\n  {said}") from None
 
 

@@ -18,7 +18,8 @@ from rattlebox.analysis.granular import StillCavity
 from rattlebox.engines import dem_gpu
 from rattlebox.engines.batch import Look
 from rattlebox.engines.card import Card
-from rattlebox.engines.dem import run_on_card, settled, simulate_dem
+from rattlebox.engines.dem import objection, run_on_card, settled, simulate_dem
+from rattlebox.engines.dem_step import WARNINGS, warnings_of
 from rattlebox.engines.status import REFUSED, STATUSES
 from rattlebox.model.errors import CaseError, Hint
 from rattlebox.model.methods import Output
@@ -29,7 +30,7 @@ from rattlebox.results.schema import GRANULAR_CHANNELS
 
 from .blocks import Blocks
 from .measures import MEASURES
-from .task import SweepTask, Values
+from .task import Extra, SweepTask, Values
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -139,6 +140,14 @@ class Granular(SweepTask):
     what `samples` or `cycles` ask for. Motions, impacts and states are not kept.
     """
 
+    @cached_property
+    def outputs(self) -> dict[str, tuple[Extra, str, dict[str, Any]]]:
+        """Those of a SweepTask, and in what each run left its bounds."""
+        found = dict(super().outputs)
+        masks, names = [2**bit for bit in range(len(WARNINGS))], " ".join(WARNINGS)
+        about = {"long_name": "in what the run left its bounds", "flag_masks": masks, "flag_meanings": names}
+        return {"status": found.pop("status"), "warnings": ((), "int8", about), **found}
+
     @property
     def look(self) -> Look:
         """Nothing for the core.
@@ -180,7 +189,12 @@ class Granular(SweepTask):
 
     def row(self, case: Case, run: GranularRun, index: int) -> dict[str, float]:
         """Return what is kept of a run, and of what was run, by name."""
-        row: dict[str, float] = {"status": _NUMBERS[run.status]}
+        arrays = run.arrays
+        warned = warnings_of(arrays.figures, arrays.counts["late_builds"])
+        row: dict[str, float] = {
+            "status": _NUMBERS[run.status],
+            "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in warned),
+        }
         if run.ok:
             seen = self._seen_in(run, case)
             row |= {name: seen.value(name) for name in self.named}
@@ -194,7 +208,14 @@ class Granular(SweepTask):
             return np.array([rows.get(index, {}).get(name, missing) for index in range(start, stop)], kind)
 
         values = {name: column(name, np.nan, "float64") for name in (*self.named, *self.own)}
-        return {"status": column("status", REFUSED, "int8"), **values}
+        return {"status": column("status", REFUSED, "int8"), "warnings": column("warnings", 0, "int8"), **values}
+
+    def why_refused(self, index: int) -> str:
+        """Return why a variant is refused; nothing where it is not."""
+        try:
+            return objection(self.variant(index))
+        except CaseError as error:
+            return str(error)
 
     def variant(self, index: int) -> Case:
         """Return a variant as it is run.

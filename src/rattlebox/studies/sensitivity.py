@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import CaseError, Hint
+from rattlebox.results.schema import HOW_ENDED
 
 from .axes import Design
 from .designs import RandomDesign, random_design
@@ -142,7 +143,7 @@ def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed
     """Sobol indices of every measure of a sweep."""
     import xarray as xr
 
-    names = [str(name) for name in runs.data_vars if name != "status"]
+    names = [str(name) for name in runs.data_vars if name not in HOW_ENDED]
     rows = [_of_measure(runs, name, len(paths), n, confidence, seed) for name in names]
     found = xr.Dataset(
         {

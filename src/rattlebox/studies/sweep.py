@@ -6,6 +6,9 @@ import difflib
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from rattlebox.engines.status import REFUSED
 from rattlebox.model.errors import Hint
 
 from .axes import Design
@@ -81,7 +84,8 @@ def sweep(
     -------
     xarray.Dataset
         Over the axes: `status` and each measure with its unit; NaN where a run did not finish. A variant with particles in
-        space whose particles do not fit or settle, or whose step is too long, has the status "refused".
+        space whose particles do not fit or settle, or whose step is too long, has the status "refused"; `attrs["refused"]`
+        says why the first of them was. There `warnings` tells of each run in what it left its bounds (`flag_meanings`).
 
     Raises
     ------
@@ -114,7 +118,7 @@ def sweep(
         **given,
     )
     assert task.look  # what does not fit is told before anything runs
-    return run_task(
+    found = run_task(
         task,
         design=design,
         coords=task.coords(),
@@ -124,6 +128,16 @@ def sweep(
         progress=progress,
         block=task.block,
     )
+    return found.assign_attrs(_refused(task, found)) if isinstance(task, GranularTask) else found
+
+
+def _refused(task: GranularTask, found: xarray.Dataset) -> dict[str, str]:
+    """Tell of the first variant that cannot be run why."""
+    refused = np.flatnonzero(found.status.values == REFUSED)
+    if not refused.size or not (why := task.why_refused(int(refused[0]))):
+        return {}
+    said = why.replace("\n", "\n  ")
+    return {"refused": f"{task.design.told(task.case, int(refused[0]))}\n  {said}"}
 
 
 def beside(needed: Sequence[str], measure: str | Sequence[str]) -> list[str]:

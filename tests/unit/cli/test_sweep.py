@@ -96,6 +96,38 @@ def test_runs_that_do_not_finish_are_counted(study: Path, answer: Answer) -> Non
     assert answer("show", "study.zarr")[1].endswith("ended: 6 too_many_events\n")
 
 
+def test_runs_that_are_refused_or_leave_their_bounds_are_told(study: Path, answer: Answer) -> None:
+    """Of particles, both commands count runs that left their bounds, and sweep says why the first was refused."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=1, stiffness=1e4, velocity="1 m/s"),
+        damper=rb.ParticleDamper(
+            particles=rb.Particles(material="steel", diameter="5 mm", count=2),
+            cavity=rb.Box(size=("20 mm", "20 mm", "20 mm")),
+            contact=rb.Tsuji(restitution=0.5),
+        ),
+        duration="20 ms",
+        method=rb.Dem(dt="40 us"),
+    )
+    case.to_file("few.toml")
+    study.write_text('case.file = "few.toml"\nmeasure = ["impact_share"]\naxes."damper.softening" = [1e6, 1.0]\n')
+    warned = "warning: 1 with overlaps above 1 % of the radius\n"
+    status, said, _ = answer("sweep", study)
+    assert status == 0 and said.startswith("2 variants: 1 finished, 1 refused\n")
+    assert "\nrefused, as with damper.softening = 1\n  method.dt\n    dt = 40.0 µs is too long" in said
+    assert said.endswith(f"\n{warned}written to study.zarr\n")
+    assert answer("show", "study.zarr")[1].endswith(f"  ended: 1 finished, 1 refused\n  {warned}")
+
+
+def test_slips_in_the_case_of_a_study_are_told(study: Path, answer: Answer) -> None:
+    """A case that varies with a gap of metres is told as it would be run alone, beside the results."""
+    case = rb.Case.from_file(EXAMPLE).replaced({"damper.gap": 2.0})
+    case.to_file("wide.toml")
+    study.write_text(STUDY.replace(str(EXAMPLE), "wide.toml").replace('"1 mm"', '"3 m"'))
+    status, _, beside = answer("sweep", study)
+    assert status == 0
+    assert beside == "study.toml: warning: the gap of damper is 2 m; a number without a unit is in metres\n"
+
+
 def test_values_that_are_missing_are_counted(study: Path, answer: Answer) -> None:
     """Show tells how many variants have a value of each measure, and the range of an axis whose values are in no order."""
     measured = STUDY.replace('"impacts"', '"mean_approach_speed"').replace(

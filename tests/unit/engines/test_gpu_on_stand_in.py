@@ -100,7 +100,8 @@ def test_commands_find_the_card(around: dict[str, str], tmp_path: Path) -> None:
         ended = run(
             around, PROGRAM, "sweep", written(tmp_path, case, axis), "--gpu", "-o", tmp_path / f"{id(case)}.zarr"
         )
-        assert ended.returncode == 0 and "2 finished\nstand-in of the tests, no card" in ended.stdout, ended.stderr
+        assert ended.returncode == 0 and "2 variants: 2 finished\n" in ended.stdout, ended.stderr
+        assert "\nstand-in of the tests, no card" in ended.stdout
 
 
 def test_the_table_of_measurements_is_whole(around: dict[str, str]) -> None:

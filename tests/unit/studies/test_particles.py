@@ -237,6 +237,29 @@ def test_corners_that_cannot_be_run_have_a_status() -> None:
     found = rb.sweep(case, {"damper.softening": [1e5, 1.0]}, "impact_share", progress=False)
     assert found.status.values.tolist() == [0, found.status.attrs["flag_meanings"].split().index("refused")]
     assert np.isfinite(found.impact_share.values).tolist() == [True, False]
+    why = found.attrs["refused"].splitlines()
+    assert why[0] == "damper.softening = 1" and "40.0 µs is too long" in why[2]
+
+
+def test_runs_that_leave_their_bounds_are_marked() -> None:
+    """Each run's flags are its own warnings: overlaps that are too deep, contacts of too few steps."""
+    cases = {"damper.softening": [1.0, 1e5], "method.dt": ["0.1 us", "2 us"]}
+    found = rb.sweep(struck(method=rb.Dem(dt="0.1 us"), duration="5 ms"), cases, "impact_share", progress=False)
+    about = found.warnings.attrs
+    flags = dict(zip(about["flag_meanings"].split(), about["flag_masks"], strict=True))
+    assert found.status.values.tolist() == [[0, 0], [0, 0]] and "refused" not in found.attrs
+    for at in np.ndindex(2, 2):
+        values = {
+            "damper.softening": found["damper.softening"].values[at[0]],
+            "method.dt": found["method.dt"].values[at[1]],
+        }
+        notes = " ".join(rb.simulate(struck(duration="5 ms").replaced(values)).arrays.notes)
+        bits = int(found.warnings.values[at])
+        assert bool(bits & flags["few_steps"]) == ("steps in the shortest contact" in notes)
+        assert bool(bits & flags["deep_overlap"]) == ("overlaps reach" in notes)
+        assert not bits & flags["late_contact"]
+    assert np.unique(found.warnings.values & flags["few_steps"]).size == 2
+    assert np.unique(found.warnings.values & flags["deep_overlap"]).size == 2
 
 
 REFUSED = {
