@@ -30,6 +30,7 @@ from rattlebox.model.methods import Dem, EventDriven, Output
 from rattlebox.model.packing import Settled
 from rattlebox.results.granular import GranularArrays, GranularRun
 from rattlebox.results.provenance import Provenance
+from rattlebox.results.whole import check_suffix, needs_folder
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -104,6 +105,12 @@ def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
         raise CaseError(f"{checkpoint} is a folder; a run is kept in a file\n  try: {checkpoint / 'run.checkpoint'}")
     if snapshots is not None and snapshots.is_dir():
         raise CaseError(f"{snapshots} is a folder; snapshots are written to a file\n  try: another name or place")
+    if snapshots is not None:
+        try:
+            check_suffix(snapshots, ".vtkhdf")
+            needs_folder(snapshots)
+        except (ValueError, FileNotFoundError) as error:
+            raise CaseError(str(error)) from None
     if checkpoint is not None and snapshots is not None and checkpoint.resolve() == snapshots.resolve():
         raise CaseError(f"{checkpoint} cannot hold both a run and its snapshots\n  try: run.checkpoint and run.vtkhdf")
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .datasets import columns, labels
-from .whole import needs_folder, telling, whole
+from .whole import check_suffix, needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from .run import Run
@@ -54,9 +54,12 @@ def to_mat(run: Run, path: Path) -> Path:
     ------
     OSError
         When the file cannot be written.
+    ValueError
+        When the name is that of another kind of file.
     """
     from scipy.io import savemat
 
+    check_suffix(path, ".mat")
     needs_folder(path)
     arrays = run.arrays
     names = labels(arrays)
@@ -138,9 +141,12 @@ def to_csv(run: Run, folder: Path) -> tuple[Path, ...]:
     ------
     OSError
         When a file cannot be written.
+    ValueError
+        When the name is that of a file.
     """
     import csv
 
+    check_suffix(folder, "")
     if folder.is_file():
         raise FileExistsError(f"{folder} is a file; CSV files need a folder")
     folder.mkdir(parents=True, exist_ok=True)

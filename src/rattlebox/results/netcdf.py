@@ -23,7 +23,7 @@ from .granular import GranularArrays, GranularRun
 from .provenance import Provenance
 from .schema import COUNTS, FIGURES, GRANULAR, IMPACT, IMPACT_VARIABLES, Form, Kind
 from .snapshots import ROOT as SNAPSHOTS
-from .whole import DAMAGE, needs_folder, telling, whole
+from .whole import DAMAGE, check_suffix, needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from .run import Run
@@ -158,7 +158,10 @@ def save(run: Run, path: Path) -> Path:
     ------
     OSError
         When the file cannot be written.
+    ValueError
+        When the name is that of another kind of file.
     """
+    check_suffix(path, ".nc")
     needs_folder(path)
     content = io.BytesIO()  # HDF5 cannot be rid of what a full disk does not take, and takes the process with it
     _write(run, content)

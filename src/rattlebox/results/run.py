@@ -141,6 +141,8 @@ class Run:
         ------
         OSError
             When the file cannot be written.
+        ValueError
+            When the name is that of another kind of file.
         """
         from .netcdf import save
 
@@ -158,6 +160,8 @@ class Run:
         ------
         OSError
             When the file cannot be written.
+        ValueError
+            When the name is that of another kind of file.
         """
         from .export import to_mat
 

@@ -14,6 +14,39 @@ DAMAGE = (OSError, AttributeError, LookupError, RuntimeError, TypeError, ValueEr
 """What libraries raise where a file of HDF5 is torn, or holds other things than it should."""
 
 
+_WRITERS = {
+    ".nc": "run.save",
+    ".mat": "run.to_mat",
+    ".csv": "run.to_csv",
+    ".vtkhdf": "rb.simulate(case, snapshots=...), of particles in space",
+    ".toml": "case.to_file",
+}
+
+
+def check_suffix(path: Path, own: str) -> None:
+    """Refuse a name that says that a file holds something else.
+
+    Parameters
+    ----------
+    path
+        The file, or a folder.
+    own
+        Its suffix; "" of a folder.
+
+    Raises
+    ------
+    ValueError
+        When the suffix is that of another kind of file, with what writes those.
+    """
+    suffix = path.suffix.lower()
+    if suffix != own and suffix in _WRITERS:
+        what = f"a {own} file" if own else "a folder"
+        name, other = path.with_suffix(own).name, _WRITERS[suffix]
+        raise ValueError(
+            f"{path}: {what} is written, not a {suffix} file\n  try: {name}; the other is written by {other}"
+        )
+
+
 def needs_folder(path: Path) -> None:
     """Refuse a file in a folder that is not there.
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rattlebox.engines.status import REFUSED
-from rattlebox.model.errors import Hint
+from rattlebox.model.errors import Hint, nearest
 
 from .axes import Design
 from .granular import GranularTask
@@ -174,8 +173,7 @@ def known(measure: Any) -> list[Any]:
     check_names(asked)
     for name in asked:
         if isinstance(name, str) and name not in MEASURES:
-            near = difflib.get_close_matches(name, MEASURES, n=1)
-            raise Hint(f"there is no measure {name!r}", near[0] if near else ", ".join(MEASURES))
+            raise Hint(f"there is no measure {name!r}", nearest(name, MEASURES))
         if not isinstance(name, str) and not callable(name):
             raise Hint(f"{name!r} is neither the name of a measure nor a function of a Run", '"impact_share"')
     return asked

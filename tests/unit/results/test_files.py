@@ -234,12 +234,29 @@ def test_a_file_that_must_not_be_read(run: Run, tmp_path: Path, monkeypatch: pyt
 def test_matlab_file_that_cannot_be_written(run: Run, tmp_path: Path) -> None:
     """A missing folder and a folder in the place of the file are told as when a run is saved."""
     (tmp_path / "folder").mkdir()
-    for write in (run.save, run.to_mat):
-        with pytest.raises(FileNotFoundError, match=r"cannot write .*run\.mat: there is no folder .*missing"):
-            write(tmp_path / "missing" / "run.mat")
+    for write, name in ((run.save, "run.nc"), (run.to_mat, "run.mat")):
+        with pytest.raises(FileNotFoundError, match=rf"cannot write .*{name}: there is no folder .*missing"):
+            write(tmp_path / "missing" / name)
         with pytest.raises(OSError, match=r"it cannot be written: .*\n  try: another folder.*folder"):
             write(tmp_path / "folder")
     assert [path.name for path in tmp_path.iterdir()] == ["folder"]
+
+
+@pytest.mark.parametrize(
+    ("writer", "name", "other"),
+    [
+        ("save", "run.mat", "run.nc; the other is written by run.to_mat"),
+        ("to_mat", "run.NC", "run.mat"),
+        ("to_csv", "run.csv", "run;"),
+    ],
+)
+def test_names_of_other_kinds_of_files_are_refused(
+    run: Run, tmp_path: Path, writer: str, name: str, other: str
+) -> None:
+    """A file whose name says that it holds another format is not written, and the right name is told."""
+    with pytest.raises(ValueError, match=rf"{name}: a .* is written, not a {name[3:].lower()} file\n  try: {other}"):
+        getattr(run, writer)(tmp_path / name)
+    assert not any(tmp_path.iterdir())
 
 
 def test_matlab_round_trip(any_run: Run, tmp_path: Path) -> None:

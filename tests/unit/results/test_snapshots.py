@@ -170,7 +170,7 @@ def test_other_files_are_refused(content: bytes | None, said: str, tmp_path: Pat
 
 def test_files_of_other_things_are_kept(written: Any, tmp_path: Path) -> None:
     """Snapshots do not take the place of results or notes; earlier ones, also torn, give way."""
-    results, notes, torn = (tmp_path / name for name in ("run.nc", "notes.txt", "torn.vtkhdf"))
+    results, notes, torn = (tmp_path / name for name in ("results", "notes.txt", "torn.vtkhdf"))
     written[0].save(results)
     notes.write_text("buy milk")
     for path in (results, notes):
@@ -181,6 +181,20 @@ def test_files_of_other_things_are_kept(written: Any, tmp_path: Path) -> None:
     torn.write_bytes(written[1].read_bytes()[:4000])
     rb.simulate(case(snapshots=2), snapshots=torn)
     assert len(Snapshots(torn)) == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("run.csv", "a .vtkhdf file is written, not a .csv file\n  try: run.vtkhdf"),
+        ("no/run.vtkhdf", "there is no folder"),
+    ],
+)
+def test_places_where_no_snapshots_can_be_are_told(tmp_path: Path, name: str, said: str) -> None:
+    """Files of another kind and in folders that are not there are refused before the run."""
+    with pytest.raises(rb.CaseError, match=said):
+        rb.simulate(case(snapshots=2), snapshots=tmp_path / name)
+    assert not any(tmp_path.iterdir())
 
 
 def test_runs_are_no_snapshots(written: Any, tmp_path: Path) -> None:
