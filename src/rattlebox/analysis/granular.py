@@ -18,8 +18,14 @@ if TYPE_CHECKING:
 WAYS = ("complex power", "energy")
 
 
+LEAST_SAMPLES = 8
+"""In a cycle, below which higher harmonics pass for the first."""
+
+_LEAST_SHARE = 0.02  # of the mean square speed
+
+
 class StillCavity(ValueError):
-    """A cavity has no motion at the frequency that is looked at."""
+    """A cavity has hardly any motion at the frequency that is looked at."""
 
 
 def shaken_cavity(
@@ -56,7 +62,8 @@ def shaken_cavity(
     TypeError
         When the run has no particles in space.
     ValueError
-        When less than one cycle is covered, the cavity does not move at this frequency, or there is no such damper.
+        When less than one cycle is covered, there are fewer than eight samples in a cycle, the cavity hardly moves at this
+        frequency, or there is no such damper.
     """
     import xarray
 
@@ -78,6 +85,11 @@ def shaken_cavity(
     begin = times[-1] - cycles / frequency
     kept = np.concatenate([[begin], times[times > begin + 1e-9 / frequency]])
     mass = float(arrays.particle_mass[number])
+    if kept.size - 1 < LEAST_SAMPLES * cycles:
+        raise ValueError(
+            f"the run has {(kept.size - 1) / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {LEAST_SAMPLES}"
+            f"\n  try: rb.Output(rate={20 * frequency:g})"
+        )
 
     def at(values: FloatArray) -> FloatArray:
         columns = values.reshape(times.size, -1).T
@@ -89,8 +101,11 @@ def shaken_cavity(
     span, turn = kept[-1] - kept[0], np.exp(-1j * omega * kept)[:, None]
     v = 2 / span * trapezoid(velocity * turn, kept, axis=0)
     size = float(np.linalg.norm(v))
-    if not size > 1e-9 * float(np.abs(velocity).max(initial=0.0)):
-        raise StillCavity(f"the cavity does not move at {frequency:g} Hz")
+    about = velocity - trapezoid(velocity, kept, axis=0) / span
+    whole = float(trapezoid(np.sum(about**2, axis=1), kept)) / span
+    if not 0.5 * size**2 > _LEAST_SHARE * whole:
+        share = 50 * size**2 / whole if whole else 0.0
+        raise StillCavity(f"the cavity hardly moves at {frequency:g} Hz: {share:.2g} % of its mean square speed")
     step = np.diff(kept)
     middle = 0.5 * (kept[1:] + kept[:-1])
     # The weight has no part at the frequency over whole cycles, so the change of momentum is all that is needed.

@@ -55,6 +55,8 @@ def step_of(time: FloatArray) -> float:
 
 def positive(name: str, value: float, unit: str) -> float:
     """Return a number above zero."""
+    if not isinstance(value, (int, float, np.number)):
+        raise TypeError(f"{name} is {value!r}, but a number is needed" + (f", in {unit}" if unit else ""))
     if not (np.isfinite(value) and value > 0):
         raise ValueError(f"{name} is {value} {unit}".rstrip() + ", but it must be finite and above zero")
     return float(value)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
 from rattlebox.analysis import settling_time, shaken_cavity
-from rattlebox.analysis.granular import StillCavity
+from rattlebox.analysis.granular import LEAST_SAMPLES, StillCavity
 from rattlebox.engines import dem_gpu
 from rattlebox.engines.batch import Look
 from rattlebox.engines.card import Card
@@ -131,6 +131,8 @@ _FOUND: dict[str, Callable[[Seen], float]] = {
 }
 """Those of rattlebox.MEASURES that do not look at single impacts; they mean the same."""
 
+_OF_THE_FIRST_HARMONIC = ("reduced_loss", "effective_mass", "damping_mass", "loss_factor")
+
 
 @dataclass
 class Granular(SweepTask):
@@ -168,8 +170,7 @@ class Granular(SweepTask):
             )
         if self.cycles is not None and math.isnan(_frequency(self.case)):
             raise Hint("cycles need a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
-        if self.cycles is not None:
-            _check_begun(self.case, self.cycles[0] / _frequency(self.case))
+        self._windowed(self.case)
         if self.cycles is None and self.skip >= self.case.duration:
             raise Hint(f"skip = {self.skip:.6g} s leaves nothing of the run to look at", "a longer duration")
         window = self.case.duration - self.skip
@@ -228,6 +229,10 @@ class Granular(SweepTask):
         case = self.design.case_at(self.case, index)
         if not case.particle_dampers:
             raise Hint("a variant without particles in space", "one sweep for each kind of damper")
+        return self._windowed(case)
+
+    def _windowed(self, case: Case) -> Case:
+        """A case with the duration and the samples that are asked for."""
         duration, skip, samples = case.duration, self.skip, self.samples
         if self.cycles is not None:
             period = 1 / _frequency(case)
@@ -235,10 +240,13 @@ class Granular(SweepTask):
             _check_begun(case, skip)
             each = 64 if samples is None else max(1, math.ceil((samples - 1) / self.cycles[1]))
             samples = 1 + each * self.cycles[1]  # of which one is where they begin
-        if samples is None:
-            return case
-        output = Output(rate=(samples - 1) / (duration - skip))
-        return case.model_copy(update={"duration": duration, "output": output})
+        if samples is not None and duration > skip:
+            output = Output(rate=(samples - 1) / (duration - skip))
+            case = case.model_copy(update={"duration": duration, "output": output})
+        for name in self.named:
+            if name in _OF_THE_FIRST_HARMONIC:
+                _check_dense(case, name)
+        return case
 
     def _seen_in(self, run: GranularRun, case: Case) -> Seen:
         frequency = _frequency(case)
@@ -298,6 +306,16 @@ def _check_begun(case: Case, skip: float) -> None:
         raise Hint(
             f"the cycles that are looked at begin at {skip:.4g} s, and what shakes at {driver.start:.4g} s",
             "start = 0, or more cycles to skip",
+        )
+
+
+def _check_dense(case: Case, name: str) -> None:
+    """Refuse a measure of the first harmonic where samples are too few to know it."""
+    each = (case.sample_times().size - 1) / (case.duration * _frequency(case))
+    if each < LEAST_SAMPLES * (1 - 1e-6):
+        raise Hint(
+            f"{name} needs {LEAST_SAMPLES} samples in a cycle, and there are {each:.3g}",
+            "more samples; without a number there are enough",
         )
 
 

@@ -62,8 +62,8 @@ def sweep(
         Instead of the case's duration and `skip`, with a harmonic load: how many cycles to skip and to look at.
     samples
         Equally spaced samples of the motion, both ends included, for measures that need them and for `motion`;
-        default 2001 (of particles in space those of the case's output), or 64 a cycle with `cycles` (there rounded up to a
-        whole number a cycle).
+        default 2001, or 20 a cycle where that is more and the first harmonic is asked for (of particles in space those of
+        the case's output), or 64 a cycle with `cycles` (there rounded up to a whole number a cycle).
     point
         Of the structure, that is watched; default the first damper's.
     motion

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox.analysis.granular import LEAST_SAMPLES
 from rattlebox.engines import gpu_impact
 from rattlebox.engines.batch import Look, run_block
 from rattlebox.engines.pack import Batch, Packed, pack_parts
@@ -328,6 +329,16 @@ class SweepTask:
             raise Hint(f"skip = {np.max(start):.6g} s leaves nothing of the run to look at", "a longer duration")
         dense = self.motion or any(MEASURES[name].samples for name in self.named)
         usual = 2001 if self.cycles is None else 1 + int(np.ceil(64 * self.cycles[1]))
+        harmonic = [name for name in self.named if MEASURES[name].samples and MEASURES[name].cyclic]
+        if harmonic:
+            seen = (settings["duration"] - np.asarray(start)) / period
+            usual = max(usual, 1 + int(np.ceil(20 * np.max(seen))))
+            each = ((self.samples or usual) - 1) / float(np.max(seen))
+            if each < LEAST_SAMPLES * (1 - 1e-6):
+                raise Hint(
+                    f"{harmonic[0]} needs {LEAST_SAMPLES} samples in a cycle, and there are {each:.3g}",
+                    "more samples; without a number there are enough",
+                )
         look = Look(
             measures=self.named,
             shape=packed["points"][self._point],

@@ -263,6 +263,13 @@ def test_loss_and_mass_of_a_shaken_cavity_in_two_ways() -> None:
         rb.analysis.shaken_cavity(run, frequency=40, damper="none")
     with pytest.raises(ValueError, match="no whole cycle"):
         rb.analysis.shaken_cavity(run, frequency=40, after=0.24)
+    with pytest.raises(ValueError, match=r"hardly moves at 50 Hz: .* % of its mean square speed"):
+        rb.analysis.shaken_cavity(run, frequency=50)
+    with pytest.raises(TypeError, match="frequency is '40 Hz', but a number is needed, in Hz"):
+        rb.analysis.shaken_cavity(run, frequency="40 Hz")
+    coarse = simulate(damper(gravity=(0, 0, 0)), structure=shaker(), duration=0.25, output=rb.Output(rate=200))
+    with pytest.raises(ValueError, match=r"5 samples in a cycle of 40 Hz, and needs 8\n  try: rb.Output\(rate=800\)"):
+        rb.analysis.shaken_cavity(coarse, frequency=40)
 
 
 def test_glued_particles_have_their_whole_mass() -> None:

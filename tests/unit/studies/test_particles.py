@@ -129,6 +129,15 @@ def test_too_little_for_a_cycle_is_told_before_anything_runs() -> None:
         rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, "loss_factor", skip="0.055 s")
 
 
+@pytest.mark.parametrize("window", [{"cycles": (1, 2), "samples": 10}, {"skip": "20 ms", "samples": 5}])
+def test_too_few_samples_for_the_first_harmonic_are_refused(window: Any) -> None:
+    """Samples from which no first harmonic is known are refused where it is asked for, and taken where it is not."""
+    with pytest.raises(rb.CaseError, match=r"loss_factor needs 8 samples in a cycle, and there are \d.*\n  try: more"):
+        rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, ["loss_per_cycle", "loss_factor"], progress=False, **window)
+    found = rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, "loss_per_cycle", progress=False, **window)
+    assert np.isfinite(found.loss_per_cycle).all()
+
+
 def test_a_cavity_that_stands_still_has_no_cycles() -> None:
     """Of a shaker or a load without amplitude, measures of cycles are NaN, and the others are what they are."""
     measures = ["rms", "loss_factor", "reduced_loss", "effective_mass", "loss_per_cycle"]

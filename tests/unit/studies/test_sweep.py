@@ -74,16 +74,33 @@ def test_all_measures_of_the_core_are_told() -> None:
     assert {name: measure.samples for name, measure in MEASURES.items()} == core().measures()
 
 
-def test_cyclic_measures_refer_to_the_window() -> None:
-    """With cycles the run lasts as many as are skipped and looked at, whatever the frequency."""
-    case = rb.Case(
+def shaken(duration: float = 1.0) -> rb.Case:
+    """Return a hard ball in a cavity that is shaken ten times a second."""
+    return rb.Case(
         structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=10.0)),
         damper=rb.ImpactDamper(
             ball=rb.Sphere(radius="5 mm", material="steel"), gap="1.5 mm", contact=rb.Tsuji(restitution=0.5)
         ),
-        duration=1.0,
+        duration=duration,
         method=rb.Newton(restitution=0.5),
     )
+
+
+def test_the_first_harmonic_has_the_samples_that_it_needs() -> None:
+    """However long the window is, each cycle has twenty samples by default; fewer than eight are refused."""
+    case, axes = shaken(duration=100.0), {"structure.motion[0].frequency": [10.0, 20.0]}
+    for options, least in (({"skip": 10.0}, 36_001), ({"cycles": (10, 90)}, 64 * 90 + 1)):
+        usual = rb.sweep(case, axes, ["effective_mass", "loss_factor"], **options)
+        asked = rb.sweep(case, axes, ["effective_mass", "loss_factor"], samples=least, **options)
+        assert np.isfinite(usual.loss_factor).all()
+        assert (usual.effective_mass == asked.effective_mass).all() and (usual.loss_factor == asked.loss_factor).all()
+        with pytest.raises(rb.CaseError, match=r"effective_mass needs 8 samples in a cycle, and there are \d"):
+            rb.sweep(case, axes, ["impacts", "effective_mass"], samples=500, **options)
+
+
+def test_cyclic_measures_refer_to_the_window() -> None:
+    """With cycles the run lasts as many as are skipped and looked at, whatever the frequency."""
+    case = shaken()
     axes = {"structure.motion[0].frequency": [5.0, 10.0, 20.0]}
     found = rb.sweep(case, axes, ["impacts_per_cycle", "loss_per_cycle", "reduced_loss"], cycles=(40, 10))
     # Hard impacts know no time: all frequencies are the same motion.
