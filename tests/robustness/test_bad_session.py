@@ -276,12 +276,12 @@ ANSWERS = {
     ),
     "unit with a prefix": (
         changed('amplitude = "5 kN"', 'amplitude = 5\nunit = "kN"'),
-        "load.unit = 'kN'\n  must be 'N', 'm/s^2' or 'm', without a prefix\n  try: amplitude = \"5 kN\"",
+        "load.unit = 'kN'\n  must be 'N', 'm/s^2' or 'm'\n  try: amplitude = \"5 kN\"",
     ),
     "record in a unit with a prefix": (
         'duration = 1\nstructure = { kind = "sdof", mass = 1, stiffness = 1 }\n'
         'load = { kind = "record", times = [0, 1], values = [0, 1], unit = "kN" }\n',
-        "load.unit = 'kN'\n  must be 'N', 'm/s^2' or 'm', without a prefix\n  try: unit = \"N\", scale = 1000",
+        "load.unit = 'kN'\n  must be 'N', 'm/s^2' or 'm'\n  try: unit = \"N\", scale = 1000.0",
     ),
     "record with units": (
         'duration = 1\nstructure = { kind = "sdof", mass = 1, stiffness = 1 }\n'

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
@@ -16,7 +16,15 @@ Column = int | str
 """Number of a column, counted from 1, or its name."""
 
 
-def read_columns(path: str, columns: Sequence[Column] | None = None) -> tuple[Array, Array]:
+class Columns(NamedTuple):
+    """A column of times and one of values, (n,) float, and what is written above each: names, units."""
+
+    times: Array
+    values: Array
+    above: tuple[list[str], list[str]] = ([], [])
+
+
+def read_columns(path: str, columns: Sequence[Column] | None = None) -> Columns:
     """Read times and values from a file.
 
     Parameters
@@ -29,10 +37,6 @@ def read_columns(path: str, columns: Sequence[Column] | None = None) -> tuple[Ar
         Which column or variable holds times and which values; may be left out where there are two, or variables called
         time and value.
 
-    Returns
-    -------
-    tuple of (n,) float
-
     Raises
     ------
     Hint
@@ -40,10 +44,8 @@ def read_columns(path: str, columns: Sequence[Column] | None = None) -> tuple[Ar
     """
     file = existing(path)
     if file.suffix.lower() in BINARY:
-        times, values = _pick(file, read_arrays(file), columns)
-    else:
-        times, values = _from_text(file, columns)
-    return times, values
+        return Columns(*_pick(file, read_arrays(file), columns))
+    return _from_text(file, columns)
 
 
 def as_columns(value: Any) -> tuple[Column, Column] | None:
@@ -138,23 +140,24 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
     Hint
         When the file cannot be read, naming the line that is wrong.
     """
-    lines, names = _data(file, known)
+    lines, names, _ = _data(file, known)
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise Hint(f"{file} has two columns {twice!r}")
     return dict(zip(names, _rows(file, lines, list(range(len(names)))).T, strict=True))
 
 
-def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[Array, Array]:
-    lines, names = _data(file, asked=[str(column) for column in columns or ()])
-    table = _rows(file, lines, _numbers(file, columns, names))
-    return table[:, 0], table[:, 1]
+def _from_text(file: Path, columns: Sequence[Column] | None) -> Columns:
+    lines, names, heads = _data(file, asked=[str(column) for column in columns or ()])
+    first, second = _numbers(file, columns, names)
+    table = _rows(file, lines, [first, second])
+    return Columns(table[:, 0], table[:, 1], ([cells[first] for cells in heads], [cells[second] for cells in heads]))
 
 
 def _data(
     file: Path, known: Sequence[str] = (), asked: Sequence[str] = ()
-) -> tuple[list[tuple[int, list[str]]], list[str]]:
-    """Number and cells of the lines with data, and the names of the columns.
+) -> tuple[list[tuple[int, list[str]]], list[str], list[list[str]]]:
+    """Number and cells of the lines with data, the names of the columns, and all lines above that have as many cells.
 
     The names are the last line above the data that has as many cells and no number in it, or one before, above one of units
     say, that holds more of the names that are known or asked for.
@@ -171,7 +174,7 @@ def _data(
     sought = {*known, *asked}
     names = max(reversed(heads), key=lambda cells: len(sought & set(cells)), default=None)
     data = [(number, cells) for number, cells, marked in lines[start:] if not marked]
-    return data, names or [str(k + 1) for k in range(width)]
+    return data, names or [str(k + 1) for k in range(width)], heads
 
 
 def _begin(lines: list[tuple[int, list[str], bool]]) -> int | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -15,9 +15,9 @@ from .base import Part
 from .elementwise import power
 from .errors import Hint, at, nearest
 from .files import absolute
-from .records import Column, as_columns, read_columns
+from .records import Column, Columns, as_columns, read_columns
 from .space import Direction
-from .units import Angle, NotNegativeTime, Number, PositiveFrequency, PositiveTime, numbers, parse
+from .units import Angle, NotNegativeTime, Number, PositiveFrequency, PositiveTime, numbers, parse, stated
 
 Unit = Literal["N", "m/s^2", "m"]
 _UNITS: tuple[Unit, ...] = ("N", "m/s^2", "m")
@@ -82,12 +82,15 @@ class Signal(Part):
     def _without_prefix(cls, value: Any) -> Any:
         if not isinstance(value, str) or value in _UNITS:
             return value
+        known = stated(value, _UNITS)
         try:
-            factor, unit = parse(f"1 {value}", _UNITS)
+            factor, unit = known or parse(f"1 {value}", _UNITS)
         except Hint:
             return value
-        advice = f'unit = "{unit}", scale = {factor:g}' if "scale" in cls.model_fields else f'amplitude = "5 {value}"'
-        raise Hint(f"must be {', '.join(map(repr, _UNITS[:-1]))} or {_UNITS[-1]!r}, without a prefix", advice)
+        if factor == 1:
+            return unit
+        advice = f'unit = "{unit}", scale = {factor!r}' if "scale" in cls.model_fields else f'amplitude = "5 {value}"'
+        raise Hint(f"must be {', '.join(map(repr, _UNITS[:-1]))} or {_UNITS[-1]!r}", advice)
 
     @model_validator(mode="before")
     @classmethod
@@ -219,6 +222,25 @@ class Harmonic(Signal):
         return self.model_copy(update={"amplitude": self.amplitude * factor, "unit": "m/s^2"})
 
 
+def _in_si(found: Columns, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Times and values of a file; unit and scale as they are given, or as they are written above the values."""
+    times, values, (above_times, above_values) = found
+    slower = next((known[0] for text in reversed(above_times) if (known := stated(text, ("s",)))), 1.0)
+    read = {"times": times * slower if slower != 1 else times, "values": values}
+    written = next((known for text in reversed(above_values) if (known := stated(text, _UNITS))), None)
+    if written is None or given.get("scale") is not None:
+        return read
+    scale, unit = written
+    wanted = given.get("unit")
+    if wanted in _UNITS and wanted != unit:
+        raise Hint(
+            f"the file has {_NAMES[unit]} in this column, not {_NAMES[wanted]}",
+            f"another column, or scale = ..., what its numbers are multiplied by to be in {wanted}",
+            ["unit"],
+        )
+    return {**read, "unit": wanted or unit, "scale": scale}
+
+
 def _column(value: Any) -> tuple[float, ...]:
     try:
         array = numbers(value)
@@ -238,11 +260,12 @@ class Record(Signal):
     times
         Strictly increasing [s].
     values, scale
-        As many, in `unit`, and what they are multiplied by.
+        As many, in `unit`, and what they are multiplied by. Left out, `scale` is 1, or follows from the unit in the file.
     file, columns
         Instead of both: a CSV, NPY, NPZ or MAT file, and its columns of times and values, by number counted from 1 or by
         name: `columns=(1, 3)`, `columns=("t", "a")`. Variables count in the order of the file. They may be left out where
-        there are only two, or variables called time and value.
+        there are only two, or variables called time and value. Units above the columns of a text file, as in "time (ms),
+        acceleration (g)", are kept to; else times are in s.
     """
 
     in_file: ClassVar[tuple[str, ...]] = ("times", "values")
@@ -270,8 +293,8 @@ class Record(Signal):
             columns = as_columns(values.get("columns"))
         with at("file"):
             path = absolute(values["file"])
-            times, numbers = read_columns(path, columns)
-        return {**values, "file": path, "times": times, "values": numbers}
+            found = read_columns(path, columns)
+        return {**values, **_in_si(found, values), "file": path}
 
     @model_validator(mode="after")
     def _sound(self) -> Record:
@@ -308,7 +331,7 @@ class Record(Signal):
         Parameters
         ----------
         path
-            The file; times in seconds.
+            The file; times in seconds, unless it says otherwise above them.
         **options
             columns, unit, scale, point.
 

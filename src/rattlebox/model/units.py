@@ -25,19 +25,29 @@ LARGEST = 1e30
 
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
+_BRACKETED = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*$")
+
 _COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(.*?)\s*$")
 
 # Factors of the commonest units, so that most case files need no unit registry. Exact powers of ten are applied as one
 # correctly rounded operation: x / 1000 rather than x * 0.001.
 _COMMON: dict[str, dict[str, tuple[float, float]]] = {
     "m": {"m": (1, 1), "cm": (1, 1e2), "mm": (1, 1e3), "um": (1, 1e6), "µm": (1, 1e6)},
-    "s": {"s": (1, 1), "ms": (1, 1e3), "us": (1, 1e6), "µs": (1, 1e6)},
+    "s": {
+        "s": (1, 1),
+        "ms": (1, 1e3),
+        "us": (1, 1e6),
+        "µs": (1, 1e6),
+        "sec": (1, 1),
+        "seconds": (1, 1),
+        "msec": (1, 1e3),
+    },
     "kg": {"kg": (1, 1), "g": (1, 1e3), "mg": (1, 1e6), "t": (1e3, 1)},
     "N": {"N": (1, 1), "mN": (1, 1e3), "kN": (1e3, 1), "MN": (1e6, 1)},
     "N/m": {"N/m": (1, 1), "kN/m": (1e3, 1), "MN/m": (1e6, 1), "N/mm": (1e3, 1)},
     "N s/m": {"N s/m": (1, 1), "N*s/m": (1, 1), "Ns/m": (1, 1), "kN s/m": (1e3, 1)},
     "m/s": {"m/s": (1, 1), "mm/s": (1, 1e3)},
-    "m/s^2": {"m/s^2": (1, 1), "m/s²": (1, 1), "mm/s^2": (1, 1e3), "g_0": (9.80665, 1)},
+    "m/s^2": {"m/s^2": (1, 1), "m/s²": (1, 1), "mm/s^2": (1, 1e3), "cm/s^2": (1, 1e2), "g_0": (9.80665, 1)},
     "Hz": {"Hz": (1, 1), "kHz": (1e3, 1)},
     "Pa": {"Pa": (1, 1), "kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1)},
     "kg/m^3": {"kg/m^3": (1, 1), "g/cm^3": (1e3, 1)},
@@ -141,6 +151,35 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         return _finite(float(value)), None
     except (TypeError, ValueError):
         raise Hint(_wanted(units), _example(units)) from None
+
+
+def stated(text: str, units: tuple[str, ...]) -> tuple[float, str] | None:
+    """Return the unit that is written above a column, alone or in brackets behind a name: "a (g)", "[ms]".
+
+    Parameters
+    ----------
+    text
+        As it is written there; g is the acceleration of gravity.
+    units
+        SI units that it may be of.
+
+    Returns
+    -------
+    tuple or None
+        What a number is multiplied by, and the SI unit; None where there is no unit, or one of another dimension.
+    """
+    bracketed = _BRACKETED.search(text)
+    unit = (bracketed[1] or bracketed[2] if bracketed else text).strip()
+    unit = re.sub(r"\*\*|(?<=s)(?=2$)", "^", unit.replace("²", "^2").replace("μ", "µ"))
+    if "m/s^2" in units and unit.lower() in ("g", "gn", "g0", "g_0"):
+        unit = "g_0"
+    if "/" not in unit and not any(unit in _COMMON.get(si, {}) for si in units):
+        return None  # a(t), F (rod): what registries know as units is not meant as one
+    try:
+        factor, si = parse(f"1 {unit}", units)
+    except Hint:
+        return None
+    return factor, str(si)
 
 
 def _check_comma(text: str) -> None:

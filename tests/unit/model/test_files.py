@@ -251,6 +251,45 @@ def test_suffixes_of_structures_in_capitals(tmp_path: Path, name: str) -> None:
     assert rb.Matrices.from_file(tmp_path / name).points == DIRECT.points
 
 
+UNITS_ABOVE = {
+    "time (ms),acceleration (g)": (1e-3, 9.80665, "m/s^2"),
+    "t [s],a [m/s²]": (1.0, 1.0, "m/s^2"),
+    "t,a\ns,mm/s^2": (1.0, 1e-3, "m/s^2"),
+    "# Time [sec],Force [kN]": (1.0, 1e3, "N"),
+    "t [µs],x [mm]": (1e-6, 1e-3, "m"),
+    "t (s),a (in/s^2)": (1.0, 0.0254, "m/s^2"),
+    "time,a(t)": (1.0, 1.0, None),
+    "t,F (rod)": (1.0, 1.0, None),
+    "time (a),speed (m/s)": (1.0, 1.0, None),
+}
+
+
+@pytest.mark.parametrize("above", UNITS_ABOVE, ids=str)
+def test_units_above_columns_are_kept_to(tmp_path: Path, above: str) -> None:
+    """Times and values are in the units that are written above them; what is no unit of theirs is part of a name."""
+    (tmp_path / "push.csv").write_text(f"{above}\n0,1\n2,3\n", encoding="utf-8")
+    slower, scale, unit = UNITS_ABOVE[above]
+    record = rb.Record(file=tmp_path / "push.csv")
+    assert record.times == pytest.approx((0, 2 * slower), rel=1e-15)
+    assert (record.values, record.unit) == ((1, 3), unit)
+    assert record.scale == pytest.approx(scale, rel=1e-15)
+    parts = {} if unit == "m" else {"load" if unit == "N" else "base": record}
+    case = rb.Case(structure=rb.SDOF(mass=1, stiffness=1), duration=1e-9, **parts)
+    assert rb.Case.from_toml(case.to_toml()) == case
+
+
+def test_a_scale_and_a_unit_that_are_given_count(tmp_path: Path) -> None:
+    """A scale takes the place of the unit in the file; without one, another kind of quantity is refused."""
+    (tmp_path / "push.csv").write_text("t (s),a (g)\n0,1\n2,3\n")
+    asked = rb.Record(file=tmp_path / "push.csv", scale=2.5, unit="N")
+    assert (asked.scale, asked.unit, asked.values) == (2.5, "N", (1, 3))
+    with pytest.raises(rb.CaseError, match=r"unit = 'N'\n  the file has an acceleration in this column, not a force"):
+        rb.Record(file=tmp_path / "push.csv", unit="N")
+    with pytest.raises(rb.CaseError, match=r"try: unit = \"m/s\^2\", scale = 9.80665"):
+        rb.Record(file=tmp_path / "push.csv", unit="g")
+    assert rb.Record(file=tmp_path / "push.csv", unit="m/s²").unit == "m/s^2"
+
+
 @pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.npz", "push.mat"])
 def test_a_record_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     """A file that may not be opened is refused by its name and the reason."""
