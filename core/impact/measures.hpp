@@ -62,17 +62,28 @@ public:
         return std::sqrt(total / static_cast<real>(last()));
     }
 
-    // Time after which the point stays within a share of its peak.
+    // Time after which the point stays within a share of its peak, for as long as its last swing took at
+    // least: who just passes through is not settled.
     real settling(real band) const {
         const auto z = [&](std::size_t i) { return point(i).q; };
         const real limit = band * peak(z);
-        for (std::size_t i = count(); i-- > 0;) {
-            if (std::fabs(z(i)) <= limit) continue;
-            if (i == last()) return not_a_number;
-            const real side = std::copysign(limit, z(i));
-            return time(i) + (time(i + 1) - time(i)) * (side - z(i)) / (z(i + 1) - z(i));
-        }
-        return time(0);
+        const auto side = [&](std::size_t i) { return (z(i) > limit) - (z(i) < -limit); };
+        const auto begin_of = [&](std::size_t i) { // of the run of samples on one side, or within the band
+            const int here = side(i);
+            while (i > 0 && side(i - 1) == here) --i;
+            return i;
+        };
+        if (side(last()) != 0) return not_a_number;
+        const std::size_t within = begin_of(last());
+        if (within == 0) return time(0);
+        const std::size_t i = within - 1, begin = begin_of(i);
+        const real out = std::copysign(limit, z(i));
+        const real passed = time(i) + (time(i + 1) - time(i)) * (out - z(i)) / (z(i + 1) - z(i));
+        if (begin == 0) return passed;
+        const std::size_t before = side(begin - 1) == 0 ? begin_of(begin - 1) : begin;
+        if (before == 0 || side(before - 1) == side(i)) return passed;
+        const real swing = time(begin) - time(begin_of(before - 1));
+        return time(last()) - passed < swing ? not_a_number : passed;
     }
 
     // ---- energy

@@ -27,7 +27,8 @@ def settling_time(time: ArrayLike, values: ArrayLike, *, band: float = 0.05, ref
     -------
     float
         On the axis of `time` [s], linear between samples; the first time for a signal that never leaves the band, NaN
-        for one that is outside it at the end.
+        for one that is outside it at the end, or within it for less time than it took from side to side before: it may just
+        pass through.
 
     Raises
     ------
@@ -38,15 +39,20 @@ def settling_time(time: ArrayLike, values: ArrayLike, *, band: float = 0.05, ref
     size = np.abs(x)
     peak = float(size.max()) if reference is None else positive("reference", reference, "")
     limit = positive("band", band, "") * peak
-    outside = np.flatnonzero(size > limit)
-    if not outside.size:
-        return float(t[0])
-    k = int(outside[-1])
-    if k == t.size - 1:
+    side = np.where(size > limit, np.sign(x), 0.0)
+    begins = np.flatnonzero(np.diff(side, prepend=np.nan))  # of samples on one side, or within the band
+    if side[-1]:
         return float("nan")
+    if begins.size == 1:
+        return float(t[0])
+    k = int(begins[-1]) - 1
     # A fast oscillation may cross zero between two samples; signed values tell where it passed the band.
-    side = np.copysign(limit, x[k])
-    return float(t[k] + (t[k + 1] - t[k]) * (side - x[k]) / (x[k + 1] - x[k]))
+    out = np.copysign(limit, x[k])
+    passed = float(t[k] + (t[k + 1] - t[k]) * (out - x[k]) / (x[k + 1] - x[k]))
+    swings = [begin for begin in begins[:-1] if side[begin]][-2:]
+    if len(swings) < 2 or side[swings[0]] == side[swings[1]]:
+        return passed
+    return float("nan") if t[-1] - passed < t[swings[1]] - t[swings[0]] else passed
 
 
 def peak_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:

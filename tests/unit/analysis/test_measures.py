@@ -34,8 +34,21 @@ def test_reference_other_than_the_peak():
 
 
 def test_motion_that_never_settles_is_nan():
-    """A signal that is outside the band at its end has no settling time."""
-    assert np.isnan(settling_time(TIME, np.cos(TIME)))
+    """A signal that is outside the band at its end, or passes through it there, has no settling time."""
+    for end in np.linspace(4, 10, 200):
+        assert np.isnan(settling_time(TIME[end >= TIME], np.cos(TIME[end >= TIME]), band=0.5))
+
+
+@pytest.mark.parametrize("decay", [0.03, 0.2, 1.0])
+def test_a_record_of_any_length_gives_the_time_or_none(decay):
+    """An oscillation that decays is settled when it is, and not while it may only pass through the band."""
+    time = np.linspace(0, 150, 150_001)
+    motion = np.exp(-decay * time) * np.cos(2 * time)
+    settled = settling_time(time, motion)
+    for stop in range(2000, time.size, 97):  # after a swing to either side
+        found = settling_time(time[:stop], motion[:stop])
+        known = time[stop - 1] > settled + 0.6 * np.pi  # a swing and what decay adds
+        assert found == pytest.approx(settled, rel=1e-12) if known else np.isnan(found) or found == settled
 
 
 def test_reductions():

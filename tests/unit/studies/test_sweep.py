@@ -69,6 +69,18 @@ def test_measures_are_those_of_single_runs(swept: Any) -> None:
             assert float(variant.closure) < 1e-12
 
 
+def test_settling_is_that_of_the_analysis_however_short_the_window() -> None:
+    """Where a window ends as the motion passes through the band, neither the core nor the analysis calls it settled."""
+    case = rb.Case(structure=rb.SDOF(mass=1, stiffness=400, damping=1, velocity="1 m/s"), duration=20.0)
+    ends = np.linspace(0.5, 8, 60)
+    found = rb.sweep(case, {"duration": ends}, "settling_time", samples=301).settling_time.values
+    for end, settled in zip(ends, found, strict=True):
+        run = rb.simulate(case.replaced({"duration": end, "output": rb.Output(rate=300 / end)}))
+        alone = analysis.settling_time(run.arrays.time, run.arrays.displacement[:, 0])
+        assert settled == pytest.approx(alone, rel=1e-9, nan_ok=True)
+    assert 10 < np.isnan(found).sum() < 50
+
+
 def test_all_measures_of_the_core_are_told() -> None:
     """The table of measures and the core's list are the same, and agree on which need samples."""
     assert {name: measure.samples for name, measure in MEASURES.items()} == core().measures()
