@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from .maps import draw_map, explain_gaps
@@ -13,8 +11,6 @@ from .style import PaperFigure, Size, paper
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_SHOWN = 95  # per cent of the loss factors; they have no bound where the effective mass vanishes
 
 
 def plot_loss_map(study: xr.Dataset, *, size: Size = "page") -> Figure:
@@ -42,27 +38,16 @@ def plot_loss_map(study: xr.Dataset, *, size: Size = "page") -> Figure:
     amplitude, frequency = "structure.motion.amplitude", "structure.motion.frequency"
     ratio = (study["effective_mass"] / study["particle_mass"]).drop_attrs(deep=False)
     shown = study.assign(mass_ratio=ratio)
-    top = float(np.nanpercentile(study["loss_factor"], _SHOWN))
     panels = (
-        ("loss_factor", "Loss factor $m''/|m'|$", Normalize(0.0, top)),
-        ("mass_ratio", "Effective mass $m'/m$", None),
-        ("reduced_loss", "Loss a cycle $/\\,mV^2$", None),
+        ("loss_factor", "Loss factor $m''/|m'|$"),
+        ("mass_ratio", "Effective mass $m'/m$"),
+        ("reduced_loss", "Loss a cycle $/\\,mV^2$"),
     )
     with paper(size):
         figure = PaperFigure(size, 1.9 if size == "column" else 0.33)
         axes = figure.subplots(3, 1, sharex=True) if size == "column" else figure.subplots(1, 3, sharey=True)
-        for panel, (name, text, norm) in zip(axes, panels, strict=True):
-            draw_map(
-                figure,
-                panel,
-                shown,
-                name,
-                frequency,
-                amplitude,
-                norm=norm,
-                text=text,
-                extend="max" if norm else "neither",
-            )
+        for panel, (name, text) in zip(axes, panels, strict=True):
+            draw_map(figure, panel, shown, name, frequency, amplitude, text=text)
             panel.label_outer()
             panel.set_xlabel("Frequency (Hz)" if panel.get_xlabel() else "")
             panel.set_ylabel(panel.get_ylabel().replace("Structure motion amplitude", "Amplitude"))

@@ -40,6 +40,9 @@ _HATCHES = ("////", "....", "xxxx", "\\\\\\\\", "++++", "oooo", "****")
 _MARKERS = ("x", "+", "1", "2", "3", "4", "*")
 _GREY = "#c8c8c8"
 _FEW = 30  # points of a line, each of which is marked
+_UNBOUNDED = ("loss_factor",)  # where the effective mass passes through zero
+_SHOWN = 95  # per cent of such values
+_LEAP = 4.0  # times as much as these, at which lines are cut
 
 
 def plot_map(
@@ -247,9 +250,7 @@ def draw_map(
     x: str,
     y: str,
     *,
-    norm: Normalize | None = None,
     text: str | None = None,
-    extend: Literal["neither", "both", "min", "max"] = "neither",
 ) -> None:
     """Draw a measure in colours over two axes, with hatches where runs did not finish.
 
@@ -263,18 +264,16 @@ def draw_map(
         Measure.
     x, y
         Axes of the study.
-    norm
-        Scale of colours; default from the least to the largest value.
     text
         Label of the colour bar; default from the attributes.
-    extend
-        Ends of the colour bar that are open.
     """
     values = study[name]
     if _BAND in values.dims:
         values = values.median(_BAND)
     measure = Shown.of(values.transpose(y, x))
     across, up = _Axis.of(study[x]), _Axis.of(study[y])
+    top = _largest_shown(name, measure.numbers)
+    norm = None if top is None else Normalize(0.0, top)
     mesh = axes.pcolormesh(
         across.edges, up.edges, measure.numbers, cmap=colours(), norm=norm, rasterized=True, shading="flat"
     )
@@ -291,10 +290,19 @@ def draw_map(
         )
     across.finish(axes, "x")
     up.finish(axes, "y")
-    bar = figure.colorbar(mesh, ax=axes, aspect=28, pad=0.02, extend=extend)
+    bar = figure.colorbar(mesh, ax=axes, aspect=28, pad=0.02, extend="neither" if norm is None else "max")
     bar.outline.set_visible(False)
     said = measure.with_unit if text is None else text
     bar.set_label(f"{said}, median" if _BAND in study[name].dims else said)
+
+
+def _largest_shown(name: str, values: Vector) -> float | None:
+    """Where the scale of a measure ends that has no bound and here leaps beyond the rest; None for all others."""
+    there = values[np.isfinite(values)]
+    if name not in _UNBOUNDED or not there.size:
+        return None
+    usual = float(np.percentile(there, _SHOWN))
+    return usual if there.max() > usual > 0 else None
 
 
 def colours() -> Any:
@@ -373,13 +381,28 @@ def _lines_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> 
         else:
             del look["marker"]
         _draw_line(axes, across.shown.numbers, member / measure.divisor, look)
-    marks = _mark_gaps(axes, study, name, along, across)
+    marks = _cut_leaps(axes, name, values, along, across) + _mark_gaps(axes, study, name, along, across)
     across.finish(axes, "x")
     measure.along(axes, "y")
     legend_above(axes)
     if marks:
         figure.legend(handles=marks, loc="outside lower left", ncols=2, handlelength=1.0)
     return figure
+
+
+def _cut_leaps(axes: Axes, name: str, values: xr.DataArray, along: str, across: _Axis) -> list[Line2D]:
+    """End the scale of a measure that has no bound where its leaps would press all else flat, and mark where they are."""
+    top = _largest_shown(name, values.values)
+    if top is None or float(values.max()) < _LEAP * top:
+        return []
+    for line in axes.lines:
+        line.set_clip_on(True)
+    axes.set_ylim(0.0, 1.25 * top / Shown.of(values).divisor)
+    leaps = (values > 1.25 * top).transpose(along, ...).values.reshape(across.shown.numbers.size, -1)
+    places = across.shown.numbers[leaps.any(axis=1)]
+    look: dict[str, Any] = {"marker": "^", "color": INK, "linestyle": ""}
+    axes.plot(places, np.full(places.size, 1.0), transform=axes.get_xaxis_transform(), clip_on=False, **look)
+    return [Line2D([], [], label="beyond the scale", **look)]
 
 
 def _draw_line(axes: Axes, places: Vector, member: xr.DataArray, look: dict[str, Any]) -> None:

@@ -108,6 +108,23 @@ def test_lines_show_the_values() -> None:
     assert "too many events (1)" in told(figure)
 
 
+@pytest.mark.parametrize("leap", [0.0, 50.0])
+def test_leaps_of_a_loss_factor_press_nothing_flat(leap: float) -> None:
+    """Where a loss factor leaps beyond the rest, lines and colours end below, with a mark; other measures are whole."""
+    found = study().rename(share="loss_factor").isel({"load.amplitude": slice(1, 4)})
+    found.loss_factor[5, 1] += leap
+    lines = rb.plot_map(found, of="loss_factor", kind="lines")
+    assert (lines.axes[0].get_ylim()[1] < 1.5) and inside(lines)
+    marks = [x.get_xdata() for x in lines.axes[0].lines if (x.get_marker(), x.get_linestyle()) == ("^", "None")]
+    assert [float(x) for places in marks for x in places] == ([pytest.approx(1e3 * GAPS[5])] if leap else [])
+    mesh = next(
+        x for x in rb.plot_map(found, of="loss_factor", kind="map").axes[0].collections if isinstance(x, QuadMesh)
+    )
+    assert mesh.norm.vmax < 1.0
+    kept = rb.plot_map(found.rename(loss_factor="share"), of="share", kind="lines")
+    assert kept.axes[0].get_ylim()[1] > leap
+
+
 def test_seeds_are_replicas() -> None:
     """An axis of seeds is drawn as replicas are, but for where nothing else varies, or replicas are there as well."""
     many = study(5).isel({"load.amplitude": 0}, drop=True)
