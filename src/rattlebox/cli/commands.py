@@ -75,7 +75,9 @@ def sweep(
 
 
 def _check_results(path: Path, wanted: str) -> None:
-    """Refuse what says what to run, where what came of it is needed."""
+    """Refuse what is not there, or says what to run, where what came of it is needed."""
+    if not path.exists():
+        raise CaseError(f"{path} is not there\n  try: {wanted}")
     if path.suffix == ".toml" and path.is_file():
         raise CaseError(f"{path} says what to run, not what came of it\n  try: {wanted}")
 

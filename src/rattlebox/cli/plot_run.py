@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 from rich.progress import Progress
 
-from rattlebox.cli.folder import RUN, SNAPSHOTS
+from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS
 from rattlebox.cli.main import STOPPED
 from rattlebox.cli.plot import FORMATS, target
 from rattlebox.cli.terminal import terminal
@@ -68,10 +68,7 @@ def plot_run(
     try:
         run = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
     except FileNotFoundError as error:
-        advice = (
-            "output.snapshots in the case" if path.name == SNAPSHOTS else "the folder that 'rattlebox run -o' wrote"
-        )
-        raise CaseError(f"{error}\n  try: {advice}") from None
+        raise CaseError(f"{error}{_instead(path)}") from None
     except ValueError as error:
         raise CaseError(str(error)) from None
     if number is not None and not isinstance(run, Snapshots):
@@ -95,6 +92,20 @@ def plot_run(
             soft_wrap=True,
         )
     console.print(told, soft_wrap=True)
+
+
+def _instead(path: Path) -> str:
+    """What to try where a file of a run is not there."""
+    there = {name for name in (RUN, SNAPSHOTS, CHECKPOINT) if (path.parent / name).is_file()}
+    if path.name == SNAPSHOTS and RUN in there and not isinstance(load(path.parent / RUN), GranularRun):
+        return ", and this run has no particles in space to show"
+    if path.name == SNAPSHOTS:
+        return "\n  try: output.snapshots in the case"
+    over = ": the run is not over" if CHECKPOINT in there else ""
+    hints = [f"rattlebox plot {path.parent / SNAPSHOTS}"] if SNAPSHOTS in there else []
+    hints += ["the command that began it, which goes on"] if over else []
+    told = ", or ".join(hints) or "the folder that 'rattlebox run -o' wrote"
+    return f"{over}\n  try: {told}"
 
 
 def _check_film(out: Path, kind: str | None, number: int | None) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.text import Text
 
-from rattlebox.cli.folder import RUN, files_in
+from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, files_in
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import CaseError
 from rattlebox.results import load
@@ -28,8 +28,11 @@ def show_run(path: Path) -> None:
     console, file = terminal(), path / RUN if path.is_dir() else path
     files = f"  files: {', '.join(files_in(file.parent))}" if file.name == RUN else ""
     if path.is_dir() and not file.is_file():
-        console.print(Text.assemble((str(path), "bold"), ": a run that is not over"), soft_wrap=True)
-        console.print(f"{files}\n  The command that began it goes on.", soft_wrap=True)
+        goes_on = (path / CHECKPOINT).is_file()
+        what = "a run that is not over" if goes_on else f"files of a run, without its {RUN}"
+        console.print(Text.assemble((str(path), "bold"), f": {what}"), soft_wrap=True)
+        told = "The command that began it goes on." if goes_on else f"rattlebox plot {path / SNAPSHOTS} draws it."
+        console.print(f"{files}\n  {told}" if goes_on or (path / SNAPSHOTS).is_file() else files, soft_wrap=True)
         return
     try:
         run = load(file)
@@ -43,3 +46,7 @@ def show_run(path: Path) -> None:
     console.print(run.summary())
     if files:
         console.print(files, soft_wrap=True)
+        if (file.parent / CHECKPOINT).is_file():
+            console.print(
+                f"  {CHECKPOINT}: a run that takes its place is not over; its command goes on.", soft_wrap=True
+            )

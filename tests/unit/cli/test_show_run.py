@@ -74,6 +74,26 @@ def test_a_run_that_is_not_over_is_shown(answer: Answer) -> None:
     assert rb.simulate(case, checkpoint="out/run.checkpoint", progress=lambda *_: False).status == "interrupted"
     told = "out: a run that is not over\n  files: run.checkpoint\n  The command that began it goes on.\n"
     assert answer("show", "out") == (0, told, "")
+    told = "error: there is no file out/run.nc: the run is not over\n  try: the command that began it, which goes on\n"
+    assert answer("plot", "out") == (2, "", told)
+
+
+def test_what_a_folder_lacks_is_told(answer: Answer) -> None:
+    """Of snapshots alone, of a run in the place of a finished one, and of films of impacts, it is told."""
+    case = rb.Case.from_file("particles.toml")
+    Path("out").mkdir()
+    rb.simulate(case.replaced({"output": rb.Output(snapshots=3)}), snapshots="out/run.vtkhdf")
+    draws = "rattlebox plot out/run.vtkhdf"
+    told = f"out: files of a run, without its run.nc\n  files: run.vtkhdf\n  {draws} draws it.\n"
+    assert answer("show", "out") == (0, told, "")
+    assert answer("plot", "out") == (2, "", f"error: there is no file out/run.nc\n  try: {draws}\n")
+    rb.simulate(case).save("out/run.nc")
+    rb.simulate(case.replaced({"duration": 100.0}), checkpoint="out/run.checkpoint", progress=lambda *_: False)
+    shown = answer("show", "out")[1]
+    assert shown.endswith("  run.checkpoint: a run that takes its place is not over; its command goes on.\n")
+    assert answer("run", "case.toml", "-o", "hit", "--no-figures")[0] == 0
+    said = "error: there is no file hit/run.vtkhdf, and this run has no particles in space to show\n"
+    assert answer("plot", "hit", "-o", "a.gif") == (2, "", said)
 
 
 def test_what_is_no_run_is_told(answer: Answer) -> None:
@@ -81,7 +101,7 @@ def test_what_is_no_run_is_told(answer: Answer) -> None:
     Path("notes.nc").write_text("notes")
     Path("empty").mkdir()
     for path, said in (
-        ("nowhere.nc", "there is no file nowhere.nc\n  try: the folder that 'rattlebox run -o' wrote"),
+        ("nowhere.nc", "nowhere.nc is not there\n  try: the folder that 'rattlebox run -o' or"),
         ("notes.nc", "notes.nc is not a netCDF-4 file that is whole"),
         ("empty", "empty is not a study"),
         ("case.toml", "case.toml says what to run, not what came of it\n  try: the folder that 'rattlebox run -o' or"),

@@ -277,7 +277,7 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
         ),
         (["run.nc", "--of", "loss"], "--of loss: this applies to a study, and run.nc is a run\n  try: --kind"),
         (["run.vtkhdf", "--at", "x=1"], "--at x=1: this applies to a study, and run.vtkhdf is a run\n  try: --number"),
-        (["nope.nc"], "there is no file nope.nc\n  try: the folder that 'rattlebox run -o' wrote"),
+        (["nope.nc"], "nope.nc is not there\n  try: the folder that 'rattlebox run -o' or"),
         ([".", "--kind", "impacts"], "--kind impacts: there is no such kind here\n  known: energy, motion, particles"),
     ],
 )
