@@ -227,11 +227,19 @@ class GranularLedger(Ledger):
     @property
     def partner_share(self) -> FloatArray:
         """Shares of the energy supplied that are lost among particles, and at walls."""
+        supplied = float(self.supplied[-1])
+        lost = self._lost_at_the_end.sum(axis=0)
+        return np.asarray(lost / supplied if supplied > 0 else np.full(2, np.nan))
+
+    @property
+    def _lost_in_dampers(self) -> FloatArray:
+        return np.asarray(self._lost_at_the_end.sum(axis=1))
+
+    @property
+    def _lost_at_the_end(self) -> FloatArray:
         arrays = self.arrays
         parts = (arrays.normal_loss, arrays.plastic_loss, arrays.sliding_loss, arrays.rolling_loss)
-        supplied = float(self.supplied[-1])
-        lost = sum(part[-1].sum(axis=0) for part in parts)
-        return np.asarray(lost / supplied if supplied > 0 else np.full(2, np.nan))
+        return np.asarray(sum(part[-1] for part in parts))
 
     @property
     def coordination(self) -> FloatArray:

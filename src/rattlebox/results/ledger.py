@@ -131,6 +131,17 @@ class Ledger:
         }
 
     @property
+    def damper_share(self) -> FloatArray:
+        """Shares of the energy supplied that are lost in the contacts of each damper, (D,)."""
+        supplied = float(self.supplied[-1])
+        lost = self._lost_in_dampers
+        return np.asarray(lost / supplied if supplied > 0.0 else np.full(lost.shape, np.nan))
+
+    @property
+    def _lost_in_dampers(self) -> FloatArray:
+        return np.asarray(self.arrays.normal_loss[-1] + self.arrays.plastic_loss[-1])
+
+    @property
     def share(self) -> FloatArray:
         """The same as an array, (channels,)."""
         return np.array(list(self.shares.values()))

@@ -102,6 +102,7 @@ DERIVED_VARIABLES: tuple[Variable, ...] = (
     Variable("losses", "energy", _TIME, "J", "energy lost since the start"),
     Variable("residual", "energy", _TIME, "J", "what the ledger misses"),
     Variable("share", "energy", ("channel",), "1", "share of the supplied energy at the end"),
+    Variable("damper_share", "energy", ("damper",), "1", "share of the supplied energy lost in this damper"),
 )
 
 CHANNELS: tuple[str, ...] = ("viscous", "impact", "plastic", "motion")
@@ -231,6 +232,7 @@ GRANULAR = Form(
         Variable("losses", "energy", _TIME, "J", "energy lost since the start"),
         Variable("residual", "energy", _TIME, "J", "what the ledger misses"),
         Variable("share", "energy", ("channel",), "1", "share of the supplied energy at the end"),
+        Variable("damper_share", "energy", ("damper",), "1", "share of the supplied energy lost in this damper"),
         Variable("partner_share", "energy", ("partner",), "1", "share of the supplied energy lost with this partner"),
     ),
     coordinates={

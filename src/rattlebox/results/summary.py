@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Value = float | int | str
 
-_MOST_POINTS = 4
+_MOST_SHOWN = 4
 _STILL = 1e-9
 """Of the largest motion of any point: a point that moves no more stands still but for rounding."""
 _OPEN = 0.01  # of the energy supplied: beyond it a run does not show what it says
@@ -73,6 +73,9 @@ def _measure(run: Run) -> dict[str, Value]:
     if isinstance(run, GranularRun):
         lost = zip(run.arrays.partners, run.ledger.partner_share, strict=True)
         values |= {f"share_at_{partner}": float(share) for partner, share in lost}
+    if len(arrays.dampers) > 1:
+        shares = zip(arrays.dampers, run.ledger.damper_share, strict=True)
+        values |= {f"share_in[{damper}]": float(share) for damper, share in shares}
     values["closure"] = run.closure
     values |= _extremes(run)
     if arrays.mode_frequency.size:
@@ -156,22 +159,28 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         if channel not in _RARE or any(values.get(key, 0.0) != 0.0 for values in all_values):
             rows.append(_Row(key, told, "%"))
     rows += [_Row(f"share_at_{partner}", told, "%") for partner, told in _PARTNER_LABELS.items()]
+    rows += [_Row(key, f"lost in {name}", "%") for key, name in _largest_of("share_in", all_values)]
     rows += [
         _Row("closure", "ledger closure", "order"),
         _Row("largest_overlap", "largest overlap over radius", "%"),
         _Row("peak_contact_force", "peak contact force", "N"),
         _Row("largest_approach_speed", "largest approach speed", "m/s"),
     ]
-    peaks = dict.fromkeys(key for values in all_values for key in values if key.startswith("peak_displacement["))
-    points = [key.partition("[")[2][:-1] for key in peaks]
-    highest = [max(float(values.get(key, 0.0)) for values in all_values) for key in peaks]
-    for point in (points[k] for k in shown_points(highest, _MOST_POINTS)):
-        where = f", {point}" if len(points) > 1 else ""
-        rows.append(_Row(f"peak_displacement[{point}]", f"peak displacement{where}", "m"))
+    several = len({key for values in all_values for key in values if key.startswith("peak_displacement[")}) > 1
+    for key, point in _largest_of("peak_displacement", all_values):
+        where = f", {point}" if several else ""
+        rows.append(_Row(key, f"peak displacement{where}", "m"))
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
     rows.append(_Row("computing_time", "computing time", "s"))
     rows.append(_Row("particle_steps_per_second", "particle-steps a second", "million"))
     return [row for row in rows if any(row.key in values for values in all_values)]
+
+
+def _largest_of(what: str, all_values: tuple[dict[str, Value], ...]) -> list[tuple[str, str]]:
+    """Keys of those values "what[name]" that are shown, and their names."""
+    keys = list(dict.fromkeys(key for values in all_values for key in values if key.startswith(f"{what}[")))
+    highest = [max(float(values.get(key, 0.0)) for values in all_values) for key in keys]
+    return [(keys[k], keys[k].partition("[")[2][:-1]) for k in shown_points(highest, _MOST_SHOWN)]
 
 
 def shown_points(peaks: ArrayLike, most: int) -> list[int]:

@@ -72,6 +72,7 @@ def test_the_ledger_closes_better_with_shorter_steps() -> None:
         assert all(run.ledger.shares[channel] > 0 for channel in ("viscous", "normal", "sliding", "rolling"))
         in_contacts = sum(run.ledger.shares[channel] for channel in ("normal", "plastic", "sliding", "rolling"))
         assert run.ledger.partner_share.sum() == pytest.approx(in_contacts)
+        assert run.ledger.damper_share.sum() == pytest.approx(in_contacts)
     assert closures[1] < 0.25 * closures[0] < 0.01
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -124,6 +125,23 @@ def test_numbers_of_a_run(run: Run) -> None:
     assert values["largest_approach_speed"] == run.arrays.impacts.approach_speed.max()
     assert abs(sum(values[f"share_{c}"] for c in ("viscous", "impact", "plastic", "motion")) - 1) < 1e-12
     assert values["closure"] == run.closure
+
+
+def test_dampers_are_told_apart() -> None:
+    """Of several dampers the summary tells what share of the energy each took, of many those that took most."""
+    lost = np.array([0.1, 0.0, 0.4, 0.2, 0.05, 0.15])
+
+    def told(count: int) -> str:
+        names = tuple(f"d{k}" for k in range(count))
+        loss = np.outer([0.0, 1.0], lost[:count])
+        run = Run(RunArrays(time=[0.0, 1.0], dampers=names, load_work=[0.0, 2.0], normal_loss=loss))
+        assert run.ledger.damper_share == pytest.approx(lost[:count] / 2)
+        return str(run.summary())
+
+    assert "lost in d" not in told(1)
+    assert re.findall(r"lost in (d\d) +(\S+)", told(6)) == [
+        ("d0", "5.000"), ("d2", "20.00"), ("d3", "10.00"), ("d5", "7.500")
+    ]  # fmt: skip
 
 
 def test_hard_impacts_have_no_force(run: Run) -> None:
