@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from ..model.errors import CaseError, Hint, nearest
 from ..model.units import parse
 from ..results.schema import HOW_ENDED
-from .shown import Shown, Vector, name_of, plain, unit_of, value_of
+from .shown import Shown, Vector, log_ticks, name_of, unit_of, value_of
 from .style import (
     FAINT,
     INK,
@@ -436,7 +436,7 @@ def _series(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[dict[str, A
     norm = (LogNorm if axis.log else Normalize)(float(places.min()), float(places.max()))
     bar = figure.colorbar(ScalarMappable(norm, dark), ax=axes, aspect=28, pad=0.02)
     if axis.log:
-        bar.ax.yaxis.set_major_formatter(plain)
+        log_ticks(bar.ax.yaxis)
     bar.outline.set_visible(False)
     bar.set_label(axis.shown.with_unit)
     return [{"color": dark(norm(value)), "marker": SERIES_MARKERS[0]} for value in places]

@@ -15,6 +15,7 @@ from .style import label, scaled, shorten
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
 
 Vector = NDArray[np.float64]
 
@@ -46,7 +47,7 @@ class Shown(NamedTuple):
     @classmethod
     def of(cls, values: xr.DataArray) -> Shown:
         """Read values, their `units` and `long_name`."""
-        spoken = name_of(values).replace("^2", "²")
+        spoken = name_of(values).replace(" V^2", "\N{NO-BREAK SPACE}V²").replace("^2", "²")
         text = spoken[:1].upper() + spoken[1:]
         if values.dtype.kind not in "fiu":
             names = list(dict.fromkeys(map(str, values.values.ravel())))
@@ -68,11 +69,16 @@ class Shown(NamedTuple):
         axis = axes.xaxis if which == "x" else axes.yaxis
         if log:
             (axes.set_xscale if which == "x" else axes.set_yscale)("log")
-            axis.set_major_formatter(plain)
-            axis.set_minor_formatter(_Between())
+            log_ticks(axis)
         if self.names is not None:
             axis.set_ticks(range(len(self.names)), [shorten(name, _LETTERS) for name in self.names])
         label(axes, which, self.text, self.unit)
+
+
+def log_ticks(axis: Axis) -> None:
+    """Write the numbers of a logarithmic axis as one does."""
+    axis.set_major_formatter(plain)
+    axis.set_minor_formatter(_Between())
 
 
 class _Between(Formatter):
