@@ -1,8 +1,10 @@
 // Who may touch whom soon, found anew by all of a team.
 //
 // Particles are sorted by the cells that they are in, and by name within a cell, so that neighbours are near
-// in memory too, and a row of three cells is one range. Each looks for those that are larger than itself, or
-// equal and higher in name, in the cells around. Contacts that last keep their slots, others fill the rest in
+// in memory too, and a row of three cells is one range. Each octave of sizes has cells of its own. Each
+// particle looks for those that are larger than itself, or equal and higher in name, in the cells around it
+// of its own octave and of coarser ones: a large one sees no small ones, of which there are many about it.
+// Contacts that last keep their slots, others fill the rest in
 // the order of memory. See Neighbours of the other engine for what `reach` promises.
 #pragma once
 
@@ -23,21 +25,41 @@ inline void choose_reach(Bed& bed, long since) {
 
 inline void lay_cells(Bed& bed) {
     const Extent& extent = bed.extent;
-    bed.cell_size = (2 * bed.largest + bed.reach) * (1 + 1e-12);
-    for (;; bed.cell_size *= 1.25) { // few particles in a large cavity need no more cells than particles
-        real total = 1;
-        for (int a = 0; a < 3; ++a) total *= std::floor((extent.high[a] - extent.low[a]) / bed.cell_size) + 1;
+    const auto along = [&](const Layer& layer, int a) {
+        return std::floor((extent.high[a] - extent.low[a]) / layer.size) + 1;
+    };
+    for (int l = 0; l < bed.layers; ++l)
+        bed.layer[l].size = (2 * bed.layer[l].largest + bed.reach) * (1 + 1e-12);
+    for (;;) { // few particles in a large cavity need no more cells than particles
+        real total = 0;
+        for (int l = 0; l < bed.layers; ++l)
+            total += along(bed.layer[l], 0) * along(bed.layer[l], 1) * along(bed.layer[l], 2);
         if (!(total > cells_at_most(bed.particles))) break;
+        for (int l = 0; l < bed.layers; ++l) bed.layer[l].size *= 1.25;
     }
-    for (int a = 0; a < 3; ++a) {
-        bed.low[a] = extent.low[a];
-        bed.cells[a] = static_cast<int>((extent.high[a] - extent.low[a]) / bed.cell_size) + 1;
+    int begin = 0;
+    for (int l = 0; l < bed.layers; ++l) {
+        Layer& layer = bed.layer[l];
+        for (int a = 0; a < 3; ++a) layer.cells[a] = static_cast<int>(along(layer, a));
+        layer.begin = begin;
+        begin += layer.cells[0] * layer.cells[1] * layer.cells[2];
     }
+    for (int a = 0; a < 3; ++a) bed.low[a] = extent.low[a];
 }
 
-inline int cell_along(const Bed& bed, real x, int axis) {
-    const int c = static_cast<int>((x - bed.low[axis]) / bed.cell_size), last = bed.cells[axis] - 1;
+inline int layer_of(const Bed& bed, real radius) {
+    int l = 0;
+    while (bed.layer[l].largest < radius) ++l;
+    return l;
+}
+
+inline int cell_along(const Bed& bed, const Layer& layer, real x, int axis) {
+    const int c = static_cast<int>((x - bed.low[axis]) / layer.size), last = layer.cells[axis] - 1;
     return c < 0 ? 0 : c > last ? last : c;
+}
+
+inline int line_of(const Layer& layer, int y, int z) {
+    return layer.begin + (z * layer.cells[1] + y) * layer.cells[0];
 }
 
 inline bool owns(const Bed& bed, int i, int j) {
@@ -52,8 +74,9 @@ template <class Team> void find_order(Team& team, Bed& bed) {
     const int n = bed.particles, cells = cells_at_most(n);
     team.each(n, [&](int i) {
         const Row p = bed.position[i];
-        const int c = (cell_along(bed, p[2], 2) * bed.cells[1] + cell_along(bed, p[1], 1)) * bed.cells[0] +
-                      cell_along(bed, p[0], 0);
+        const Layer& layer = bed.layer[layer_of(bed, p[3])];
+        const auto along = [&](int a) { return cell_along(bed, layer, p[a], a); };
+        const int c = line_of(layer, along(1), along(2)) + along(0);
         bed.cell[i] = c;
         team.count(bed.cell_begin[c]);
     });
@@ -185,19 +208,23 @@ public:
 template <class Team> void fill_slots(Team& team, Bed& bed, int i) {
     Filling filling(bed, i);
     const Row p = bed.position[i];
-    int c[3];
-    for (int a = 0; a < 3; ++a) c[a] = cell_along(bed, p[a], a);
-    const auto low = [&](int a) { return c[a] > 0 ? c[a] - 1 : 0; };
-    const auto high = [&](int a) { return c[a] < bed.cells[a] - 1 ? c[a] + 1 : c[a]; };
-    for (int z = low(2); z <= high(2); ++z)
-        for (int y = low(1); y <= high(1); ++y) {
-            const int line = (z * bed.cells[1] + y) * bed.cells[0];
-            for (int j = bed.cell_begin[line + low(0)]; j < bed.cell_begin[line + high(0) + 1]; ++j) {
-                const Row q = bed.position[j], apart = p - q;
-                const real near = (p[3] + q[3]) + bed.reach;
-                if (near * near - dot(apart, apart) > 0 && owns(bed, i, j)) filling.add(j);
-            }
+    for (int l = layer_of(bed, p[3]); l < bed.layers; ++l) {
+        const Layer& layer = bed.layer[l];
+        int low[3], high[3];
+        for (int a = 0; a < 3; ++a) {
+            const int c = cell_along(bed, layer, p[a], a);
+            low[a] = c > 0 ? c - 1 : 0, high[a] = c < layer.cells[a] - 1 ? c + 1 : c;
         }
+        for (int z = low[2]; z <= high[2]; ++z)
+            for (int y = low[1]; y <= high[1]; ++y) {
+                const int line = line_of(layer, y, z);
+                for (int j = bed.cell_begin[line + low[0]]; j < bed.cell_begin[line + high[0] + 1]; ++j) {
+                    const Row q = bed.position[j], apart = p - q;
+                    const real near = (p[3] + q[3]) + bed.reach;
+                    if (near * near - dot(apart, apart) > 0 && owns(bed, i, j)) filling.add(j);
+                }
+            }
+    }
     for (int w = 0; w < bed.walls; ++w) {
         const real distance = nearest(bed.wall[w], p - bed.motion.displacement).distance;
         if (p[3] + bed.reach - distance > 0) filling.add(-1 - w);

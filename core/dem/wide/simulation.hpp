@@ -1,7 +1,11 @@
 // The owner of a world: lays it out, lets teams of threads run it, and reads what they wrote.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -161,13 +165,27 @@ class Simulation {
             b.kinds = cavity.kinds, b.wall_kinds = cavity.wall_kinds, b.slots = slots;
             b.pair = kind_of(problem_, cavity.particle_entry),
             b.at_wall = kind_of(problem_, cavity.wall_entry);
+            b.layers = static_cast<int>(octaves(cavity.position).size());
             b.smallest = infinity;
-            for (const Row& p : cavity.position)
-                b.smallest = smaller(b.smallest, p[3]), b.largest = larger(b.largest, p[3]);
+            for (const Row& p : cavity.position) b.smallest = smaller(b.smallest, p[3]);
             for (const real m : cavity.mass) b.mass += m;
             beds.push_back(b);
         }
         lay_out(w, std::move(beds));
+    }
+
+    // Octaves of sizes, counted down from the largest, that have particles.
+    static std::vector<Layer> octaves(const std::vector<Row>& position) {
+        real largest = 0;
+        for (const Row& p : position) largest = larger(largest, p[3]);
+        std::map<int, real, std::greater<>> found; // the smallest sizes first
+        for (const Row& p : position) {
+            real& most = found[static_cast<int>(std::log2(largest / p[3]))];
+            most = larger(most, p[3]);
+        }
+        std::vector<Layer> layers;
+        for (const auto& [octave, most] : found) layers.push_back({.largest = most});
+        return layers;
     }
 
     template <class F> void each_table(F&& f) const {
@@ -210,7 +228,7 @@ class Simulation {
     }
 
     void fill_bed(Bed& b, const Cavity& cavity, std::size_t modes) {
-        fill(b.wall, cavity.walls);
+        fill(b.wall, cavity.walls), fill(b.layer, octaves(cavity.position));
         if (modes > 0) fill(b.shape, cavity.shape);
         fill(b.particle_entry, cavity.particle_entry), fill(b.wall_entry, cavity.wall_entry);
         fill(b.position, cavity.position), fill(b.kind, cavity.kind);

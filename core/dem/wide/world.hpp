@@ -93,9 +93,17 @@ struct Account {
 
 // ---- views
 
+// Sizes within an octave: their particles lie in cells of a grid of their own.
+struct Layer {
+    real largest = 0; // radius
+    real size = 0;    // of its cells
+    int cells[3] = {};
+    int begin = 0; // number of its first cell
+};
+
 struct Bed {
-    int particles = 0, walls = 0, slots = 0, kinds = 0, wall_kinds = 0;
-    real mass = 0, smallest = 0, largest = 0; // of all; radii
+    int particles = 0, walls = 0, slots = 0, kinds = 0, wall_kinds = 0, layers = 0;
+    real mass = 0, smallest = 0; // of all; radius
     Kind pair, at_wall;
     const Wall* wall = nullptr;
     const Row* shape = nullptr;
@@ -126,7 +134,8 @@ struct Bed {
     // slot.
     int *incoming_begin = nullptr, *incoming_count = nullptr, *incoming = nullptr;
 
-    // Cells, and who of the order before lies where.
+    // Cells, the finest layer first, and who of the order before lies where.
+    Layer* layer = nullptr;
     int *cell = nullptr, *cell_begin = nullptr, *cell_count = nullptr, *member = nullptr, *order = nullptr,
         *place = nullptr, *scan_part = nullptr;
 
@@ -141,8 +150,7 @@ struct Bed {
     real reach = 0, since_build = 0;
     CavityMotion motion;
     Row shown{}; // displacement of the cavity at the last step whose forces are known
-    real low[3] = {}, cell_size = 0;
-    int cells[3] = {};
+    real low[3] = {};
     Extent extent;
     StepSum step;
     LossSum before, now;
@@ -236,6 +244,7 @@ template <class Deal> void lay(Deal& deal, Bed& b) {
     slots(b.partner, b.kept, b.action, b.incoming);
     deal(b.rolling, b.rolls() ? s : 0), deal(b.torque, b.rolls() ? s : 0), deal(b.dent, b.dents() ? s : 0);
     deal(b.lost_more, b.rolls() || b.dents() ? n : 0);
+    deal(b.layer, static_cast<std::size_t>(b.layers));
     deal(b.incoming_begin, n + 1), deal(b.cell_begin, cells), deal(b.cell_count, cells);
     deal(b.scan_part, static_cast<std::size_t>(scan_parts(cells_at_most(b.particles))));
     const auto room = static_cast<std::size_t>(tree_room(b.particles));

@@ -23,9 +23,11 @@ def run(case: Any, *, closes: bool = True) -> Any:
     return result
 
 
-def dem_of(case: Any, threads: int = 1) -> Any:
-    """Return the core's simulation of a case, and the number of its last step."""
+def dem_of(case: Any, threads: int = 1, *, engine: str = "Dem") -> Any:
+    """Return one of the core's simulations of a case, and the number of its last step."""
     packed, step, _ = pack_dem(case)
+    if engine == "DemWide":  # whose threads are told when it runs
+        return core().DemWide(packed), step.count
     dem = core().Dem(packed)
     dem.threads = threads
     return dem, step.count
