@@ -53,7 +53,7 @@ def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: fl
             f"separations go down to {np.min(pairs):g}, but all must be above zero; start farther apart, or cut the record "
             "where the motions have become equal"
         )
-    positive("saturation", saturation, "")
+    saturation = positive("saturation", saturation, "")
     logs = np.log(pairs)
     reached = np.flatnonzero(logs.mean(axis=0) >= np.log(saturation))
     size = int(reached[0]) if reached.size else t.size

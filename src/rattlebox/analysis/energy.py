@@ -108,7 +108,7 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
     from scipy.integrate import trapezoid
 
     t, f, v = sampled(time, 3, force=force, velocity=velocity)
-    positive("frequency", frequency, "Hz")
+    frequency = positive("frequency", frequency, "Hz")
     cycles = np.floor((t[-1] - t[0]) * frequency + 1e-9)
     if cycles < 1:
         raise ValueError(

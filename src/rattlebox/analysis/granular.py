@@ -77,7 +77,7 @@ def shaken_cavity(
     if damper not in arrays.dampers:
         raise ValueError(f"damper is one of {', '.join(arrays.dampers)}, not {damper!r}")
     number = arrays.dampers.index(damper)
-    positive("frequency", frequency, "Hz")
+    frequency = positive("frequency", frequency, "Hz")
     times = arrays.time
     cycles = math.floor((times[-1] - max(after, times[0])) * frequency + 1e-9)
     if cycles < 1:

@@ -72,7 +72,7 @@ def poincare_section(run: Run, period: float, *, phase: float = 0.0, of: str | N
 
     name, x, v = _motion(run, of)
     t = finite("time", run.arrays.time, 2)
-    positive("period", period, "s")
+    period = positive("period", period, "s")
     offset = float(finite("phase", [phase])[0]) / (2 * np.pi)
     slack = 1e-9  # of a period: a strobe on the first or last time counts in spite of its rounding
     first = np.ceil(t[0] / period - offset - slack)
@@ -108,7 +108,7 @@ def impacts_per_cycle(impact_times: ArrayLike, period: float, *, start: float, e
         When no whole cycle fits between start and end, or a number is not finite.
     """
     times = finite("impact_times", impact_times, 0)
-    positive("period", period, "s")
+    period = positive("period", period, "s")
     begin, stop = finite("start and end", [start, end])
     slack = 1e-9
     cycles = int(np.floor((stop - begin) / period + slack))

@@ -53,13 +53,16 @@ def step_of(time: FloatArray) -> float:
     return step
 
 
-def positive(name: str, value: float, unit: str) -> float:
+def positive(name: str, value: Any, unit: str) -> float:
     """Return a number above zero."""
-    if not isinstance(value, (int, float, np.number)):
-        raise TypeError(f"{name} is {value!r}, but a number is needed" + (f", in {unit}" if unit else ""))
-    if not (np.isfinite(value) and value > 0):
-        raise ValueError(f"{name} is {value} {unit}".rstrip() + ", but it must be finite and above zero")
-    return float(value)
+    try:
+        number = float("text" if isinstance(value, str) else value)
+    except (TypeError, ValueError):
+        needed = "a number is needed" + (f", in {unit}" if unit else "")
+        raise TypeError(f"{name} is {value!r:.60}, but {needed}") from None
+    if not (np.isfinite(number) and number > 0):
+        raise ValueError(f"{name} is {number} {unit}".rstrip() + ", but it must be finite and above zero")
+    return number
 
 
 def units_of(values: Any) -> str:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _BYTES_AT_ONCE = 2**26
 _MOST_TRIALS = 12
-_PREFIXED = ("m", "s", "m/s", "m/s^2", "N", "N/m", "J", "W", "Pa", "Hz")
+_PREFIXED = ("m", "s", "kg", "m/s", "m/s^2", "N", "N/m", "J", "W", "Pa", "Hz")
 
 
 def show_study(path: Path) -> None:
