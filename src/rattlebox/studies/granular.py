@@ -170,7 +170,7 @@ class Granular(SweepTask):
             )
         if self.cycles is not None and math.isnan(_frequency(self.case)):
             raise Hint("cycles need a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
-        self._windowed(self.case)
+        self._check_ends()
         if self.cycles is None and self.skip >= self.case.duration:
             raise Hint(f"skip = {self.skip:.6g} s leaves nothing of the run to look at", "a longer duration")
         window = self.case.duration - self.skip
@@ -230,6 +230,16 @@ class Granular(SweepTask):
         if not case.particle_dampers:
             raise Hint("a variant without particles in space", "one sweep for each kind of damper")
         return self._windowed(case)
+
+    def _check_ends(self) -> None:
+        """Refuse what fits neither the first variant nor the last one."""
+        for index in (0, self.size - 1):
+            try:
+                self.variant(index)
+                return
+            except CaseError as error:
+                refused = error
+        raise refused
 
     def _windowed(self, case: Case) -> Case:
         """A case with the duration and the samples that are asked for."""

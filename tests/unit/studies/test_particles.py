@@ -138,6 +138,15 @@ def test_too_few_samples_for_the_first_harmonic_are_refused(window: Any) -> None
     assert np.isfinite(found.loss_per_cycle).all()
 
 
+def test_samples_are_those_of_each_variant() -> None:
+    """Samples that are too few for the case itself, but not for its variants, are enough."""
+    case = shaken(output=rb.Output(rate=300))
+    slow = {"structure.motion.frequency": [20.0, 30.0, 50.0]}
+    found = rb.sweep(case, slow, ["loss_factor"], progress=False)
+    assert found.status.values.tolist() == [0, 0, 9]
+    assert "loss_factor needs 8 samples in a cycle, and there are 6" in found.attrs["refused"]
+
+
 def test_a_cavity_that_stands_still_has_no_cycles() -> None:
     """Of a shaker or a load without amplitude, measures of cycles are NaN, and the others are what they are."""
     measures = ["rms", "loss_factor", "reduced_loss", "effective_mass", "loss_per_cycle"]
