@@ -106,10 +106,10 @@ def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
     if snapshots is not None and snapshots.is_dir():
         raise CaseError(f"{snapshots} is a folder; snapshots are written to a file\n  try: another name or place")
     if snapshots is not None:
+        needs_folder(snapshots)
         try:
             check_suffix(snapshots, ".vtkhdf")
-            needs_folder(snapshots)
-        except (ValueError, FileNotFoundError) as error:
+        except ValueError as error:
             raise CaseError(str(error)) from None
     if checkpoint is not None and snapshots is not None and checkpoint.resolve() == snapshots.resolve():
         raise CaseError(f"{checkpoint} cannot hold both a run and its snapshots\n  try: run.checkpoint and run.vtkhdf")
