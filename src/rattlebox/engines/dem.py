@@ -30,7 +30,7 @@ from rattlebox.model.methods import Dem, EventDriven, Output
 from rattlebox.model.packing import Settled
 from rattlebox.results.granular import GranularArrays, GranularRun
 from rattlebox.results.provenance import Provenance
-from rattlebox.results.whole import check_suffix, needs_folder
+from rattlebox.results.whole import check_suffix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -106,7 +106,6 @@ def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
     if snapshots is not None and snapshots.is_dir():
         raise CaseError(f"{snapshots} is a folder; snapshots are written to a file\n  try: another name or place")
     if snapshots is not None:
-        needs_folder(snapshots)
         try:
             check_suffix(snapshots, ".vtkhdf")
         except ValueError as error:
