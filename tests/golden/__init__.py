@@ -1,0 +1,1 @@
+"""Golden results of both engines: bits, values and statistics."""
