@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*.hpp' -o -name '*.cpp')
 
-.PHONY: setup demo test verify lint docs bench gpu-test gpu-bench from-wheels format clean
+.PHONY: setup demo test verify lint docs bench format clean
 
 setup: $(VENV)/.installed
 
@@ -16,7 +16,7 @@ $(VENV)/.installed: $(CORE)
 
 demo: setup
 	$(BIN)/rattlebox demo -o demo
-	$(BIN)/rattlebox paper -o demo/report
+	$(BIN)/python -m reproduction -o demo/report
 
 test: setup
 	$(BIN)/python -m pytest -n 2 -m 'not slow'
@@ -26,17 +26,6 @@ verify: setup
 
 bench: setup
 	$(BIN)/python benchmarks/bench.py
-
-gpu-test: setup
-	$(BIN)/python -m pytest tests/gpu
-
-# With WHEELS=FOLDER nothing is fetched: all packages come from the files in that folder.
-gpu-bench: $(if $(WHEELS),from-wheels,setup)
-	$(BIN)/python benchmarks/gpu.py $(if $(SHORT),--short)
-
-from-wheels:
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --no-index --find-links $(WHEELS) 'rattlebox[gpu]'
 
 lint: setup
 	$(BIN)/ruff check .

@@ -1,4 +1,4 @@
-"""Times what a study of the seed's case costs: `python benchmarks/sweep.py [NAME ...]` prints a table.
+"""Times what a study of the reference case costs: `python benchmarks/sweep.py [NAME ...]` prints a table.
 
 packing   a million variants packed by broadcasting, on a grid and in a random design
 rate      impacts a second and core in an ensemble of start positions, 5 s each; two cores against one, in pairs
@@ -24,7 +24,6 @@ import numpy as np
 import rattlebox as rb
 from rattlebox.engines.pack import pack_batch
 from rattlebox.model.case import Case
-from rattlebox.paper.seed import ALPHA, CONSTANT, DAMPING, GAP, MASS, PLASTIC, PULSE, RADIUS, STIFFNESS, seed_case
 
 MILLION = 1_000_000
 
@@ -33,7 +32,7 @@ def grid() -> tuple[Case, dict[str, Any], tuple[int, ...]]:
     """Return a thousand gaps by a thousand amplitudes."""
     gap, amplitude = np.linspace(1e-4, 2e-3, 1000), np.linspace(1e3, 5e3, 1000)
     columns = {"damper.gap": gap.reshape(-1, 1), "load.amplitude": amplitude.reshape(1, -1)}
-    return seed_case(CONSTANT), columns, (1000, 1000)
+    return rb.reference_case(), columns, (1000, 1000)
 
 
 def random() -> tuple[Case, dict[str, Any], tuple[int, ...]]:
@@ -46,7 +45,7 @@ def random() -> tuple[Case, dict[str, Any], tuple[int, ...]]:
         "damper.contact.restitution.yield_stress": draw(5e8, 2e9, MILLION),
         "load.amplitude": draw(1e3, 5e3, MILLION),
     }
-    return seed_case(PLASTIC), columns, (MILLION,)
+    return rb.reference_case(rb.Tsuji(restitution=rb.JacksonGreen(), ending="zero_overlap")), columns, (MILLION,)
 
 
 def packing(design: Callable[[], tuple[Case, Mapping[str, Any], tuple[int, ...]]]) -> dict[str, Any]:
@@ -90,7 +89,7 @@ def pairs(first: Callable[[], Any], second: Callable[[], Any]) -> float:
 
 def rate(count: int = 20_000) -> Iterator[tuple[str, str]]:
     """Measure impacts a second on one core, and what a second core gives."""
-    case = seed_case(CONSTANT, duration=5.0)
+    case = rb.reference_case(duration=5.0)
 
     def run(threads: int) -> Any:
         return rb.sweep(case, starts(count), ["impacts", "impact_share"], threads=threads, progress=False)
@@ -102,7 +101,7 @@ def rate(count: int = 20_000) -> Iterator[tuple[str, str]]:
         f"{impacts / seconds:,.0f} impacts/s, {1e6 * seconds / impacts:.2f} us each",
     )
     yield "two cores against one", f"{pairs(lambda: run(1), lambda: run(2)):.2f}"
-    hard = seed_case(CONSTANT, duration=5.0, method=rb.Newton())
+    hard = rb.reference_case(duration=5.0, method=rb.Newton())
     work = partial(rb.sweep, hard, starts(count), ["impacts", "impact_share"], threads=1, progress=False)
     seconds, study = min((timed(work) for _ in range(3)), key=lambda pair: pair[0])
     yield "the same with hard impacts", f"{float(study.impacts.sum()) / seconds:,.0f} impacts/s"
@@ -110,7 +109,7 @@ def rate(count: int = 20_000) -> Iterator[tuple[str, str]]:
 
 def memory() -> Iterator[tuple[str, str]]:
     """Measure the memory of a million trajectories."""
-    case = seed_case(CONSTANT, duration=0.05)
+    case = rb.reference_case(duration=0.05)
     rb.sweep(case, starts(1000), ["impacts", "impact_share"], progress=False)
     before = _peak()
     seconds, study = timed(lambda: rb.sweep(case, starts(MILLION), ["impacts", "impact_share"], progress=False))
@@ -125,7 +124,7 @@ def dask(count: int = 40_000) -> Iterator[tuple[str, str]]:
     """Compare two Dask workers with two threads."""
     from distributed import Client, LocalCluster
 
-    case = seed_case(CONSTANT, duration=5.0)
+    case = rb.reference_case(duration=5.0)
     run = partial(rb.sweep, case, starts(count), ["impacts", "impact_share"], progress=False)
     with (
         LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
@@ -141,7 +140,7 @@ def dask(count: int = 40_000) -> Iterator[tuple[str, str]]:
 def scipy(count: int = 100_000, members: int = 3) -> Iterator[tuple[str, str]]:
     """Extrapolate SciPy's time for the ensemble from a few members, against ours on one core."""
     ours, _ = timed(
-        lambda: rb.sweep(seed_case(CONSTANT, duration=5.0), starts(2000), ["impact_share"], threads=1, progress=False)
+        lambda: rb.sweep(rb.reference_case(duration=5.0), starts(2000), ["impact_share"], threads=1, progress=False)
     )
     theirs, _ = timed(lambda: [peer(start) for start in np.linspace(-0.9, 0.9, members)])
     ratio = (theirs / members) / (ours / 2000)
@@ -152,12 +151,15 @@ def scipy(count: int = 100_000, members: int = 3) -> Iterator[tuple[str, str]]:
 
 
 def peer(start: float) -> float:
-    """Run the seed's case with SciPy, stopping at each touch and release; returns the loss in the contacts."""
+    """Run the reference case with SciPy, stopping at each touch and release; returns the loss in the contacts."""
     from scipy.integrate import solve_ivp
 
-    mass, ball, stiffness, damping, gap = MASS, 1.2, STIFFNESS, DAMPING, GAP
-    hertz = 4 / 3 * 200e9 / (2 * (1 - 0.3**2)) * RADIUS**0.5
-    dashpot = ALPHA * (mass * ball / (mass + ball) * hertz) ** 0.5
+    case = rb.reference_case()
+    structure, damper, pulse = case.structure, case.dampers[0], case.loads[0].duration
+    mass, stiffness, damping, gap = structure.mass, structure.stiffness, structure.damping, damper.gap
+    ball = 1.2
+    hertz = 4 / 3 * 200e9 / (2 * (1 - 0.3**2)) * damper.balls[0].radius ** 0.5
+    dashpot = damper.contact.alpha * (mass * ball / (mass + ball) * hertz) ** 0.5
 
     def right(t: float, y: Any) -> list[float]:
         z, v, s, w, _ = y
@@ -166,7 +168,7 @@ def peer(start: float) -> float:
         rate = side * (w - v)
         normal = hertz * depth**1.5 if depth > 0 else 0.0
         drag = dashpot * depth**0.25 * rate if depth > 0 else 0.0
-        push = 5000.0 * np.sin(np.pi * t / PULSE) if t < PULSE else 0.0
+        push = 5000.0 * np.sin(np.pi * t / pulse) if t < pulse else 0.0
         force = side * (normal + drag)
         return [v, (push - stiffness * z - damping * v + force) / mass, w, -force / ball, drag * rate]
 
@@ -175,7 +177,7 @@ def peer(start: float) -> float:
 
     touch.terminal = True  # type: ignore[attr-defined]
     y = np.array([0.0, 0.0, start * gap, 0.0, 0.0])
-    t, stops = 0.0, [PULSE, 5.0]
+    t, stops = 0.0, [pulse, 5.0]
     while t < 5.0:
         part = solve_ivp(right, (t, stops[0]), y, method="LSODA", rtol=1e-9, atol=1e-12, events=touch, max_step=1e-2)
         t, y = part.t[-1], part.y[:, -1]

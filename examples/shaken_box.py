@@ -10,7 +10,7 @@ BOX = rb.Case(
         contact=rb.Tsuji(restitution=0.8),
         friction=0.2,
         packing=rb.Settled(seed=1),
-        softening=300,
+        softening="auto",
     ),
     duration="1 s",
 )

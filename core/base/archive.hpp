@@ -56,6 +56,12 @@ class BackReader {
         next_ += count * sizeof(T);
     }
     template <class T> void one(T& value) { get(&value, 1); }
+    void one(bool& value) {
+        std::uint8_t byte;
+        get(&byte, 1);
+        if (byte > 1) throw std::invalid_argument("the state is damaged");
+        value = byte != 0;
+    }
     template <class T, class A> void one(std::vector<T, A>& values) {
         std::size_t count;
         one(count);

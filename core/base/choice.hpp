@@ -1,6 +1,4 @@
 // One of several laws, chosen when a case is packed: a tagged union of trivially copyable types.
-// std::variant would do on the CPU, but is not there when the same headers are compiled for a GPU at run
-// time.
 #pragma once
 
 #include <cstddef>
@@ -47,14 +45,16 @@ public:
 
     template <class F> decltype(auto) visit(F&& f) const { return visit_from<Types...>(f); }
 
-    // The same for a law that is changed in place.
-    template <class F> void change(F&& f) {
-        visit([&](const auto& law) {
-            f(const_cast<std::remove_const_t<std::remove_reference_t<decltype(law)>>&>(law));
-        });
-    }
-
     template <class T> const T* get_if() const { return index_ == index_of<T>() ? &as<T>() : nullptr; }
+
+    // Place of the present type in the list of types.
+    int index() const { return index_; }
+
+    // Calls f<T>(place) for each type in turn.
+    template <class F> __attribute__((always_inline)) static void each(F&& f) {
+        int place = 0;
+        (f.template operator()<Types>(place++), ...);
+    }
 
     // Calls f with a null pointer of each type in turn: how the doors build a law from its name.
     template <class F> static void each_type(F&& f) { (f(static_cast<const Types*>(nullptr)), ...); }

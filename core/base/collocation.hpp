@@ -64,7 +64,7 @@ template <int n> struct Collocation {
     }
 
     // out[r][i] = integral of f[r] from 0 to node i, for several functions at once.
-    template <int count> RATTLEBOX_CALL void integrate(const Row* f, Row* out) const {
+    template <int count> void integrate(const Row* f, Row* out) const {
         alignas(64) real difference[count][half], sum[count][half];
         real whole[count];
         for (int r = 0; r < count; ++r) {
@@ -120,7 +120,7 @@ template <int n> struct Collocation {
     real whole(const Row& f) const { return dot<n>(weight, f.at); }
 
     // f at any point that is not a node, from its values at the nodes.
-    RATTLEBOX_CALL real interpolate(const Row& f, real x) const {
+    real interpolate(const Row& f, real x) const {
         Lanes above = {}, below = {};
         for (int i = 0; i < n; i += block) {
             const Lanes part = lanes(barycentric + i) / (Lanes::all(x) - lanes(node + i));

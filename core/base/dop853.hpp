@@ -123,7 +123,7 @@ public:
     const real* derivative() const { return k_.data(); }
 
     // y_new = y + one step of length h (of either sign).
-    template <class F> RATTLEBOX_CALL void step(F& right, const real* y, real h, real* y_new) {
+    template <class F> void step(F& right, const real* y, real h, real* y_new) {
         run_stages<1>(right, y, h);
         for (int i = 0; i < size_; ++i)
             y_new[i] =

@@ -8,9 +8,7 @@ namespace rattlebox {
 
 inline constexpr int lane_count = 8;
 
-#if defined(RATTLEBOX_GPU)
-inline constexpr int register_width = 1; // there, neighbouring threads share an instruction
-#elif defined(__AVX512F__)
+#if defined(__AVX512F__)
 inline constexpr int register_width = 8;
 #elif defined(__AVX__)
 inline constexpr int register_width = 4;
@@ -35,21 +33,6 @@ template <int n> struct __attribute__((may_alias)) Pack {
     friend real largest(const Pack& a) { return largest(larger(a.low, a.high)); }
 };
 
-#ifdef RATTLEBOX_GPU
-template <> struct Pack<1> {
-    real v;
-
-    static Pack all(real v) { return {v}; }
-    friend Pack operator+(const Pack& a, const Pack& b) { return {a.v + b.v}; }
-    friend Pack operator-(const Pack& a, const Pack& b) { return {a.v - b.v}; }
-    friend Pack operator*(const Pack& a, const Pack& b) { return {a.v * b.v}; }
-    friend Pack operator/(const Pack& a, const Pack& b) { return {a.v / b.v}; }
-    friend Pack absolute(const Pack& a) { return {a.v < 0 ? -a.v : a.v}; }
-    friend Pack larger(const Pack& a, const Pack& b) { return {a.v > b.v ? a.v : b.v}; }
-    friend real total(const Pack& a) { return a.v; }
-    friend real largest(const Pack& a) { return a.v; }
-};
-#else
 template <> struct __attribute__((may_alias)) Pack<register_width> {
     typedef real Register __attribute__((vector_size(register_width * sizeof(real)), may_alias));
     Register v;
@@ -75,7 +58,6 @@ template <> struct __attribute__((may_alias)) Pack<register_width> {
         return most;
     }
 };
-#endif
 
 using Lanes = Pack<lane_count>;
 
@@ -96,7 +78,6 @@ template <int n> Pack<n> read(const real* p) {
 inline constexpr int group = register_width;
 using Group = Pack<group>;
 
-#ifndef RATTLEBOX_GPU
 // At any address.
 inline Group unaligned(const real* p) {
     Group value;
@@ -104,7 +85,6 @@ inline Group unaligned(const real* p) {
     return value;
 }
 inline void put(const Group& value, real* p) { __builtin_memcpy(p, &value, sizeof(value)); }
-#endif
 
 inline Group& group_of(Lanes& all, int first) { return pack<group>(reinterpret_cast<real*>(&all) + first); }
 

@@ -1,7 +1,6 @@
 // Gauss-Legendre quadrature on [0, 1].
 #pragma once
 
-#include "base/constant.hpp"
 #include "base/real.hpp"
 
 namespace rattlebox {
@@ -36,7 +35,7 @@ struct GaussRule {
 
 // Integral of f over [0, length].
 template <class F> real integrate(real length, F&& f) {
-    const GaussRule& rule = constant<GaussRule>();
+    static const GaussRule rule;
     real sum = 0;
     for (int i = 0; i < gauss_count; ++i) sum += rule.weight[i] * f(length * rule.node[i]);
     return length * sum;

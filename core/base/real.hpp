@@ -4,13 +4,6 @@
 #include <cmath>
 #include <limits>
 
-// A function that a GPU calls: its compiler would copy it to every place that uses it.
-#ifdef __CUDACC__
-#define RATTLEBOX_CALL __noinline__
-#else
-#define RATTLEBOX_CALL
-#endif
-
 namespace rattlebox {
 
 using real = double;

@@ -11,25 +11,7 @@ namespace rattlebox {
 // Lanes live in registers only where functions of them are inlined, which compilers decide by size.
 #define RATTLEBOX_INLINE __attribute__((always_inline)) inline
 
-#ifdef RATTLEBOX_GPU
-struct alignas(4 * sizeof(real)) Row {
-    real at[4];
-    real& operator[](int i) { return at[i]; }
-    real operator[](int i) const { return at[i]; }
-    friend Row operator+(Row a, Row b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]}; }
-    friend Row operator-(Row a, Row b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]}; }
-    friend Row operator*(Row a, Row b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]}; }
-    friend Row operator+(Row a, real b) { return a + Row{b, b, b, b}; }
-    friend Row operator-(Row a, real b) { return a - Row{b, b, b, b}; }
-    friend Row operator*(real a, Row b) { return Row{a, a, a, a} * b; }
-    friend Row operator*(Row a, real b) { return a * Row{b, b, b, b}; }
-    friend Row operator/(Row a, real b) { return {a[0] / b, a[1] / b, a[2] / b, a[3] / b}; }
-    friend Row& operator+=(Row& a, Row b) { return a = a + b; }
-    friend Row& operator-=(Row& a, Row b) { return a = a - b; }
-};
-#else
 typedef real Row __attribute__((vector_size(4 * sizeof(real))));
-#endif
 
 inline Row row(real x, real y, real z, real w = 0) { return Row{x, y, z, w}; }
 inline Row row(real all) { return Row{all, all, all, all}; }
@@ -48,7 +30,9 @@ inline real all(real, real v) { return v; }
 inline real root(real a) { return std::sqrt(a); }
 inline real larger(real a, real b) { return a > b ? a : b; }
 inline real smaller(real a, real b) { return a < b ? a : b; }
-inline real choose(real c, real a, real b) { return c > 0 ? a : b; } // a where c > 0
+inline real power(real a, real exponent) { return std::pow(a, exponent); }
+// f of each number.
+template <class F> inline real each(real a, F&& f) { return f(a); }
 
 template <int n> RATTLEBOX_INLINE Pack<n> all(const Pack<n>&, real v) { return Pack<n>::all(v); }
 
@@ -71,11 +55,22 @@ template <int n> RATTLEBOX_INLINE Pack<n> smaller(const Pack<n>& a, const Pack<n
         return {a.v < b.v ? a.v : b.v};
 }
 
+// a where c > 0
 template <int n> RATTLEBOX_INLINE Pack<n> choose(const Pack<n>& c, const Pack<n>& a, const Pack<n>& b) {
     if constexpr (n > register_width)
         return {choose(c.low, a.low, b.low), choose(c.high, a.high, b.high)};
     else
         return {c.v > 0 ? a.v : b.v};
+}
+
+template <int n, class F> RATTLEBOX_INLINE Pack<n> each(const Pack<n>& a, F&& f) {
+    alignas(64) real x[n];
+    pack<n>(x) = a;
+    for (real& value : x) value = f(value);
+    return read<n>(x);
+}
+template <int n> RATTLEBOX_INLINE Pack<n> power(const Pack<n>& a, real exponent) {
+    return each(a, [&](real value) { return std::pow(value, exponent); });
 }
 
 template <int n> Pack<n> operator-(const Pack<n>& a) { return Pack<n>::all(0) - a; }
@@ -111,7 +106,6 @@ template <class T> struct Vector {
     }
 };
 
-#ifndef RATTLEBOX_GPU
 struct Columns {
     Group x, y, z, w;
     Vector<Group> vector() const { return {x, y, z}; }
@@ -181,6 +175,5 @@ template <class At> RATTLEBOX_INLINE void store(const Columns& c, At&& at) {
     for (int l = 0; l < group; ++l) *at(l) = Row{c.x.v[l], c.y.v[l], c.z.v[l], c.w.v[l]};
 #endif
 }
-#endif
 
 } // namespace rattlebox

@@ -10,7 +10,7 @@ enum class Status : int {
     step_too_small = 3,  // the error bound cannot be met
     interrupted = 4,     // the user asked to stop
     not_finite = 5,      // a state became infinite or not a number
-    ledger_open = 6,     // the end was reached, but the energy ledger does not close
+    energy_error = 6,    // the end was reached, but the energy residual exceeds its bound
     escaped = 7,         // a particle has left its cavity
     no_rebound = 8,      // a dashpot was asked for a restitution of zero
 };

@@ -1,22 +1,46 @@
-// The table of laws: one row a law. See docs, "Add a contact law".
+// The table of laws, one line a law. See docs, "Add a contact law"; what a law must have is in
+// contact/complete.hpp.
 #pragma once
 
-#include "base/choice.hpp"
-#include "contact/hertz_tsuji.hpp"
-#include "contact/linear.hpp"
+#include "contact/complete.hpp"
+#include "contact/normal/hertz_tsuji.hpp"
+#include "contact/normal/linear_dashpot.hpp"
+#include "contact/normal/power_law.hpp"
+#include "contact/normal/tabulated.hpp"
+#include "contact/normal/thornton.hpp"
 #include "contact/restitution/constant.hpp"
 #include "contact/restitution/jackson_green.hpp"
 #include "contact/restitution/johnson.hpp"
 #include "contact/restitution/tabulated.hpp"
 #include "contact/restitution/thornton.hpp"
-#include "contact/thornton.hpp"
+#include "contact/rolling/elastic_plastic.hpp"
+#include "contact/tangential/linear_spring.hpp"
+#include "contact/tangential/mindlin.hpp"
 
 namespace rattlebox {
 
-using NormalLaw = Choice<HertzTsuji, LinearDashpot, Thornton>;
+// clang-format off
+using NormalLaw = NormalLaws<
+    HertzTsuji,
+    LinearDashpot,
+    Thornton,
+    PowerLaw,
+    TabulatedNormal
+>;
 
-using RestitutionLaw = Choice<ConstantRestitution, TabulatedRestitution, JacksonGreenRestitution,
-                              ThorntonRestitution, JohnsonRestitution>;
+using RestitutionLaw = RestitutionLaws<
+    ConstantRestitution,
+    TabulatedRestitution,
+    JacksonGreenRestitution,
+    ThorntonRestitution,
+    JohnsonRestitution
+>;
+
+using TangentialLaw = TangentialLaws<
+    Mindlin,
+    LinearSpring
+>;
+// clang-format on
 
 // What a restitution law says of an approach speed.
 struct Rebound {
@@ -25,7 +49,7 @@ struct Rebound {
     bool extrapolated = false; // outside, and used all the same
 };
 
-RATTLEBOX_CALL inline Rebound rebound(const RestitutionLaw& law, real speed) {
+inline Rebound rebound(const RestitutionLaw& law, real speed) {
     return law.visit([&](const auto& l) {
         Rebound r;
         const bool above = speed > l.limit();

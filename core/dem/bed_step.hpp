@@ -44,9 +44,12 @@ class BedStep {
         return dem::touch(with_wall(i, j), a, near, bed_.motion.velocity, mobility);
     }
 
-    void settle(Contacts& list, int k, Partner partner, Tally& tally) const {
-        tally.plastic[partner] +=
-            dem::settle(at(list.memory.dent, at(list.slot, k)), touch(list, k, partner));
+    void settle(Contacts& list, int k, const Kind& kind, Partner partner, Tally& tally) const {
+        const int s = at(list.slot, k);
+        const real cost = dem::settle(at(list.memory.dent, s), touch(list, k, partner));
+        tally.plastic[partner] += cost;
+        if (static_cast<real>(list.steps) - at(list.memory.since, s) > kind.enduring)
+            tally.enduring[partner] += first_lane(cost);
     }
 
     template <class View>
@@ -56,7 +59,7 @@ class BedStep {
         const auto begun = [&](int k) {
             const Touch t = touch(list, k, partner);
             const Begun b = begin(t, problem_.dt);
-            at(list.slot, k) = list.memory.begin(b);
+            at(list.slot, k) = list.memory.begin(b, static_cast<real>(list.steps));
             if (b.late.share != 0) chunk.late.push_back({k, b.late});
             if (b.lost != 0) tally.normal[partner] += first_lane(b.lost);
             ++tally.first_touches[partner];
@@ -68,10 +71,12 @@ class BedStep {
         const auto ended = [&](int k) {
             const int s = at(list.slot, k);
             if (list.memory.dents && at(list.memory.dent, s)[3] != at(list.memory.dent, s)[0])
-                settle(list, k, partner, tally);
+                settle(list, k, kind, partner, tally);
             // What the springs still hold is lost.
-            if (kind.rough) tally.sliding[partner] += first_lane(held(at(list.memory.kept, s).friction));
-            if (kind.rolls) tally.rolling[partner] += first_lane(held(at(list.memory.rolling, s).spring));
+            if (kind.rough)
+                tally.sliding[partner] += first_lane(spring_energy(at(list.memory.kept, s).friction));
+            if (kind.rolls)
+                tally.rolling[partner] += first_lane(spring_energy(at(list.memory.rolling, s).spring));
             list.memory.free.push_back(s);
             at(list.slot, k) = Contacts::none;
         };
@@ -79,22 +84,16 @@ class BedStep {
         find_touching(list, view, candidates, begun, ended, ahead);
         ahead.rest(candidates, list.actives);
         if (list.actives == 0) return list.actions.all.clear();
-        const auto with_law = [&](auto law) {
-            using Law = decltype(law);
-            const auto settled = [&](int k) { settle(list, k, partner, tally); };
-            if (kind.rolls)
-                collide<Law, true, true>(list, view, kind.how, sampled, partner, tally, settled, ahead);
-            else if (kind.rough)
-                collide<Law, true, false>(list, view, kind.how, sampled, partner, tally, settled, ahead);
-            else
-                collide<Law, false, false>(list, view, kind.how, sampled, partner, tally, settled, ahead);
-        };
-        if (kind.normal == Kind::hertz)
-            with_law(HertzStep{});
-        else if (kind.normal == Kind::linear)
-            with_law(LinearStep{});
-        else
-            with_law(PlasticStep{});
+        kind.normal.visit([&](const auto& law) {
+            const auto settled = [&](int k) { settle(list, k, kind, partner, tally); };
+            const auto compute = [&](auto rough, auto rolls) {
+                collide<rough.value, rolls.value>(law, list, view, kind, sampled, partner, tally, settled,
+                                                  ahead);
+            };
+            constexpr std::true_type yes;
+            constexpr std::false_type no;
+            kind.rolls ? compute(yes, yes) : kind.rough ? compute(yes, no) : compute(no, no);
+        });
         for (const auto& [k, late] : chunk.late) {
             const auto touching = list.active.begin();
             const auto a = std::lower_bound(touching, touching + list.actives, k) - touching;
@@ -119,8 +118,9 @@ public:
     BedStep(Bed& bed, const Problem& problem, const Kind& pair, const Kind& wall)
         : bed_(bed), problem_(problem), pair_(pair), wall_(wall), far_(bed.particles() > Bed::cached) {
         for (const Wall& w : bed.cavity->walls) curved_ |= w.form != Wall::plane;
-        for (const int e : bed.cavity->particle_entry) pair_mu_.push_back(at(problem.encounters, e).friction);
-        for (const int e : bed.cavity->wall_entry) wall_mu_.push_back(at(problem.encounters, e).friction);
+        for (const int e : bed.cavity->particle_entry)
+            pair_mu_.push_back(at(problem.encounters, e).friction());
+        for (const int e : bed.cavity->wall_entry) wall_mu_.push_back(at(problem.encounters, e).friction());
     }
 
     // Particles and contacts are more than caches hold.
@@ -134,7 +134,7 @@ public:
         for (int c = own; c <= last; ++c) others = larger(others, at(bed_.briefs, c).moved);
         const real moved = at(bed_.briefs, own).moved + others;
         Contacts& pairs = chunk.pairs;
-        pairs.since += moved, ++pairs.age;
+        pairs.since += moved, ++pairs.age, ++pairs.steps;
         chunk.closed += moved;
         if (pairs.is_stale()) neighbours.scan_pairs(bed_, chunk), ++chunk.tally.scans;
         // Those of tier t were at least t / tiers of the skin apart.
@@ -147,7 +147,7 @@ public:
     // Forces on the chunk's particles at the walls.
     void wall_forces(const Neighbours& neighbours, Chunk& chunk, bool sampled) {
         chunk.walls.since += at(bed_.briefs, chunk.begin / Bed::chunk_size).moved + bed_.apart;
-        ++chunk.walls.age;
+        ++chunk.walls.age, ++chunk.walls.steps;
         if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
         visit(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, chunk.walls.size(), wall_, wall,
               sampled, chunk, Ahead());

@@ -22,10 +22,12 @@ struct Memory {
     Paged<KeptRolling> rolling; // with rolling resistance only
     Paged<Row> dent;            // of a plastic law: deepest overlap, stiffness and origin of the curve that
                                 // unloads, and the deepest overlap that this curve is for
+    Paged<real> since;          // the step in which the contact began
     Paged<int> free;
     bool rolls = false, dents = false;
 
-    explicit Memory(Pages* pages = nullptr) : kept(pages), rolling(pages), dent(pages), free(pages) {}
+    explicit Memory(Pages* pages = nullptr)
+        : kept(pages), rolling(pages), dent(pages), since(pages), free(pages) {}
 
     int used() const { return static_cast<int>(kept.size() - free.size()); }
 
@@ -36,21 +38,21 @@ struct Memory {
             return s;
         }
         if (kept.size() == kept.capacity()) reserve(kept.size() + kept.size() / 8 + 4);
-        kept.emplace_back();
+        kept.emplace_back(), since.emplace_back();
         if (rolls) rolling.emplace_back();
         if (dents) dent.emplace_back();
         return static_cast<int>(kept.size()) - 1;
     }
 
     void reserve(std::size_t slots) {
-        kept.reserve(slots);
+        kept.reserve(slots), since.reserve(slots);
         if (rolls) rolling.reserve(slots);
         if (dents) dent.reserve(slots);
     }
 
-    int begin(const Begun& b) {
+    int begin(const Begun& b, real step) {
         const int s = take();
-        at(kept, s) = b.kept;
+        at(kept, s) = b.kept, at(since, s) = step;
         if (rolls) at(rolling, s) = b.rolling;
         if (dents) at(dent, s) = b.dent;
         return s;
@@ -61,6 +63,7 @@ struct Memory {
         const int s = take();
         const Row turn = row(sign, sign, sign, 1);
         at(kept, s) = {turn * at(old.kept, slot).friction, at(old.kept, slot).law};
+        at(since, s) = at(old.since, slot);
         if (rolls) at(rolling, s) = {turn * at(old.rolling, slot).spring, at(old.rolling, slot).law};
         if (dents) at(dent, s) = at(old.dent, slot);
         return s;
@@ -68,10 +71,11 @@ struct Memory {
 
     std::size_t bytes() const {
         return kept.capacity() * sizeof(Kept) + rolling.capacity() * sizeof(KeptRolling) +
-               dent.capacity() * sizeof(Row) + free.capacity() * sizeof(int);
+               dent.capacity() * sizeof(Row) + since.capacity() * sizeof(real) +
+               free.capacity() * sizeof(int);
     }
 
-    template <class Archive> void keep(Archive& a) { a(kept, rolling, dent, free); }
+    template <class Archive> void keep(Archive& a) { a(kept, rolling, dent, since, free); }
 };
 
 // What those that touch do in a step, in the order in which they are listed.
@@ -86,10 +90,11 @@ struct Contacts {
     static constexpr int tiers = 4; // candidates by distance at the last scan
     static constexpr int none = -1;
 
-    real skin = 0;         // candidates were closer than that at the scan,
-    real since = infinity; // and since then no two have come nearer to each other than that
-    std::int64_t age = 0;  // in steps
-    real rate = 0;         // nearer in a step, between the last two scans
+    real skin = 0;          // candidates were closer than that at the scan,
+    real since = infinity;  // and since then no two have come nearer to each other than that
+    std::int64_t age = 0;   // in steps
+    real rate = 0;          // nearer in a step, between the last two scans
+    std::int64_t steps = 0; // since the start of the run
 
     // Candidates, tier by tier; lanes may read a few past the end.
     Paged<int> first, second; // numbers of particles; of a wall for the second at a wall
@@ -158,7 +163,7 @@ struct Contacts {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(skin, since, age, rate, first, second, origin, slot, tier_end, active, actives, actions.all,
+        a(skin, since, age, rate, steps, first, second, origin, slot, tier_end, active, actives, actions.all,
           actions.torque);
         memory.keep(a);
     }

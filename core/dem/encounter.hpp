@@ -1,4 +1,4 @@
-// What meets: walls, and what two materials do to each other. Plain data, on any device.
+// What meets: walls, and what two materials do to each other. Plain data.
 #pragma once
 
 #include "base/rows.hpp"
@@ -17,28 +17,19 @@ struct Wall {
     int kind = 0; // of its material
 };
 
-// What two materials do to each other; laws hold for a reference pair and are scaled to the sizes that meet.
+// The laws between two species, or a species and a wall. They hold for a reference pair and are resized to
+// the pair that touches.
 struct Encounter {
     NormalLaw normal;
     RestitutionLaw restitution;
-    real radius = 1, mass = 1;     // R* [m] and m* [kg] of the reference pair
-    bool by_time = false;          // linear spring of given contact time: stiffness grows with m*
-    real friction = 0;             // mu
-    real shear = 0;                // 8 G* [Pa]: Mindlin's stiffness is 8 G* a, a = sqrt(R* d)
-    real tangential_stiffness = 0; // [N/m] of a linear spring
-    real tangential_ratio = 0;     // of a linear spring: to the stiffness of the pair's own linear contact
-    real tangential_damping = 1;   // damping ratio of the tangential dashpot over that of the normal one
-    real rolling = 0;              // mu_r
-    real rolling_stiffness = 0;    // over k_t R*^2
-    real rolling_damping = 0;      // damping ratio
-    real constant_zeta = not_a_number; // where neither speed nor size changes it
-};
+    TangentialLaw tangential;
+    RollingResistance rolling;
+    PairSize size{1, 1};                  // of the reference pair
+    real constant_damping = not_a_number; // law.damping(e), where neither speed nor size changes it
 
-// How the laws of a list of contacts are computed.
-struct Contacting {
-    real dt = 0;
-    bool mindlin = true;     // tangential stiffness grows with the contact
-    bool never_pulls = true; // normal force
+    real friction() const {
+        return tangential.visit([](const auto& law) { return law.friction; });
+    }
 };
 
 // How deep those are in each other that were found to touch: not less than rounding leaves, which may find
@@ -47,10 +38,15 @@ template <class T> RATTLEBOX_INLINE T overlap(const T& reach, const T& distance)
     return larger(reach - distance, all(reach, 0x1p-53) * reach);
 }
 
+// How the contacts of a list are computed: all have the same kinds of laws.
 struct Kind {
-    enum Normal : int { hertz, linear, plastic } normal = hertz;
+    NormalLaw normal;   // its parameters that do not belong to one contact
+    int tangential = 0; // place in the table of laws
     bool rough = false, rolls = false;
-    Contacting how;
+    bool never_pulls = true; // normal force
+    bool hysteretic = false; // contacts remember their deepest overlap
+    real dt = 0;
+    real enduring = infinity; // age beyond which a contact counts as enduring, in steps
 };
 
 } // namespace rattlebox::dem

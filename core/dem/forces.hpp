@@ -154,12 +154,17 @@ void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ende
     list.actives = count;
 }
 
-template <class Law, bool rough, bool rolls, class View, class Settle>
-void collide(Contacts& list, const View& view, const Contacting& how, bool sampled, Partner partner,
-             Tally& tally, Settle&& settle, const Ahead& ahead) {
+// Losses of enduring contacts are sampled in every such step, which costs next to nothing.
+constexpr int probe = 32;
+
+template <bool rough, bool rolls, class Law, class View, class Settle>
+void collide(const Law& normal_law, Contacts& list, const View& view, const Kind& how, bool sampled,
+             Partner partner, Tally& tally, Settle&& settle, const Ahead& ahead) {
     const int count = list.actives;
     const int* active = list.active.data();
     const Group zero = Group::all(0), dt = Group::all(how.dt);
+    const bool probing = list.steps % probe == 0 && how.enduring < infinity;
+    const Group latest = Group::all(static_cast<real>(list.steps) - how.enduring);
     Actions& actions = list.actions;
     actions.all.resize(static_cast<std::size_t>(count));
     if constexpr (rolls) actions.torque.resize(static_cast<std::size_t>(count));
@@ -191,7 +196,7 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
         const auto m = view.template meeting<rough>(k);
         const auto law = columns(kept(&Kept::law));
         Columns dent{};
-        if constexpr (Law::plastic) {
+        if constexpr (Law::hysteretic) {
             alignas(64) real overlap[group];
             pack<group>(overlap) = m.overlap;
             for (int l = 0; l < group; ++l) {
@@ -202,41 +207,55 @@ void collide(Contacts& list, const View& view, const Contacting& how, bool sampl
             dent = columns(dents);
         }
         const Group rate = dot(m.velocity, m.normal);
-        auto push = Law::push(law, dent, m.overlap, rate);
-        if (how.never_pulls) push.force = larger(push.force, zero);
-        group_of(tally.normal[partner], part) += weight * dt * (push.force - push.elastic) * rate;
+        const Depth<Group> depth = depth_from_overlap(m.overlap);
+        const Coefficients<Group> k_normal{law.x, law.y};
+        const History<Group> history{dent.x, dent.y, dent.z};
+        auto normal = normal_force(normal_law, k_normal, depth, rate, history);
+        if (how.never_pulls) normal.total = larger(normal.total, zero);
+        Group lost = weight * dt * (normal.total - normal.elastic) * rate;
+        group_of(tally.normal[partner], part) += lost;
         tally.deepest.see(m.overlap, m.radius, part);
-        Vector<Group> force = (zero - push.force) * m.normal;
-        if (sampled) group_of(tally.stored, part) += weight * Law::stored(law, dent, m.overlap);
-        if constexpr (Law::plastic) {
+        Vector<Group> force = (zero - normal.total) * m.normal;
+        if (sampled)
+            group_of(tally.stored, part) += weight * stored_energy(normal_law, k_normal, depth, history);
+        if constexpr (Law::hysteretic) {
             dent.x = larger(dent.x, m.overlap);
             store(dent, dents);
         }
         if constexpr (rough) {
-            const auto h = rub(m, push, rate, law, view.friction(k), columns(kept(&Kept::friction)),
-                               !Law::plastic, how.mindlin, dt);
-            store(lay(h.friction), kept(&Kept::friction));
-            group_of(tally.sliding[partner], part) += weight * h.lost;
+            const auto h = tangential_force(m, normal.total, rate, law.z, law.w, view.friction(k), depth,
+                                            columns(kept(&Kept::friction)), how.tangential, dt);
+            store(lay(h.spring), kept(&Kept::friction));
+            const Group slid = weight * h.loss;
+            group_of(tally.sliding[partner], part) += slid, lost += slid;
             force = force + h.force;
             store(Columns{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&Action::couple));
             if (sampled) {
                 group_of(tally.stored, part) += weight * h.stored;
-                group_of(tally.slid[partner], part) += weight * h.beyond;
+                group_of(tally.slid[partner], part) += weight * h.excess;
             }
             if constexpr (rolls) {
-                const auto r = roll(m, push, h.stiffness, columns(rolling(&KeptRolling::law)),
-                                    columns(rolling(&KeptRolling::spring)), how.mindlin, dt);
-                store(lay(r.rolling), rolling(&KeptRolling::spring));
+                const auto r =
+                    rolling_torque(m, normal.total, h.stiffness, columns(rolling(&KeptRolling::law)), depth,
+                                   columns(rolling(&KeptRolling::spring)), how.tangential, dt);
+                store(lay(r.spring), rolling(&KeptRolling::spring));
                 store(Columns{r.torque.x, r.torque.y, r.torque.z, zero},
                       [&](int l) { return &at(actions.torque, a[l]); });
-                group_of(tally.rolling[partner], part) += weight * r.lost;
+                const Group rolled = weight * r.loss;
+                group_of(tally.rolling[partner], part) += rolled, lost += rolled;
                 if (sampled) {
                     group_of(tally.stored, part) += weight * r.stored;
-                    group_of(tally.rolled[partner], part) += weight * r.beyond;
+                    group_of(tally.rolled[partner], part) += weight * r.excess;
                 }
             }
         } else
             store(Columns{zero, zero, zero, zero}, acting(&Action::couple));
+        if (probing) {
+            alignas(64) real since[group];
+            for (int l = 0; l < group; ++l) since[l] = at(list.memory.since, s[l]);
+            group_of(tally.enduring[partner], part) +=
+                Group::all(probe) * choose(latest - pack<group>(since), lost, zero);
+        }
         store(Columns{force.x, force.y, force.z, Group::all(1)}, acting(&Action::force));
     }
     if (sampled) tally.contacts[partner] += count;

@@ -221,7 +221,11 @@ public:
                 }
                 const auto& firsts = chunk.near_first;
                 auto p = static_cast<int>(std::ranges::lower_bound(firsts, own) - firsts.begin());
-                while (at(chunk.near_second, p) != j) ++p; // touching, so among the neighbours
+                const auto is_own = [&] {
+                    return p < static_cast<int>(firsts.size()) && at(firsts, p) == own;
+                };
+                while (is_own() && at(chunk.near_second, p) != j) ++p;
+                if (!is_own()) continue; // parted within a step by more than neighbours may be apart
                 chunk.pairs.arrive(i, j, p, chunk.pairs.memory.begin(from.pairs, m.slot, turned ? -1 : 1));
             }
     }

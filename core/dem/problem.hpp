@@ -29,6 +29,7 @@ struct Cavity {
 struct Problem {
     real dt = 0;
     long steps = 0, every = 1; // the last step, and between two samples
+    real enduring = infinity;  // age beyond which a contact counts as enduring
     Row gravity{};
     std::vector<Mode> modes;
     std::vector<ModeState> start;
@@ -39,34 +40,33 @@ struct Problem {
     std::vector<std::vector<real>> tables; // storage of Table views
 };
 
-inline Kind kind_of(const Encounter& e) {
-    Kind k;
-    e.normal.visit([&](const auto& law) {
-        using Law = std::decay_t<decltype(law)>;
-        k.normal = std::is_same_v<Law, HertzTsuji>      ? Kind::hertz
-                   : std::is_same_v<Law, LinearDashpot> ? Kind::linear
-                                                        : Kind::plastic;
-        if constexpr (!std::is_same_v<Law, Thornton>) k.how.never_pulls = law.zero_overlap == 0;
-    });
-    return k;
-}
-
 // How contacts of these entries are computed.
 inline Kind kind_of(const Problem& problem, const std::vector<int>& entries) {
-    const auto encounter = [&](int e) { return problem.encounters.at(static_cast<std::size_t>(e)); };
-    Kind k = entries.empty() ? Kind{} : kind_of(encounter(entries.front()));
-    for (const int e : entries) {
-        const Encounter one = encounter(e);
-        const Kind other = kind_of(one);
-        if (other.normal != k.normal || other.how.never_pulls != k.how.never_pulls)
-            throw std::invalid_argument("one list of contacts has one kind of normal law and one ending");
-        if (one.friction > 0 && k.rough && k.how.mindlin != (one.shear > 0))
-            throw std::invalid_argument("one list of contacts has one kind of tangential spring");
-        if (one.friction > 0) k.rough = true, k.how.mindlin = one.shear > 0;
-        k.rolls |= one.rolling > 0;
+    Kind k;
+    k.dt = problem.dt, k.enduring = problem.enduring / problem.dt;
+    bool first = true, first_rough = true;
+    for (const int entry : entries) {
+        const Encounter& e = problem.encounters.at(static_cast<std::size_t>(entry));
+        if (first) k.normal = e.normal;
+        first = false;
+        e.normal.visit([&](const auto& law) {
+            using Law = std::decay_t<decltype(law)>;
+            const Law* same = k.normal.template get_if<Law>();
+            if (!same || !same->same_shape(law))
+                throw std::invalid_argument(
+                    "the contacts of one list need the same kind of normal law, ending and exponents");
+            k.hysteretic = Law::hysteretic;
+            if constexpr (!Law::hysteretic) k.never_pulls = law.zero_overlap == 0;
+        });
+        if (e.friction() > 0) {
+            if (!first_rough && k.tangential != e.tangential.index())
+                throw std::invalid_argument("the contacts of one list need the same kind of tangential law");
+            k.tangential = e.tangential.index();
+            k.rough = true, first_rough = false;
+        }
+        k.rolls |= e.rolling.coefficient > 0;
     }
     k.rough |= k.rolls;
-    k.how.dt = problem.dt;
     return k;
 }
 

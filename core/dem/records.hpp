@@ -2,9 +2,13 @@
 #pragma once
 
 #include "dem/bed.hpp"
-#include "dem/losses.hpp"
 
 namespace rattlebox::dem {
+
+// Where energy goes, between particles and at walls.
+struct Losses {
+    real normal[2] = {}, plastic[2] = {}, sliding[2] = {}, rolling[2] = {};
+};
 
 inline Losses losses(const Bed& bed) {
     Losses sum;

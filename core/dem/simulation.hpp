@@ -12,6 +12,7 @@
 #include "dem/bed_step.hpp"
 #include "dem/division.hpp"
 #include "dem/records.hpp"
+#include "dem/restored.hpp"
 
 namespace rattlebox::dem {
 
@@ -428,7 +429,7 @@ class Simulation {
 
 public:
     explicit Simulation(Problem&& problem) : problem_(std::move(problem)) {
-        for (Encounter& e : problem_.encounters) e.constant_zeta = constant_zeta(e);
+        for (Encounter& e : problem_.encounters) e.constant_damping = constant_damping(e);
         prepare_structure();
         const std::size_t count = problem_.cavities.size();
         beds_.reserve(count), neighbours_.resize(count);
@@ -440,7 +441,7 @@ public:
             Bed& bed = beds_.emplace_back(pages);
             fill_bed(bed, cavity, pair.rolls || wall.rolls, pages);
             const auto prepare = [](Contacts& list, const Kind& kind) {
-                list.memory.rolls = kind.rolls, list.memory.dents = kind.normal == Kind::plastic;
+                list.memory.rolls = kind.rolls, list.memory.dents = kind.hysteretic;
                 list.resize(0);
             };
             for (Chunk& chunk : bed.chunks) prepare(chunk.pairs, pair), prepare(chunk.walls, wall);
@@ -474,8 +475,25 @@ public:
         for (Bed& bed : beds_) bed.keep(archive);
     }
 
-    // After the state has been read back.
-    void resume() {
+    // Reads a state back. Throws where it is not one of this case; this must then not be used any more.
+    template <class Reader> void restore(Reader& reader) {
+        const std::vector<Fixed> fixed(beds_.begin(), beds_.end());
+        keep(reader);
+        if (!reader.at_end()) throw std::invalid_argument("the state is of another case");
+        const auto require = [](bool holds) {
+            if (!holds) throw std::invalid_argument("the state is damaged");
+        };
+        require(step_ >= 0 && step_ <= problem_.steps + 1 && steps_since_ >= 0);
+        require(stopped_cavity_ >= 0 && stopped_cavity_ < static_cast<int>(beds_.size()));
+        const Bed& where = at(beds_, stopped_cavity_);
+        require(Fixed::is_possible(status_) &&
+                Fixed::is_possible(stopped_, static_cast<int>(where.position.size()),
+                                   static_cast<int>(where.cavity->walls.size())));
+        for (const std::size_t size :
+             {modes_.size(), modes_shown_.size(), modal_force_.size(), viscous_.size()})
+            require(size == problem_.modes.size());
+        require(load_work_.size() == signals_.size() && base_work_.size() == signals_.size());
+        for (std::size_t b = 0; b < beds_.size(); ++b) fixed[b].check(beds_[b], tells_contacts());
         for (Bed& bed : beds_) place(bed);
     }
 

@@ -1,6 +1,6 @@
 // The structure in the steps of particle dampers: kicked by forces, propagated exactly between two kicks.
 //
-// Views of arrays that someone else owns, so that whoever leads a team can advance it, on any device.
+// Views of arrays that the simulation owns.
 #pragma once
 
 #include "base/rows.hpp"

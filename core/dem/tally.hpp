@@ -36,6 +36,7 @@ struct Deepest {
 struct alignas(64) Tally {
     // over the run
     Lanes normal[2]{}, sliding[2]{}, rolling[2]{};
+    Lanes enduring[2]{}; // in enduring contacts, of all kinds
     real plastic[2]{};
     long first_touches[2]{}, extrapolated = 0, scans = 0;
     Deepest deepest;

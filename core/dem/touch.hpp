@@ -53,50 +53,35 @@ inline Touch touch(const Encounter& e, const Body& a, const Near& near, Row cavi
             velocity * row(1, 1, 1) - near.normal * speed + cross(a.spin * near.distance, near.normal)};
 }
 
-// A law for the pair at hand, from that of the reference pair.
-inline NormalLaw scaled(const Encounter& e, const Touch& t) {
-    NormalLaw law = e.normal;
-    law.visit([&](auto own) {
-        using Law = decltype(own);
-        own.mass = t.mass;
-        if constexpr (std::is_same_v<Law, LinearDashpot>) {
-            if (e.by_time) own.stiffness *= t.mass / e.mass;
-        } else {
-            own.stiffness *= std::sqrt(t.radius / e.radius);
-            if constexpr (std::is_same_v<Law, Thornton>) own.radius = t.radius;
-        }
-        law.set(own);
-    });
-    return law;
-}
-
-// Speeds of plastic laws go as sqrt(R*^3 / m*).
+// The speeds at which materials yield go as sqrt(R*^3 / m*).
 inline Rebound rebound(const Encounter& e, const Touch& t) {
-    const bool plastic = e.restitution.get_if<JacksonGreenRestitution>() ||
-                         e.restitution.get_if<ThorntonRestitution>() ||
-                         e.restitution.get_if<JohnsonRestitution>();
-    const real scale = plastic ? std::sqrt(t.mass / e.mass * cube(e.radius / t.radius)) : 1;
+    const bool scales = e.restitution.visit([](const auto& law) { return law.speed_scales_with_size; });
+    const real scale = scales ? std::sqrt(t.mass / e.size.mass * cube(e.size.radius / t.radius)) : 1;
     return rattlebox::rebound(e.restitution, std::fmax(t.speed, 0.0) * scale);
 }
 
-// The damping ratio of all impacts, where there is one.
-inline real constant_zeta(const Encounter& e) {
+// The damping of all impacts, where restitution is constant.
+inline real constant_damping(const Encounter& e) {
     return e.normal.visit([&](const auto& law) {
-        const bool constant = e.restitution.get_if<ConstantRestitution>() && law.needs_restitution();
-        return constant ? law.zeta(rattlebox::rebound(e.restitution, 0).e) : not_a_number;
+        if constexpr (std::decay_t<decltype(law)>::hysteretic)
+            return not_a_number;
+        else {
+            const bool constant = e.restitution.get_if<ConstantRestitution>() && law.needs_restitution();
+            return constant ? law.damping(rattlebox::rebound(e.restitution, 0).e) : not_a_number;
+        }
     });
 }
 
-// What the sum over steps of t^(1/4) misses of its integral from 0 on, the first step being at theta, for
-// steps of length 1: minus Hurwitz' zeta function of -1/4 and theta.
-inline real missed_root(real theta) {
-    const auto fourth_root = [](real t) { return std::sqrt(std::sqrt(t)); };
-    const real end = theta + 2, last = fourth_root(end);
-    return last * (0.8 * end - 0.5 + 1 / (48 * end)) - fourth_root(theta) - fourth_root(theta + 1);
+// What the sum over steps of t^p misses of its integral from 0 on, the first step being at theta, for steps
+// of length 1: minus Hurwitz' zeta function of -p and theta.
+inline real missed_power(real p, real theta) {
+    const real end = theta + 2;
+    return std::pow(end, p) * (end / (p + 1) - 0.5 + p / (12 * end)) - std::pow(theta, p) -
+           std::pow(theta + 1, p);
 }
 
 // What the first step within a contact would miss: the touch lies between two steps, and forces grow from it
-// like roots of the time since, which the trapezoidal rule does not see.
+// like powers of the time since, which the trapezoidal rule does not see.
 struct Late {
     real share = 0; // of the force of the first step, missed on top of it
     Row slip{};     // of the first along the second
@@ -105,7 +90,7 @@ struct Late {
 // What a contact remembers while it lasts: a line of memory.
 struct alignas(64) Kept {
     Row friction; // force of the tangential spring on the first, and 1 / stiffness
-    Row law;      // A, c, B, c_t: see contact_step.hpp
+    Row law;      // Coefficients of the normal law; of the tangential spring, and of its dashpot
 };
 
 struct alignas(64) KeptRolling {
@@ -142,59 +127,58 @@ inline Begun begin(const Touch& t, real dt) {
     // Since the touch, at this speed; of what overlaps from the start nothing is known.
     const bool comes_late = t.speed > 0 && t.overlap < 1.01 * t.speed * dt;
     const real since = comes_late ? t.overlap / t.speed : 0.5 * dt;
-    scaled(e, t).visit([&](const auto& law) {
-        using Law = std::decay_t<decltype(law)>;
-        // Without friction any stiffness will do.
-        const real linear = e.tangential_stiffness + e.tangential_ratio * law.stiffness;
-        const real own = e.shear > 0 ? e.shear * std::sqrt(t.radius) : linear;
-        const real tangential = own > 0 ? own : 1;
-        if constexpr (std::is_same_v<Law, Thornton>) {
-            b.kept.law = row(law.stiffness, law.plastic_slope(), tangential, law.yield_overlap());
-            b.dent = row(0, law.stiffness, 0, 0);
+    const PairSize size{t.radius, t.mass};
+    const Depth<real> depth = depth_from_overlap(t.overlap);
+    real tangential = 0, stiffness = 0;
+    e.normal.visit([&](const auto& reference) {
+        using Law = std::decay_t<decltype(reference)>;
+        const Law law = reference.resized(e.size, size);
+        tangential =
+            e.tangential.visit([&](const auto& own) { return own.coefficient(size, law.stiffness); });
+        if (!(tangential > 0)) tangential = 1; // without friction any stiffness will do
+        if constexpr (Law::hysteretic) {
+            const Coefficients<real> k = law.coefficients(0, t.speed);
+            const History<real> h = law.untouched();
+            b.kept.law = row(k.stiffness, k.second, tangential, 0);
+            b.dent = row(h.deepest, h.stiffness, h.origin, h.deepest);
         } else {
-            const Memory now = law.damped(std::isnan(e.constant_zeta) ? law.zeta(r.e) : e.constant_zeta);
-            constexpr bool hertz = std::is_same_v<Law, HertzTsuji>;
-            const real x = std::sqrt(std::sqrt(t.overlap)), theta = since / dt;
-            const real force = law.force(now, x, t.speed), dashpot = force - law.force({}, x, 0);
+            const real damping = std::isnan(e.constant_damping) ? law.damping(r.e) : e.constant_damping;
+            const Coefficients<real> k = law.coefficients(damping, std::fmax(t.speed, 0.0));
+            const NormalForce<real> force = law.force(k, depth, t.speed);
+            const real dashpot = force.total - force.elastic;
             if (comes_late && dashpot > 0) {
-                const real lost =
-                    dashpot * (hertz ? missed_root(theta) / std::sqrt(std::sqrt(theta)) : theta - 0.5);
-                b.late = {lost / force, t.slip};
+                const real p = law.dashpot_exponent(), theta = since / dt;
+                const real lost = dashpot * missed_power(p, theta) / std::pow(theta, p);
+                b.late = {lost / force.total, t.slip};
                 // The velocity of this step is already less than the one that the forces are computed from.
-                const real slowed = 0.5 * (force + lost) * dt / t.mass;
+                const real slowed = 0.5 * (force.total + lost) * dt / t.mass;
                 b.lost = (lost * (t.speed - slowed) - dashpot * slowed) * dt;
             }
-            const real share = hertz ? std::sqrt(5.0 / 6.0) : 1;
-            const real drag = 2 * e.tangential_damping * share * now.zeta * std::sqrt(t.mass * tangential);
-            b.kept.law = row(law.stiffness, now.damping, tangential, drag);
+            const real share = e.tangential.visit([](const auto& own) { return own.damping; });
+            const real drag = 2 * share * Law::tangential_share *
+                              law.damping_ratio(damping, std::fmax(t.speed, 0.0)) *
+                              std::sqrt(t.mass * tangential);
+            b.kept.law = row(k.stiffness, k.second, tangential, drag);
         }
-        const real roll = e.rolling_stiffness > 0 ? e.rolling_stiffness * square(t.radius) : 1;
-        b.rolling = {Row{}, // nothing stretched yet
-                     row(e.rolling * t.radius, roll,
-                         2 * e.rolling_damping * std::sqrt(t.inertia * roll * tangential))};
     });
+    b.rolling = {Row{}, e.rolling.coefficients(size, t.inertia, tangential)}; // nothing stretched yet
     // The spring as if it had been stretched since half a step ago, which makes it stretched since the touch.
-    const real stiffness = b.kept.law[2] * (e.shear > 0 ? std::sqrt(t.overlap) : 1);
+    stiffness = e.tangential.visit([&](const auto& own) { return own.stiffness(tangential, depth); });
     b.kept.friction = t.slip * (-stiffness * (since - 0.5 * dt));
     b.kept.friction[3] = 1 / stiffness;
     return b;
 }
 
-// Energy that a spring of these rows holds.
-inline real held(Row spring) { return 0.5 * dot(spring, spring) * spring[3]; }
-
 // The curve that unloads from the deepest overlap so far; returns the energy that reaching it has cost.
 inline real settle(Row& dent, const Touch& t) {
+    const Encounter& e = *t.encounter;
     real cost = 0;
-    scaled(*t.encounter, t).visit([&](const auto& law) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(law)>, Thornton>) {
-            if (dent[0] > law.yield_overlap()) {
-                Memory now, before;
-                now.phase = before.phase = Thornton::unloading;
-                now.deepest = dent[0], before.deepest = dent[3];
-                cost = law.plastic(now, 0) - law.plastic(before, 0);
-                law.unloading_curve(dent[0], dent[1], dent[2]);
-            }
+    e.normal.visit([&](const auto& reference) {
+        if constexpr (std::decay_t<decltype(reference)>::hysteretic) {
+            const auto law = reference.resized(e.size, {t.radius, t.mass});
+            cost = law.plastic_loss(dent[0]) - law.plastic_loss(dent[3]);
+            const History<real> h = law.unloaded_from(dent[0]);
+            dent[1] = h.stiffness, dent[2] = h.origin;
         }
     });
     dent[3] = dent[0];

@@ -32,7 +32,7 @@ protected:
         }
     }
 
-    void sample_closed(const std::vector<real>& y) {
+    void sample_closed(const std::vector<real>& y, real t, bool given) {
         std::copy_n(y.begin(), state_.y.size(), scratch_.y.begin());
         Ledger& ledger = sampled_ = ledger_;
         const std::size_t at = system_.time_index();
@@ -46,8 +46,8 @@ protected:
             const real x = y[system_.x_index(j)];
             ledger.normal[d] += y[system_.x_index(j) + 1];
             contact(a.contact).normal.visit([&](const auto& law) {
-                ledger.plastic[d] += law.plastic(a.memory, x);
-                stored_[d] += law.stored(a.memory, x);
+                ledger.plastic[d] += plastic_loss(law, a.state, x);
+                stored_[d] += stored_energy(law, a.state, x);
             });
             add_wall_force(a.contact, system_.force(y.data(), j));
         }
@@ -57,7 +57,7 @@ protected:
             for (std::size_t i = 0; i < system_.stuck.size(); ++i)
                 add_wall_force(system_.stuck[i], system_.stuck_forces()[i]);
         }
-        record(problem_.sample_times[next_sample_++], scratch_, ledger);
+        record(t, scratch_, ledger, given);
     }
 
     // What rounding leaves of a gap that is zero.
@@ -85,7 +85,7 @@ protected:
             for (const Released& r : released_) {
                 const Gap g = gap(problem_, contact(r.contact), state_.y.data());
                 // To where it opens, or back to where its force begins; no less than rounding can tell.
-                const real room = std::fabs(g.rate < 0 ? g.value + r.memory.offset : g.value);
+                const real room = std::fabs(g.rate < 0 ? g.value + r.state.origin() : g.value);
                 if (room != 0 && g.rate != 0)
                     h = std::min(h, 0.1 * (room + gap_blur(r.contact, state_.y.data())) / std::fabs(g.rate));
             }
@@ -155,8 +155,7 @@ protected:
     // Where in a step of length h from y_ the function turns from `before` (>= 0) to <= 0: the far end of a
     // bracket that has shrunk to `part` of it, by default to rounding. Every probe is a step of the
     // integrator itself.
-    template <class F>
-    RATTLEBOX_CALL real locate(real h, real before, real after, F&& f, real part = 4 * epsilon) {
+    template <class F> real locate(real h, real before, real after, F&& f, real part = 4 * epsilon) {
         real low = 0, high = h, f_low = before, f_high = after;
         int side = 0;
         for (int iteration = 0; iteration < 80 && f_high != 0; ++iteration) {
@@ -188,15 +187,14 @@ protected:
         const Active& a = system_.active[j];
         const real rate = system_.approach(y, a.contact);
         return contact(a.contact).normal.visit(
-            [&](const auto& law) { return law.boundary(a.memory, y[system_.x_index(j)], rate); });
+            [&](const auto& law) { return phase_end(law, a.state, y[system_.x_index(j)], rate); });
     }
 
     // Whether the curve of force that it is on ends at some overlap.
     bool has_end(std::size_t j) const {
         const Active& a = system_.active[j];
         return contact(a.contact).normal.visit([&](const auto& law) {
-            if constexpr (requires { law.room(a.memory, a.x); }) return a.memory.phase != law.yielding;
-            return false;
+            return std::decay_t<decltype(law)>::hysteretic && a.state.phase != ContactState::yielding;
         });
     }
 
@@ -204,16 +202,16 @@ protected:
     // of its gap would make contacts close and be released again at one instant.
     real apart(const real* y, const Released& r) const {
         const Gap g = gap(problem_, contact(r.contact), y);
-        const real overlap = -g.value - r.memory.offset - gap_blur(r.contact, y);
+        const real overlap = -g.value - r.state.origin() - gap_blur(r.contact, y);
         if (overlap <= 0) return 1;
         const real x = std::sqrt(std::sqrt(overlap));
         return -contact(r.contact).normal.visit(
-            [&](const auto& law) { return law.force(r.memory, x, -g.rate); });
+            [&](const auto& law) { return contact_force(law, r.state, x, -g.rate).total; });
     }
 
     enum class Event { none, boundary, touch, rest_touch, opened, engaged, unstuck };
 
-    RATTLEBOX_CALL void integrate_closed() {
+    void integrate_closed() {
         settle_released(-1);
         for (int r = static_cast<int>(released_.size()) - 1; r >= 0; --r) {
             const Released& released = released_[static_cast<std::size_t>(r)];
@@ -226,6 +224,11 @@ protected:
         const std::size_t n = system_.size(), clock = system_.time_index();
         trial_.resize(n);
         partial_.resize(n);
+        if (contact_ended_ && samples_contacts()) {
+            while (sample_due(state_.t)) sample_closed(y_, problem_.sample_times[next_sample_++], true);
+            sample_closed(y_, std::nextafter(state_.t, infinity), false);
+        }
+        contact_ended_ = false;
         integrator_.resize(static_cast<int>(n));
         set_scales();
         const real remaining = next_stop() - state_.t;
@@ -381,18 +384,7 @@ protected:
                 continue;
             }
             if (problem_.settings.peaks) note_peaks(end);
-            while (sample_due(state_.t + trial_[clock])) {
-                const real due = problem_.sample_times[next_sample_] - state_.t;
-                if (due < trial_[clock]) {
-                    const real where = locate(end, due - y_[clock], due - trial_[clock],
-                                              [&](const real* y) { return due - y[clock]; });
-                    std::vector<real> at(n);
-                    integrator_.step(system_, y_.data(), where, at.data());
-                    sample_closed(at);
-                } else {
-                    sample_closed(trial_);
-                }
-            }
+            sample_step(end, event == Event::touch || event == Event::boundary);
             std::swap(y_, trial_);
             for (std::size_t j = 0; j < system_.active.size(); ++j) {
                 Active& a = system_.active[j];
@@ -412,6 +404,44 @@ protected:
         }
     }
 
+    // Samples in the step of length h from y_ to trial_: those that are due, those at deepest overlaps, and
+    // one at the end of the step if a contact begins or ends there.
+    void sample_step(real h, bool at_event) {
+        const std::size_t clock = system_.time_index();
+        std::vector<std::pair<real, real>> turns; // time since the start, length of the step to there
+        if (samples_contacts())
+            for (const Active& a : system_.active) {
+                const auto rate = [&](const real* y) { return system_.approach(y, a.contact); };
+                const real before = rate(y_.data()), after = rate(trial_.data());
+                if (!(before > 0 && after < 0)) continue;
+                const real where = locate(h, before, after, rate, roughly);
+                integrator_.step(system_, y_.data(), where, partial_.data());
+                turns.emplace_back(partial_[clock], where);
+            }
+        std::sort(turns.begin(), turns.end());
+        std::vector<real> at(system_.size());
+        const auto sample_up_to = [&](real until) {
+            while (sample_due(state_.t + until)) {
+                const real t = problem_.sample_times[next_sample_++], due = t - state_.t;
+                if (due >= trial_[clock]) {
+                    sample_closed(trial_, t, true);
+                    continue;
+                }
+                const real where = locate(h, due - y_[clock], due - trial_[clock],
+                                          [&](const real* y) { return due - y[clock]; });
+                integrator_.step(system_, y_.data(), where, at.data());
+                sample_closed(at, t, true);
+            }
+        };
+        for (const auto& [since, where] : turns) {
+            sample_up_to(since);
+            integrator_.step(system_, y_.data(), where, at.data());
+            sample_closed(at, state_.t + since, false);
+        }
+        sample_up_to(trial_[clock]);
+        if (at_event && samples_contacts()) sample_closed(trial_, state_.t + trial_[clock], false);
+    }
+
     // What touches closes by itself: it sticks from the beginning of this step.
     void press(int c) {
         unload_system(y_);
@@ -419,6 +449,7 @@ protected:
     }
 
     void handle(Event event, int which) {
+        if (event != Event::rest_touch) smooth_since_ = state_.t;
         switch (event) {
         case Event::none:
             return;
@@ -427,7 +458,7 @@ protected:
         case Event::touch:
             return meet(which);
         case Event::rest_touch:
-            return begin_at_rest();
+            return begin_at_rest(smooth_since_);
         case Event::opened:
             return settle(which);
         case Event::engaged:
@@ -445,16 +476,17 @@ protected:
         Active& a = system_.active[j];
         const Contact& k = contact(a.contact);
         const real rate = system_.approach(state_.y.data(), a.contact);
-        const real overlap = a.memory.offset + square(a.x * a.x);
+        const real overlap = a.state.origin() + square(a.x * a.x);
         real plastic = 0, stored = 0;
         Next next{};
         k.normal.visit([&](const auto& law) {
-            next = law.cross(a.memory, a.x, rate);
-            a.x = std::sqrt(std::sqrt(std::fmax(overlap - a.memory.offset, 0.0)));
-            plastic = law.plastic(a.memory, a.x);
-            stored = law.stored(a.memory, a.x);
+            next = next_phase(law, a.state, a.x);
+            a.x = std::sqrt(std::sqrt(std::fmax(overlap - a.state.origin(), 0.0)));
+            plastic = plastic_loss(law, a.state, a.x);
+            stored = stored_energy(law, a.state, a.x);
         });
         if (next == Next::stay) return;
+        contact_ended_ = true;
         Impact& line = result_.impacts[static_cast<std::size_t>(a.impact)];
         const std::size_t d = damper_of(a.contact);
         ledger_.plastic[d] += plastic;
@@ -464,7 +496,7 @@ protected:
         line.complete = true;
         if (next == Next::release && overlap > 0) {
             line.energy_lost += stored;
-            released_.push_back({a.contact, a.memory, a.impact, stored});
+            released_.push_back({a.contact, a.state, a.impact, stored});
             phase(a.contact) = Phase::released;
         } else {
             phase(a.contact) = Phase::open;
@@ -486,7 +518,7 @@ protected:
         const real left = recovering(released, state_.y.data());
         ledger_.normal[damper_of(released.contact)] += released.energy - left;
         const real plastic = contact(released.contact).normal.visit([&](const auto& law) {
-            return law.plastic(released.memory, 0);
+            return plastic_loss(law, released.state, 0);
         });
         ledger_.plastic[damper_of(released.contact)] -= plastic;
         Impact& line = result_.impacts[static_cast<std::size_t>(released.impact)];
@@ -494,10 +526,10 @@ protected:
         line.complete = false;
         Active a;
         a.contact = released.contact;
-        a.memory = released.memory;
+        a.state = released.state;
         a.impact = released.impact;
         const Gap g = gap(problem_, contact(a.contact), state_.y.data());
-        a.x = std::sqrt(std::sqrt(std::fmax(-g.value - a.memory.offset, 0.0)));
+        a.x = std::sqrt(std::sqrt(std::fmax(-g.value - a.state.origin(), 0.0)));
         a.speed = std::fmax(line.approach_speed, std::fabs(g.rate));
         system_.active.push_back(a);
         phase(a.contact) = Phase::closed;
@@ -510,7 +542,7 @@ protected:
         Impact& line = result_.impacts[static_cast<std::size_t>(a.impact)];
         line.peak_force = std::fmax(line.peak_force, system_.force(y, j));
         line.peak_overlap =
-            std::fmax(line.peak_overlap, a.memory.offset + square(square(y[system_.x_index(j)])));
+            std::fmax(line.peak_overlap, a.state.origin() + square(square(y[system_.x_index(j)])));
     }
 
     void note_forces() {

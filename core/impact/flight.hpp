@@ -112,7 +112,7 @@ public:
     }
 
     // A flight from `start` for at most `length`; `series` asks for Taylor series although no load acts.
-    RATTLEBOX_CALL void begin(const State& start, const Loads& loads, real length, bool series) {
+    void begin(const State& start, const Loads& loads, real length, bool series) {
         start_ = &start;
         loads_ = &loads;
         series_ = series || loads.active();
@@ -154,7 +154,7 @@ public:
     real curvature(std::size_t contact) const { return curvature_[contact]; }
 
     // The state after time s.
-    RATTLEBOX_CALL void at(real s, State& out) const {
+    void at(real s, State& out) const {
         out.t = start_->t + s;
         for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
             const ModeState mode =
@@ -243,7 +243,7 @@ public:
     }
 
     // The first touch of the watched contacts within the horizon, and the state there.
-    RATTLEBOX_CALL Touch first_touch(const std::vector<char>& watched, State& out) const {
+    Touch first_touch(const std::vector<char>& watched, State& out) const {
         const auto end = [&](Touch touch) {
             at(touch.after, out);
             return touch;

@@ -1,6 +1,7 @@
 // What a trajectory leaves behind: samples of the state, the ledger, and one line for each impact.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/status.hpp"
@@ -20,24 +21,6 @@ struct Impact {
     bool complete = false;
 };
 
-// Impacts summed up, each once, in any order: the last bit of a sum must not depend on which line was
-// dropped when.
-struct ImpactSums {
-    real impacts = 0, approach_speeds = 0, rounded_off = 0;
-    real largest_approach_speed = 0, peak_force = 0, peak_overlap = 0, longest_contact = 0;
-
-    void add(const Impact& i) {
-        impacts += 1;
-        const real sum = approach_speeds + i.approach_speed, part = sum - approach_speeds;
-        rounded_off += (approach_speeds - (sum - part)) + (i.approach_speed - part);
-        approach_speeds = sum;
-        largest_approach_speed = std::fmax(largest_approach_speed, i.approach_speed);
-        peak_force = std::fmax(peak_force, i.peak_force);
-        peak_overlap = std::fmax(peak_overlap, i.peak_overlap);
-        longest_contact = std::fmax(longest_contact, i.duration);
-    }
-};
-
 struct Counts {
     long events = 0, flights = 0, contact_steps = 0, rejected_steps = 0, collocated = 0, extrapolated = 0,
          sticks = 0;
@@ -47,21 +30,23 @@ struct Samples {
     std::vector<real> time, state; // y as in impact/state.hpp, one after the other
     std::vector<real> load_work, base_work, viscous;
     std::vector<real> normal, plastic, stored, force; // by damper
+    std::vector<std::int8_t> given;                   // whether the time was given, or is that of a contact
 };
 
 struct Result {
     Samples samples;
     std::vector<Impact> impacts;
-    ImpactSums dropped; // of lines that are no longer in the log
     Counts counts;
     Status status = Status::finished;
     real stopped_at = 0;
     int stopped_contact = -1; // where a law left its domain
     real stopped_value = 0;   // and at which speed
 
-    // Room for all samples, so that none is taken twice.
+    // Room for the samples, with some more for those at contacts.
     explicit Result(const Problem& problem) {
-        const std::size_t n = problem.sample_times.size(), d = n * problem.dampers.size();
+        const std::size_t given = problem.sample_times.size();
+        const std::size_t n = problem.settings.contact_samples > 0 ? 2 * given : given;
+        const std::size_t d = n * problem.dampers.size();
         samples.state.reserve(2 * n * (problem.modes.size() + problem.ball_mass.size()));
         for (auto* column : {&samples.time, &samples.load_work, &samples.base_work, &samples.viscous})
             column->reserve(n);
@@ -70,33 +55,25 @@ struct Result {
     }
     Result() = default;
 
-    // Adds a line to the log and returns its number. `each(f)` calls f for every number of a line that is in
-    // use: where the log is limited, the older half goes but for those.
-    template <class Each> int enter(const Impact& line, const Settings& settings, Each&& each) {
-        if (settings.log_lines > 0 && impacts.size() >= settings.log_lines) {
-            std::size_t kept = 0;
-            for (std::size_t i = 0; i < impacts.size(); ++i) {
-                bool needed = 2 * i >= impacts.size();
-                each([&](int& number) {
-                    if (number != static_cast<int>(i)) return;
-                    number = static_cast<int>(kept);
-                    needed = true;
-                });
-                if (needed)
-                    impacts[kept++] = impacts[i];
-                else if (impacts[i].time >= settings.log_from)
-                    dropped.add(impacts[i]);
-            }
-            impacts.resize(kept);
-        }
-        impacts.push_back(line);
+    // Adds an impact to the log and returns its number.
+    int enter(const Impact& impact) {
+        impacts.push_back(impact);
         return static_cast<int>(impacts.size()) - 1;
     }
 
+    // Samples are taken in the order of time, one at each time.
     void record(real t, const State& state, const Ledger& ledger, const std::vector<real>& stored,
-                const std::vector<real>& force) {
+                const std::vector<real>& force, bool given = true) {
         Samples& s = samples;
+        if (!s.time.empty() && t <= s.time.back()) {
+            if (!given) return;
+            // A time that was given is that of the last sample, but for rounding.
+            if (s.time.back() - t <= 16 * epsilon * t) s.time.back() = t;
+            s.given.back() = true;
+            return;
+        }
         s.time.push_back(t);
+        s.given.push_back(given);
         s.state.insert(s.state.end(), state.y.begin(), state.y.end());
         s.load_work.push_back(ledger.load_work);
         s.base_work.push_back(ledger.base_work);

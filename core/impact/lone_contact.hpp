@@ -23,7 +23,6 @@
 #include <vector>
 
 #include "base/collocation.hpp"
-#include "base/constant.hpp"
 #include "impact/state.hpp"
 
 namespace rattlebox {
@@ -35,7 +34,10 @@ struct PhaseGrid {
     real end = 0;
     Rule::Row psi, slope, sine, cosine, root; // slope = dpsi/dx, root = sin(psi)^(1/5)
 
-    static const Rule& rule() { return constant<Rule>(); }
+    static const Rule& rule() {
+        static const Rule rule;
+        return rule;
+    }
 
     static real beta(real x) { // I_x(5, 5) for x <= 1/2
         return cube(x) * x * x * (126 + x * (-420 + x * (540 + x * (-315 + x * 70))));
@@ -344,6 +346,8 @@ public:
     }
 
     real deepest_position() const { return grid_.position(std::acos(zeta_)); }
+    // Time since first touch at a position, as good as the clock between its nodes.
+    real time_at(real position) const { return grid_.rule().interpolate(integral_[clock], position); }
 
     // The contact itself at position x of the phase.
     Instant look(real position) const {

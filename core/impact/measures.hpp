@@ -8,6 +8,23 @@
 
 namespace rattlebox {
 
+// Sums and extremes over impacts. The sum of the approach speeds is compensated.
+struct ImpactSums {
+    real impacts = 0, approach_speeds = 0, rounded_off = 0;
+    real largest_approach_speed = 0, peak_force = 0, peak_overlap = 0, longest_contact = 0;
+
+    void add(const Impact& i) {
+        impacts += 1;
+        const real sum = approach_speeds + i.approach_speed, part = sum - approach_speeds;
+        rounded_off += (approach_speeds - (sum - part)) + (i.approach_speed - part);
+        approach_speeds = sum;
+        largest_approach_speed = std::fmax(largest_approach_speed, i.approach_speed);
+        peak_force = std::fmax(peak_force, i.peak_force);
+        peak_overlap = std::fmax(peak_overlap, i.peak_overlap);
+        longest_contact = std::fmax(longest_contact, i.duration);
+    }
+};
+
 class Observer {
     const Problem& problem_;
     const Result& run_;
@@ -128,7 +145,8 @@ public:
         for (std::size_t i = 0; i < count(); ++i) {
             const real residual =
                 motion(i) + gravity(i) - before - load_work(i) - base_work(i) + viscous(i) + impact(i);
-            found.residual = std::fmax(found.residual, std::fabs(residual));
+            if (!(std::fabs(residual) <= found.residual)) found.residual = std::fabs(residual); // or NaN
+            if (!std::isfinite(residual)) break;
             found.handled = std::fmax(
                 found.handled, motion(i) + std::fabs(gravity(i)) + samples().viscous[i] +
                                    std::fabs(samples().load_work[i]) + std::fabs(samples().base_work[i]));
@@ -145,16 +163,21 @@ public:
         return b.residual == 0 ? 0 : b.residual / b.supplied;
     }
 
-    // Does the ledger close, as far as rounding can tell?
-    bool closes(real bound) const {
+    // How a run that reached its end counts. A residual of rounding is no error where little energy was
+    // put in.
+    Status end(real bound) const {
         const Balance b = balance();
-        return !(b.residual > bound * b.supplied && b.residual > 1e-10 * b.handled);
+        if (!std::isfinite(b.residual)) return Status::not_finite;
+        real floor = 1e-10 * b.handled;
+        for (real mass : problem_.ball_mass) floor += mass * square(speed_at_rest);
+        const bool open = b.residual > bound * b.supplied && b.residual > floor;
+        return open ? Status::energy_error : Status::finished;
     }
 
     // ---- impacts
 
     ImpactSums impacts() const {
-        ImpactSums found = run_.dropped;
+        ImpactSums found;
         for (const Impact& i : run_.impacts)
             if (i.time >= window_.from) found.add(i);
         return found;
@@ -163,26 +186,75 @@ public:
     // ---- the damper as a mass: force on the balls over acceleration of their cavity, at the frequency of
     // the window
 
-    // Amplitude of an acceleration, from the motion: exact up to the integral of a position without jumps.
-    template <class F> std::complex<real> acceleration(F&& f) const {
-        const real w = 2 * pi / window_.period, n = static_cast<real>(last());
-        const auto turn = [&](std::size_t i) { return std::exp(std::complex<real>(0, -w * time(i))); };
+    // The measures evaluate the last whole number of cycles: from `begin` to the last sample.
+    struct Cycles {
+        real begin = 0;
+        std::size_t first = 0; // sample before begin, or at it
+    };
+    Cycles whole_cycles() const {
+        constexpr real slack = 1e-9;
+        const real n = std::floor(cycles() + slack);
+        Cycles w{std::fmax(time(last()) - n * window_.period, time(0)), 0};
+        while (w.first + 1 < last() && time(w.first + 1) <= w.begin + slack * window_.period) ++w.first;
+        return w;
+    }
+
+    // The cubic through values and derivatives at two samples.
+    template <class F> ModeState between(F&& f, std::size_t i, real t) const {
+        const real h = time(i + 1) - time(i), x = (t - time(i)) / h;
+        const ModeState a = f(i), b = f(i + 1);
+        const real slope = (b.q - a.q) / h, bend = a.p + b.p - 2 * slope, turn = 3 * slope - 2 * a.p - b.p;
+        return {a.q + h * x * (a.p + x * (turn + x * bend)), a.p + x * (2 * turn + x * 3 * bend)};
+    }
+
+    // First harmonic of a function with known derivative: 2/T times the integral of f exp(-i w t) over whole
+    // cycles. In each step the product is the cubic through values and derivatives, whose end terms cancel
+    // between equal steps.
+    template <class F> std::complex<real> first_harmonic(F&& f) const {
+        const real w = 2 * pi / window_.period;
+        const Cycles cycles = whole_cycles();
+        struct Product {
+            std::complex<real> value, derivative;
+        };
+        const auto product = [&](ModeState s, real t) {
+            const std::complex<real> turn = std::exp(std::complex<real>(0, -w * t));
+            return Product{s.q * turn, (s.p - std::complex<real>(0, w * s.q)) * turn};
+        };
         std::complex<real> total = 0;
-        for (std::size_t i = 0; i < last(); ++i) total += f(i).q * turn(i);
-        const ModeState begin = f(0), end = f(last());
-        const std::complex<real> jump =
-            (end.p - begin.p + std::complex<real>(0, w * (end.q - begin.q))) * turn(0);
-        return 2.0 / length() * jump - square(w) * 2.0 / n * total;
+        real t = cycles.begin;
+        Product before = product(between(f, cycles.first, t), t);
+        for (std::size_t i = cycles.first + 1; i <= last(); ++i) {
+            const real h = time(i) - t;
+            t = time(i);
+            const Product here = product(f(i), t);
+            total +=
+                0.5 * h * (before.value + here.value) + h * h / 12 * (before.derivative - here.derivative);
+            before = here;
+        }
+        return 2.0 / (time(last()) - cycles.begin) * total;
+    }
+
+    // Amplitude of an acceleration, by parts from the motion, which has no jumps where velocities have.
+    template <class F> std::complex<real> acceleration(F&& f) const {
+        const real w = 2 * pi / window_.period;
+        const Cycles cycles = whole_cycles();
+        const ModeState begin = between(f, cycles.first, cycles.begin), end = f(last());
+        const std::complex<real> jump = (end.p - begin.p + std::complex<real>(0, w * (end.q - begin.q))) *
+                                        std::exp(std::complex<real>(0, -w * cycles.begin));
+        return 2.0 / (time(last()) - cycles.begin) * jump - square(w) * first_harmonic(f);
     }
 
     std::complex<real> base() const {
-        std::complex<real> total = 0;
-        for (std::size_t i = 0; i < last(); ++i)
-            for (const Load& load : problem_.loads)
-                if (load.base)
-                    total += load.signal.piece(time(i)).value(time(i)) *
-                             std::exp(std::complex<real>(0, -2 * pi / window_.period * time(i)));
-        return 2.0 * total / static_cast<real>(last());
+        return first_harmonic([&](std::size_t i) {
+            ModeState sum;
+            for (const Load& load : problem_.loads) {
+                if (!load.base) continue;
+                real taylor[2] = {0, 0};
+                load.signal.piece(time(i)).add_taylor(time(i), 1, 1, taylor);
+                sum.q += taylor[0], sum.p += taylor[1];
+            }
+            return sum;
+        });
     }
 
     std::complex<real> cavity_acceleration(const Damper& damper) const {
@@ -220,6 +292,7 @@ struct Measure {
     bool samples; // needs the motion, not only its ends
     bool peaks;   // needs the peaks of each impact
     real (*value)(const Observer&);
+    bool of_energy_residual = false; // is a number also where the energy residual exceeds its bound
 };
 
 inline constexpr Measure measures[] = {
@@ -241,7 +314,7 @@ inline constexpr Measure measures[] = {
     {"viscous_share", false, false, [](const Observer& o) { return o.share(o.viscous(o.last())); }},
     {"impact_share", false, false, [](const Observer& o) { return o.share(o.impact(o.last())); }},
     {"motion_share", false, false, [](const Observer& o) { return o.share(o.motion(o.last())); }},
-    {"closure", false, false, [](const Observer& o) { return o.closure(); }},
+    {"closure", false, false, [](const Observer& o) { return o.closure(); }, true},
     {"peak", true, false,
      [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).q; }); }},
     {"rms", true, false,

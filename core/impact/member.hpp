@@ -11,12 +11,6 @@ struct Wanted {
     std::vector<int> measures; // places in the table of measures
     bool motion = false, state = false;
     std::size_t last = 0; // impacts at the end
-
-    // The impact log of a sweep need not hold more.
-    void limit_log(Problem& problem, const Window& window) const {
-        problem.settings.log_lines = 2 * (last + problem.contacts.size() + 4);
-        problem.settings.log_from = window.from;
-    }
 };
 
 // Where numbers of members are put: arrays over `members` in one block, those that are not wanted are empty.
@@ -55,10 +49,13 @@ struct Kept {
         status[i] = static_cast<std::int8_t>(result.status);
         if (result.status != Status::finished) return;
         const Observer seen(problem, result, window);
-        if (!seen.closes(problem.settings.closure_bound()))
-            status[i] = static_cast<std::int8_t>(Status::ledger_open);
-        for (std::size_t m = 0; m < wanted.measures.size(); ++m)
-            numbers[measures + m * members + i] = rattlebox::measures[wanted.measures[m]].value(seen);
+        const Status end = seen.end(problem.settings.closure_bound());
+        status[i] = static_cast<std::int8_t>(end);
+        for (std::size_t m = 0; m < wanted.measures.size(); ++m) {
+            const Measure& measure = rattlebox::measures[wanted.measures[m]];
+            if (end == Status::finished || measure.of_energy_residual)
+                numbers[measures + m * members + i] = measure.value(seen);
+        }
         const std::size_t samples = seen.count(), balls = problem.ball_mass.size();
         for (std::size_t s = 0; wanted.motion && s < samples; ++s) {
             const ModeState z = seen.point(s);

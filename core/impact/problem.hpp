@@ -5,6 +5,7 @@
 // between ball i and i + 1.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "base/real.hpp"
@@ -31,6 +32,11 @@ struct Contact {
     RestitutionLaw restitution;
 };
 
+// Energy residual over the energy put in beyond which no run counts as finished, whatever its method.
+inline constexpr real worst_closure = 0.01;
+// Balls that move no faster are at rest [m/s]: a residual below their energy is rounding.
+inline constexpr real speed_at_rest = 1e-9;
+
 enum class Method : int { event_driven = 0, newton = 1, two_step = 2 };
 
 struct Settings {
@@ -43,15 +49,16 @@ struct Settings {
     bool adaptive_inner = false;              // two_step: dopri5 instead of rk4
     bool collocation = true;                  // event_driven: lone contacts by collocation in phase
 
-    std::size_t log_lines = 0; // impacts in the log before the older half is dropped; 0: all are kept
-    real log_from = 0;         // dropped ones from here on are tallied
+    // Largest number of events up to which samples are also taken at begin, deepest overlap and end of
+    // contacts and in the middle of the flights between; 0: never.
+    long contact_samples = 0;
 
     bool peaks = true; // of force and overlap are found for the impact log
 
-    // What the ledger may miss of the energy put in; none for fixed steps, whose error it measures.
+    // Largest energy residual of a run that counts as finished, over the energy put in.
     real closure_bound() const {
-        if (method == Method::two_step) return infinity;
-        return method == Method::newton ? 1e-8 : std::fmax(1e-8, 1e4 * tolerance);
+        if (method == Method::two_step) return worst_closure;
+        return method == Method::newton ? 1e-8 : std::clamp(1e4 * tolerance, 1e-8, worst_closure);
     }
 };
 

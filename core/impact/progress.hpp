@@ -24,6 +24,7 @@ protected:
     std::vector<Phase> phase_;
     std::vector<Released> released_;
     std::size_t next_sample_ = 0;
+    bool contact_ended_ = false; // at the present time
     Result result_;
     std::vector<real> y_, trial_, stored_, force_;
 
@@ -42,29 +43,26 @@ protected:
 
     // ---- recording
 
-    int enter(const Impact& line) {
-        return result_.enter(line, problem_.settings, [&](auto&& use) {
-            for (Active& a : system_.active) use(a.impact);
-            for (Released& r : released_) use(r.impact);
-        });
-    }
-
     // Stored energy of a released contact that still overlaps in state y.
     real recovering(const Released& r, const real* y) const {
-        const real overlap = -gap(problem_, contact(r.contact), y).value - r.memory.offset;
+        const real overlap = -gap(problem_, contact(r.contact), y).value - r.state.origin();
         if (overlap <= 0) return 0;
         const real x = std::sqrt(std::sqrt(overlap));
-        return contact(r.contact).normal.visit([&](const auto& law) { return law.stored(r.memory, x); });
+        return contact(r.contact).normal.visit(
+            [&](const auto& law) { return stored_energy(law, r.state, x); });
     }
 
+    // Are samples taken where contacts begin and end?
+    bool samples_contacts() const { return result_.counts.events <= problem_.settings.contact_samples; }
+
     // The ledger is that of the sample; what released contacts have lost by then is added.
-    void record(real t, const State& state, Ledger& ledger) {
+    void record(real t, const State& state, Ledger& ledger, bool given = true) {
         for (const Released& r : released_) {
             const real left = recovering(r, state.y.data());
             stored_[damper_of(r.contact)] += left;
             ledger.normal[damper_of(r.contact)] += r.energy - left;
         }
-        result_.record(t, state, ledger, stored_, force_);
+        result_.record(t, state, ledger, stored_, force_, given);
     }
 
     void clear_contact_samples() {

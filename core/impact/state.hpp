@@ -50,7 +50,7 @@ struct Gap {
     real value = 0, rate = 0;
 };
 
-RATTLEBOX_CALL inline Gap gap(const Problem& problem, const Contact& contact, const real* y) {
+inline Gap gap(const Problem& problem, const Contact& contact, const real* y) {
     const real* s = positions(problem, y);
     const real* v = velocities(problem, y);
     if (contact.below != wall && contact.above != wall)

@@ -1,7 +1,7 @@
 // The equations of motion while contacts are closed.
 //
 // State y: modes and balls as in impact/state.hpp; time since the start, work of loads, work of the base,
-// viscous loss; then for each soft contact x with overlap = offset + x^4, and the energy its dashpot has
+// viscous loss; then for each soft contact x with overlap = origin + x^4, and the energy its dashpot has
 // taken. The independent variable is a transformed time, dt = dtau / sum(1 / x_j^3): it makes Hertz contact
 // regular at first touch and at the end, for any number of contacts at once. With no soft contact it is time
 // itself.
@@ -13,22 +13,23 @@
 #include <vector>
 
 #include "base/solve.hpp"
+#include "impact/contact_phase.hpp"
 #include "impact/state.hpp"
 
 namespace rattlebox {
 
 struct Active {
     int contact = 0;
-    Memory memory;
+    ContactState state;
     int impact = -1; // its line in the log
-    real x = 0;      // overlap = memory.offset + x^4
+    real x = 0;      // overlap = state.origin() + x^4
     real speed = 0;  // largest approach speed so far: the scale of its errors
 };
 
 // A contact whose force has ended before its overlap: it recovers in flight, or takes hold again.
 struct Released {
     int contact = 0;
-    Memory memory;
+    ContactState state;
     int impact = -1;
     real energy = 0; // stored at the release, lost while it recovers
 };
@@ -126,7 +127,7 @@ public:
     std::size_t size() const { return time_index() + 4 + 2 * active.size(); }
 
     // d(closing rate of a)/dt per unit of force in b.
-    RATTLEBOX_CALL real coupling(const Contact& a, const Contact& b) const {
+    real coupling(const Contact& a, const Contact& b) const {
         real sum = 0;
         const auto side = [](const Contact& c, int ball) {
             return (c.above == ball ? 1.0 : 0.0) - (c.below == ball ? 1.0 : 0.0);
@@ -149,13 +150,13 @@ public:
         const Active& a = active[j];
         const real rate = approach(y, a.contact);
         return contact(a.contact).normal.visit(
-            [&](const auto& l) { return l.force(a.memory, y[x_index(j)], rate); });
+            [&](const auto& law) { return contact_force(law, a.state, y[x_index(j)], rate).total; });
     }
 
     // Forces of the stuck contacts found by the last evaluation.
     const std::vector<real>& stuck_forces() const { return forces_; }
 
-    RATTLEBOX_CALL void operator()(const real* y, real* dy) {
+    void operator()(const real* y, real* dy) {
         const std::size_t m = mode_count(), b = ball_count(), n = active.size();
         const real* v = velocities(problem_, y);
         cavity_rates(y);
@@ -186,8 +187,9 @@ public:
             const real x = y[at], rate = closing(c, v, cavity_rate_.data());
             real lost = 0;
             const real f = c.normal.visit([&](const auto& law) {
-                lost = law.lost_power(a.memory, x, rate);
-                return law.force(a.memory, x, rate);
+                const NormalForce<real> force = contact_force(law, a.state, x, rate);
+                lost = (force.total - force.elastic) * rate;
+                return force.total;
             });
             push(c, f);
             dy[at] = 0.25 * rate * clock_[j] / total;

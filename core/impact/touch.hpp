@@ -11,11 +11,15 @@ namespace rattlebox {
 
 class Touching : protected Progress {
     LoneContact lone_, sampler_;
+    State between_;       // of a sample within a lone contact
     Ledger spent_;        // in one contact
     real rest_speed_ = 0; // of contacts about to close from rest: when force and inertia balance
     real fastest_ = 0;    // of the balls relative to their cavities, at any hard impact so far
 
 protected:
+    real smooth_since_ =
+        0; // when a force or its rate last jumped, other than by a contact that began at rest
+
     // ---- first touch
 
     void meet(int c) {
@@ -62,7 +66,6 @@ protected:
     // is interpolated.
     void sample_lone(int c, const HertzTsuji& law, real speed, real zeta) {
         const real t = problem_.sample_times[next_sample_++];
-        State at(problem_);
         sampled_ = ledger_;
         LoneContact::Instant now;
         real psi = lone_.psi_at(t - state_.t);
@@ -74,25 +77,39 @@ protected:
             if (std::fabs(late) <= 2 * epsilon * t) break;
             psi = std::clamp(psi + late * sampler_.turning(now), 0.5 * psi, lone_.last_psi());
         }
-        sampler_.finish(now, at, sampled_);
+        sampler_.finish(now, between_, sampled_);
         clear_contact_samples();
-        stored_[damper_of(c)] = law.stored({}, now.x);
+        stored_[damper_of(c)] = law.stored(law.coefficients(zeta, speed), depth_from_fourth_root(now.x));
         add_wall_force(c, now.force);
-        record(t, at, sampled_);
+        record(t, between_, sampled_);
+    }
+
+    // A sample at the deepest overlap of a lone contact.
+    void sample_deepest(int c, const HertzTsuji& law, real speed, real zeta) {
+        sampled_ = ledger_;
+        sampler_.prepare(contact(c), law, loads_, state_, speed, zeta, infinity, std::acos(zeta));
+        sampler_.solve();
+        const LoneContact::Instant now = sampler_.end();
+        sampler_.finish(now, between_, sampled_);
+        clear_contact_samples();
+        stored_[damper_of(c)] = law.stored(law.coefficients(zeta, speed), depth_from_fourth_root(now.x));
+        add_wall_force(c, now.force);
+        record(state_.t + now.time, between_, sampled_, false);
     }
 
     // The whole contact at once, where that is possible and its energy balance agrees.
-    RATTLEBOX_CALL bool collocate(int c, real speed, real e) {
+    bool collocate(int c, real speed, real e) {
         const HertzTsuji* law = contact(c).normal.get_if<HertzTsuji>();
         if (!law) return false;
-        const real zeta = law->zeta(e);
+        const real zeta = law->damping(e);
         if (!lone_.prepare(contact(c), *law, loads_, state_, speed, zeta, next_stop() - state_.t))
             return false;
         if (!alone(c, speed, lone_.longest_time()) || !lone_.solve()) return false;
         spent_.clear(); // by itself: in the sums of a long run its rounding would drown
         const LoneContact::Instant end = lone_.end();
         lone_.finish(end, scratch_, spent_);
-        const real stored = law->stored({}, end.x);
+        const ContactState contact_state = first_touch(*law, e, speed);
+        const real stored = stored_energy(*law, contact_state, end.x);
         const std::size_t d = damper_of(c);
         const real residual = energy(scratch_) + stored - energy(state_) + spent_.normal[d] + spent_.viscous -
                               spent_.load_work - spent_.base_work;
@@ -114,34 +131,40 @@ protected:
         }
         line.energy_lost = end.lost + stored;
         line.complete = true;
-        const int number = enter(line);
+        const int number = result_.enter(line);
         ++result_.counts.collocated;
+        if (samples_contacts()) {
+            const real deepest = state_.t + lone_.time_at(lone_.deepest_position());
+            while (sample_due(deepest)) sample_lone(c, *law, speed, zeta);
+            sample_deepest(c, *law, speed, zeta);
+        }
         while (sample_due(state_.t + end.time)) sample_lone(c, *law, speed, zeta);
+        contact_ended_ = true;
         std::swap(state_.y, scratch_.y);
         state_.t += end.time;
         ledger_.add(spent_);
         if (stored > 0) {
-            Memory memory = law->begin(e);
-            released_.push_back({c, memory, number, stored});
+            released_.push_back({c, contact_state, number, stored});
             phase(c) = Phase::released;
         }
         return true;
     }
 
-    void begin_contact(int c, real speed, real e, real x) {
+    // `since`: when its force began, by default now.
+    void begin_contact(int c, real speed, real e, real x, real since = not_a_number) {
         Active a;
         a.contact = c;
         bool asked = false;
         contact(c).normal.visit([&](const auto& law) {
-            a.memory = law.begin(e);
+            a.state = first_touch(law, e, speed);
             asked = law.needs_restitution();
         });
         Impact line;
         line.contact = c;
-        line.time = state_.t;
+        line.time = std::isnan(since) ? state_.t : since;
         line.approach_speed = speed;
         if (asked) line.restitution = e;
-        a.impact = enter(line);
+        a.impact = result_.enter(line);
         a.x = x;
         a.speed = speed;
         system_.active.push_back(a);
@@ -178,8 +201,9 @@ protected:
         const Gap g = gap(problem_, contact(c), y);
         if (g.value >= 0) return 0;
         const real e = rebound(contact(c).restitution, 0).e, x = std::sqrt(std::sqrt(-g.value));
-        const real f =
-            contact(c).normal.visit([&](const auto& law) { return law.force(law.begin(e), x, -g.rate); });
+        const real f = contact(c).normal.visit([&](const auto& law) {
+            return contact_force(law, first_touch(law, e, -g.rate), x, -g.rate).total;
+        });
         return std::fabs(f) * length / contact(c).mass;
     }
 
@@ -191,8 +215,10 @@ protected:
                std::fmax(1e-8 * std::fabs(rate), problem_.settings.tolerance * speed);
     }
 
-    // Those that press begin where they are, also where rounding of the places has lost the way they came.
-    void begin_at_rest(const std::vector<char>& presses = {}) {
+    // Begins the contacts that close from rest, at the overlap that they have now. Their force began at
+    // `since`, unless the overlap has grown too fast for a power of the time since then. Those that press
+    // begin also where rounding of the places has lost the way they came.
+    void begin_at_rest(real since, const std::vector<char>& presses = {}) {
         for (int c = 0; c < problem_.contact_count(); ++c) {
             if (phase(c) != Phase::touching) continue;
             const Gap g = gap(problem_, contact(c), state_.y.data());
@@ -200,7 +226,9 @@ protected:
             if (g.rate >= 0 || (g.value >= 0 && !pressing)) continue;
             const Rebound r = rebound(contact(c).restitution, 0);
             if (!possible(contact(c).normal, r)) return fail(Status::no_rebound, c, 0);
-            begin_contact(c, 0, r.e, std::sqrt(std::sqrt(std::fmax(-g.value, 0.0))));
+            begin_contact(c, 0, r.e, std::sqrt(std::sqrt(std::fmax(-g.value, 0.0))),
+                          pressing || state_.t - since <= 50 * std::fabs(g.value / g.rate) ? since
+                                                                                           : state_.t);
             system_.active.back().speed = std::fmax(-g.rate, rest_speed_);
         }
         rest_speed_ = 0;
@@ -326,8 +354,9 @@ protected:
         line.peak_force = infinity;
         line.energy_lost = 0.5 * push * (1 - e) * speed;
         line.complete = true;
+        contact_ended_ = true;
         ledger_.normal[damper_of(c)] += line.energy_lost;
-        const auto number = static_cast<std::size_t>(enter(line));
+        const auto number = static_cast<std::size_t>(result_.enter(line));
         wake_stuck();
         const real rebound_speed = std::fmax(-system_.approach(state_.y.data(), c), 0.0);
         const real acceleration = gap_acceleration(c);
@@ -353,7 +382,7 @@ protected:
 
 public:
     Touching(const Problem& problem, const std::atomic<bool>* stop)
-        : Progress(problem, stop), lone_(problem), sampler_(problem), spent_(problem) {}
+        : Progress(problem, stop), lone_(problem), sampler_(problem), between_(problem), spent_(problem) {}
 };
 
 } // namespace rattlebox

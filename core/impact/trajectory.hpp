@@ -13,15 +13,35 @@ class Trajectory : ClosedContacts {
     std::vector<char> watched_, presses_;
     State ahead_; // at the end of a flight
 
-    void sample_flight(real until) {
-        while (sample_due(until)) {
-            const real t = problem_.sample_times[next_sample_++];
-            sampled_ = ledger_;
-            flight_.account(t - state_.t, sampled_);
-            flight_.at(t - state_.t, scratch_);
-            clear_contact_samples();
-            record(t, scratch_, sampled_);
+    void sample_flight_at(real t, bool given) {
+        sampled_ = ledger_;
+        flight_.account(t - state_.t, sampled_);
+        flight_.at(t - state_.t, scratch_);
+        clear_contact_samples();
+        record(t, scratch_, sampled_, given);
+    }
+
+    // The samples up to `until`, and those beside a contact that has just ended or begins there. One that
+    // ended is sampled an instant later, so that hard impacts, which end where they begin, have velocities
+    // before and after.
+    void sample_flight(real until, bool touches) {
+        const real begin = state_.t;
+        const auto sample_up_to = [&](real t) {
+            while (sample_due(t)) sample_flight_at(problem_.sample_times[next_sample_++], true);
+        };
+        if (samples_contacts() && (contact_ended_ || touches)) {
+            const real just_after = std::nextafter(begin, infinity), middle = 0.5 * (begin + until);
+            if (contact_ended_ && just_after < until) {
+                sample_up_to(begin);
+                sample_flight_at(just_after, false);
+            }
+            sample_up_to(middle);
+            if (middle > begin) sample_flight_at(middle, false);
+            sample_up_to(until);
+            if (touches) sample_flight_at(until, false);
         }
+        sample_up_to(until);
+        contact_ended_ = false;
     }
 
     // ---- flights
@@ -50,14 +70,16 @@ class Trajectory : ClosedContacts {
             flight_.at(length, ahead_);
         }
         const bool to_stop = touch.contact < 0 && length == stop - state_.t;
-        const real end = to_stop ? stop : state_.t + length;
-        sample_flight(end);
+        const real begin = state_.t, end = to_stop ? stop : begin + length;
+        const bool met = touch.contact >= 0 && length == touch.after;
+        sample_flight(end, met || pressing);
         flight_.account(length, ledger_);
         std::swap(ahead_.y, state_.y);
         state_.t = end;
         settle_released(touch.contact);
-        if (pressing) begin_at_rest(presses_);
-        if (touch.contact >= 0 && length == touch.after) meet(touch.contact);
+        if (pressing) begin_at_rest(begin, presses_);
+        if (met) meet(touch.contact);
+        smooth_since_ = pressing && !met ? begin : state_.t;
     }
 
     // Can every released contact only open? Its rate is too large for any acceleration of the flight to turn.

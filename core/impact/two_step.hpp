@@ -10,6 +10,7 @@
 #include <array>
 #include <atomic>
 
+#include "impact/contact_phase.hpp"
 #include "impact/log.hpp"
 #include "impact/state.hpp"
 
@@ -17,8 +18,9 @@ namespace rattlebox {
 
 class TwoStep {
     struct Slot {
-        Memory memory;
+        ContactState state;
         bool closed = false;
+        real rate = 0; // of approach, one step before
         int impact = -1;
     };
 
@@ -31,6 +33,7 @@ class TwoStep {
     std::vector<real> push_ball_, push_cavity_, y_, next_, dy_, dnext_, work_;
     std::array<std::vector<real>, 7> k_;
     std::size_t next_sample_ = 0, n_ = 0;
+    bool phase_changed_ = false; // a contact has begun, turned or ended in this step
     Result result_;
 
     std::size_t extra() const {
@@ -41,21 +44,21 @@ class TwoStep {
         real force = 0, lost = 0;
     };
 
-    Push contact_force(std::size_t c, const real* y) const {
+    Push force_of(std::size_t c, const real* y) const {
         const Gap g = gap(problem_, problem_.contacts[c], y);
         const Slot& slot = slots_[c];
-        const real overlap = -g.value - slot.memory.offset;
+        const real overlap = -g.value - slot.state.origin();
         if (overlap <= 0) return {};
         const real x = std::sqrt(std::sqrt(overlap)), rate = -g.rate;
         return problem_.contacts[c].normal.visit([&](const auto& law) -> Push {
-            const real f = law.force(slot.memory, x, rate);
+            const NormalForce<real> f = contact_force(law, slot.state, x, rate);
             if constexpr (requires { law.zero_overlap; })
-                if (law.zero_overlap == 0 && f < 0) return {0, -law.force(slot.memory, x, 0) * rate};
-            return {f, law.lost_power(slot.memory, x, rate)};
+                if (law.zero_overlap == 0 && f.total < 0) return {0, -f.elastic * rate};
+            return {f.total, (f.total - f.elastic) * rate};
         });
     }
 
-    RATTLEBOX_CALL void right(real t, const real* y, real* dy) {
+    void right(real t, const real* y, real* dy) {
         const std::size_t m = problem_.modes.size(), b = problem_.ball_mass.size();
         std::fill(push_ball_.begin(), push_ball_.end(), 0.0);
         std::fill(push_cavity_.begin(), push_cavity_.end(), 0.0);
@@ -63,7 +66,7 @@ class TwoStep {
         more[0] = more[1] = more[2] = 0;
         for (std::size_t c = 0; c < problem_.contacts.size(); ++c) {
             const Contact& k = problem_.contacts[c];
-            const Push p = contact_force(c, y);
+            const Push p = force_of(c, y);
             more[3 + c] = p.lost;
             (k.below == wall ? push_cavity_[static_cast<std::size_t>(k.damper)]
                              : push_ball_[static_cast<std::size_t>(k.below)]) -= p.force;
@@ -169,6 +172,8 @@ class TwoStep {
             const Contact& contact = problem_.contacts[c];
             const Gap g = gap(problem_, contact, y_.data());
             const real rate = -g.rate;
+            phase_changed_ = phase_changed_ || (slot.closed && slot.rate > 0 && rate <= 0);
+            slot.rate = rate;
             if (!slot.closed) {
                 // Restitution for a touch within the next step; fixed by the first step that ends in overlap.
                 if (g.value > problem_.settings.dt_flight * std::fmax(2 * rate, 0.0) && g.value > 0) continue;
@@ -181,12 +186,12 @@ class TwoStep {
                 }
                 bool asked = false;
                 contact.normal.visit([&](const auto& law) {
-                    slot.memory = law.begin(r.e);
+                    slot.state = first_touch(law, r.e, std::fmax(rate, 0.0));
                     asked = law.needs_restitution();
                 });
                 if (g.value >= 0) continue;
                 result_.counts.extrapolated += r.extrapolated;
-                slot.closed = true;
+                slot.closed = phase_changed_ = true;
                 Impact line;
                 line.contact = static_cast<int>(c);
                 line.time = t;
@@ -194,33 +199,31 @@ class TwoStep {
                 if (asked) line.restitution = r.e;
                 line.energy_lost = -y_[extra() + 3 + c];
                 slot.impact = -1;
-                slot.impact = result_.enter(line, problem_.settings, [&](auto&& use) {
-                    for (Slot& s : slots_) use(s.impact);
-                });
+                slot.impact = result_.enter(line);
             }
             Impact& line = result_.impacts[static_cast<std::size_t>(slot.impact)];
             const real overlap = -g.value;
             line.peak_overlap = std::max(line.peak_overlap, overlap);
-            line.peak_force = std::max(line.peak_force, contact_force(c, y_.data()).force);
+            line.peak_force = std::max(line.peak_force, force_of(c, y_.data()).force);
             // Rate-independent laws change phase when their boundary is crossed.
             contact.normal.visit([&](const auto& law) {
-                if constexpr (requires { law.yield_overlap(); }) {
-                    const real x = std::sqrt(std::sqrt(std::fmax(overlap - slot.memory.offset, 0.0)));
-                    if (overlap > slot.memory.offset && law.boundary(slot.memory, x, rate) <= 0) {
-                        law.cross(slot.memory, x, rate);
-                    }
+                if constexpr (std::decay_t<decltype(law)>::hysteretic) {
+                    const real x = std::sqrt(std::sqrt(std::fmax(overlap - slot.state.origin(), 0.0)));
+                    if (overlap > slot.state.origin() && phase_end(law, slot.state, x, rate) <= 0)
+                        next_phase(law, slot.state, x);
                 }
             });
             if (overlap > 0) continue;
             const std::size_t d = static_cast<std::size_t>(contact.damper);
             const real plastic =
-                contact.normal.visit([&](const auto& law) { return law.plastic(slot.memory, 0); });
+                contact.normal.visit([&](const auto& law) { return plastic_loss(law, slot.state, 0); });
             ledger_.plastic[d] += plastic;
             line.energy_lost += y_[extra() + 3 + c] + plastic;
             line.duration = t - line.time;
             line.separation_speed = -rate;
             line.complete = true;
             slot = Slot{};
+            phase_changed_ = true;
         }
         return true;
     }
@@ -240,7 +243,7 @@ class TwoStep {
         }
     }
 
-    void put(real t, const real* y) {
+    void put(real t, const real* y, bool given = true) {
         State state = state_;
         std::copy_n(y, state.y.size(), state.y.begin());
         Ledger ledger = ledger_;
@@ -252,17 +255,17 @@ class TwoStep {
             const Contact& contact = problem_.contacts[c];
             const std::size_t d = static_cast<std::size_t>(contact.damper);
             ledger.normal[d] += y[extra() + 3 + c];
-            const real overlap = -gap(problem_, contact, y).value - slots_[c].memory.offset;
+            const real overlap = -gap(problem_, contact, y).value - slots_[c].state.origin();
             const real x = overlap > 0 ? std::sqrt(std::sqrt(overlap)) : 0;
             contact.normal.visit([&](const auto& law) {
-                if (slots_[c].closed) ledger.plastic[d] += law.plastic(slots_[c].memory, x);
-                stored[d] += law.stored(slots_[c].memory, x);
+                if (slots_[c].closed) ledger.plastic[d] += plastic_loss(law, slots_[c].state, x);
+                stored[d] += stored_energy(law, slots_[c].state, x);
             });
-            const real push = contact_force(c, y).force;
+            const real push = force_of(c, y).force;
             if (contact.above == wall) force[d] += push;
             if (contact.below == wall) force[d] -= push;
         }
-        result_.record(t, state, ledger, stored, force);
+        result_.record(t, state, ledger, stored, force, given);
     }
 
 public:
@@ -277,7 +280,7 @@ public:
         for (auto& k : k_) k.resize(n_);
     }
 
-    RATTLEBOX_CALL Result run() {
+    Result run() {
         const Settings& s = problem_.settings;
         real t = 0;
         if (!problem_.sample_times.empty() && problem_.sample_times[0] <= 0) {
@@ -311,7 +314,10 @@ public:
                 result_.status = Status::interrupted;
                 break;
             }
+            phase_changed_ = false;
             ok = update(t);
+            if (phase_changed_ && static_cast<long>(result_.impacts.size()) <= s.contact_samples)
+                put(t, y_.data(), false);
         }
         result_.stopped_at = t;
         return std::move(result_);

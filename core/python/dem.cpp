@@ -83,17 +83,21 @@ public:
     nb::dict counters() const {
         Counts counts;
         std::int64_t candidates = 0;
+        std::vector<real> enduring;
         for (const Bed& b : simulation_->beds()) {
             counts.begin();
+            enduring.push_back(0);
             for (const Chunk& c : b.chunks) {
                 candidates += c.pairs.size() + c.walls.size();
                 counts.see(c.tally.first_touches, c.tally.deepest.ratio(), c.tally.fastest);
                 counts.extrapolated += c.tally.extrapolated;
+                for (const Lanes& lost : c.tally.enduring) enduring.back() += total(lost);
             }
         }
         nb::dict d = counts.write(simulation_->beds().size(), simulation_->step(), simulation_->builds(),
                                   simulation_->scans(), simulation_->memory(), seconds_);
         d["candidates"] = candidates, d["late_builds"] = simulation_->late_builds();
+        d["enduring_loss"] = array(std::move(enduring));
         return d;
     }
 
@@ -116,9 +120,7 @@ public:
 
     void restore(const Bytes& bytes) {
         BackReader reader(reinterpret_cast<const char*>(bytes.data()), bytes.shape(0));
-        simulation_->keep(reader);
-        if (!reader.at_end()) throw std::invalid_argument("the state is of another case");
-        simulation_->resume();
+        simulation_->restore(reader);
     }
 
     int status() const { return static_cast<int>(simulation_->status()); }

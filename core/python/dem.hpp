@@ -6,6 +6,5 @@
 namespace rattlebox::door {
 
 void add_dem(nanobind::module_& module);
-void add_dem_wide(nanobind::module_& module);
 
 } // namespace rattlebox::door

@@ -61,6 +61,7 @@ inline dem::Problem read_dem(rattlebox::Problem& storage, const nb::dict& d) {
     Reader reader(storage, nullptr);
     dem::Problem p;
     reader.number(p.dt, d, "dt");
+    if (d.contains("enduring")) reader.number(p.enduring, d, "enduring");
     p.steps = nb::cast<long>(d["steps"]), p.every = nb::cast<long>(d["every"]);
     p.gravity = one_row(d["gravity"]);
     const auto decay = reals(d["mode_decay"]), stiffness = reals(d["mode_stiffness"]);
@@ -70,7 +71,7 @@ inline dem::Problem read_dem(rattlebox::Problem& storage, const nb::dict& d) {
         p.start.push_back({q.at(m), v.at(m)});
     }
     const auto loads = nb::cast<nb::list>(d["loads"]), contacts = nb::cast<nb::list>(d["contacts"]);
-    storage.tables.reserve(2 * loads.size() + 2 * contacts.size());
+    storage.tables.reserve(2 * loads.size() + 8 * contacts.size());
     for (nb::handle item : loads) {
         const auto entry = nb::cast<nb::dict>(item);
         Load load;
@@ -85,17 +86,10 @@ inline dem::Problem read_dem(rattlebox::Problem& storage, const nb::dict& d) {
         Encounter e;
         reader.choose(e.normal, nb::cast<nb::dict>(entry["normal"]));
         reader.choose(e.restitution, nb::cast<nb::dict>(entry["restitution"]));
-        e.by_time = nb::cast<bool>(entry["by_time"]);
-        reader.number(e.radius, entry, "radius");
-        reader.number(e.mass, entry, "mass");
-        reader.number(e.friction, entry, "friction");
-        reader.number(e.shear, entry, "shear");
-        reader.number(e.tangential_stiffness, entry, "tangential_stiffness");
-        reader.number(e.tangential_ratio, entry, "tangential_ratio");
-        reader.number(e.tangential_damping, entry, "tangential_damping");
-        reader.number(e.rolling, entry, "rolling");
-        reader.number(e.rolling_stiffness, entry, "rolling_stiffness");
-        reader.number(e.rolling_damping, entry, "rolling_damping");
+        reader.choose(e.tangential, nb::cast<nb::dict>(entry["tangential"]));
+        reader.fill(e.rolling, nb::cast<nb::dict>(entry["rolling"]));
+        reader.number(e.size.radius, entry, "radius");
+        reader.number(e.size.mass, entry, "mass");
         p.encounters.push_back(e);
     }
     for (nb::handle item : nb::cast<nb::list>(d["cavities"]))

@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "python/dem.hpp"
+#include "python/laws.hpp"
 #include "python/sweep.hpp"
 
 namespace nb = nanobind;
@@ -44,34 +45,18 @@ nb::list simulate(const nb::list& problems, int threads) {
     return results;
 }
 
-// Restitution of a packed law at each speed; not a number beyond it.
-nb::object restitution(const nb::dict& law, const door::Array& speeds) {
-    Problem storage;
-    storage.tables.reserve(2);
-    RestitutionLaw choice;
-    door::Reader(storage, nullptr).choose(choice, law);
-    std::vector<real> values;
-    for (std::size_t i = 0; i < speeds.shape(0); ++i) {
-        const Rebound r = rebound(choice, speeds.data()[i]);
-        values.push_back(r.outside ? not_a_number : r.e);
-    }
-    return door::array(std::move(values));
-}
-
 } // namespace
 
 NB_MODULE(RATTLEBOX_MODULE, module) {
     module.doc() = "Rattlebox core";
+    module.attr("worst_closure") = worst_closure;
+    module.attr("speed_at_rest") = speed_at_rest;
     module.def("simulate", &simulate, nb::arg("problems"), nb::arg("threads") = 1,
                "Run packed problems (see rattlebox/engines/pack.py) and return their results.");
     module.def("sweep", &door::sweep, nb::arg("problem"), nb::arg("shape"), nb::arg("start"), nb::arg("stop"),
                nb::arg("measures"), nb::arg("window"), nb::arg("motion") = false, nb::arg("state") = false,
                nb::arg("last") = 0, nb::arg("threads") = 1, nb::arg("progress") = nb::none(),
                "Run members start to stop of a batch and keep measures of them, not their trajectories.");
-    module.def("gpu_image", &door::gpu_image, nb::arg("problem"), nb::arg("shape"), nb::arg("start"),
-               nb::arg("stop"), nb::arg("measures"), nb::arg("window"), nb::arg("motion") = false,
-               nb::arg("state") = false, nb::arg("last") = 0,
-               "The same members as an image for a GPU (core/gpu/impact.cpp), and what they need there.");
     module.def(
         "measures",
         [] {
@@ -80,7 +65,6 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
             return names;
         },
         "Names of the measures, and whether each needs samples of the motion.");
-    module.def("restitution", &restitution, nb::arg("law"), nb::arg("speeds"));
+    door::add_laws(module);
     door::add_dem(module);
-    door::add_dem_wide(module);
 }

@@ -82,6 +82,12 @@ private:
     }
 
 public:
+    // Fills the coefficients of a law by their names.
+    template <class Law> void fill(Law& law, const nb::dict& d) {
+        for (const auto& field : Law::fields)
+            if (d.contains(field.name)) number(law.*field.member, d, field.name);
+    }
+
     // Sets `choice` to the law that carries this name.
     template <class Laws> void choose(Laws& choice, const nb::dict& d) {
         const auto name = nb::cast<std::string>(d["law"]);
@@ -90,8 +96,7 @@ public:
             using Law = std::remove_const_t<std::remove_pointer_t<decltype(null)>>;
             if (name != Law::name) return;
             Law& law = choice.set(Law{});
-            for (const auto& field : Law::fields)
-                if (d.contains(field.name)) number(law.*field.member, d, field.name);
+            fill(law, d);
             if constexpr (requires { Law::tables; })
                 for (const auto& table : Law::tables) law.*table.member = keep(reals(d[table.name]));
             found = true;
@@ -156,7 +161,7 @@ public:
         }
         const auto loads = nb::cast<nb::list>(d["loads"]), dampers = nb::cast<nb::list>(d["dampers"]),
                    contacts = nb::cast<nb::list>(d["contacts"]);
-        problem_.tables.reserve(2 * loads.size() + 2 * contacts.size());
+        problem_.tables.reserve(2 * loads.size() + 8 * contacts.size());
         problem_.loads.resize(loads.size());
         for (std::size_t l = 0; l < loads.size(); ++l) {
             const auto entry = nb::cast<nb::dict>(loads[l]);
@@ -194,6 +199,8 @@ public:
         }
         if (d.contains("sample_times")) problem_.sample_times = reals(d["sample_times"]);
         settings(problem_.settings, nb::cast<nb::dict>(d["settings"]));
+        if (d.contains("contact_samples"))
+            problem_.settings.contact_samples = nb::cast<long>(d["contact_samples"]);
     }
 };
 

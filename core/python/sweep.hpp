@@ -5,7 +5,9 @@
 #include <atomic>
 #include <memory>
 
-#include "impact/image_writer.hpp"
+#include "impact/batch.hpp"
+#include "impact/member.hpp"
+#include "impact/run.hpp"
 #include "python/crew.hpp"
 #include "python/read.hpp"
 #include "python/write.hpp"
@@ -105,26 +107,6 @@ inline nb::object sweep(const nb::dict& packed, const std::vector<std::size_t>& 
         for (std::size_t length : a.shape) size *= length;
         d[a.name] = array(std::vector<real>(from, from + size), a.shape);
     }
-    return d;
-}
-
-// The same members as an image for a GPU, what they need there, and where the results will be put.
-inline nb::dict gpu_image(const nb::dict& packed, const std::vector<std::size_t>& shape, std::size_t start,
-                          std::size_t stop, const std::vector<std::string>& names, const nb::dict& window,
-                          bool motion, bool state, std::size_t last) {
-    Wanted keep = wanted(names, motion, state, last);
-    Worker worker(packed, shape, window, keep);
-    Kept kept;
-    kept.members = stop - start;
-    nb::dict d;
-    d["numbers"] = kept.lay(worker.problem, worker.window, keep);
-    d["memory"] = image::memory(worker.problem, worker.window, keep);
-    const std::vector<char> bytes =
-        image::write(worker.problem, worker.batch, worker.window, keep, start, stop - start);
-    nb::list layout;
-    for (const Named& a : arrays(kept, worker, keep)) layout.append(nb::make_tuple(a.name, a.at, a.shape));
-    d["arrays"] = layout;
-    d["image"] = nb::bytes(bytes.data(), bytes.size());
     return d;
 }
 

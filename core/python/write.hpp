@@ -31,6 +31,7 @@ inline nb::dict write(const Problem& problem, Result&& r, double seconds) {
     Samples& s = r.samples;
     d["time"] = array(std::move(s.time));
     d["state"] = array(std::move(s.state));
+    d["given"] = array(std::move(s.given));
     d["load_work"] = array(std::move(s.load_work));
     d["base_work"] = array(std::move(s.base_work));
     d["viscous"] = array(std::move(s.viscous));

@@ -23,6 +23,7 @@ PAGES = (
     "particle_dampers",
     "results",
     "sensitivity",
+    "softening",
     "sweep",
 )
 
@@ -81,7 +82,7 @@ def test_cases_on_the_page_of_fields_run(tmp_path):
     files = re.findall(
         r"^```toml\n(.*?)^```$", (DOCS / "case_file.md").read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
     )
-    assert len(files) == 2
+    assert len(files) == 3
     for number, content in enumerate(files):
         case = rb.Case.from_toml(content)
         run = rb.simulate(case, snapshots=tmp_path / f"{number}.vtkhdf" if case.output.snapshots else None)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.interpolate import PchipInterpolator
 
 import rattlebox as rb
 
@@ -94,3 +95,19 @@ def test_a_shaken_box_rides_along_or_is_thrown() -> None:
     assert 1 < found.reduced_loss[1].item() < 4  # 4: every ball loses all of twice the speed
     by_force = np.pi * found.damping_mass[1] / found.particle_mass
     assert by_force.item() == pytest.approx(found.reduced_loss[1].item(), rel=0.05)
+
+
+def test_a_measured_contact_gives_back_the_area_below_its_unloading_curve(capsys: pytest.CaptureFixture[str]) -> None:
+    """An impact as deep as the measurement has the restitution of the areas below both curves; a deeper one is noted."""
+    example = runpy.run_path(str(EXAMPLES / "measured_contact.py"), run_name="__main__")
+    assert "0.6 m/s: overlap 133 um, restitution 0.770\n  warning" in capsys.readouterr().out
+    pad = example["PAD"]
+    work, back = (
+        PchipInterpolator(curve.overlap, curve.force).integrate(curve.overlap[0], curve.overlap[-1])
+        for curve in (pad, pad.unloading)
+    )
+    ball = rb.Sphere(radius="10 mm", material="steel")
+    run = example["impact"](float(np.sqrt(2 * work / ball.weight)))
+    (hit,) = run.arrays.impacts.separation_speed / run.arrays.impacts.approach_speed
+    assert run.arrays.impacts.peak_overlap[0] == pytest.approx(100e-6, rel=1e-8)
+    assert hit == pytest.approx(np.sqrt(back / work), rel=1e-8)

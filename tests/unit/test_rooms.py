@@ -12,16 +12,15 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PACKAGE, CORE = ROOT / "src/rattlebox", ROOT / "core"
 ARROWS = {
-    "cli": {"paper"},
-    "paper": {"plots", "studies"},
+    "cli": {"plots", "studies"},
     "plots": {"analysis", "model"},
     "studies": {"engines", "analysis"},
     "analysis": {"results"},
     "engines": {"results", "model"},
-    "results": set(),
-    "model": set(),
+    "results": {"_util"},
+    "model": {"_util"},
+    "_util": set(),
     "core/python": {"core/impact", "core/dem"},
-    "core/gpu": {"core/impact", "core/dem"},
     "core/dem": {"core/contact", "core/structure"},
     "core/impact": {"core/contact", "core/structure"},
     "core/contact": {"core/base"},

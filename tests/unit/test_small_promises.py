@@ -10,18 +10,17 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.analysis import complex_power
-from rattlebox.paper.seed import seed_case
 
 
 def test_cases_may_come_from_a_generator() -> None:
     """Cases are run whatever holds them."""
-    runs = rb.simulate_many(seed_case(duration=0.01 * k) for k in (1, 2))
+    runs = rb.simulate_many(rb.reference_case(duration=0.01 * k) for k in (1, 2))
     assert [run.arrays.time[-1] for run in runs] == [0.01, 0.02]
 
 
 def test_impacts_stay_read_only_when_copied() -> None:
     """The log of impacts cannot be written to, after pickling either."""
-    run = pickle.loads(pickle.dumps(rb.simulate(seed_case(duration=0.1))))
+    run = pickle.loads(pickle.dumps(rb.simulate(rb.reference_case(duration=0.1))))
     assert run.arrays.impacts.time.size > 0
     with pytest.raises(ValueError, match="read-only"):
         run.arrays.impacts.time[0] = 9.0
@@ -49,7 +48,7 @@ def test_saving_through_a_link_writes_its_target(tmp_path: Path) -> None:
     """A run that is saved by the name of a symbolic link is in the file that it points to."""
     (tmp_path / "kept.nc").touch()
     (tmp_path / "latest.nc").symlink_to(tmp_path / "kept.nc")
-    run = rb.simulate(seed_case(duration=0.01))
+    run = rb.simulate(rb.reference_case(duration=0.01))
     run.save(tmp_path / "latest.nc")
     assert (tmp_path / "latest.nc").is_symlink()
     assert rb.load(tmp_path / "kept.nc").arrays == run.arrays

@@ -9,6 +9,7 @@ struct ConstantRestitution {
     real e = 1;
     real maximum = 1;
 
+    static constexpr bool speed_scales_with_size = false;
     static constexpr const char* name = "constant";
     static constexpr Field<ConstantRestitution> fields[] = {{"e", &ConstantRestitution::e},
                                                             {"maximum", &ConstantRestitution::maximum}};

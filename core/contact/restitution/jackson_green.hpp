@@ -5,7 +5,9 @@
 //     e = 1 - 0.1 ln 60 - 0.11 ln(V*/60) (V* - 60)^(2.36 eps_y)                  60 <= V* <= 1000
 //
 // V* = V / V_c, V_c = critical speed [m/s], eps_y = S_y / E of the body that yields first [-].
-// R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 (2010) 217. Undefined above V* = 1000.
+// Undefined above V* = 1000.
+//
+// R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 (2010) 217, doi:10.1007/s11071-009-9591-z.
 #pragma once
 
 #include "base/field.hpp"
@@ -18,6 +20,7 @@ struct JacksonGreenRestitution {
     real extrapolate = 0;           // 1: use the last branch above V* = 1000
     real maximum = 1;
 
+    static constexpr bool speed_scales_with_size = true;
     static constexpr const char* name = "jackson_green";
     static constexpr Field<JacksonGreenRestitution> fields[] = {
         {"critical_speed", &JacksonGreenRestitution::critical_speed},

@@ -2,8 +2,10 @@
 //
 //     e = (V / V_0)^(-1/4), at most 1
 //
-// V_0 = speed scale [m/s], from the yield stress when the case is packed. K. L. Johnson, Contact Mechanics,
-// Cambridge University Press 1985, section 11.5, eq. 11.47. Meant for V >> V_0.
+// V_0 = speed scale [m/s], from the yield stress when the case is packed. Meant for V >> V_0.
+//
+// K. L. Johnson, Contact Mechanics, Cambridge University Press 1985, section 11.5, eq. 11.47,
+// doi:10.1017/CBO9781139171731.
 #pragma once
 
 #include "base/field.hpp"
@@ -14,6 +16,7 @@ struct JohnsonRestitution {
     real speed_scale = infinity; // V_0, m/s
     real maximum = 1;
 
+    static constexpr bool speed_scales_with_size = true;
     static constexpr const char* name = "johnson";
     static constexpr Field<JohnsonRestitution> fields[] = {{"speed_scale", &JohnsonRestitution::speed_scale},
                                                            {"maximum", &JohnsonRestitution::maximum}};

@@ -11,6 +11,7 @@ struct TabulatedRestitution {
     Table speeds, values; // m/s increasing, -
     real maximum = 1;
 
+    static constexpr bool speed_scales_with_size = false;
     static constexpr const char* name = "table";
     static constexpr Field<TabulatedRestitution> fields[] = {{"maximum", &TabulatedRestitution::maximum}};
     static constexpr TableField<TabulatedRestitution> tables[] = {{"speeds", &TabulatedRestitution::speeds},

@@ -3,7 +3,8 @@
 //     e = sqrt(6 sqrt(3)/5) sqrt(1 - r^2/6) [r / (r + 2 sqrt(6/5 - r^2/5))]^(1/4),  r = V_y / V;   e = 1 for
 //     V <= V_y
 //
-// V_y = speed at which yield begins [m/s]. C. Thornton, J. Appl. Mech. 64 (1997) 383, eq. 19.
+// V_y = speed at which yield begins [m/s]. C. Thornton, J. Appl. Mech. 64 (1997) 383, eq. 19,
+// doi:10.1115/1.2787319.
 #pragma once
 
 #include "base/field.hpp"
@@ -14,6 +15,7 @@ struct ThorntonRestitution {
     real yield_speed = infinity; // V_y, m/s
     real maximum = 1;
 
+    static constexpr bool speed_scales_with_size = true;
     static constexpr const char* name = "thornton";
     static constexpr Field<ThorntonRestitution> fields[] = {
         {"yield_speed", &ThorntonRestitution::yield_speed}, {"maximum", &ThorntonRestitution::maximum}};

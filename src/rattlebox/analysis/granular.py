@@ -6,9 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.integrate import trapezoid
 
-from .signals import FloatArray, positive
+from .signals import FloatArray, first_harmonic, positive, steps_inside, trapezoid_weights
 
 if TYPE_CHECKING:
     import xarray
@@ -31,39 +30,47 @@ class StillCavity(ValueError):
 def shaken_cavity(
     run: GranularRun, *, frequency: float, damper: str | None = None, after: float = 0.0
 ) -> xarray.Dataset:
-    """Loss and effective mass of the particles in a cavity that moves harmonically, in two ways.
+    """Compute the loss and the effective mass of the particles in a cavity that moves harmonically, in two ways.
 
-    Both look at the last whole number of cycles. "Complex power" takes the force that drives the particles, whose mean
-    between two samples is known exactly from their momentum, and the velocity of the cavity: P = F* v / 2. "Energy" takes
-    what was lost in contacts, and the momentum of the particles in phase with the cavity.
+    Both evaluate the last whole number of cycles. "complex power" takes the force that drives the particles and the
+    velocity of the cavity. "energy" takes the energy lost in contacts, and the momentum of the particles in phase with
+    the cavity.
 
     Parameters
     ----------
     run
-        Run of a shaker, or of a structure that swings harmonically, with some twenty samples or more in a cycle.
+        Run of a shaker, or of a structure that vibrates harmonically, with some twenty samples or more a cycle.
     frequency
-        Of the motion [Hz].
+        Frequency of the motion [Hz].
     damper
-        Name; not needed where there is one only.
+        Name of the damper; not needed if there is only one.
     after
-        Leave out what is before this time [s].
+        Time before which samples are ignored [s].
 
     Returns
     -------
     xarray.Dataset
-        Over `way`: `active_power` [W], `loss_per_cycle` in a cycle [J], `effective_mass` [kg], `loss_factor` (active
-        over magnitude of reactive power, which is the energy of a cycle over 2 pi times the largest kinetic energy of the
-        effective mass) and `reduced_loss`, energy of a cycle over m v^2 with all mass and the amplitude of the
-        velocity. Besides, `stored_power` [W]: what the energy of the particles rose by; complex power counts it as taken up,
-        the energy lost does not. Attributes tell frequency, cycles and amplitude.
+        Over `way`: `active_power` [W], `loss_per_cycle` [J], `effective_mass` [kg], `loss_factor` (active power over the
+        magnitude of the reactive power, which is the energy of a cycle over 2 pi times the largest kinetic energy of the
+        effective mass) and `reduced_loss` (energy of a cycle over m V^2, with the mass m of all particles and the velocity
+        amplitude V). Besides, `stored_power` [W]: the mean rise of the energy of the particles, which complex power counts
+        as taken up and the energy lost does not. Attributes: frequency, cycles, velocity amplitude, damper.
 
     Raises
     ------
     TypeError
-        When the run has no particles in space.
+        If the run has no 3-D particles.
     ValueError
-        When less than one cycle is covered, there are fewer than eight samples in a cycle, the cavity hardly moves at this
+        If less than one cycle is covered, there are fewer than eight samples in a cycle, the cavity does not move at this
         frequency, or there is no such damper.
+
+    Notes
+    -----
+    With the complex amplitudes F of the force and V of the velocity, P = F* V / 2; the real part is the power taken up, and
+    the effective mass is -Im P / (pi f abs(V)^2). The samples give the mean force of each sampling step h, the change of the
+    momentum over h. The mean over a step has the amplitude sinc(f h) = sin(pi f h) / (pi f h) of a harmonic, by which the
+    amplitude F is divided. Both amplitudes are exact for harmonic motions at any number of samples. Of a force of short
+    impulses, harmonic 1 + k N at N samples a cycle adds to F with the factor 1 / (1 + k N): raise N until P is steady.
     """
     import xarray
 
@@ -83,38 +90,34 @@ def shaken_cavity(
     if cycles < 1:
         raise ValueError(f"no whole cycle of {frequency:g} Hz lies after {after:g} s; the run ends at {times[-1]:g} s")
     begin = times[-1] - cycles / frequency
-    kept = np.concatenate([[begin], times[times > begin + 1e-9 / frequency]])
     mass = float(arrays.particle_mass[number])
-    if kept.size - 1 < LEAST_SAMPLES * cycles:
+    samples = np.count_nonzero(times > begin + 1e-9 / frequency)
+    if samples < LEAST_SAMPLES * cycles:
         raise ValueError(
-            f"the run has {(kept.size - 1) / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {LEAST_SAMPLES}"
+            f"the run has {samples / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {LEAST_SAMPLES}"
             f"\n  try: rb.Output(rate={20 * frequency:g})"
         )
-
-    def at(values: FloatArray) -> FloatArray:
-        columns = values.reshape(times.size, -1).T
-        return np.stack([np.interp(kept, times, column) for column in columns], axis=-1)
-
-    velocity = at(arrays.base_velocity + arrays.cavity_velocity[:, number])
-    momentum = at(arrays.momentum[:, number] + mass * arrays.base_velocity)
-    omega = 2 * np.pi * frequency
-    span, turn = kept[-1] - kept[0], np.exp(-1j * omega * kept)[:, None]
-    v = 2 / span * trapezoid(velocity * turn, kept, axis=0)
+    velocity = arrays.base_velocity + arrays.cavity_velocity[:, number]
+    momentum = arrays.momentum[:, number] + mass * arrays.base_velocity
+    omega, span = 2 * np.pi * frequency, times[-1] - begin
+    weights = trapezoid_weights(times, begin)
+    v = first_harmonic(times, velocity, weights, frequency)
     size = float(np.linalg.norm(v))
-    about = velocity - trapezoid(velocity, kept, axis=0) / span
-    whole = float(trapezoid(np.sum(about**2, axis=1), kept)) / span
+    about = velocity - weights @ velocity / span
+    whole = float(weights @ np.sum(about**2, axis=1)) / span
     if not 0.5 * size**2 > _LEAST_SHARE * whole:
         share = 50 * size**2 / whole if whole else 0.0
         raise StillCavity(f"the cavity hardly moves at {frequency:g} Hz: {share:.2g} % of its mean square speed")
-    step = np.diff(kept)
-    middle = 0.5 * (kept[1:] + kept[:-1])
-    # The weight has no part at the frequency over whole cycles, so the change of momentum is all that is needed.
-    spread = np.sinc(frequency * step) * np.exp(-1j * omega * middle)
-    force = 2 / span * (spread[:, None] * np.diff(momentum, axis=0)).sum(axis=0)
+    step = np.diff(times)
+    middle = 0.5 * (times[1:] + times[:-1])
+    # The weight is constant, so the change of momentum gives the first harmonic of the force.
+    mean_force = np.diff(momentum, axis=0) / step[:, None]
+    inside = steps_inside(times, begin)
+    force = first_harmonic(middle, mean_force, inside, frequency, gain=np.sinc(frequency * step))
     power = complex(force.conjugate() @ v) / 2
-    carried = 2 / span * trapezoid(momentum * turn, kept, axis=0)
-    lost = float(_rise(kept, times, _losses(run, number))) / span
-    stored = float(_rise(kept, times, _energy(run, number))) / span
+    carried = first_harmonic(times, momentum, weights, frequency)
+    lost = float(_rise(begin, times, _losses(run, number))) / span
+    stored = float(_rise(begin, times, _energy(run, number))) / span
     masses = np.array([-2 * power.imag / (omega * size**2), float((carried @ v.conjugate()).real) / size**2])
     powers = np.array([power.real, lost])
     reactive = 0.5 * omega * np.abs(masses) * size**2
@@ -152,6 +155,5 @@ def _energy(run: GranularRun, damper: int) -> FloatArray:
     return np.asarray(own[:, damper] + carried)
 
 
-def _rise(kept: FloatArray, times: FloatArray, values: FloatArray) -> float:
-    first, last = np.interp(kept[[0, -1]], times, values)
-    return float(last - first)
+def _rise(begin: float, times: FloatArray, values: FloatArray) -> float:
+    return float(values[-1] - np.interp(begin, times, values))

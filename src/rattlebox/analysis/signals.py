@@ -53,6 +53,56 @@ def step_of(time: FloatArray) -> float:
     return step
 
 
+def steps_inside(time: FloatArray, begin: float) -> FloatArray:
+    """Return the part of each interval between samples that lies after `begin`, (N - 1,) [s]."""
+    return np.clip(time[1:] - begin, 0.0, np.diff(time))
+
+
+def trapezoid_weights(time: FloatArray, begin: float) -> FloatArray:
+    """Return the weights of samples in the integral, from `begin` on, of straight lines between them, (N,) [s]."""
+    inside = steps_inside(time, begin)
+    of_earlier = 0.5 * inside**2 / np.diff(time)
+    weights = np.zeros(time.size)
+    weights[:-1] += of_earlier
+    weights[1:] += inside - of_earlier
+    return weights
+
+
+def first_harmonic(
+    time: FloatArray, values: FloatArray, weights: FloatArray, frequency: float, gain: FloatArray | float = 1.0
+) -> Any:
+    """Fit a mean and a harmonic to samples.
+
+    Parameters
+    ----------
+    time : (N,) float
+        Times of the samples [s].
+    values : (N,) or (N, K) float
+        Samples.
+    weights : (N,) float
+        Weights of the samples in an integral over whole cycles [s].
+    frequency
+        Frequency of the harmonic [Hz].
+    gain : (N,) float
+        Amplitude that a harmonic of amplitude one has in the samples: sinc(frequency step) in means over steps.
+
+    Returns
+    -------
+    () or (K,) complex
+        Amplitude A of x(t) = mean + Re(A exp(2 pi i frequency t)).
+
+    Notes
+    -----
+    The weighted least squares of a mean, a cosine and a sine. At even steps that divide a cycle this is the Fourier
+    coefficient over the gain; at any other steps it is still exact for harmonic samples.
+    """
+    angle = 2 * np.pi * frequency * time
+    basis = np.stack([np.ones(time.size), gain * np.cos(angle), gain * np.sin(angle)])
+    weighted = basis * weights
+    _, cosine, sine = np.linalg.lstsq(weighted @ basis.T, weighted @ values, rcond=None)[0]
+    return cosine - 1j * sine
+
+
 def positive(name: str, value: Any, unit: str) -> float:
     """Return a number above zero."""
     try:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from rattlebox._util.text import printable
 from rattlebox.cli.main import STOPPED
 from rattlebox.model.errors import CaseError
 
@@ -66,12 +67,11 @@ def sweep(
     dask: Annotated[
         str | None, typer.Option(help="Address or file of a Dask scheduler, to run on its workers.")
     ] = None,
-    gpu: Annotated[bool, typer.Option("--gpu", help="Run on the graphics card.")] = False,
 ) -> None:
     """Run a study file: variants of a case over axes, or a ready map. The same command goes on after a stop."""
     from rattlebox.cli.sweep import run_sweep
 
-    run_sweep(study, out, workers, dask, gpu=gpu)
+    run_sweep(study, out, workers, dask)
 
 
 def _check_results(path: Path, wanted: str) -> None:
@@ -152,37 +152,21 @@ def demo(
 
 
 @app.command()
-def paper(
-    out: Annotated[Path, typer.Option("--out", "-o", help="New folder, or that of an earlier report.")] = Path(
-        "report"
-    ),
-    only: Annotated[
-        list[str] | None, typer.Option(help='Figure to make, as "4", "7c" or "A1"; repeat for more.')
-    ] = None,
-    workers: Annotated[int | None, typer.Option(min=1, help="Processes; default one for each core.")] = None,
-) -> None:
-    """Reproduce and judge the reference study of a single-ball damper: every figure and claim on one page."""
-    from rattlebox.cli.paper import make_report
-
-    make_report(out, only or (), workers)
-
-
-@app.command()
 def schema(
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File; default the terminal.")] = None,
 ) -> None:
     """Export the JSON Schema of case files, for editors."""
     import json
 
+    from rattlebox._util.atomic_io import atomic_write
     from rattlebox.model.case import Case
-    from rattlebox.results.whole import telling
 
     text = json.dumps(Case.json_schema(), indent=2) + "\n"
     if out is None:
         typer.echo(text, nl=False)
     else:
-        with telling(out, "the same command once there is room"):
-            out.write_text(text, encoding="utf-8")
+        with atomic_write(out) as name:
+            name.write_text(text, encoding="utf-8")
 
 
 @app.command()
@@ -209,11 +193,11 @@ def carry_out() -> None:
             raise typer.Abort
         sys.exit(code)
     except CaseError as error:
-        typer.echo(f"error: {error}", err=True)
+        typer.echo(printable(f"error: {error}"), err=True)
         sys.exit(2)
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
-        typer.echo(f"error: {where}{error.strerror or error}", err=True)
+        typer.echo(printable(f"error: {where}{error.strerror or error}"), err=True)
         sys.exit(2)
     except MemoryError:
         typer.echo("error: there is not enough memory\n  try: a lower output rate, or fewer particles", err=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
 
 from rich.table import Table
@@ -12,10 +11,7 @@ from rich.text import Text
 
 from rattlebox import __version__
 from rattlebox.cli.terminal import terminal
-from rattlebox.engines.card import Card
 from rattlebox.engines.core import built, choice, core, supported
-from rattlebox.engines.gpu import nvrtc
-from rattlebox.model.errors import CaseError
 
 _PACKAGES = ("numpy", "scipy", "xarray", "h5netcdf", "h5py", "pydantic", "pint", "matplotlib")
 
@@ -30,21 +26,9 @@ def examine() -> None:
     table.add_row("core", f"{level}: {why}")
     table.add_row("", f"built: {', '.join(built())}; runnable here: {', '.join(supported())}; RATTLEBOX_SIMD overrides")
     table.add_row("", f"loaded from {core().__name__}")
-    for line in _card():
-        table.add_row(*line)
     for name in _PACKAGES:
         try:
             table.add_row(name, version(name))
         except PackageNotFoundError:
             table.add_row(name, Text.assemble(("missing", "bold"), f": python -m pip install {name}"))
     terminal().print(table)
-
-
-def _card() -> Iterator[tuple[str, str]]:
-    """What a study on a graphics card would find here."""
-    try:
-        yield "nvrtc", ".".join(map(str, nvrtc()))
-        yield "gpu", Card().describe()
-        yield "", 'studies and runs of particles in space run there (on="gpu")'
-    except CaseError as error:
-        yield "gpu", f"none to be used: {error}"

@@ -12,7 +12,6 @@ from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import CaseError, nearest
 from rattlebox.plots.maps import plot_map, select, taken_instead
 from rattlebox.plots.style import WIDTHS
-from rattlebox.results.whole import telling
 from rattlebox.studies.store import open_study
 from rattlebox.studies.studytables import KINDS
 
@@ -70,8 +69,7 @@ def plot_study(
         figure = plot_map(data, kind=kind, at=chosen, **options)  # type: ignore[arg-type]
     else:
         raise CaseError(f"--kind {kind}: there is no such kind\n  {nearest(kind, ('map', 'lines', *MAPS))}")
-    with telling(out, "the same command once there is room"):
-        figure.savefig(out)
+    figure.savefig(out)
     for line in taken_instead(data, chosen):
         terminal().print(line, soft_wrap=True)
     terminal().print(told, soft_wrap=True)

@@ -19,7 +19,6 @@ from rattlebox.plots.particles import FILMS, film_particles, plot_particles
 from rattlebox.plots.spheres import usual_renderer
 from rattlebox.results import GranularRun, load
 from rattlebox.results.snapshots import Snapshots
-from rattlebox.results.whole import telling
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -82,8 +81,7 @@ def plot_run(
             _film(run, out, options)
         else:
             figure = _figure(run, kind, -1 if number is None else number, options)
-            with telling(out, "the same command once there is room"):
-                figure.savefig(out)
+            figure.savefig(out)
     except (ValueError, IndexError) as error:
         raise CaseError(str(error)) from None
     if (kind == "particles" or isinstance(run, Snapshots)) and usual_renderer() == "plain":

@@ -13,7 +13,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
-from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, Earlier, taken
+from rattlebox._util.text import printable
+from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, Place, check_own, note_begun, taken
 from rattlebox.cli.main import STOPPED
 from rattlebox.cli.terminal import terminal
 from rattlebox.engines.checkpoint import AnotherRun
@@ -45,12 +46,12 @@ class _Lines:
         self._last = now, done
 
 
-def _simulated(case: Case, out: Path, checkpoint: Path) -> Run:
+def _simulated(case: Case, place: Place) -> Run:
     """Run a case; one with particles tells how far it is, and goes on where it was stopped."""
     if not case.particle_dampers:
         return simulate(case)
     console = terminal(stderr=True)
-    snapshots = out / SNAPSHOTS if case.output.snapshots else None
+    checkpoint, snapshots = place.checkpoint, place.snapshots if case.output.snapshots else None
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         line = bar.add_task("filling in", total=None)
@@ -106,38 +107,43 @@ def run_case(
         )
     if checkpoint is not None and checkpoint.suffix in _RESULTS and checkpoint.parent.resolve() == out.resolve():
         raise CaseError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / CHECKPOINT}")
-    with taken(out, case, checkpoint=checkpoint, replace=replace) as earlier:
-        _run_in(path, out, case, checkpoint or out / CHECKPOINT, earlier, csv=csv, mat=mat, figures=figures)
+    with taken(out, case, checkpoint=checkpoint, replace=replace) as place:
+        for note in place.notes:
+            typer.echo(note, err=True)
+        _run_in(path, case, place, csv=csv, mat=mat, figures=figures)
 
 
-def _run_in(
-    path: Path, out: Path, case: Case, checkpoint: Path, earlier: Earlier, *, csv: bool, mat: bool, figures: bool
-) -> None:
+def _run_in(path: Path, case: Case, place: Place, *, csv: bool, mat: bool, figures: bool) -> None:
     """Run a case in a folder that is held."""
+    out, checkpoint = place.out, place.checkpoint
+    csv |= "motion.csv" in place.again  # so that all files are of one run
+    mat |= "run.mat" in place.again
+    figures |= "motion.png" in place.again
+    names = _names(case, csv=csv, mat=mat, figures=figures)
+    check_own(out, names)
     written: list[str] = []
+    in_place = place.folder == out
     try:
-        run = _simulated(case, out, checkpoint)
+        run = _simulated(case, place)
         if run.status == "interrupted" and case.particle_dampers:
-            typer.echo(run.message, err=True)
+            typer.echo(printable(run.message), err=True)
             sys.exit(STOPPED)
+        if in_place:
+            note_begun(out, names)
         if case.output.snapshots:
             written.append(SNAPSHOTS)
-        for name in {*earlier.gone} - {CHECKPOINT, *written}:
-            (out / name).unlink(missing_ok=True)
-        csv |= "motion.csv" in earlier.anew  # so that all files are of one run
-        mat |= "run.mat" in earlier.anew
-        figures |= "motion.png" in earlier.anew
-        for name in _write(run, out, csv=csv, mat=mat, figures=figures):
+        for name in _write(run, place.folder, csv=csv, mat=mat, figures=figures):
             written.append(name)
-        if case.particle_dampers and run.status in ("finished", "ledger_open"):
-            checkpoint.unlink(missing_ok=True)
+        unfinished = bool(case.particle_dampers) and run.status not in ("finished", "energy_error")
+        checkpoint = place.finish(written, keep_checkpoint=unfinished)
+        in_place = True
     except AnotherRun as refused:
         replacing = "--replace, " if checkpoint == out / CHECKPOINT else ""
         raise CaseError(f"{refused.complaint}\n  try: another -o folder, {replacing}{refused.suggestion}") from None
     except Hint as hint:
         raise CaseError(f"{path}: {hint}") from None
     except KeyboardInterrupt:
-        typer.echo(f"stopped; {_kept(checkpoint, out, written)}", err=True)
+        typer.echo(f"stopped; {_kept(checkpoint, out, written if in_place else ())}", err=True)
         sys.exit(STOPPED)
     console = terminal()  # last, since who reads may have gone
     console.print(run.summary())
@@ -151,18 +157,36 @@ def _run_in(
         sys.exit(1)
 
 
-def _write(run: Run, out: Path, *, csv: bool, mat: bool, figures: bool) -> Iterator[str]:
+def _names(case: Case, *, csv: bool, mat: bool, figures: bool) -> list[str]:
+    """Return the names of the files that a run of a case writes."""
+    particles = bool(case.particle_dampers)
+    names = [SNAPSHOTS] if case.output.snapshots else []
+    names.append(RUN)
+    if mat:
+        names.append("run.mat")
+    if csv:
+        names += [f"{group}.csv" for group in ("motion", "energy", "particles" if particles else "impacts")]
+    if figures:
+        names += [f"{name}.png" for name in _figures(particles)]
+    return names
+
+
+def _figures(particles: bool) -> Sequence[str]:
+    return ("motion", "energy") if particles else ("motion", "energy", "impacts")
+
+
+def _write(run: Run, folder: Path, *, csv: bool, mat: bool, figures: bool) -> Iterator[str]:
     """Write files one after the other, and give the name of each when it is there."""
-    run.save(out / RUN)
+    run.save(folder / RUN)
     yield RUN
     if mat:
-        run.to_mat(out / "run.mat")
+        run.to_mat(folder / "run.mat")
         yield "run.mat"
     if csv:
-        yield from [path.name for path in run.to_csv(out)]
+        yield from [path.name for path in run.to_csv(folder)]
     if figures:
-        for name in ("motion", "energy") if isinstance(run, GranularRun) else ("motion", "energy", "impacts"):
-            getattr(run.plot, name)().savefig(out / f"{name}.png")
+        for name in _figures(isinstance(run, GranularRun)):
+            getattr(run.plot, name)().savefig(folder / f"{name}.png")
             yield f"{name}.png"
 
 

@@ -56,6 +56,8 @@ def show_study(path: Path) -> None:
             if counts := statuses(study):
                 told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
                 console.print(f"  ended: {told}", soft_wrap=True)
+            if "refused" in study.attrs:
+                console.print(Text(f"  refused, as with {study.attrs['refused']}"), soft_wrap=True)
             for told in warned(study):
                 console.print(f"  {told}", soft_wrap=True)
     if not whole:

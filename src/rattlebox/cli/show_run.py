@@ -6,7 +6,7 @@ from pathlib import Path
 
 from rich.text import Text
 
-from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, files_in
+from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, files_in, replacements
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import CaseError
 from rattlebox.results import load
@@ -33,6 +33,7 @@ def show_run(path: Path) -> None:
         console.print(Text.assemble((str(path), "bold"), f": {what}"), soft_wrap=True)
         told = "The command that began it goes on." if goes_on else f"rattlebox plot {path / SNAPSHOTS} draws it."
         console.print(f"{files}\n  {told}" if goes_on or (path / SNAPSHOTS).is_file() else files, soft_wrap=True)
+        _show_replacements(path)
         return
     try:
         run = load(file)
@@ -48,5 +49,14 @@ def show_run(path: Path) -> None:
         console.print(files, soft_wrap=True)
         if (file.parent / CHECKPOINT).is_file():
             console.print(
-                f"  {CHECKPOINT}: a run that takes its place is not over; its command goes on.", soft_wrap=True
+                f"  {CHECKPOINT}: a run that takes its place is not over; its command continues it.", soft_wrap=True
             )
+        _show_replacements(file.parent)
+
+
+def _show_replacements(folder: Path) -> None:
+    """Print which runs were begun to replace the one in a folder."""
+    for path in replacements(folder):
+        terminal().print(
+            f"  {path.name}: a run that takes its place is not over; its command continues it.", soft_wrap=True
+        )

@@ -11,6 +11,7 @@ from typing import Any
 import typer
 from rich.text import Text
 
+from rattlebox._util.text import printable
 from rattlebox.cli.show import statuses, warned
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.doubts import doubts
@@ -19,7 +20,7 @@ from rattlebox.studies.runner import Stopped
 from rattlebox.studies.studyfile import read_study
 
 
-def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None, *, gpu: bool = False) -> None:
+def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None) -> None:
     """Run a study file into a store, or go on with one.
 
     Parameters
@@ -32,21 +33,17 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
         Threads of this process; default what the study file says, or one for each core.
     dask
         Address of a Dask scheduler, or the file that it wrote, to run there instead.
-    gpu
-        Run on the graphics card instead.
     """
     if dask and workers:
         raise typer.BadParameter("counts threads of this machine; with --dask, the cluster's workers run the study")
-    if gpu and (dask or workers):
-        raise typer.BadParameter("runs on the graphics card of this machine; leave --workers and --dask out")
     study = read_study(path)
     out = out or path.with_suffix(".zarr")
     for told in doubts(study.case, signals=False):
-        typer.echo(f"{path}: {told}", err=True)
+        typer.echo(printable(f"{path}: {told}"), err=True)
     try:
         with _cluster(dask) as client, _naming(path, out):
             where = {"threads": None if client else workers} if client or workers else {}
-            result = study.run(store=out, on="gpu" if gpu else client, **where)
+            result = study.run(store=out, on=client, **where)
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)
         sys.exit(130)
@@ -54,10 +51,9 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
     counts = statuses(result)
     told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
     told = f"{sum(counts.values()):,} variants: {told}\n" if counts else ""
-    card = f"{result.attrs['gpu']}\n" if "gpu" in result.attrs else ""
     refused = f"refused, as with {result.attrs['refused']}\n" if "refused" in result.attrs else ""
     warnings = "".join(f"{line}\n" for line in warned(result))
-    console.print(Text(f"{told}{refused}{warnings}{card}written to {out}"), soft_wrap=True)
+    console.print(Text(f"{told}{refused}{warnings}written to {out}"), soft_wrap=True)
 
 
 @contextmanager

@@ -54,7 +54,6 @@ def run_block(
     *,
     threads: int = 1,
     progress: Callable[[int], bool | None] | None = None,
-    gpu: bool = False,
 ) -> Mapping[str, NDArray[Any]] | None:
     """Run some members of a batch.
 
@@ -72,8 +71,6 @@ def run_block(
         How many work at once. The results do not depend on it, to the last bit.
     progress
         Called some fifty times a second with the number of members done; False stops.
-    gpu
-        On the graphics card, and not on `threads`.
 
     Returns
     -------
@@ -81,32 +78,6 @@ def run_block(
         By name, members first: `status`, the measures; `displacement` and `velocity` (n, samples), `ball_place` and
         `ball_speed` (n, samples, balls) of the motion; `last_time`, `last_approach_speed`, `last_contact` (n, last);
         `state` (n, 2 (modes + balls)). All but the status is NaN where a run did not finish. None when it was stopped.
-
-    Raises
-    ------
-    CaseError
-        When there is no card that can be used, or its memory is too small.
-    """
-    grid, asked = list(shape) or [1], kept(look, shape)
-    if gpu:
-        from .gpu_impact import run_members
-
-        return run_members(packed, grid, start, stop, progress, **asked)
-    result: Mapping[str, NDArray[Any]] | None = core().sweep(
-        packed, grid, start, stop, **asked, threads=max(1, min(threads, stop - start)), progress=progress
-    )
-    return result
-
-
-def kept(look: Look, shape: Sequence[int]) -> dict[str, Any]:
-    """Return what is kept of each run, in the core's words.
-
-    Parameters
-    ----------
-    look
-        What is kept.
-    shape
-        Of the grid.
     """
     grid = list(shape) or [1]
     window = {
@@ -115,13 +86,20 @@ def kept(look: Look, shape: Sequence[int]) -> dict[str, Any]:
         "shape": np.ascontiguousarray(look.shape, dtype=float),
         "samples": look.samples,
     }
-    return {
-        "measures": list(look.measures),
-        "window": window,
-        "motion": look.motion,
-        "state": look.state,
-        "last": look.last,
-    }
+    result: Mapping[str, NDArray[Any]] | None = core().sweep(
+        packed,
+        grid,
+        start,
+        stop,
+        measures=list(look.measures),
+        window=window,
+        motion=look.motion,
+        state=look.state,
+        last=look.last,
+        threads=max(1, min(threads, stop - start)),
+        progress=progress,
+    )
+    return result
 
 
 def _number(value: Any, grid: list[int]) -> Any:

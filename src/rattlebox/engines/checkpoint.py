@@ -16,16 +16,16 @@ import numpy as np
 from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
+from rattlebox._util.atomic_io import atomic_write, disk_errors, remove_temporaries, require_folder
 from rattlebox.engines.core import instructions
 from rattlebox.model.differences import differences
 from rattlebox.model.errors import CaseError, Hint
 from rattlebox.results.provenance import Provenance
-from rattlebox.results.whole import clear_remains, needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
-FORMAT = 1
+FORMAT = 2
 """Number of the layout; files with a higher one are refused."""
 
 _FREE: dict[str, set[str]] = {"method": {"threads", "checkpoint", "checkpoint_every"}, "output": {"snapshots"}}
@@ -66,6 +66,21 @@ class Kept:
     state: NDArray[np.uint8]
 
 
+def is_checkpoint(path: Path) -> bool:
+    """Return whether Rattlebox wrote a checkpoint, whichever run it belongs to.
+
+    Parameters
+    ----------
+    path
+        An existing file.
+    """
+    try:
+        with path.open("rb") as content, np.load(content, allow_pickle=False) as file:
+            return bool({"case", "numbers"} <= json.loads(file["about"].tobytes()).keys())
+    except Exception:  # NumPy and zipfile raise nearly any exception for damaged files
+        return False
+
+
 class Checkpoint:
     """The file that a run goes on from.
 
@@ -75,15 +90,13 @@ class Checkpoint:
         File, which need not exist.
     case
         What is run.
-    on
-        "gpu" for a run on a card, whose state goes on there only.
     """
 
-    def __init__(self, path: str | os.PathLike[str], case: Case, on: str | None = None) -> None:
+    def __init__(self, path: str | os.PathLike[str], case: Case) -> None:
         self.path = Path(path)
         self.time: float | None = None  # of what is in the file
         self._numbers = ""
-        self._about = {"case": bare(case), "version": Provenance.now().version, "core": on or instructions()}
+        self._about = {"case": bare(case), "version": Provenance.now().version, "core": instructions()}
 
     @contextmanager
     def held(self) -> Iterator[None]:
@@ -96,8 +109,8 @@ class Checkpoint:
         OSError
             When the folder is missing or cannot be written.
         """
-        with telling(self.path, _LOST):
-            needs_folder(self.path)
+        with disk_errors(self.path, _LOST):
+            require_folder(self.path)
             name = self.path.with_name(f".{self.path.name}.lock")
             lock = FileLock(name)
             try:
@@ -109,7 +122,7 @@ class Checkpoint:
                 ) from None
         try:
             name.write_text(f"process {os.getpid()} on {socket.gethostname()}")
-            clear_remains(self.path)
+            remove_temporaries(self.path)
             yield
         finally:
             name.unlink(missing_ok=True)
@@ -131,18 +144,24 @@ class Checkpoint:
                 if about["format"] > FORMAT:
                     raise CaseError(f"{self.path} was written by a later Rattlebox\n  try: update Rattlebox")
                 self._compare(about)
-                names = [name.split(".", 1) for name in file.files if "." in name]
-                groups = {
-                    g: {name: file[f"{g}.{name}"] for h, name in names if g == h} for g in ("records", "position")
-                }
-                state = file["state"]
+                arrays = {name: file[name] for name in file.files if name != "about"}
+            if about["digest"] != fingerprint(arrays):
+                raise ValueError("the arrays are not those that were written")
+            groups: dict[str, dict[str, NDArray[Any]]] = {"records": {}, "position": {}}
+            for name, array in arrays.items():
+                group, _, own = name.partition(".")
+                if own:
+                    groups[group][own] = array
+            positions = tuple(groups["position"][str(k)] for k in range(len(groups["position"])))
+            kept = Kept(
+                about["numbers"], about["time"], about["seconds"], positions, groups["records"], arrays["state"]
+            )
         except (CaseError, OSError, MemoryError):
             raise
         except Exception:
             raise CaseError(f"{self.path} is not a whole checkpoint\n  try: another file, or remove this one") from None
-        positions = tuple(groups["position"][str(k)] for k in range(len(groups["position"])))
-        self.time = about["time"]
-        return Kept(about["numbers"], about["time"], about["seconds"], positions, groups["records"], state)
+        self.time = kept.time
+        return kept
 
     def check(self, kept: Kept, packed: Mapping[str, Any]) -> None:
         """Refuse a checkpoint of a case that reads the same but has other numbers."""
@@ -165,9 +184,10 @@ class Checkpoint:
         told = {"format": FORMAT, "time": time, "seconds": seconds, "numbers": self._fingerprint(packed), **self._about}
         arrays = {f"records.{name}": values for name, values in records.items()}
         arrays |= {f"position.{k}": cavity["position"] for k, cavity in enumerate(packed["cavities"])}
-        about = np.frombuffer(json.dumps(told).encode(), np.uint8)
-        with telling(self.path, _LOST), whole(self.path) as name, name.open("wb") as file:
-            np.savez(file, allow_pickle=False, about=about, state=dem.save(), **arrays)
+        arrays["state"] = np.asarray(dem.save())
+        about = np.frombuffer(json.dumps({**told, "digest": fingerprint(arrays)}).encode(), np.uint8)
+        with atomic_write(self.path, _LOST) as name, name.open("wb") as file:
+            np.savez(file, allow_pickle=False, about=about, **arrays)
         self.time = time
 
     def _fingerprint(self, packed: Mapping[str, Any]) -> str:
@@ -179,10 +199,7 @@ class Checkpoint:
         if lines := differences(there, self._about):
             hint = "another file, or remove this one"
             if len(lines) == 1 and there["core"] != self._about["core"]:
-                began = f"RATTLEBOX_SIMD={there['core']} in the environment"
-                if "gpu" in (there["core"], self._about["core"]):
-                    began = 'on="gpu"' if there["core"] == "gpu" else "the processor, where it began"
-                hint = f"{began}, or another file"
+                hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another file"
             raise AnotherRun("\n".join([f"{self.path} holds another run", *lines]), hint)
 
 

@@ -2,35 +2,42 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.atomic_io import check_suffix
 from rattlebox.engines.base_motion import base_motion
-from rattlebox.engines.card import Card
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.core import core
 from rattlebox.engines.dem_follow import Journey
-from rattlebox.engines.dem_gpu import CardDem, run_together
 from rattlebox.engines.dem_settle import settle
 from rattlebox.engines.dem_snapshots import snapshots_of
-from rattlebox.engines.dem_step import Step, choose_step, expected_speeds, instants, outcome
+from rattlebox.engines.dem_step import (
+    Step,
+    choose_step,
+    expected_speeds,
+    instants,
+    largest_softening,
+    outcome,
+    packed_normal,
+)
 from rattlebox.engines.pack import pack, restitution
-from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
-from rattlebox.model.contacts import Linear
+from rattlebox.engines.run_notes import extrapolated, particle_notes, table_notes
+from rattlebox.engines.softening import ENDURING, choose_softening, effects, shaking
+from rattlebox.engines.status import FINISHED, INTERRUPTED, describe, end_of
 from rattlebox.model.doubts import doubts
-from rattlebox.model.errors import CaseError, Hint, at
+from rattlebox.model.errors import CaseError, at
 from rattlebox.model.in_space import direction_of_base, inertia_along
 from rattlebox.model.methods import Dem, EventDriven, Output
 from rattlebox.model.packing import Settled
 from rattlebox.results.granular import GranularArrays, GranularRun
 from rattlebox.results.provenance import Provenance
-from rattlebox.results.whole import check_suffix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,9 +53,6 @@ Progress = Callable[[int, int], object]
 PARTICLES_EACH = 1000
 """Of a thread, at least: with fewer they wait for each other."""
 
-CLOSES = 0.01
-"""Of the energy put in: a ledger that misses more has a status."""
-
 
 def simulate_dem(
     case: Case,
@@ -57,7 +61,6 @@ def simulate_dem(
     progress: Progress | None = None,
     checkpoint: Path | None = None,
     snapshots: Path | None = None,
-    on: str | None = None,
 ) -> GranularRun:
     """Run a case with particle dampers.
 
@@ -73,8 +76,6 @@ def simulate_dem(
         File in which the state is kept, and from which the run goes on if it is there.
     snapshots
         File to which snapshots are written.
-    on
-        "gpu": the graphics card of this machine; default the processor.
 
     Returns
     -------
@@ -93,10 +94,10 @@ def simulate_dem(
     if case.output.snapshots == ():
         snapshots = None
     if checkpoint is None:
-        return _simulated(case, threads, progress, None, snapshots, on)
-    file = Checkpoint(checkpoint, case, on)
+        return _simulated(case, threads, progress, None, snapshots)
+    file = Checkpoint(checkpoint, case)
     with file.held():
-        return _simulated(case, threads, progress, file, snapshots, on)
+        return _simulated(case, threads, progress, file, snapshots)
 
 
 def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
@@ -120,13 +121,11 @@ def _simulated(
     progress: Progress | None,
     file: Checkpoint | None,
     snapshots: Path | None,
-    on: str | None,
 ) -> GranularRun:
     assert isinstance(case.method, Dem)
-    card = _card(on)
     kept = None if file is None else file.read()
     packed, step, tables = pack_dem(case, None if kept is None else kept.positions)
-    dem: Any = CardDem(packed, card) if card else core().Dem(packed)
+    dem = core().Dem(packed)
     dem.threads = threads or case.method.threads or useful_threads(packed)
     journey = Journey(dem, packed, file, case.method)
     if file is not None and kept is not None:
@@ -134,138 +133,13 @@ def _simulated(
         journey.resume(kept)
     if snapshots is not None:
         journey.watch(*snapshots_of(case, packed, snapshots))
-    return _run(case, packed, step, tables, dem, journey, journey.go(progress))
-
-
-def _card(on: str | None) -> Card | None:
-    """Return the card, where one is asked for."""
-    if on not in (None, "gpu"):
-        raise Hint(f"on = {on!r}", '"gpu", or nothing for the processor')
-    return Card() if on else None
-
-
-def _run(
-    case: Case,
-    packed: Packed,
-    step: Step,
-    tables: list[ContactTable],
-    dem: Any,
-    journey: Journey,
-    status: int,
-) -> GranularRun:
-    raw = journey.records()
-    arrays = _arrays(case, packed, raw, dem, status, step, tables, journey)
-    card = dem.told() if isinstance(dem, CardDem) else ""
-    run = GranularRun(arrays, case.to_toml, Provenance.now(method=case.method.kind, seed=case.seed, gpu=card))
-    if run.ok and not run.ledger.closes(CLOSES):
-        end = NOT_FINITE if np.isnan(run.closure) else LEDGER_OPEN
+    status = journey.go(progress)
+    arrays = _arrays(case, packed, journey.records(), dem, status, step, tables, journey)
+    run = GranularRun(arrays, case.to_toml, Provenance.now(method=case.method.kind, seed=case.seed))
+    if run.ok and (end := end_of(run.ledger, core().worst_closure, arrays.particle_mass.sum())) != FINISHED:
         name, message = describe(end, case.duration, "", run.closure, case.method.kind)
         run = GranularRun(replace(arrays, status=name, message=message), case.to_toml, run.provenance)
     return run
-
-
-def simulate_dem_together(cases: Sequence[Case], on: str, threads: int) -> list[GranularRun]:
-    """Run cases with particle dampers on a graphics card, small ones side by side.
-
-    Parameters
-    ----------
-    cases
-        What to run.
-    on
-        "gpu".
-    threads
-        Of the processor, on which beds settle.
-
-    Returns
-    -------
-    list of GranularRun
-        In the order of the cases.
-
-    Raises
-    ------
-    CaseError
-        When there is no card that can be used, its memory is too small, or a case cannot be run.
-    """
-    card = _card(on)
-    assert card is not None
-    runs = []
-    for run in run_on_card(cases, card, threads=threads) or ():
-        if isinstance(run, CaseError):
-            raise run
-        runs.append(run)
-    return runs
-
-
-def run_on_card(
-    cases: Sequence[Case],
-    card: Card,
-    *,
-    threads: int = 1,
-    progress: Callable[[float], object] | None = None,
-) -> Iterator[GranularRun | CaseError] | None:
-    """Run cases with particle dampers on a graphics card, small ones side by side.
-
-    Parameters
-    ----------
-    cases
-        What to run.
-    card
-        Where.
-    threads
-        Of the processor, on which beds settle.
-    progress
-        Called now and then with how much of all is done; False stops.
-
-    Returns
-    -------
-    iterator of GranularRun or CaseError, or None
-        In the order of the cases: the run, or why there is none. None when it was stopped.
-
-    Raises
-    ------
-    CaseError
-        When the card's memory is too small for one of them, with the number.
-    """
-
-    def go_on(*_: object) -> bool:
-        return progress is None or progress(0.0) is not False
-
-    with ThreadPoolExecutor(threads) as pool:
-        ready = list(pool.map(lambda case: _ready(case, go_on), cases))
-    if None in ready:
-        return None
-    dems = {k: CardDem(each[0], card) for k, each in enumerate(ready) if isinstance(each, tuple)}
-    lengths = np.array([dem.steps for dem in dems.values()], dtype=float)
-
-    def so_far(steps: Sequence[int]) -> bool:
-        done = np.sum(np.minimum(steps, lengths) / lengths) + len(cases) - len(dems)
-        return progress is None or progress(float(done) / len(cases)) is not False
-
-    if not run_together(list(dems.values()), int(lengths.max(initial=0)), card, so_far):
-        return None
-
-    def ended(k: int) -> GranularRun | CaseError:
-        case, each = cases[k], ready[k]
-        if not isinstance(each, tuple):
-            assert each is not None
-            return each
-        dem = dems.pop(k)
-        if dem.refused:
-            return dem.refused
-        assert isinstance(case.method, Dem)
-        packed, step, tables = each
-        journey = Journey(dem, packed, None, case.method)
-        return _run(case, packed, step, tables, dem, journey, journey.go())
-
-    return map(ended, range(len(cases)))
-
-
-def _ready(case: Case, go_on: Callable[[], bool]) -> tuple[Packed, Step, list[ContactTable]] | CaseError | None:
-    """A packed case, or why it cannot be; None when it was stopped."""
-    try:
-        return pack_dem(case) if settled(case, go_on) else None
-    except CaseError as error:
-        return error
 
 
 def settled(case: Case, go_on: Callable[[], bool]) -> bool:
@@ -336,14 +210,17 @@ def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[Packed,
     CaseError
         When the step that is given is too long, or particles do not settle.
     """
+    case, _ = resolved(case)
     modes = case.modes
     shapes = [modes.space_shape(damper.point, damper.direction) for damper in case.particle_dampers]
     tables = [damper.contact_table for damper in case.particle_dampers]
     loads = _loads(case)
-    velocities = _without_particles(case, loads)
-    speeds = expected_speeds(case, [velocities @ shape for shape in shapes])
+    state = _without_particles(case, loads)
+    speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
     with at("method", "dt"):
         step = choose_step(case, tables, speeds)
+    step = replace(step, motions=tuple(shaking(case, shape, state) for shape in shapes))
+    slowest = min((motion.main for motion in step.motions if motion.main), default=0.0)
     contacts: list[Packed] = []
     cavities = []
     for index, (damper, shape, table) in enumerate(zip(case.particle_dampers, shapes, tables, strict=True)):
@@ -353,6 +230,7 @@ def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[Packed,
         contacts += [_contact(damper, entry) for entry in table.entries]
     packed = {
         "dt": step.dt,
+        "enduring": ENDURING / slowest if slowest else math.inf,
         "steps": step.count,
         "every": step.every,
         "gravity": np.array(case.particle_dampers[0].gravity),
@@ -365,6 +243,25 @@ def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[Packed,
         "contacts": contacts,
     }
     return packed, step, tables
+
+
+def resolved(case: Case) -> tuple[Case, tuple[str, ...]]:
+    """Return a case with a number for each softening that is "auto", and notes on these numbers."""
+    dampers = case.particle_dampers
+    if all(damper.softening != "auto" for damper in dampers):
+        return case, ()
+    shapes = [case.modes.space_shape(damper.point, damper.direction) for damper in dampers]
+    state = _without_particles(case, _loads(case))
+    speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
+    made: list[Any] = list(case.dampers)
+    notes = []
+    for index, (damper, shape, speed) in enumerate(zip(dampers, shapes, speeds, strict=True)):
+        if damper.softening == "auto":
+            choice = choose_softening(damper, shaking(case, shape, state), largest_softening(case, damper, speed))
+            place = next(k for k, each in enumerate(made) if each is damper)
+            made[place] = damper.model_copy(update={"softening": choice.softening})
+            notes.append((f"{damper.label(index)}: " if len(dampers) > 1 else "") + choice.note)
+    return case.model_copy(update={"dampers": tuple(made)}), tuple(notes)
 
 
 def _array(values: Any) -> Array:
@@ -389,15 +286,15 @@ def _loads(case: Case) -> list[Packed]:
 
 
 def _without_particles(case: Case, loads: list[Packed]) -> Array:
-    """Modal velocities of the structure alone at the instants, (T, m)."""
+    """Modal displacements and velocities of the structure alone at the instants, (T, m, 2)."""
     if not case.modes.decay.size:
-        return np.zeros((0, 0))
+        return np.zeros((0, 0, 2))
     alone = case.model_copy(
         update={"dampers": (), "base": (), "loads": (), "method": EventDriven(), "output": Output()}
     )
     plain = [{key: value for key, value in load.items() if key != "direction"} for load in loads]
     (raw,) = core().simulate([{**pack(alone), "loads": plain, "sample_times": _array(instants(case))}], 1)
-    return _array(raw["state"].reshape(raw["time"].size, -1)[:, 1::2])
+    return _array(raw["state"].reshape(raw["time"].size, -1, 2))
 
 
 def _cavity(
@@ -428,14 +325,14 @@ def _cavity(
 
 
 def _contact(damper: ParticleDamper, entry: Entry) -> Packed:
-    law, values = damper.softened(entry)
+    friction, rolling = damper.softened_friction(entry)
     return {
-        "normal": {"law": law, **{key: float(value) for key, value in values.items()}},
-        "restitution": restitution(entry.contact.restitution, entry.pair),
+        "normal": packed_normal(damper, entry),
+        "restitution": restitution(entry.contact.impact_restitution, entry.pair),
+        "tangential": friction,
+        "rolling": rolling,
         "radius": float(entry.pair.radius),
         "mass": float(entry.pair.mass),
-        "by_time": isinstance(entry.contact, Linear) and entry.contact.contact_time is not None,
-        **{key: float(value) for key, value in damper.softened_friction(entry).items()},
     }
 
 
@@ -452,6 +349,7 @@ def _arrays(
     tables: list[ContactTable],
     journey: Journey,
 ) -> GranularArrays:
+    case, chosen = resolved(case)
     modes, dampers = case.modes, case.particle_dampers
     times, q, p = raw["time"], raw["q"], raw["p"]
     lines = modes.lines()
@@ -463,12 +361,17 @@ def _arrays(
         base += np.multiply.outer(base_motion(acceleration, times), direction_of_base(case, signal))
     counters = dem.counters()
     overlaps, speeds = (counters[name].tolist() for name in ("largest_overlap", "largest_approach_speed"))
-    figures, notes = outcome(case, tables, step, overlaps, speeds, counters.get("late_builds", 0))
+    cavity_velocity = np.stack([p @ shape for shape in shapes], axis=1)
+    lost = sum(raw[f"{channel}_loss"][-1].sum(axis=1) for channel in ("normal", "plastic", "sliding", "rolling"))
+    moves = base[1][:, None] + cavity_velocity
+    softened = effects(case, step.motions, moves, lost, counters["enduring_loss"])
+    figures, notes = outcome(case, tables, step, overlaps, speeds, counters["late_builds"], softened)
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     name, message = _told(case, names, dem, status, step, journey.checkpoint)
     ends = dem.state()["cavities"]
     contents = [damper.contents for damper in dampers]
     touches = np.asarray(counters["first_touches"])
+    moved = raw["centre"] - displacement
     return GranularArrays(
         time=times,
         points=tuple(lines),
@@ -477,10 +380,10 @@ def _arrays(
         displacement=q @ at_points.T,
         velocity=p @ at_points.T,
         cavity_displacement=displacement,
-        cavity_velocity=np.stack([p @ shape for shape in shapes], axis=1),
+        cavity_velocity=cavity_velocity,
         cavity_force=raw["force"],
         cavity_moment=raw["moment"],
-        centre_of_mass=raw["centre"] - displacement,
+        centre_of_mass=moved,
         momentum=raw["momentum"],
         contacts=raw["contacts"],
         base_displacement=base[0],
@@ -514,14 +417,21 @@ def _arrays(
             "steps": counters["steps"],
             "rebuilds": counters["rebuilds"],
             "refreshes": counters["refreshes"],
-            "late_builds": counters.get("late_builds", 0),
+            "late_builds": counters["late_builds"],
             "first_touches_particle": int(touches[:, 0].sum()),
             "first_touches_wall": int(touches[:, 1].sum()),
             "extrapolated": counters["extrapolated"],
             "memory_bytes": counters["memory_bytes"],
         },
         figures=figures,
-        notes=(*notes, *doubts(case)),
+        notes=(
+            *notes,
+            *chosen,
+            *doubts(case),
+            *(particle_notes(case, touches, raw["contacts"], moved, overlaps) if status == FINISHED else ()),
+            *table_notes(case, speeds),
+            *extrapolated(counters["extrapolated"]),
+        ),
         wall_time=journey.seconds,
     )
 
@@ -536,11 +446,11 @@ def _told(
     cavity = stopped["cavity"]
     number = stopped["particle"] + sum(damper.contents.radius.size for damper in case.particle_dampers[:cavity])
     where = f"Particle {number}, in {names[cavity]!r},"
-    softened = case.particle_dampers[cavity].softening > 1
+    softened = case.particle_dampers[cavity].softening_factor > 1
     name, message = describe(status, stopped["time"], where, stopped["speed"], case.method.kind, softened=softened)
     if status == INTERRUPTED:
         return name, message if checkpoint is None else f"{message} Run again, it goes on from {checkpoint.path}."
     message += f" The step was {step.dt:.4g} s."
     if checkpoint is not None and checkpoint.time is not None:
-        message += f" The last checkpoint is of t = {checkpoint.time:.6g} s, in {checkpoint.path}."
+        message += f" The last checkpoint is of t = {checkpoint.time:.6g} s, in {checkpoint.path.name}."
     return name, message

@@ -49,8 +49,21 @@ class Journey:
         self._shots: list[int] = []
 
     def resume(self, kept: Kept) -> None:
-        """Go on from a checkpoint."""
-        self._dem.restore(kept.state)
+        """Continue from a checkpoint.
+
+        Raises
+        ------
+        CaseError
+            When its state cannot be one of this case.
+        """
+        try:
+            self._dem.restore(kept.state)
+        except ValueError as error:
+            path = self.checkpoint.path if self.checkpoint else "the checkpoint"
+            raise CaseError(
+                f"{path} is damaged: {error}; the state of the core must be one that it has written\n"
+                "  try: a copy of it, or remove it and run from the start"
+            ) from None
         self._pieces = [dict(kept.records)]
         self._earlier = kept.seconds
 
@@ -152,5 +165,7 @@ class Journey:
     def _keep(self) -> None:
         """Keep the state; but what went wrong would go wrong again: the state before is then the one to look at."""
         if self.checkpoint is not None and not self._dem.status:
+            if self._snapshots is not None:
+                self._snapshots.sync()  # a checkpoint needs the snapshots before it, also after a power cut
             self.checkpoint.write(self._dem, self._packed, self.records(), self.seconds)
             self._due = time.monotonic() + self._interval

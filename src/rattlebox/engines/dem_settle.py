@@ -11,12 +11,12 @@ import numpy as np
 
 from rattlebox.engines.core import core
 from rattlebox.model.errors import Hint
-from rattlebox.model.packing import TOUCHING, Settled, check_packing, overlapping
+from rattlebox.model.packing import TOUCHING, Crowd, Settled, check_packing, fewer_at_random, overlapping
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rattlebox.model.cavities import Cavity
+    from rattlebox.model.cavities import AnyCavity
     from rattlebox.model.granular import ParticleDamper
 
     Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ KISSING = 12  # equal spheres that touch one
 SWELL = 2e-3  # how much larger particles are made while they are pushed apart, so that in the end none touch
 GROWN = 5e-6  # the same while they fall: twice that are the gaps of the bed
 SINK = 0.1  # overlap over radius at the largest speed of the fall; it is two hundredths of it under the own weight
-LIGHTER = tuple(0.25**n for n in range(1, 13))  # parts of the weight, one after the other
+LIGHTER = tuple(0.5**n for n in range(1, 25))  # parts of the weight, one after the other
 CALM = 3  # times twenty contact times under each
 RESTITUTION = 0.1
 STEPS = 20  # in a contact
@@ -84,7 +84,7 @@ class _Stopped(Exception):
     pass
 
 
-def insert(cavity: Cavity, radii: Array, seed: int) -> Array:
+def insert(cavity: AnyCavity, radii: Array, seed: int) -> Array:
     """Return places of spheres at random that do not overlap, (n, 3) [m].
 
     Parameters
@@ -133,7 +133,7 @@ def _overlap(places: Array, radii: Array, others: Array, other_radii: Array) -> 
     return found
 
 
-def push_apart(cavity: Cavity, places: Array, radii: Array, swell: float) -> Array:
+def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> Array:
     """Push spheres apart and off the walls, each pair by what it overlaps, until none does.
 
     Parameters
@@ -189,7 +189,7 @@ def push_apart(cavity: Cavity, places: Array, radii: Array, swell: float) -> Arr
     filled = float(np.sum(radii**3)) * 4 / 3 * math.pi / cavity.volume
     raise Hint(
         f"{radii.size} particles cannot be inserted at random: they would fill {100 * filled:.3g} % of the cavity",
-        'packing = { kind = "lattice" }, or fewer of them',
+        fewer_at_random(cavity, Crowd.of(radii)),
     )
 
 
@@ -223,19 +223,18 @@ class _Bed:
         mass = float(self._contents.mass.min()) / 2
         stiffness = mass * (math.pi / self._lasts) ** 2
         self._contact = {
-            "normal": {"law": "linear", "stiffness": stiffness, "mass": mass, "zero_overlap": 0.0},
+            "normal": {
+                "law": "linear",
+                "stiffness": stiffness,
+                "mass": mass,
+                "zero_overlap": 0.0,
+                "fixed_contact_time": 1.0,
+            },
             "restitution": {"law": "constant", "e": RESTITUTION, "maximum": 1.0},
+            "tangential": {"law": "spring", "friction": _friction(damper), "ratio": 2 / 7, "damping": 1.0},
+            "rolling": {"coefficient": 0.0, "stiffness": 1.0, "damping": 0.0},
             "radius": small / 2,
             "mass": mass,
-            "by_time": True,
-            "friction": _friction(damper),
-            "shear": 0.0,
-            "tangential_stiffness": 0.0,
-            "tangential_ratio": 2 / 7,
-            "tangential_damping": 1.0,
-            "rolling": 0.0,
-            "rolling_stiffness": 1.0,
-            "rolling_damping": 0.0,
         }
 
     def fall(self, places: Array, at_rest: float) -> Array:
@@ -256,7 +255,7 @@ class _Bed:
                 before = energy
         raise Hint(f"particles do not come to rest within {FALLS * self._fall:.3g} s", "a larger at_rest")
 
-    def expand(self, places: Array, cavity: Cavity) -> Array:
+    def expand(self, places: Array, cavity: AnyCavity) -> Array:
         """Lift the weight little by little, until no particle in its true size overlaps another one."""
         radii = self._contents.radius
         told = radii - 0.5 * TOUCHING * radii.min()  # a row as long as the cavity overlaps by its rounding for ever

@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox.engines.base_motion import base_motion
-from rattlebox.model.contacts import Linear, Tsuji, alpha_of_restitution
+from rattlebox.engines.core import core
+from rattlebox.engines.run_notes import MOST_OVERLAP
+from rattlebox.engines.softening import MOST_CHANGE, MOST_ENDURING, Effect, Shaking, exponent_of_force
+from rattlebox.model.contacts import Linear
 from rattlebox.model.errors import Hint
 from rattlebox.model.in_space import direction_of_base
 from rattlebox.model.methods import Dem
 from rattlebox.model.restitutions import Constant
-from rattlebox.model.signals import HalfSine, Harmonic
+from rattlebox.model.signals import HalfSine, Harmonic, Record
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -29,8 +32,8 @@ others hold swings up to twice as fast, and friction adds to it."""
 RAYLEIGH = 0.2
 """Longest automatic step over the time that a Rayleigh wave takes along the smallest particle."""
 
-MOST_OVERLAP = 0.01
-"""Of the smaller radius: beyond it contacts of spheres are no longer small against them."""
+MOST_AVERAGED = 0.02
+"""Of the amplitude of a record at the fastest mode, that its means over steps may lack."""
 
 FEWEST_STEPS = 20.0
 """In the shortest contact."""
@@ -39,15 +42,13 @@ WARNINGS = {
     "few_steps": f"fewer than {FEWEST_STEPS:g} steps in the shortest contact",
     "deep_overlap": f"overlaps above {100 * MOST_OVERLAP:g} % of the radius",
     "late_contact": "contacts that may have begun a step late",
+    "soft_bed": "softening that lowers the resonance of the bed too close to the excitation",
+    "enduring_contacts": f"more than {100 * MOST_ENDURING:g} % of the loss in enduring contacts, which grows with softening",
 }
 """What a run can leave its bounds in."""
 
 HERTZ_TIME = 2.9432752
 """Duration of a Hertz contact over its largest overlap by the approach speed."""
-
-HERTZ_FREQUENCY = 1.5 * 1.25
-"""Square of the largest frequency of a Hertz contact times the square of overlap by speed."""
-
 
 MOST_STEPS = 2**63 - 1
 """In a run: the core counts them in 64-bit integers."""
@@ -100,6 +101,8 @@ class Step:
         The shortest contact that is expected.
     speeds
         Largest approach speed that is expected in each damper [m/s].
+    motions
+        Expected motion of each cavity.
     """
 
     dt: float
@@ -108,65 +111,7 @@ class Step:
     limit: Limit
     shortest: Limit
     speeds: tuple[float, ...]
-
-
-def contact_time(law: str, values: Mapping[str, Any], speed: float) -> float:
-    """Return how long a contact without dashpot lasts [s].
-
-    Parameters
-    ----------
-    law
-        The core's name of the law.
-    values
-        Its coefficients for the pair.
-    speed
-        Approach speed [m/s].
-
-    Notes
-    -----
-    Hertz: 2.943 (5 m*/(4 A))^(2/5) V^(-1/5). Linear: pi sqrt(m*/k). Contacts that yield: that of a Hertz contact with the
-    largest stiffness that is met, on loading up to the yield point or at the begin of unloading.
-    """
-    mass, stiffness = values["mass"], values["stiffness"]
-    if law == "linear":
-        return float(math.pi * math.sqrt(mass / stiffness))
-    if speed == 0:
-        return math.inf
-    if law == "hertz_tsuji":
-        return float(HERTZ_TIME * (1.25 * mass / stiffness) ** 0.4 * speed**-0.2)
-    radius, modulus, pressure = values["radius"], values["modulus"], values["yield_pressure"]
-    depth = radius * (math.pi * pressure / (2 * modulus)) ** 2
-    force = stiffness * depth**1.5
-    left = mass * speed**2 / 2 - 0.4 * force * depth
-    if left <= 0:
-        return float(HERTZ_TIME * (1.25 * mass / stiffness) ** 0.4 * speed**-0.2)
-    slope = math.pi * pressure * radius
-    largest = math.sqrt(force**2 + 2 * slope * left)  # energy beyond yield: (F^2 - F_y^2) / (2 slope)
-    wide = 4 * modulus / (3 * largest) * ((2 * largest + force) / (2 * math.pi * pressure)) ** 1.5
-    recovered = (3 * largest / (4 * modulus * math.sqrt(wide))) ** (2 / 3)
-    steepest = max(1.5 * largest / recovered, 1.5 * force / depth)
-    return float(HERTZ_TIME * math.sqrt(HERTZ_FREQUENCY * mass / steepest))
-
-
-def of_sizes(law: str, values: Mapping[str, Any], by_time: bool, radius: float, mass: float) -> dict[str, Any]:
-    """Return the coefficients of a law for a pair of other sizes, with this R* [m] and m* [kg].
-
-    Parameters
-    ----------
-    law, values
-        The law, and its coefficients for the pair of reference.
-    by_time
-        Whether a linear stiffness stands for a contact time.
-    radius, mass
-        Of the pair.
-    """
-    given = dict(values)
-    if law == "linear":
-        return {**given, "mass": mass, "stiffness": given["stiffness"] * (mass / given["mass"] if by_time else 1.0)}
-    if "radius" in given:
-        scale = math.sqrt(radius / given["radius"])
-        return {**given, "mass": mass, "radius": radius, "stiffness": given["stiffness"] * scale}
-    return {**given, "mass": mass}
+    motions: tuple[Shaking, ...] = ()
 
 
 def instants(case: Case) -> Any:
@@ -229,50 +174,49 @@ def contact_limits(
     for entry in table.entries:
         if entry.names[0] == entry.names[1] and numbers[labels.index(entry.names[0])] < 2:
             continue  # nothing to meet
-        law, values = damper.softened(entry)
-        by_time = isinstance(entry.contact, Linear) and entry.contact.contact_time is not None
-        damped = max(1.0, 2 * _ratio(entry, values))
+        reference = core().NormalLaw(packed_normal(damper, entry))
+        damped = max(1.0, 2 * _damping_ratio(entry, reference, speed))
         duration, bound, sizes = math.inf, math.inf, ""
         for pair_radius, pair_mass, told in _sizes(damper, entry, wall_mass):
-            reference = {**values, "radius": entry.pair.radius} if law == "hertz_tsuji" else values
-            own = of_sizes(law, reference, by_time, pair_radius, pair_mass)
-            lasts = contact_time(law, own, speed)
-            bound = min(bound, BOUND * lasts / max(damped, _sideways(damper, entry, own, speed, lasts)))
+            law = reference.resized(entry.pair.radius, entry.pair.mass, pair_radius, pair_mass)
+            lasts = law.contact_time(speed)
+            bound = min(bound, BOUND * lasts / max(damped, _sideways(damper, entry, law, pair_radius, speed, lasts)))
             if lasts < duration:
                 duration, sizes = lasts, told
-        at = "" if law == "linear" else f" at {speed:.3g} m/s"
+        at = "" if isinstance(entry.contact, Linear) else f" at {speed:.3g} m/s"
         rubs = ", with its friction" if bound < 0.5 * BOUND * duration / damped else ""
         what = f"contact of {' and '.join(entry.names)} ({sizes}){at}, {_time(duration)}{rubs}"
         yield Limit(duration, min(fraction * duration / damped, 0.5 * bound), bound, what, is_contact=True)
 
 
-def _sideways(damper: ParticleDamper, entry: Entry, values: Mapping[str, Any], speed: float, duration: float) -> float:
-    """How many times sooner than the contact itself its friction and rolling resistance need a step to end.
+def packed_normal(damper: ParticleDamper, entry: Entry) -> dict[str, Any]:
+    """Return the name and the softened coefficients of a pair's normal law, as the core reads them."""
+    name, values = damper.softened(entry)
+    return {"law": name} | {k: v if isinstance(v, np.ndarray) else float(v) for k, v in values.items()}
+
+
+def _sideways(damper: ParticleDamper, entry: Entry, law: Any, radius: float, speed: float, duration: float) -> float:
+    """Return by what factor friction and rolling resistance shorten the longest stable step of a contact.
 
     A spring in the plane of contact swings spheres that are free to turn with 7/2 k_t/m*, against k/m* along the normal; one
     against rolling adds 5/2 of its own part of k_t. Steps up to 1.2 over the frequency were seen to give no energy. Dashpots
     take a velocity predicted from the last two steps, stable up to 1 over their rate: 7/2 c_t/m*, and 5/2 c_r/(m* R*^2).
     """
-    laws = damper.softened_friction(entry)
-    if not laws["friction"] or not math.isfinite(duration):
+    friction, rolling = damper.softened_friction(entry)
+    rubs: float = friction["damping"]
+    if not friction["friction"] or not math.isfinite(duration):
         return 1.0
-    firm = laws["tangential_stiffness"] + laws["tangential_ratio"] * values["stiffness"]
-    if laws["shear"]:
-        radius = values["radius"]
-        deepest = speed * duration / HERTZ_TIME
-        if "yield_pressure" in values:  # at most: all energy goes into yielding from the yield point on
-            hard = math.pi * values["yield_pressure"]
-            deepest = radius * (hard / (2 * values["modulus"])) ** 2 + speed * math.sqrt(
-                values["mass"] / (hard * radius)
-            )
-        firm = laws["shear"] * math.sqrt(radius * deepest)
-    rolls = laws["rolling_stiffness"] if laws["rolling"] else 0.0
-    swing = BOUND * duration * math.sqrt(firm / values["mass"])
+    tangential = core().TangentialLaw(friction)
+    firm: float = tangential.stiffness(radius, law.mass, law.stiffness, law.largest_overlap(speed))
+    rolls = rolling["stiffness"] if rolling["coefficient"] else 0.0
+    mass: float = law.mass
+    swing = BOUND * duration * math.sqrt(firm / mass)
+    damped = _damping_ratio(entry, law, speed)
     return max(
         1.0,
         swing * math.sqrt(7 / 2 + 5 / 2 * rolls) / 1.2,
-        swing * 7 * math.sqrt(5 / 6) * _ratio(entry, values) * laws["tangential_damping"],
-        swing * 5 * math.sqrt(1.4 * rolls) * laws["rolling_damping"],
+        swing * 7 * math.sqrt(5 / 6) * damped * rubs,
+        swing * 5 * math.sqrt(1.4 * rolls) * rolling["damping"],
     )
 
 
@@ -300,16 +244,12 @@ def _sizes(damper: ParticleDamper, entry: Entry, wall_mass: float) -> Iterator[t
             yield *pair, "diameter " + " and ".join(dict.fromkeys(told))
 
 
-def _ratio(entry: Entry, values: Mapping[str, Any]) -> float:
-    """Damping ratio of a contact where it is the same at every speed, else 0."""
-    contact = entry.contact
-    if "damping" in values:
-        return float(values["damping"] / (2 * math.sqrt(values["stiffness"] * values["mass"])))
-    if "alpha" in values:
-        return float(values["alpha"] / math.sqrt(5))
-    if isinstance(contact.restitution, Constant) and isinstance(contact, (Tsuji, Linear)):
-        return float(alpha_of_restitution(contact.restitution.e, contact.ending)) / math.sqrt(5)
-    return 0.0
+def _damping_ratio(entry: Entry, law: Any, speed: float) -> float:
+    """Return the damping ratio of a contact; 0 where its restitution depends on the speed."""
+    constant = entry.contact.impact_restitution
+    if law.needs_restitution and not isinstance(constant, Constant):
+        return 0.0
+    return float(law.damping_ratio(constant.e if isinstance(constant, Constant) else 1.0, speed))
 
 
 def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> list[Limit]:
@@ -334,7 +274,7 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
                 continue
             radius = float(damper.contents.radius[damper.contents.species == index].min())
             material = species.material
-            shear = material.young / (2 * (1 + material.poisson)) / damper.softening
+            shear = material.young / (2 * (1 + material.poisson)) / damper.softening_factor
             wave = (0.1631 * material.poisson + 0.8766) * math.sqrt(shear / material.density)
             time = math.pi * radius / wave
             told = f"Rayleigh wave along {species.label} (diameter {2e3 * radius:.4g} mm), {_time(time)}"
@@ -410,6 +350,7 @@ def outcome(
     overlaps: Sequence[float],
     speeds: Sequence[float],
     late: int = 0,
+    effects: Sequence[Effect] = (),
 ) -> tuple[dict[str, float], list[str]]:
     """Return figures and notes on a step, after the run.
 
@@ -423,6 +364,8 @@ def outcome(
         Largest approach speed at a first touch, in each damper [m/s].
     late
         Steps after which neighbours should have been known already.
+    effects
+        Effect of softening on each damper.
     """
     dampers = case.particle_dampers
     shortest = min(
@@ -442,6 +385,14 @@ def outcome(
         "steps_per_contact": steps,
         "largest_overlap": max(overlaps),
     }
+    if effects:
+        figures |= {
+            "softening": max(effect.softening for effect in effects),
+            "bed_resonance": min(effect.resonance for effect in effects),
+            "softening_change": max(effect.change for effect in effects),
+            "enduring_share": max(effect.share for effect in effects),
+            "softened_enduring_share": max(effect.share if effect.softening > 1 else 0.0 for effect in effects),
+        }
     notes = [_limited(case, step), *_softened(case)]
     warned = warnings_of(figures, late)
     if "few_steps" in warned:
@@ -455,15 +406,31 @@ def outcome(
             f"warning: particles sped up within a step beyond what neighbours allow for, {often}; contacts may have "
             "begun a step late: shorten the step"
         )
+    notes.extend(_averaged(case, step))
+    for index, effect in enumerate(effects):
+        notes += effect.warnings(f" in {dampers[index].label(index)}" if len(dampers) > 1 else "")
     for index, (damper, overlap) in enumerate(zip(dampers, overlaps, strict=True)):
         if overlap > MOST_OVERLAP:
             where = f" in {damper.label(index)}" if len(dampers) > 1 else ""
             notes.append(
                 f"warning: overlaps{where} reach {100 * overlap:.3g} % of the radius, and should stay below "
                 f"{100 * MOST_OVERLAP:g} %: "
-                + ("less softening or a stiffer contact" if damper.softening > 1 else "a stiffer contact")
+                + ("less softening or a stiffer contact" if damper.softening_factor > 1 else "a stiffer contact")
             )
     return figures, notes
+
+
+def _averaged(case: Case, step: Step) -> Iterator[str]:
+    """State what the fastest mode loses of records, which act with their means over steps."""
+    fastest = math.sqrt(max(case.modes.stiffness, default=0.0)) / (2 * math.pi)
+    lost = 1 - float(np.sinc(fastest * step.dt))
+    if lost > MOST_AVERAGED and any(isinstance(signal, Record) for signal in (*case.loads, *case.base_acceleration())):
+        shorter = 0.9 * math.sqrt(6 * MOST_AVERAGED) / (math.pi * fastest)  # also when it is rounded
+        yield (
+            f"warning: a record acts with its mean over each step, which takes {100 * lost:.2g} % of the amplitude"
+            f" at {fastest:.4g} Hz, the fastest mode; up to {100 * MOST_AVERAGED:g} % is allowed; try: a step of"
+            f" {shorter:.2g} s"
+        )
 
 
 def warnings_of(figures: Mapping[str, float], late: int) -> list[str]:
@@ -477,8 +444,30 @@ def warnings_of(figures: Mapping[str, float], late: int) -> list[str]:
         Steps after which neighbours should have been known already.
     """
     steps = figures["steps_per_contact"]
-    found = (math.isfinite(steps) and steps < FEWEST_STEPS, figures["largest_overlap"] > MOST_OVERLAP, late > 0)
+    found = (
+        math.isfinite(steps) and steps < FEWEST_STEPS,
+        figures["largest_overlap"] > MOST_OVERLAP,
+        late > 0,
+        figures.get("softening_change", 0.0) > MOST_CHANGE,
+        figures.get("softened_enduring_share", 0.0) > MOST_ENDURING,
+    )
     return [name for name, is_so in zip(WARNINGS, found, strict=True) if is_so]
+
+
+def largest_softening(case: Case, damper: ParticleDamper, speed: float) -> float:
+    """Return the softening at which the overlaps of a damper that is not softened reach `MOST_OVERLAP`.
+
+    Parameters
+    ----------
+    case, damper
+        The case, and one of its dampers.
+    speed
+        Largest approach speed to expect [m/s].
+    """
+    smallest, table = float(damper.contents.radius.min()), damper.contact_table
+    longest = max((limit.duration for limit in contact_limits(case, damper, table, speed, 1.0)), default=0.0)
+    overlap = speed * longest / HERTZ_TIME / smallest if math.isfinite(longest) else 0.0
+    return (MOST_OVERLAP / overlap) ** 2 if overlap else math.inf
 
 
 def _limited(case: Case, step: Step) -> str:
@@ -500,11 +489,12 @@ def _softened(case: Case) -> list[str]:
     """What softening does, told once for all dampers that are alike."""
     told: dict[str, list[str]] = {}
     for index, damper in enumerate(case.particle_dampers):
-        linear = [isinstance(entry.contact, Linear) for entry in damper.contact_table.entries]
-        factors = {damper.softening ** (0.5 if each else 0.4) for each in linear}
+        exponents = {exponent_of_force(entry.contact) for entry in damper.contact_table.entries}
+        factors = {damper.softening_factor ** (1 / (exponent + 1)) for exponent in exponents}
         many = " and ".join(f"{factor:.3g}" for factor in sorted(factors))
         does = f"contacts last {many} times as long, and overlap {many} times as much"
-        what = f"moduli are divided by {damper.softening:g}: {does}" if damper.softening > 1 else ""
+        softening = damper.softening_factor
+        what = f"moduli are divided by {softening:g}: {does}" if softening > 1 else ""
         told.setdefault(what, []).append(damper.label(index))
     whose = len(told) > 1
     return [f"{', '.join(names)}: {what}" if whose else what for what, names in told.items() if what]

@@ -7,12 +7,14 @@ is a case of its own, and the results are put together, or stay apart where they
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox.engines.laws import restitution_of_alpha
 from rattlebox.engines.variants import (
     Columns,
     Index,
@@ -29,10 +31,12 @@ from rattlebox.engines.variants import (
     with_value,
 )
 from rattlebox.model.base import Part
+from rattlebox.model.contacts import FixedDamping
 from rattlebox.model.errors import CaseError, Hint
 from rattlebox.model.methods import EventDriven, Newton, TwoStep
 from rattlebox.model.pairs import Pair, contact_pairs
 from rattlebox.model.paths import Place, part_at, place_of, replaced
+from rattlebox.model.restitutions import Constant
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,6 +46,9 @@ if TYPE_CHECKING:
     from rattlebox.model.restitutions import Restitution
 
 Packed = dict[str, Any]
+
+MOST_EVENTS = 200_000
+"""Most events of a run that is sampled at its contacts, too, unless the output times are chosen."""
 
 
 def pack(case: Case) -> Packed:
@@ -57,7 +64,8 @@ def pack(case: Case) -> Packed:
     dict
         Modes, loads, dampers, contacts, sample times and settings, as core/python/read.hpp reads them.
     """
-    return {**_numbers(case), "sample_times": _array(case.sample_times())}
+    contact_samples = 0 if case.output.is_chosen else MOST_EVENTS
+    return {**_numbers(case), "sample_times": _array(case.sample_times()), "contact_samples": contact_samples}
 
 
 @dataclass(frozen=True)
@@ -283,13 +291,21 @@ def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> Packed:
     between_balls = 0 < place < len(damper.balls)
     law = damper.ball_contact if between_balls and damper.ball_contact is not None else damper.contact
     if isinstance(case.method, Newton):
-        rebound: Restitution | None = case.method.restitution or law.equivalent_restitution(pair)
+        rebound: Restitution | None = case.method.restitution or _hard(law.equivalent_restitution(pair))
         normal: Packed = {"law": "linear", "stiffness": 1.0, "mass": pair.mass, "damping": 0.0}
     else:
-        rebound = law.restitution
+        rebound = law.impact_restitution
         name, values = law.coefficients(pair)
         normal = {"law": name, **values}
     return {"mass": pair.mass, "normal": normal, "restitution": restitution(rebound, pair)}
+
+
+def _hard(equivalent: Restitution | FixedDamping) -> Restitution:
+    """Return the restitution law of hard impacts."""
+    if not isinstance(equivalent, FixedDamping):
+        return equivalent
+    e: Any = restitution_of_alpha(math.sqrt(5) * equivalent.ratio, equivalent.ending)
+    return Constant(float(e)) if e.ndim == 0 else Constant.model_construct(e=e)
 
 
 def restitution(law: Restitution | None, pair: Pair) -> Packed:

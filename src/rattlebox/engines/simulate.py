@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox.engines.core import core
-from rattlebox.engines.pack import pack
-from rattlebox.engines.status import INTERRUPTED, LEDGER_OPEN, NOT_FINITE, describe
+from rattlebox.engines.pack import MOST_EVENTS, pack
+from rattlebox.engines.run_notes import extrapolated, impact_notes
+from rattlebox.engines.status import FINISHED, describe, end_of
 from rattlebox.model.case import Case
 from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import Hint
@@ -25,16 +26,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-_MOST_EVENTS = 200_000
-
-
 def simulate(
     case: Case,
     *,
     checkpoint: str | os.PathLike[str] | None = None,
     snapshots: str | os.PathLike[str] | None = None,
     progress: Callable[[int, int], object] | None = None,
-    on: str | None = None,
 ) -> Run:
     """Run a case.
 
@@ -51,8 +48,6 @@ def simulate(
     progress
         Of particles in space: called now and then with the number of steps done and of all; False stops the run, as Ctrl-C
         does.
-    on
-        Of particles in space: "gpu" for the graphics card of this machine; default the processor.
 
     Returns
     -------
@@ -64,8 +59,7 @@ def simulate(
     ------
     CaseError
         When the checkpoint is of another case, version or core, with what differs, or in use by another process; when a
-        file is a folder, both are one, or the run has no use for them; or when there is no card that can be used, naming
-        what is missing.
+        file is a folder, both are one, or the run has no use for them.
     OSError
         When a file cannot be written.
     """
@@ -75,26 +69,17 @@ def simulate(
 
         if snapshots is None and case.output.snapshots:
             raise Hint("the output asks for snapshots, and there is no file for them", 'snapshots="run.vtkhdf"')
-        return simulate_dem(case, progress=progress, checkpoint=_path(checkpoint), snapshots=_path(snapshots), on=on)
+        return simulate_dem(case, progress=progress, checkpoint=_path(checkpoint), snapshots=_path(snapshots))
     if checkpoint is not None or snapshots is not None:
         raise Hint("checkpoints and snapshots are of particles in space, and there are none", "leave them out")
-    _no_card(on)
     return simulate_many([case])[0]
-
-
-def _no_card(on: str | None) -> None:
-    if on is not None:
-        raise Hint(
-            f"on = {on!r}: a run of an impact damper takes milliseconds on the processor, and stays there",
-            'studies of many: rb.sweep(..., on="gpu")',
-        )
 
 
 def _path(path: str | os.PathLike[str] | None) -> Path | None:
     return None if path is None else Path(path)
 
 
-def simulate_many(cases: Iterable[Case], *, threads: int | None = None, on: str | None = None) -> list[Run]:
+def simulate_many(cases: Iterable[Case], *, threads: int | None = None) -> list[Run]:
     """Run several cases, each on one thread.
 
     Parameters
@@ -103,8 +88,6 @@ def simulate_many(cases: Iterable[Case], *, threads: int | None = None, on: str 
         What to run.
     threads
         How many at once; default as many as there are cores. The results do not depend on it, to the last bit.
-    on
-        Of particles in space: "gpu" for the graphics card of this machine, where small cases run side by side.
 
     Returns
     -------
@@ -114,8 +97,7 @@ def simulate_many(cases: Iterable[Case], *, threads: int | None = None, on: str 
     Raises
     ------
     CaseError
-        When something else than cases is given, or no number of threads; or when there is no card that can be used,
-        naming what is missing.
+        When something else than cases is given, or no number of threads.
     """
     if isinstance(cases, Case):
         raise Hint("a list of cases is needed, not one case", "simulate(case)")
@@ -124,21 +106,10 @@ def simulate_many(cases: Iterable[Case], *, threads: int | None = None, on: str 
         _check_is_case(case)
     if threads is not None:
         threads = whole_number(threads, "threads", 1)
-    if on is not None and cases and all(case.particle_dampers for case in cases):
-        from rattlebox.engines.dem import simulate_dem_together
-
-        return list(simulate_dem_together(cases, on, threads or os.cpu_count() or 1))
-    _no_card(on)
     if any(case.particle_dampers for case in cases):
         return _in_space(cases, threads)
-    packed = [pack(case) for case in cases]
-    results = _simulated(packed, threads)
-    free = [k for k, case in enumerate(cases) if not case.output.is_chosen and _is_short(results[k])]
-    again = [{**packed[k], "sample_times": _with_contacts(packed[k]["sample_times"], results[k])} for k in free]
-    for k, result in zip(free, _simulated(again, threads), strict=True):
-        if result["status"] == results[k]["status"]:
-            results[k] = {**result, "seconds": results[k]["seconds"] + result["seconds"]}
-    return [_run(case, result) for case, result in zip(cases, results, strict=True)]
+    results = _simulated([pack(case) for case in cases], threads)
+    return [_run(case, _sampled(result)) for case, result in zip(cases, results, strict=True)]
 
 
 def _check_is_case(case: object) -> None:
@@ -159,20 +130,14 @@ def _simulated(packed: list[Any], threads: int | None) -> list[dict[str, Any]]:
     return list(core().simulate(packed, count)) if packed else []
 
 
-def _is_short(raw: dict[str, Any]) -> bool:
-    """Whether the samples that the impacts ask for are affordable; a run that was stopped by hand is left as it is."""
-    events: int = raw["counts"]["events"]
-    return raw["impacts"]["time"].size > 0 and events <= _MOST_EVENTS and raw["status"] != INTERRUPTED
-
-
-def _with_contacts(times: NDArray[np.float64], raw: dict[str, Any]) -> NDArray[np.float64]:
-    """Add begin, middle and end of each contact, and the middle of each flight, which may be a parabola."""
-    touch = raw["impacts"]["time"]
-    # One ulp later, so that hard impacts, which end where they begin, have velocities before and after.
-    opened = np.nextafter(touch + np.nan_to_num(raw["impacts"]["duration"]), np.inf)
-    following = np.append(touch, raw["stopped_at"])[np.searchsorted(touch, opened)]
-    every = np.concatenate([times, touch, 0.5 * (touch + opened), opened, 0.5 * (opened + following)])
-    return np.unique(every[(every >= times[0]) & (every <= times[-1])])  # contacts may begin a rounding before
+def _sampled(raw: dict[str, Any]) -> dict[str, Any]:
+    """Drop the samples at contacts of a run that has too many of them."""
+    many = max(raw["counts"]["events"], raw["impacts"]["time"].size) > MOST_EVENTS
+    if not many or raw["given"].all():
+        return raw
+    given, count = raw["given"].astype(bool), raw["time"].size
+    names = ("time", "state", "load_work", "base_work", "viscous", "normal", "plastic", "stored", "force")
+    return raw | {name: raw[name].reshape(count, -1)[given].ravel() for name in names}
 
 
 def _run(case: Case, raw: dict[str, Any]) -> Run:
@@ -180,8 +145,8 @@ def _run(case: Case, raw: dict[str, Any]) -> Run:
         arrays = _arrays(case, raw)
     provenance = Provenance.now(method=case.method.kind, seed=case.seed)
     run = Run(arrays, case_toml=case.to_toml, provenance=provenance)
-    if run.status == "finished" and not run.ledger.closes(raw["closure_bound"]):
-        end = NOT_FINITE if np.isnan(run.closure) else LEDGER_OPEN
+    mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
+    if run.ok and (end := end_of(run.ledger, raw["closure_bound"], mass)) != FINISHED:
         status, message = describe(end, case.duration, "", run.closure, case.method.kind)
         run = Run(replace(arrays, status=status, message=message), case_toml=case.to_toml, provenance=provenance)
     return run
@@ -217,7 +182,12 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
         case.method.kind,
     )
     by_damper = (time.size, d)
-    impacts = {key: value for key, value in raw["impacts"].items() if key != "complete"}
+    log = {key: value for key, value in raw["impacts"].items() if key != "complete"}
+    impacts = ImpactArrays(**log, complete=raw["impacts"]["complete"].astype(bool))
+    notes = doubts(case)
+    if raw["status"] == FINISHED:
+        notes += impact_notes(case, position - (q @ shapes.T)[:, of], impacts)
+        notes += tuple(extrapolated(raw["counts"]["extrapolated"]))
     return RunArrays(
         time=time,
         points=tuple(points),
@@ -248,11 +218,11 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
         viscous_loss=raw["viscous"],
         normal_loss=raw["normal"].reshape(by_damper),
         plastic_loss=raw["plastic"].reshape(by_damper),
-        impacts=ImpactArrays(**impacts, complete=raw["impacts"]["complete"].astype(bool)),
+        impacts=impacts,
         status=name,
         message=message,
         counts={**raw["counts"], "impacts": raw["impacts"]["time"].size},
-        notes=doubts(case),
+        notes=notes,
         wall_time=raw["seconds"],
     )
 

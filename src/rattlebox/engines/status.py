@@ -2,6 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rattlebox.engines.core import core
+
+if TYPE_CHECKING:
+    from rattlebox.results.ledger import Ledger
+
 STATUSES: tuple[tuple[str, str], ...] = (
     ("finished", "The run reached its end."),
     (
@@ -13,8 +22,9 @@ STATUSES: tuple[tuple[str, str], ...] = (
     ("interrupted", "The run was stopped at t = {time:.9g} s; what was computed until then is kept."),
     ("not_finite", "The motion grew beyond all numbers at t = {time:.9g} s."),
     (
-        "ledger_open",
-        "The run reached its end, but its energy ledger closes only to {value:.2g} of the energy put in: do not trust it.",
+        "energy_error",
+        "The run reached its end, but its energies do not add up: {value:.2g} of the energy put in is missing or too much. "
+        "Do not use its results.",
     ),
     ("escaped", "{contact} left its cavity at {value:.6g} m/s, at t = {time:.9g} s."),
     (
@@ -25,8 +35,8 @@ STATUSES: tuple[tuple[str, str], ...] = (
     ("refused", "The case cannot be run as it is."),
 )
 _NAMES = [name for name, _ in STATUSES]
-INTERRUPTED, NOT_FINITE, LEDGER_OPEN, REFUSED = map(
-    _NAMES.index, ("interrupted", "not_finite", "ledger_open", "refused")
+FINISHED, INTERRUPTED, NOT_FINITE, ENERGY_ERROR, REFUSED = map(
+    _NAMES.index, ("finished", "interrupted", "not_finite", "energy_error", "refused")
 )
 
 _SIZES = "Check that stiffnesses, masses and speeds are of the sizes you meant."
@@ -52,15 +62,33 @@ _ADVICE: dict[str, dict[str, str]] = {
         "two_step": "Shorten the time steps dt_flight and dt_contact.",
         "dem": "Shorten dt. " + _SIZES,
     },
-    "ledger_open": {
+    "energy_error": {
         "": "Compare with another method.",
         "event_driven": "Lower the tolerance, and compare with another method.",
+        "two_step": "Shorten the time steps dt_flight and dt_contact.",
         "dem": "Shorten dt, or the fraction of the shortest contact that it is.",
     },
     "refused": {"": "Run it alone, which says why."},
     "escaped": {"": "Shorten dt, or use a stiffer contact.", "softened": "Shorten dt, or soften the contacts less."},
 }
 """What to try, by status and kind of method; "" for every other method, "softened" where contacts are."""
+
+
+def end_of(ledger: Ledger, bound: float, mass: float) -> int:
+    """Return the status of a run that reached its end.
+
+    Parameters
+    ----------
+    ledger
+        Energies of the run.
+    bound
+        Largest energy residual of a finished run, over the energy put in.
+    mass
+        Mass of all balls or particles [kg]. A residual below their energy at a nanometre a second is rounding.
+    """
+    if not np.isfinite(ledger.residual).all():
+        return NOT_FINITE
+    return FINISHED if ledger.closes(bound, mass * core().speed_at_rest ** 2) else ENERGY_ERROR
 
 
 def describe(

@@ -7,10 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError, WithJsonSchema
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError, WithJsonSchema, model_validator
 from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
+
+from rattlebox._util.text import has_controls
 
 from .errors import Hint, nearest, translate
 
@@ -48,6 +50,9 @@ class _Explaining(_ModelType):
             raise translate(error, cls.__name__, vocabulary(), values) from None
 
 
+_NAMES = frozenset({"name", "title", "point"})
+
+
 class Part(BaseModel, metaclass=_Explaining):
     """A frozen part of a case. Wrong values raise CaseError, whoever gives them."""
 
@@ -66,6 +71,17 @@ class Part(BaseModel, metaclass=_Explaining):
         allow_inf_nan=False,
         ser_json_inf_nan="constants",
     )
+
+    @model_validator(mode="after")
+    def _check_names(self) -> Self:
+        """Refuse control characters in names, which results, figures and terminals show."""
+        for field in type(self).model_fields:
+            value = getattr(self, field)
+            names = value if isinstance(value, Mapping) else [value] if field in _NAMES else ()
+            for name in names:
+                if isinstance(name, str) and has_controls(name):
+                    raise Hint(f"{name!r} holds a control character", "printable characters only", [field])
+        return self
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy with other values, unchecked; what was computed from the former ones is forgotten.

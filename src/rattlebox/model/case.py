@@ -12,6 +12,8 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, field_validator, model_validator
 
+from rattlebox._util.atomic_io import atomic_write
+
 from .base import AlsoTakes, Part, vocabulary
 from .dampers import ImpactDamper
 from .elementwise import Vector
@@ -242,9 +244,9 @@ class Case(Part):
             with at("ball_contact" if between else "contact"), _computable():
                 _, values = law.coefficients(pair)
                 _check_finite(values)
-                if law.restitution is not None:
+                if law.impact_restitution is not None:
                     with at("restitution"):
-                        _, values = law.restitution.coefficients(pair)
+                        _, values = law.impact_restitution.coefficients(pair)
                         _check_finite(values)
 
     def _check_entries(self, damper: ParticleDamper) -> None:
@@ -252,10 +254,11 @@ class Case(Part):
         for entry in damper.contact_table.entries:
             with at(*entry.place), _computable():
                 _check_finite(damper.softened(entry)[1])
-                _check_finite(damper.softened_friction(entry))
-                if entry.contact.restitution is not None:
+                friction, rolling = damper.softened_friction(entry)
+                _check_finite({key: value for key, value in friction.items() if key != "law"} | rolling)
+                if entry.contact.impact_restitution is not None:
                     with at("restitution"):
-                        _check_finite(entry.contact.restitution.coefficients(entry.pair)[1])
+                        _check_finite(entry.contact.impact_restitution.coefficients(entry.pair)[1])
 
     @property
     def impact_dampers(self) -> tuple[ImpactDamper, ...]:
@@ -396,7 +399,9 @@ class Case(Part):
     def to_file(self, path: str | os.PathLike[str]) -> None:
         """Write a case file that reads back equal; files in it are named as seen from its folder."""
         folder = Path(path).absolute().parent
-        Path(path).write_text(self._toml(lambda file: _relative(file, folder)), encoding="utf-8")
+        text = self._toml(lambda file: _relative(file, folder))
+        with atomic_write(path, "make room and write the case again") as name:
+            name.write_text(text, encoding="utf-8")
 
     def _toml(self, name_of: Callable[[str], str]) -> str:
         import tomli_w

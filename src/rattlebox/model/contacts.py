@@ -1,22 +1,49 @@
-"""Contact laws; the formulas themselves are in core/contact, one file each."""
+"""Normal contact laws; the formulas themselves are in core/contact/normal, one file each."""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, ClassVar, Literal
+from functools import cached_property
+from itertools import pairwise
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 
 from .base import Part
-from .elementwise import power, sqrt
-from .errors import Hint, one_of
+from .elementwise import mapped, power, powers, sqrt
+from .errors import Hint, at, one_of
 from .pairs import Pair
-from .restitutions import AnyRestitution, Constant, Restitution, ThorntonRestitution, yield_pressure
-from .units import LARGEST, Damping, Modulus, Number, PositiveStiffness, PositiveTime
+from .power_dashpot import SMALLEST, dimensionless_damping, rebound
+from .restitutions import AnyRestitution, Constant, Restitution, Tabulated, ThorntonRestitution, yield_pressure
+from .units import (
+    LARGEST,
+    Damping,
+    Force,
+    Length,
+    Modulus,
+    Number,
+    PositiveStiffness,
+    PositiveTime,
+    PositiveVelocity,
+)
 
 Ending = Literal["zero_force", "zero_overlap"]
+
+
+class FixedDamping(NamedTuple):
+    """A dashpot that gives the same restitution at every speed.
+
+    Attributes
+    ----------
+    ratio
+        Damping ratio of the contact.
+    ending
+        Where the contact ends.
+    """
+
+    ratio: Any
+    ending: Ending
 
 
 class Contact(Part):
@@ -25,12 +52,23 @@ class Contact(Part):
     held_as: ClassVar[tuple[str, ...]] = ("contact", "ball_contact")
     kind: str
 
+    @property
+    def impact_restitution(self) -> Restitution | None:
+        """The restitution law that sets the dashpot of each impact; None of a law that needs none."""
+        return None
+
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return the core's name of the law and its coefficients for a pair of bodies."""
         raise NotImplementedError
 
-    def equivalent_restitution(self, pair: Pair) -> Restitution:
-        """Return the restitution law that hard impacts of the same loss obey."""
+    def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
+        """Return the same with moduli divided by a factor; dashpots and limits keep the restitution."""
+        name, values = self.coefficients(pair)
+        scale = {"stiffness": 1.0, "modulus": 1.0, "damping": 0.5, "yield_pressure": 0.8}
+        return name, {key: value / softening ** scale.get(key, 0.0) for key, value in values.items()}
+
+    def equivalent_restitution(self, pair: Pair) -> Restitution | FixedDamping:
+        """Return what hard impacts of the same loss obey: a restitution law, or the dashpot that sets it."""
         raise NotImplementedError
 
 
@@ -41,11 +79,6 @@ def _soft(restitution: Any) -> None:
             "restitution = 1e-6, or for balls in a row method = Newton(), whose impacts may be fully plastic",
             ["restitution"],
         )
-
-
-def _constant(e: Any) -> Constant:
-    """The law of a constant restitution, or of an array of them."""
-    return Constant(float(e)) if e.ndim == 0 else Constant.model_construct(e=e)
 
 
 class Tsuji(Contact):
@@ -75,6 +108,11 @@ class Tsuji(Contact):
         _soft(self.restitution)
         return self
 
+    @property
+    def impact_restitution(self) -> Restitution | None:
+        """The restitution law that sets the dashpot of each impact."""
+        return self.restitution
+
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return stiffness, mass and, if fixed, alpha."""
         values: dict[str, Any] = {
@@ -86,12 +124,12 @@ class Tsuji(Contact):
             values["alpha"] = self.alpha
         return "hertz_tsuji", values
 
-    def equivalent_restitution(self, pair: Pair) -> Restitution:
-        """Return the law itself, or the constant that alpha amounts to."""
+    def equivalent_restitution(self, pair: Pair) -> Restitution | FixedDamping:
+        """Return the law itself, or the damping that alpha amounts to."""
         if self.restitution is not None:
             return self.restitution
         assert self.alpha is not None
-        return _constant(restitution_of_alpha(self.alpha, self.ending))
+        return FixedDamping(self.alpha / math.sqrt(5), self.ending)
 
 
 class Linear(Contact):
@@ -124,6 +162,11 @@ class Linear(Contact):
         _soft(self.restitution)
         return self
 
+    @property
+    def impact_restitution(self) -> Restitution | None:
+        """The restitution law that sets the dashpot of each impact."""
+        return self.restitution
+
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return stiffness, mass and, if fixed, damping."""
         if self.stiffness is not None:
@@ -135,6 +178,7 @@ class Linear(Contact):
             "stiffness": stiffness,
             "mass": pair.mass,
             "zero_overlap": float(self.ending == "zero_overlap"),
+            "fixed_contact_time": float(self.contact_time is not None),
         }
         if self.damping is not None:
             values["damping"] = self.damping
@@ -142,13 +186,12 @@ class Linear(Contact):
                 raise Hint("with this damping an overlap never returns to zero", 'ending = "zero_force"')
         return "linear", values
 
-    def equivalent_restitution(self, pair: Pair) -> Restitution:
-        """Return the law itself, or the constant that the dashpot amounts to."""
+    def equivalent_restitution(self, pair: Pair) -> Restitution | FixedDamping:
+        """Return the law itself, or the damping that the dashpot amounts to."""
         if self.restitution is not None:
             return self.restitution
         _, values = self.coefficients(pair)
-        zeta = values["damping"] / (2 * sqrt(values["stiffness"] * pair.mass))
-        return _constant(restitution_of_alpha(math.sqrt(5) * zeta, self.ending))
+        return FixedDamping(values["damping"] / (2 * sqrt(values["stiffness"] * pair.mass)), self.ending)
 
 
 class Thornton(Contact):
@@ -162,7 +205,6 @@ class Thornton(Contact):
 
     kind: Literal["thornton"] = "thornton"
     yield_pressure: Modulus | None = None
-    restitution: ClassVar[None] = None
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
         """Return elastic constants and the limiting pressure."""
@@ -179,56 +221,259 @@ class Thornton(Contact):
         return ThorntonRestitution.model_construct(yield_pressure=self.yield_pressure)
 
 
-AnyContact = Annotated[Tsuji | Linear | Thornton, Field(discriminator="kind")]
-
-
-def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDArray[np.float64]:
-    """Return the restitution that Tsuji's damping coefficient gives.
+class PowerLaw(Contact):
+    """Contact whose elastic force and dashpot are powers of the overlap, N = k d^n + c d^p d'.
 
     Parameters
     ----------
-    alpha
-        Any shape; below sqrt(5) for "zero_overlap".
+    stiffness
+        k [N/m^n]; default that of a Hertz contact of the materials, with n = 3/2 only.
+    exponent
+        n, from 0.5 to 10.
+    damping_exponent
+        p, from 0 to 10. 3/2: Hunt and Crossley, Lankarani and Nikravesh; 1/2: Kuwabara and Kono.
+    damping
+        c [N s/m^(p+1)].
+    restitution, impact_speed
+        Instead of c: the restitution of an impact at this speed [m/s], met exactly. With p = (n - 1)/2 restitution is the
+        same at every speed and no speed is needed.
     ending
-        Where the contact ends.
-    """
-    zeta = np.asarray(alpha, dtype=float) / math.sqrt(5)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        if ending == "zero_overlap":
-            return np.asarray(np.exp(-math.pi * zeta / np.sqrt(1 - zeta**2)))
-        below = np.clip(zeta, 0, 1)
-        angle = np.arccos(below)
-        sine = np.sqrt(np.abs(1 - zeta**2))
-        bent = np.where(zeta < 1, 2 * angle * zeta / sine, 2 * np.arccosh(np.maximum(zeta, 1)) * zeta / sine)
-        return np.asarray(np.exp(-np.where(sine == 0, 2.0, bent)))
+        "zero_force": the contact ends when its force vanishes and never pulls; "zero_overlap": it ends at zero overlap and
+        may pull before.
 
+    Notes
+    -----
+    The dashpot is a constant of the pair: unless p = (n - 1)/2, impacts at other speeds have another restitution.
 
-def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray[np.float64]:
-    """Return Tsuji's damping coefficient for a restitution, the exact inverse of restitution_of_alpha.
-
-    Parameters
+    References
     ----------
-    e
-        Any shape, 0 < e <= 1.
-    ending
-        Where the contact ends.
+    K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440, doi:10.1115/1.3423596.
+    G. Kuwabara, K. Kono, Jpn. J. Appl. Phys. 26 (1987) 1230, doi:10.1143/JJAP.26.1230.
+    H. M. Lankarani, P. E. Nikravesh, J. Mech. Des. 112 (1990) 369, doi:10.1115/1.2912617.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> hunt_crossley = rb.PowerLaw(damping_exponent=1.5, restitution=0.8, impact_speed="1 m/s")
     """
-    target = -np.log(np.asarray(e, dtype=float))
-    if ending == "zero_overlap":
-        return np.asarray(math.sqrt(5) * target / np.sqrt(target**2 + math.pi**2))
-    zeta = np.minimum(target / math.pi, 1.0)
-    for _ in range(100):  # Newton on an increasing concave function, from the left
-        square = (1 - zeta) * (1 + zeta)
-        sine = np.sqrt(np.abs(square))
-        with np.errstate(invalid="ignore", divide="ignore"):
-            inner = np.where(
-                square > 0,
-                np.arccos(np.clip(zeta, 0, 1)) - zeta * sine,
-                zeta * sine - np.arccosh(np.maximum(zeta, 1)),
+
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "damping"),)
+    kind: Literal["power"] = "power"
+    stiffness: Annotated[Number, Field(gt=0, le=LARGEST)] | None = None
+    exponent: Annotated[Number, Field(ge=0.5, le=10)] = 1.5
+    damping_exponent: Annotated[Number, Field(ge=0, le=10)] = 0.5
+    damping: Annotated[Number, Field(ge=0, le=LARGEST)] | None = None
+    restitution: Annotated[Number, Field(ge=SMALLEST, le=1)] | None = None
+    impact_speed: PositiveVelocity | None = None
+    ending: Ending = "zero_force"
+
+    @model_validator(mode="after")
+    def _determined(self) -> PowerLaw:
+        one_of("restitution = 0.9", restitution=self.restitution, damping=self.damping)
+        if self.stiffness is None and self.exponent != 1.5:
+            raise Hint("materials give the stiffness of exponent = 1.5 only", "stiffness = 1e9", ["stiffness"])
+        same_at_every_speed = 2 * self.damping_exponent == self.exponent - 1
+        if self.restitution is not None and self.impact_speed is None and not same_at_every_speed:
+            raise Hint(
+                "with these exponents restitution depends on the speed, so the speed it holds at is needed",
+                'impact_speed = "1 m/s"',
+                ["impact_speed"],
             )
-            slope = np.where(sine < 1e-3, 4 / 3, 2 * inner / sine**3)
-        change = (target + np.log(restitution_of_alpha(math.sqrt(5) * zeta, ending))) / slope
-        zeta = zeta + change
-        if np.all(np.abs(change) <= 4e-16 * np.abs(zeta)):
-            break
-    return np.asarray(math.sqrt(5) * zeta)
+        return self
+
+    @property
+    def _similarity(self) -> Any:
+        """Power of the stiffness in a dashpot that keeps the restitution."""
+        return (self.damping_exponent + 1) / (self.exponent + 1)
+
+    def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
+        """Return stiffness, mass, exponents and the dashpot's coefficient."""
+        stiffness = pair.hertz_stiffness if self.stiffness is None else self.stiffness
+        zero_overlap = self.ending == "zero_overlap"
+        if self.damping is not None:
+            damping = self.damping
+        else:
+            speed = 1.0 if self.impact_speed is None else self.impact_speed
+            gamma = mapped(dimensionless_damping, self.restitution, self.exponent, self.damping_exponent, zero_overlap)
+            length = powers(pair.mass * power(speed, 2) / stiffness, 1 / (self.exponent + 1))
+            damping = gamma * pair.mass * speed / powers(length, self.damping_exponent + 1)
+        return "power", {
+            "stiffness": stiffness,
+            "mass": pair.mass,
+            "exponent": self.exponent,
+            "damping": damping,
+            "damping_exponent": self.damping_exponent,
+            "zero_overlap": float(zero_overlap),
+            "hertz": float(self.stiffness is None),
+            "fixed_restitution": float(self.damping is None),
+        }
+
+    def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
+        """Return the coefficients with the stiffness divided by a factor and the same restitution at each speed."""
+        name, values = self.coefficients(pair)
+        values["stiffness"] = values["stiffness"] / softening
+        values["damping"] = values["damping"] / softening**self._similarity
+        return name, values
+
+    def equivalent_restitution(self, pair: Pair) -> Restitution:
+        """Return the restitution of this contact at each speed, as a table where it depends on the speed."""
+        if self.restitution is not None and 2 * self.damping_exponent == self.exponent - 1:
+            return Constant.model_construct(e=self.restitution)
+        _, values = self.coefficients(pair)
+        if any(isinstance(value, np.ndarray) for value in values.values()):
+            raise Hint("hard impacts cannot vary a power law within one study", "method = EventDriven()")
+        speeds = np.geomspace(1e-6, 1e3, 181)
+        length = (pair.mass * speeds**2 / values["stiffness"]) ** (1 / (self.exponent + 1))
+        gammas = values["damping"] * length ** (self.damping_exponent + 1) / (pair.mass * speeds)
+        zero_overlap = self.ending == "zero_overlap"
+        table = [rebound(gamma, self.exponent, self.damping_exponent, zero_overlap) for gamma in gammas]
+        return Tabulated(speeds=tuple(speeds), values=tuple(min(e, 1.0) for e in table))
+
+
+class Curve(Part):
+    """A measured curve of force against overlap.
+
+    Parameters
+    ----------
+    overlap
+        Increasing overlaps [m].
+    force
+        Force at each of them [N].
+    """
+
+    overlap: tuple[Length, ...] = Field(examples=[["0 um", "10 um", "20 um"]])
+    force: tuple[Force, ...] = Field(examples=[["0 N", "50 N", "140 N"]])
+
+    @model_validator(mode="after")
+    def _sound(self) -> Curve:
+        check_curve(self.overlap, self.force)
+        return self
+
+
+def check_curve(overlap: tuple[float, ...], force: tuple[float, ...]) -> None:
+    """Raise unless a curve has as many forces as overlaps, both increase, and no force is negative."""
+    if len(overlap) != len(force) or len(overlap) < 2:
+        raise Hint(f"{len(overlap)} overlaps, but {len(force)} forces", "as many of both, at least two", ["force"])
+    if any(b <= a for a, b in pairwise(overlap)):
+        raise Hint("overlaps must increase", place=["overlap"])
+    if any(b < a for a, b in pairwise(force)) or force[0] < 0 or force[-1] <= 0:
+        raise Hint("forces must not be negative and must not decrease with the overlap", place=["force"])
+
+
+class TabulatedNormal(Contact):
+    """Contact with a measured curve of force against overlap, and another one for unloading.
+
+    Parameters
+    ----------
+    overlap
+        Increasing overlaps, the first 0 [m].
+    force
+        Force at each of them while loading, the first 0 [N].
+    unloading
+        Curve measured while unloading from one largest overlap; its first force is 0, at the residual overlap. Without it
+        the contact is elastic.
+
+    Notes
+    -----
+    Between points the curves are monotone piecewise cubics (Fritsch and Carlson); beyond the last point the force keeps the
+    last slope. The unloading curve keeps its shape for other largest overlaps: F = f(d_max) g(d/d_max). The curve belongs to
+    the pair, whatever its materials and sizes.
+
+    References
+    ----------
+    F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238, doi:10.1137/0717021.
+    """
+
+    kind: Literal["tabulated"] = "tabulated"
+    overlap: tuple[Length, ...] = Field(examples=[["0 um", "10 um", "20 um"]])
+    force: tuple[Force, ...] = Field(examples=[["0 N", "50 N", "140 N"]])
+    unloading: Curve | None = None
+
+    @model_validator(mode="after")
+    def _sound(self) -> TabulatedNormal:
+        check_curve(self.overlap, self.force)
+        if self.overlap[0] != 0 or self.force[0] != 0:
+            raise Hint("a loading curve begins with no overlap and no force", "overlap = [0, ...], force = [0, ...]")
+        if self.unloading is not None:
+            with at("unloading"):
+                if self.unloading.force[0] != 0 or self.unloading.overlap[0] < 0:
+                    raise Hint("an unloading curve begins at the residual overlap with no force", "force = [0, ...]")
+                top = self.unloading.overlap[-1]
+                there = float(self._loading(top)) if top <= self.overlap[-1] else math.nan
+                if not abs(self.unloading.force[-1] - there) <= 0.01 * there:
+                    raise Hint(
+                        f"its last point, {self.unloading.force[-1]:.4g} N at {top:.4g} m, is not on the loading curve, "
+                        f"{there:.4g} N; it must be within 1 %",
+                        "the point at which the measurement turned from loading to unloading",
+                    )
+                if self._returned(top) > 1.001:
+                    raise Hint("unloading gives back more energy than loading took up", "swap the two curves")
+        return self
+
+    @cached_property
+    def _loading(self) -> Any:
+        """Force against overlap while loading."""
+        from scipy.interpolate import PchipInterpolator
+
+        return PchipInterpolator(self.overlap, self.force)
+
+    @cached_property
+    def _unloading(self) -> Any:
+        """Share of the largest force against share of the largest overlap, while unloading."""
+        from scipy.interpolate import PchipInterpolator
+
+        if self.unloading is None:
+            return None
+        overlap, force = np.array(self.unloading.overlap), np.array(self.unloading.force)
+        return PchipInterpolator(overlap / overlap[-1], force / force[-1])
+
+    def _returned(self, deepest: Any) -> Any:
+        """Share of the work of loading that unloading from these overlaps gives back."""
+        if self._unloading is None:
+            return np.ones_like(deepest)
+        area = self._unloading.integrate(self._unloading.x[0], 1.0)
+        return self._loading(deepest) * deepest * area / self._loading.antiderivative()(deepest)
+
+    def secant_stiffness(self, force: float) -> float:
+        """Return the force over the overlap at which loading reaches it [N/m]."""
+        if force >= self.force[-1]:
+            return self.force[-1] / self.overlap[-1]
+        largest = next(k for k, other in enumerate(self.force) if other > force)
+        return self.force[largest] / self.overlap[largest]
+
+    def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
+        """Return the pieces of both curves."""
+        values: dict[str, Any] = {"stiffness": 1.0, "mass": pair.mass, **_pieces("loading", self._loading)}
+        if self._unloading is None:
+            empty = ("unloading_knots", "unloading_coefficients", "unloading_integral")
+            return "tabulated", values | dict.fromkeys(empty, np.zeros(0))
+        return "tabulated", values | _pieces("unloading", self._unloading)
+
+    def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
+        """Return the same with forces divided by a factor."""
+        name, values = self.coefficients(pair)
+        return name, values | {"stiffness": 1.0 / softening}
+
+    def equivalent_restitution(self, pair: Pair) -> Restitution:
+        """Return the restitution of this contact, as a table over the speed."""
+        if isinstance(pair.mass, np.ndarray):
+            raise Hint(
+                "hard impacts cannot vary masses of measured contacts within one study", "method = EventDriven()"
+            )
+        deepest = np.linspace(0, self.overlap[-1], 181)[1:]
+        work = self._loading.antiderivative()(deepest)
+        returned = np.minimum(self._returned(deepest), 1.0)
+        return Tabulated(speeds=tuple(np.sqrt(2 * work / pair.mass)), values=tuple(np.sqrt(returned)))
+
+
+def _pieces(name: str, curve: Any) -> dict[str, Any]:
+    """Return knots, coefficients and integrals of a piecewise cubic, as the core reads them."""
+    return {
+        f"{name}_knots": np.ascontiguousarray(curve.x),
+        f"{name}_coefficients": np.ascontiguousarray(curve.c.T).ravel(),
+        f"{name}_integral": np.ascontiguousarray(curve.antiderivative()(curve.x)),
+    }
+
+
+ContactKind = Tsuji | Linear | Thornton | PowerLaw | TabulatedNormal
+AnyContact = Annotated[ContactKind, Field(discriminator="kind")]

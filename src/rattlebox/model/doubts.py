@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .dampers import ImpactDamper
+from .elementwise import Vector
 from .materials import Material
-from .signals import HalfSine, Harmonic, Record
+from .signals import HalfSine, Harmonic, Record, Signal
 from .space import Direction, unit_vector
 
 if TYPE_CHECKING:
     from .case import Case
     from .granular import ParticleDamper
 
+_GRAVITY = 9.80665  # m/s^2
 _WIDE = 1.0  # m
 _ROUGH = 3.0  # coefficient of friction
 _FEW = 4.0  # samples in a period
+_OVERDAMPED = 0.5  # damping ratio; half a per cent without its sign
 _SOFT = 1e5  # Pa
+_SAMPLED = 64  # points, below which a record is taken for a polyline that is meant as such
+_BANDS = 2048
+_CHANGED = 0.02  # of the response of a mode
 _LONG = 100.0  # times what the run takes of a record
 _ACROSS = 1e-6
 _THIN = 1e-4  # of a cavity
@@ -33,26 +40,44 @@ def doubts(case: Case, *, signals: bool = True) -> tuple[str, ...]:
         for index, damper in enumerate(case.dampers)
         for told in _of_damper(case, damper, " ".join(damper.label(index).split()))
     )
-    return tuple(
-        f"warning: {told}" for told in (*_of_structure(case), *(_of_signals(case) if signals else ()), *dampers)
-    )
+    warnings = (*_of_structure(case), *(_of_signals(case) if signals else ()), *dampers)
+    return (*_assumed_units(case), *(f"warning: {told}" for told in warnings))
+
+
+def _named_signals(case: Case) -> list[tuple[str, Signal]]:
+    return [
+        (f"{field} {number}" if len(part) > 1 else field, signal)
+        for field, part in (("load", case.loads), ("base", case.base), ("motion", case.shaker_motion))
+        for number, signal in enumerate(part, 1)
+    ]
+
+
+def _assumed_units(case: Case) -> Iterator[str]:
+    """State the units that were assumed for files without units, and the peaks that follow."""
+    for name, signal in _named_signals(case):
+        if isinstance(signal, Record) and signal.unit_is_assumed:
+            peak = abs(signal.scale) * float(np.max(np.abs(signal.values)))
+            in_g = f" = {peak / _GRAVITY:.4g} g" if signal.unit == "m/s^2" else ""
+            file = " ".join(Path(signal.file or "").name.split())
+            yield (
+                f"note: {file}, of {name}, states no unit; {signal.unit} is assumed, with a peak of {peak:.4g} {signal.unit}"
+                f"{in_g}; unit and scale set another"
+            )
 
 
 def _of_structure(case: Case) -> Iterator[str]:
     modes = case.modes
     swings = modes.stiffness > 0
     ratio = float(np.max(modes.decay[swings] / np.sqrt(modes.stiffness[swings]), initial=0.0))
-    if ratio > 1:
-        told = f"{ratio:.3g}" if ratio >= 1.005 else "above 1"
-        yield f"the structure's damping ratio is {told}, so that it creeps back; per cent need their sign: 2 % is 0.02"
+    if ratio >= _OVERDAMPED * (1 - 1e-9):
+        yield (
+            f"the structure's damping ratio is {ratio:.3g}; structures that vibrate have less than {_OVERDAMPED:g}; "
+            "per cent need their sign: 2 % is 0.02"
+        )
 
 
 def _of_signals(case: Case) -> Iterator[str]:
-    signals = [
-        (f"{field} {number}" if len(part) > 1 else field, signal)
-        for field, part in (("load", case.loads), ("base", case.base), ("motion", case.shaker_motion))
-        for number, signal in enumerate(part, 1)
-    ]
+    signals = _named_signals(case)
     for name, signal in signals:
         if isinstance(signal, (HalfSine, Harmonic)) and signal.start >= case.duration:
             yield f"{name} begins at {signal.start:.4g} s, when the run of {case.duration:.4g} s is over"
@@ -62,6 +87,7 @@ def _of_signals(case: Case) -> Iterator[str]:
                 f"{name} is a record of {signal.times[-1] - signal.times[0]:.4g} s, of which the run takes"
                 f" {case.duration:.4g} s; its times are in seconds"
             )
+    yield from _of_interpolation(case)
     yield from _of_directions(case)
     if case.output.rate is None:
         return
@@ -76,6 +102,84 @@ def _of_signals(case: Case) -> Iterator[str]:
             f"output.rate is {case.output.rate:.4g} Hz, {case.output.rate / frequency:.3g} samples in a period of {what}"
             " so that figures and spectra of the motion are not true; the run itself is"
         )
+
+
+def _of_interpolation(case: Case) -> Iterator[str]:
+    """State where straight lines between the samples of a record change the response of a mode."""
+    modes = case.modes
+    swings = np.flatnonzero(modes.stiffness > 0)
+    for name, signal in _named_signals(case):
+        spectrum = _spectrum(signal) if isinstance(signal, Record) and swings.size else None
+        if spectrum is None:
+            continue
+        if name.startswith("load"):
+            excited = np.abs(modes.shape(signal.point, signal.direction))
+        else:
+            participation = np.ones(modes.decay.size) if modes.participation is None else modes.participation
+            excited = np.linalg.norm(participation.reshape(modes.decay.size, -1), axis=1)
+        rate, frequency, power = spectrum
+        changes = [
+            (change_by_interpolation(rate, frequency, power, own, float(modes.decay[k]) / (2 * np.pi)), own, k)
+            for k in swings
+            if excited[k] > _ACROSS * excited.max() and (own := float(np.sqrt(modes.stiffness[k])) / (2 * np.pi))
+        ]
+        change, own, k = max(changes, key=lambda each: abs(each[0]), default=(0.0, 0.0, 0))
+        if abs(change) > _CHANGED:
+            yield (
+                f"{name} is a record of {rate:.4g} points a second, and the straight lines between them change the response"
+                f" of mode {k + 1}, at {own:.4g} Hz, by {100 * change:+.2g} %; up to {100 * _CHANGED:g} % is allowed;"
+                f" try: the record resampled to {16 * min(own, 0.5 * rate):.6g} Hz (scipy.signal.resample_poly)"
+            )
+
+
+def _spectrum(record: Record) -> tuple[float, Vector, Vector] | None:
+    """Return the sampling rate of a record [Hz], bands [Hz] and their power; None of one that is not evenly sampled."""
+    times, values = np.array(record.times), np.array(record.values)
+    step = (times[-1] - times[0]) / (times.size - 1)
+    if times.size < _SAMPLED or np.max(np.abs(np.diff(times) - step)) > 1e-3 * step:
+        return None
+    # Without its end points on one level a record would have a step, which no harmonic of it means.
+    values -= np.linspace(values[0], values[-1], values.size)
+    power = np.abs(np.fft.rfft(values[:-1]))[1:] ** 2
+    if not power.any():
+        return None
+    begins = np.unique(np.linspace(0, power.size, _BANDS, endpoint=False).astype(int))
+    ends = np.append(begins[1:], power.size)
+    return 1 / step, 0.5 * (begins + ends + 1) / (step * (times.size - 1)), np.add.reduceat(power, begins)
+
+
+def change_by_interpolation(rate: float, frequency: Vector, power: Vector, own: float, decay: float) -> float:
+    """Compute how much straight lines between samples change the RMS response of a mode.
+
+    Parameters
+    ----------
+    rate
+        Sampling rate R [Hz].
+    frequency, power : (n,) float
+        Frequencies of the sampled signal [Hz], up to R / 2, and its power there.
+    own, decay
+        Natural frequency f_0 and decay rate over 2 pi of the mode [Hz].
+
+    Returns
+    -------
+    float
+        RMS response to the straight lines over that to the band-limited signal, minus one.
+
+    Notes
+    -----
+    Linear interpolation multiplies the power at f by sinc^4(f / R), and adds images at k R +- f, of sinc^4(k +- f / R) of
+    the power. The mode responds with |H|^2 = 1 / ((f_0^2 - f^2)^2 + (2 d f)^2).
+    """
+    width = max(decay, 0.005 * own, float(frequency[0]))
+
+    def response(at: Vector) -> Vector:
+        return np.asarray(1 / ((own**2 - at**2) ** 2 + (2 * width * at) ** 2))
+
+    images = range(-2 - int(min(own / rate, 50.0)), 3 + int(min(own / rate, 50.0)))
+    lines = sum(
+        float(power @ (np.sinc(k + frequency / rate) ** 4 * response(np.abs(k * rate + frequency)))) for k in images
+    )
+    return float(np.sqrt(lines / (power @ response(frequency)))) - 1
 
 
 def _of_directions(case: Case) -> Iterator[str]:

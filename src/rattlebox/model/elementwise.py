@@ -28,6 +28,24 @@ def power(x: Any, exponent: float) -> Any:
     return _one_by_one(pow, x, repeat(float(exponent))) if isinstance(x, np.ndarray) else x**exponent
 
 
+def powers(x: Any, exponents: Any) -> Any:
+    """Return x ** exponents, of which either may be an array."""
+    if not isinstance(exponents, np.ndarray):
+        return power(x, exponents)
+    x, exponents = np.broadcast_arrays(np.asarray(x, dtype=float), exponents)
+    return _one_by_one(pow, x, exponents.ravel().data)
+
+
+def mapped(function: Callable[..., float], *arguments: Any) -> Any:
+    """Return function(*arguments); of arrays, element by element, each combination computed once."""
+    if not any(isinstance(argument, np.ndarray) for argument in arguments):
+        return function(*arguments)
+    given = np.broadcast_arrays(*arguments)
+    rows, place = np.unique(np.stack([np.asarray(each).ravel() for each in given]), axis=1, return_inverse=True)
+    values = np.array([function(*(row.item() for row in column)) for column in rows.T])
+    return values[place.ravel()].reshape(given[0].shape)
+
+
 def exp(x: Any) -> Any:
     """Return e ** x."""
     return _one_by_one(math.exp, x) if isinstance(x, np.ndarray) else math.exp(x)

@@ -92,8 +92,13 @@ def nearest(name: str, known: Iterable[str], *, listed: bool = False) -> str:
 
 def _close(name: str, known: Sequence[str]) -> list[str]:
     """Known names that others call so, or else those that look alike."""
-    meant = [word for word in (*MEANT.get(name, ()), *MEANT.get(name.lower().replace("-", "_"), ())) if word in known]
-    alike = list(dict.fromkeys(meant)) or difflib.get_close_matches(name, known, n=2, cutoff=0.6)
+    meant = [
+        word
+        for word in (*MEANT.get(name, ()), *MEANT.get(name.lower().replace("-", "_"), ()))
+        if word.split(".")[0] in known
+    ]
+    same = [word for word in known if word.lower() == name.lower()]  # Kg is kg rather than g
+    alike = list(dict.fromkeys(meant)) or same or difflib.get_close_matches(name, known, n=2, cutoff=0.6)
     folded = {} if alike else {word.lower(): word for word in known}
     return alike or [folded[word] for word in difflib.get_close_matches(name.lower(), folded, n=2, cutoff=0.6)]
 

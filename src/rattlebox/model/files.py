@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import tomllib
@@ -12,6 +13,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rattlebox._util.mat_check import check_mat
 
 from .errors import CaseError, Hint
 from .units import LARGEST
@@ -142,8 +145,11 @@ def _members(loaded: Any) -> Iterator[tuple[str, Any]]:
 def _from_mat(file: Path) -> Mapping[str, Any]:
     from scipy.io import loadmat
 
-    content: Mapping[str, Any] = loadmat(file, simplify_cells=True)
-    return content
+    content = file.read_bytes()
+    check_mat(content)
+    stream: Any = io.BytesIO(content)
+    found: Mapping[str, Any] = loadmat(stream, simplify_cells=True)
+    return found
 
 
 def _flat(content: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:

@@ -30,8 +30,8 @@ class Friction(Part):
     coefficient: NotNegative = Field(examples=[0.3])
     damping: NotNegative = 1.0
 
-    def coefficients(self, pair: Pair) -> dict[str, float]:
-        """Return what the core reads for a pair of bodies."""
+    def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
+        """Return the core's name of the law and its coefficients for a pair of bodies."""
         raise NotImplementedError
 
 
@@ -53,16 +53,10 @@ class Mindlin(Friction):
 
         def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
 
-    def coefficients(self, pair: Pair) -> dict[str, float]:
+    def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
         """Return 8 G* [Pa] besides coefficient and damping."""
-        modulus = 1 / (_shear_compliance(pair.below.material) + _shear_compliance(pair.above.material))
-        return {
-            "friction": self.coefficient,
-            "shear": 8 * modulus,
-            "tangential_stiffness": 0.0,
-            "tangential_ratio": 0.0,
-            "tangential_damping": self.damping,
-        }
+        compliance = _shear_compliance(pair.below.material) + _shear_compliance(pair.above.material)
+        return "mindlin", {"friction": self.coefficient, "shear_modulus": 8 / compliance, "damping": self.damping}
 
 
 class LinearSpring(Friction):
@@ -93,14 +87,13 @@ class LinearSpring(Friction):
         one_of("ratio = 0.286", stiffness=self.stiffness, ratio=self.ratio)
         return self
 
-    def coefficients(self, pair: Pair) -> dict[str, float]:
+    def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
         """Return stiffness and ratio besides coefficient and damping."""
-        return {
+        return "spring", {
             "friction": self.coefficient,
-            "shear": 0.0,
-            "tangential_stiffness": self.stiffness or 0.0,
-            "tangential_ratio": self.ratio or 0.0,
-            "tangential_damping": self.damping,
+            "stiffness": self.stiffness or 0.0,
+            "ratio": self.ratio or 0.0,
+            "damping": self.damping,
         }
 
 
@@ -129,7 +122,7 @@ class Rolling(Part):
 
     def coefficients(self) -> dict[str, float]:
         """Return what the core reads."""
-        return {"rolling": self.coefficient, "rolling_stiffness": self.stiffness, "rolling_damping": self.damping}
+        return {"coefficient": self.coefficient, "stiffness": self.stiffness, "damping": self.damping}
 
 
 def _mindlin(value: Any) -> Any:
@@ -143,7 +136,8 @@ def _rolling(value: Any) -> Any:
 
 _NEED = "a number is needed, or a table"
 _number = AlsoTakes({"type": "number", "minimum": 0})
+FrictionKind = Mindlin | LinearSpring
 AnyFriction = Annotated[
-    Annotated[Mindlin | LinearSpring, Field(discriminator="kind")], SI("1"), BeforeValidator(_mindlin), _number
+    Annotated[FrictionKind, Field(discriminator="kind")], SI("1"), BeforeValidator(_mindlin), _number
 ]
 AnyRolling = Annotated[Rolling, SI("1"), BeforeValidator(_rolling), _number]

@@ -3,29 +3,49 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_validator
 
 from .base import AlsoTakes, Part
 from .cavities import AnyCavity
-from .contacts import AnyContact, Linear, Thornton
+from .contacts import AnyContact, Linear
 from .elementwise import Vector
 from .errors import Hint, at, named, several
 from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
-from .packing import AnyPacking, Lattice, Positions, Settled, check_packing, check_size
+from .packing import (
+    AnyPacking,
+    Crowd,
+    Lattice,
+    Positions,
+    Settled,
+    check_packing,
+    check_size,
+    fewer_at_random,
+    lattice_is_full,
+)
 from .pairs import Body, Pair
-from .particles import Particles, as_species
+from .particles import MOST_PARTICLES, Particles, as_species
 from .space import Accelerations, Direction, Velocities
 from .units import Number
 
 WALL = "wall"
+_BYTES = 1000  # of a particle and its contacts, at least
+
+
+def memory() -> float:
+    """Return the memory of this machine [bytes], infinite where it is not known."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, OSError, ValueError):  # not on every system
+        return math.inf
 
 
 def _two_names(value: Any) -> Any:
@@ -36,6 +56,14 @@ def _two_names(value: Any) -> Any:
         like = f'["{one}", "{WALL}"], or ["{one}", "{one}"] among themselves' if one != WALL else f'["steel", "{WALL}"]'
         raise Hint("two names are needed", like)
     return value
+
+
+def _softening(value: Any) -> Any:
+    """Return "auto", or a number within the limits."""
+    return value if value == "auto" else _FACTOR.validate_python(value)
+
+
+_FACTOR: TypeAdapter[float] = TypeAdapter(Annotated[Number, Field(ge=1, le=1e6)])
 
 
 class PairLaws(Part):
@@ -181,8 +209,9 @@ class ParticleDamper(Part):
     velocity
         Of all particles at the start [m/s], relative to the base; Positions may give them one by one.
     softening
-        Moduli are divided by this factor in contacts (not in laws of restitution), which allows longer steps. Contacts last
-        longer and overlap more; the run tells how much.
+        Factor by which moduli are divided in contacts (not in laws of restitution), which allows longer steps, or "auto":
+        the largest one that is estimated to change the loss in a cycle by at most 0.1 m V^2. Contacts last longer and
+        overlap more, and beds under their own weight are more compliant; a run warns where that matters.
     name
         What results and messages call it; "damper", "damper2", ... if left out.
     """
@@ -208,11 +237,18 @@ class ParticleDamper(Part):
     direction: Direction = "x"
     packing: AnyPacking = Field(default_factory=Lattice)
     velocity: Velocities = (0.0, 0.0, 0.0)
-    softening: Annotated[Number, Field(ge=1, le=1e6)] = 1.0
+    softening: Annotated[
+        Literal["auto"] | float,
+        BeforeValidator(_softening),
+        WithJsonSchema(
+            {"anyOf": [{"type": "number"}, {"type": "string"}], "description": "a number from 1 on, or auto"}
+        ),
+    ] = 1.0
 
     @model_validator(mode="after")
     def _fits(self) -> ParticleDamper:
         self._check_amounts()
+        self._check_room()
         self._check_pairs()
         self._check_filling()
         return self
@@ -262,7 +298,7 @@ class ParticleDamper(Part):
             entries = [entry for entry in self._laws() if (WALL in entry.names) == walls]
             contacts = [(entry.contact, entry.place) for entry in entries]
             _check_alike("kind of law", [(law.kind, place) for law, place in contacts])
-            _check_alike("ending", [(law.ending, place) for law, place in contacts if not isinstance(law, Thornton)])
+            _check_alike("ending", [(law.ending, place) for law, place in contacts if hasattr(law, "ending")])
             for entry in entries:
                 self._check_friction(entry)
             frictions = [(entry.friction, entry.friction_place) for entry in entries]
@@ -293,27 +329,64 @@ class ParticleDamper(Part):
                 entry.friction_place,
             )
 
+    def _check_room(self) -> None:
+        """Refuse more particles than the cavity has room for, or memory holds, before there is a number for each."""
+        if isinstance(self.packing, Positions):
+            return
+        crowds = [species.crowd(self.cavity.volume) for species in self.particles]
+        count = sum(crowd.count for crowd in crowds)
+        if not 0 < count <= MOST_PARTICLES:  # said where the number is found
+            return
+        filled = sum(crowd.count * crowd.volume for crowd in crowds) / self.cavity.volume
+        largest = max((crowd.largest for crowd in crowds), default=0.0)
+        whole = Crowd(count, filled * self.cavity.volume / count, largest)
+        if (
+            filled >= 1
+            and 2 * largest < self.cavity.lengths.min()
+            and largest**3 * 4 / 3 * math.pi < self.cavity.volume
+        ):
+            raise self._too_many(whole)
+        if count * _BYTES > memory():
+            raise Hint(
+                f"{count:.3g} particles take {1e-9 * count * _BYTES:.3g} GB, and this machine has {1e-9 * memory():.3g} GB",
+                f"at most {memory() / _BYTES:.2g} of them, or larger ones",
+                ["particles"],
+            )
+
+    def _too_many(self, crowd: Crowd) -> Hint:
+        if isinstance(self.packing, Lattice):
+            hint = lattice_is_full(self.cavity, crowd, settles=False)
+            return Hint(hint.complaint, hint.suggestion, ["particles"])
+        times = crowd.count * crowd.volume / self.cavity.volume
+        return Hint(
+            f"{crowd.count} particles do not fit: their volume is {times:.3g} times that of the cavity",
+            fewer_at_random(self.cavity, crowd),
+            ["particles"],
+        )
+
     def _check_filling(self) -> None:
         contents = self.contents
         largest = int(contents.radius.argmax())
         with at(*self._place(int(contents.species[largest]))):
             check_size(self.cavity, float(contents.radius[largest]))
         filled = float(contents.radius @ contents.radius**2) * 4 / 3 * math.pi / self.cavity.volume
-        fewer = f"at most {max(1, math.floor(0.58 * contents.radius.size / filled))} of them"
+        crowd = Crowd.of(contents.radius)
         if filled >= 1 and not isinstance(self.packing, Lattice):  # which tells how many it holds
-            raise Hint(
-                f"{contents.radius.size} particles do not fit: their volume is {filled:.3g} times that of the cavity",
-                f"{fewer}, or a larger cavity",
-                ["particles"],
-            )
+            raise self._too_many(crowd)
         if isinstance(self.packing, Settled):
             if not any(self.gravity):
-                raise Hint("nothing settles without gravity", 'packing = { kind = "lattice" }', ["packing"])
+                held = crowd.on_lattice(self.cavity)
+                some = "" if held >= crowd.count else f" with at most {held} of them"
+                raise Hint(
+                    "nothing settles without gravity",
+                    f'packing = {{ kind = "lattice" }}{some}, or gravity = [0, 0, -9.81]',
+                    ["packing"],
+                )
             if filled > 0.64 and contents.radius.size > 1:
                 raise Hint(
                     f"{contents.radius.size} particles fill {100 * filled:.3g} % of the cavity; "
                     "inserted at random they fill 60 % or a little more",
-                    f'packing = {{ kind = "lattice" }}, or {fewer}',
+                    fewer_at_random(self.cavity, crowd),
                     ["particles"],
                 )
         else:
@@ -373,7 +446,7 @@ class ParticleDamper(Part):
             spin += 0.0 if packing.spins is None else np.array(packing.spins)
         elif isinstance(packing, Lattice):
             with at("particles"):
-                positions = packing.place(self.cavity, radius)
+                positions = packing.place(self.cavity, radius, settles=any(self.gravity))
         else:
             positions = np.full_like(velocity, np.nan)
         return Start(positions, velocity, spin)
@@ -435,21 +508,25 @@ class ParticleDamper(Part):
             np.zeros(self.cavity.walls().offset.size, np.int64),
         )
 
+    @property
+    def softening_factor(self) -> float:
+        """The softening as a number: 1 for "auto", which a run replaces by its choice."""
+        return 1.0 if self.softening == "auto" else self.softening
+
     def softened(self, entry: Entry) -> tuple[str, dict[str, Any]]:
         """Return the core's name of a contact law and its coefficients, with moduli divided by the softening.
 
         Restitution stays: dashpots and limiting pressures are lowered as far as that needs.
         """
-        name, values = entry.contact.coefficients(entry.pair)
-        scale = {"stiffness": 1.0, "modulus": 1.0, "damping": 0.5, "yield_pressure": 0.8}
-        return name, {key: value / self.softening ** scale.get(key, 0.0) for key, value in values.items()}
+        return entry.contact.softened(entry.pair, self.softening_factor)
 
-    def softened_friction(self, entry: Entry) -> dict[str, float]:
-        """Return the core's coefficients of friction and rolling resistance, with moduli divided by the softening."""
-        names = ("friction", "shear", "tangential_stiffness", "tangential_ratio")
-        values = dict.fromkeys(names, 0.0) | {"tangential_damping": 1.0}
-        if entry.friction is not None:
-            values |= entry.friction.coefficients(entry.pair)
-            values |= {name: values[name] / self.softening for name in ("shear", "tangential_stiffness")}
+    def softened_friction(self, entry: Entry) -> tuple[dict[str, Any], dict[str, float]]:
+        """Return the core's coefficients of friction and of rolling resistance, with moduli divided by the softening."""
+        friction = Mindlin(coefficient=0.0) if entry.friction is None else entry.friction
         rolling = Rolling(coefficient=0.0) if entry.rolling is None else entry.rolling
-        return values | rolling.coefficients()
+        law, values = friction.coefficients(entry.pair)
+        soft = dict.fromkeys(("shear_modulus", "stiffness"), self.softening_factor)
+        return {
+            "law": law,
+            **{key: value / soft.get(key, 1.0) for key, value in values.items()},
+        }, rolling.coefficients()

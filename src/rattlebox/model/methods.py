@@ -160,8 +160,8 @@ class Output(Part):
 
     Without a choice the times are such that pictures of the motion are true: evenly spaced, 2001 of them or 20 in each
     period of the fastest mode or harmonic (up to 100 001); 20 in each pulse; and, in runs of up to 200 000 events, begin,
-    middle and end of every contact and the middle of every flight, for which the run is repeated. Spectra and the like need
-    evenly spaced times: give a rate.
+    deepest overlap and end of every contact and the middle of the flights beside it. Spectra and the like need evenly spaced
+    times: give a rate.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ class Lattice(Packing):
     noise: Annotated[Number, Field(ge=0, le=1)] = 0.5
     seed: Annotated[Whole, Field(ge=0)] = 0
 
-    def place(self, cavity: AnyCavity, radii: Vector) -> Vector:
+    def place(self, cavity: AnyCavity, radii: Vector, *, settles: bool = True) -> Vector:
         """Return positions for spheres, (n, 3) [m].
 
         Parameters
@@ -56,6 +56,8 @@ class Lattice(Packing):
             Where.
         radii
             Of the spheres, (n,) [m].
+        settles
+            Whether there is gravity, so that they may settle instead.
 
         Raises
         ------
@@ -63,7 +65,7 @@ class Lattice(Packing):
             When there are more than such a lattice holds.
         """
         generator = np.random.default_rng(self.seed)
-        sites, cell = _sites(cavity, radii)
+        sites, cell = _sites(cavity, radii, settles)
         chosen = generator.permutation(len(sites))[: radii.size]
         direction = generator.standard_normal((radii.size, 3))
         direction /= np.linalg.norm(direction, axis=1)[:, None]
@@ -227,6 +229,10 @@ def _from_arrays(file: Path, arrays: dict[str, Vector]) -> dict[str, Vector]:
     return {name: array.ravel() for name, array in arrays.items()}
 
 
+_LOOSE = 0.56  # of a large cavity, by spheres that are inserted at random
+_COUNTABLE = 1_000_000  # sites of a lattice
+
+
 @dataclass(frozen=True)
 class _Grid:
     """A lattice of sites for so many particles, at least one cell apart: cubic, or face-centred.
@@ -294,7 +300,7 @@ def _coarsest(cavity: AnyCavity, count: int, least: float, middle: bool) -> Iter
         yield low, grid
 
 
-def _sites(cavity: AnyCavity, radii: Vector) -> tuple[Vector, float]:
+def _sites(cavity: AnyCavity, radii: Vector, settles: bool) -> tuple[Vector, float]:
     """Places for spheres, at least as many, and the size of the cell that each has for itself."""
     count, radius, mixed = radii.size, float(radii.max()), bool(radii.min() < radii.max())
     for middle in (False, True):
@@ -302,12 +308,67 @@ def _sites(cavity: AnyCavity, radii: Vector) -> tuple[Vector, float]:
         if found:
             cell, grid = max(found, key=lambda pair: pair[0])
             return grid(cavity, cell), cell
-    most = max(len(_Grid(count, *kind)(cavity, 2 * radius)) for kind in product((False, True), repeat=2))
-    raise Hint(
-        f"{count} particles do not fit: a lattice of spheres of {2e3 * radius:.4g} mm holds {most} in this cavity",
-        ('packing = { kind = "settled" }, which suits many sizes, ' if mixed else "")
-        + f"{most} of them, smaller ones, or a larger cavity",
+    raise lattice_is_full(cavity, Crowd.of(radii), settles=mixed and settles)
+
+
+@dataclass(frozen=True)
+class Crowd:
+    """Particles that may be too many, without a number for each of them.
+
+    Attributes
+    ----------
+    count
+        Number of particles.
+    volume
+        Mean volume of one [m^3].
+    largest
+        Radius of the largest one [m].
+    """
+
+    count: int
+    volume: float
+    largest: float
+
+    @classmethod
+    def of(cls, radii: Vector) -> Crowd:
+        """Return the crowd of spheres with radii [m]."""
+        return cls(radii.size, 4 / 3 * math.pi * float(np.mean(radii**3)), float(radii.max()))
+
+    def on_lattice(self, cavity: AnyCavity) -> int:
+        """Return how many of them a lattice holds; at least the number of them where it holds them all."""
+        grids = [_Grid(self.count, *kind) for kind in product((False, True), repeat=2)]
+        sure = max(grid.at_least(cavity, 2 * self.largest) for grid in grids)
+        if sure >= self.count or sure > _COUNTABLE:
+            return sure
+        return max(len(grid(cavity, 2 * self.largest)) for grid in grids)
+
+    def at_random(self, cavity: AnyCavity) -> int:
+        """Return how many of them can be inserted at random, on the safe side: near walls there is less room."""
+        walls = 2 * float(np.sum(1 / cavity.lengths))
+        return max(1, math.floor(_LOOSE / (1 + 0.3 * self.largest * walls) * cavity.volume / self.volume))
+
+
+def lattice_is_full(cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> Hint:
+    """Return the complaint about more particles than a lattice holds; `settles` allows settled ones as a way out."""
+    most = crowd.on_lattice(cavity)
+    settled = (
+        'packing = { kind = "settled" }, which suits many sizes, '
+        if settles and crowd.count <= crowd.at_random(cavity)
+        else ""
     )
+    return Hint(
+        f"{crowd.count} particles do not fit: a lattice of spheres of {2e3 * crowd.largest:.4g} mm holds {most} "
+        "in this cavity",
+        f"{settled}{most} of them, smaller ones, or a larger cavity",
+    )
+
+
+def fewer_at_random(cavity: AnyCavity, crowd: Crowd) -> str:
+    """Return what to try with more particles than can be inserted at random: only what holds."""
+    lattice = 'packing = { kind = "lattice" }, or ' if crowd.on_lattice(cavity) >= crowd.count else ""
+    most = min(crowd.at_random(cavity), max(1, crowd.count - 1))
+    filled = most * crowd.volume / cavity.volume
+    return f"{lattice}at most {most} of them (a fill ratio of {math.floor(1e3 * filled) / 1e3:g}), or a larger cavity"
 
 
 def check_size(cavity: AnyCavity, radius: float) -> None:

@@ -14,9 +14,10 @@ from .base import Part
 from .elementwise import Vector
 from .errors import Hint, at
 from .materials import AnyMaterial
+from .packing import Crowd
 from .units import SI, Number, PositiveLength, PositiveMass, Whole, parse, radius_of_diameter
 
-_MOST = 100_000_000  # of one kind
+MOST_PARTICLES = 100_000_000  # of one kind
 _MANY = 4096  # sizes from which the mean volume is guessed
 
 
@@ -181,7 +182,7 @@ class Particles(Part):
     radius: PositiveLength | None = None
     diameter: PositiveLength | None = Field(default=None, exclude=True)
     distribution: AnyDistribution | None = None
-    count: Annotated[Whole, Field(ge=0, le=_MOST)] | None = None
+    count: Annotated[Whole, Field(ge=0, le=MOST_PARTICLES)] | None = None
     mass: PositiveMass | None = None
     fill_ratio: Number | None = None
 
@@ -254,6 +255,17 @@ class Particles(Part):
                 )
         return count
 
+    def crowd(self, volume: float) -> Crowd:
+        """Return about how many there are in a cavity of a volume [m^3], before any number is made for each of them."""
+        some = self.diameters(1 if self.distribution is None else _MANY)
+        each = float(np.mean(math.pi / 6 * some**3))
+        if self.count is not None:
+            count = self.count
+        else:
+            filled = self.mass / self.material.density if self.mass is not None else (self.fill_ratio or 0.0) * volume
+            count = round(min(filled / each, 1e18))
+        return Crowd(count, each, 0.5 * float(some.max()))
+
     def _volume(self, count: int) -> float:
         """The volume of so many [m^3]."""
         return float(np.sum(math.pi / 6 * self.diameters(count) ** 3))
@@ -262,8 +274,8 @@ class Particles(Part):
         """How many have the volume that is closest to one [m^3]."""
         some = 1 if self.distribution is None else _MANY
         guess = filled * some / self._volume(some)
-        if guess > _MOST:
-            raise Hint(f"this is {guess:.3g} particles; {_MOST:.0e} at most", "less of them, or larger ones")
+        if guess > MOST_PARTICLES:
+            raise Hint(f"this is {guess:.3g} particles; {MOST_PARTICLES:.0e} at most", "less of them, or larger ones")
         if self.distribution is None:
             return round(guess)
         from scipy.optimize import brentq

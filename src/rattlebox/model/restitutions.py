@@ -221,8 +221,9 @@ def as_restitution(value: Any) -> Any:
     )
 
 
+RestitutionKind = Constant | Tabulated | JacksonGreen | ThorntonRestitution | Johnson
 AnyRestitution = Annotated[
-    Annotated[Constant | Tabulated | JacksonGreen | ThorntonRestitution | Johnson, Field(discriminator="kind")],
+    Annotated[RestitutionKind, Field(discriminator="kind")],
     SI("1"),
     BeforeValidator(as_restitution),
     AlsoTakes({"type": "number", "minimum": 0, "maximum": 1}),

@@ -27,27 +27,68 @@ _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s
 
 _BRACKETED = re.compile(r"(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*$")
 
+_DENSITY = re.compile(r"^\s*\(?\s*([^()]+?)\s*\)?\s*\^2\s*/\s*Hz\s*$")
+
 _COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(.*?)\s*$")
 
-# Factors of the commonest units, so that most case files need no unit registry. Exact powers of ten are applied as one
-# correctly rounded operation: x / 1000 rather than x * 0.001.
+# Factors of the usual units, by dimension: text is looked up here before pint reads it. A unit means what it means for the
+# quantity asked for: pint reads g as gram, mg as milligram and gal as gallon, also where an acceleration is needed. And most
+# case files need no unit registry. Exact powers of ten are applied as one correctly rounded operation: x / 1000 rather
+# than x * 0.001.
 _COMMON: dict[str, dict[str, tuple[float, float]]] = {
-    "m": {"m": (1, 1), "cm": (1, 1e2), "mm": (1, 1e3), "um": (1, 1e6), "µm": (1, 1e6)},
+    "m": {
+        "m": (1, 1),
+        "cm": (1, 1e2),
+        "mm": (1, 1e3),
+        "um": (1, 1e6),
+        "µm": (1, 1e6),
+        "nm": (1, 1e9),
+        "in": (0.0254, 1),
+        "ft": (0.3048, 1),
+        "mil": (0.0254, 1e3),
+    },
     "s": {
         "s": (1, 1),
         "ms": (1, 1e3),
         "us": (1, 1e6),
         "µs": (1, 1e6),
+        "ns": (1, 1e9),
         "sec": (1, 1),
         "seconds": (1, 1),
         "msec": (1, 1e3),
+        "min": (60, 1),
+        "h": (3600, 1),
     },
     "kg": {"kg": (1, 1), "g": (1, 1e3), "mg": (1, 1e6), "t": (1e3, 1)},
-    "N": {"N": (1, 1), "mN": (1, 1e3), "kN": (1e3, 1), "MN": (1e6, 1)},
+    "N": {
+        "N": (1, 1),
+        "mN": (1, 1e3),
+        "kN": (1e3, 1),
+        "MN": (1e6, 1),
+        "kgf": (9.80665, 1),
+        "lbf": (4.4482216152605, 1),
+        "dyn": (1, 1e5),
+    },
     "N/m": {"N/m": (1, 1), "kN/m": (1e3, 1), "MN/m": (1e6, 1), "N/mm": (1e3, 1)},
     "N s/m": {"N s/m": (1, 1), "N*s/m": (1, 1), "Ns/m": (1, 1), "kN s/m": (1e3, 1)},
     "m/s": {"m/s": (1, 1), "mm/s": (1, 1e3)},
-    "m/s^2": {"m/s^2": (1, 1), "m/s²": (1, 1), "mm/s^2": (1, 1e3), "cm/s^2": (1, 1e2), "g_0": (9.80665, 1)},
+    "m/s^2": {
+        "m/s^2": (1, 1),
+        "m/s²": (1, 1),
+        "cm/s^2": (1, 1e2),
+        "mm/s^2": (1, 1e3),
+        "gal": (1, 1e2),
+        "Gal": (1, 1e2),
+        "mGal": (1, 1e5),
+        "in/s^2": (0.0254, 1),
+        "ft/s^2": (0.3048, 1),
+        "g_0": (9.80665, 1),
+        "g": (9.80665, 1),
+        "gn": (9.80665, 1),
+        "mg": (9.80665, 1e3),
+        "ug": (9.80665, 1e6),
+        "µg": (9.80665, 1e6),
+    },
     "Hz": {"Hz": (1, 1), "kHz": (1e3, 1)},
     "Pa": {"Pa": (1, 1), "kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1)},
     "kg/m^3": {"kg/m^3": (1, 1), "g/cm^3": (1e3, 1)},
@@ -55,6 +96,11 @@ _COMMON: dict[str, dict[str, tuple[float, float]]] = {
     "rad/s": {"rad/s": (1, 1)},
     "kg^-0.5": {"kg^-0.5": (1, 1)},
 }
+
+_DENSITIES = {"m/s^2": ("m^2/s^3", "m^2/s^4/Hz", "(m/s^2)^2/Hz"), "N": ("N^2/Hz",), "m": ("m^2/Hz",)}
+
+_LABELS = re.compile(r"[txyzTXYZ]|\d*")
+"""What may stand in brackets above a column without being a unit: a(t), a (X), force (1)."""
 
 _NAMES = {
     "m": "length", "s": "time", "kg": "mass", "N": "force", "N/m": "stiffness", "N s/m": "damping coefficient",
@@ -130,6 +176,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         _check_comma(value)
         if not text:
             return _finite(number), None
+        text = _spelt(text)
         for unit in units:
             if text in _COMMON.get(unit, {}):
                 up, down = _COMMON[unit][text]
@@ -153,33 +200,100 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
         raise Hint(_wanted(units), _example(units)) from None
 
 
-def stated(text: str, units: tuple[str, ...]) -> tuple[float, str] | None:
-    """Return the unit that is written above a column, alone or in brackets behind a name: "a (g)", "[ms]".
+def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
+    """Read a one-sided power spectral density.
 
     Parameters
     ----------
-    text
-        As it is written there; g is the acceleration of gravity.
+    value
+        Number, or text such as "0.04 g_0^2/Hz" or "3.8 (m/s^2)^2/Hz".
     units
-        SI units that it may be of.
+        SI units that the signal may have.
 
     Returns
     -------
-    tuple or None
-        What a number is multiplied by, and the SI unit; None where there is no unit, or one of another dimension.
+    tuple
+        Number in unit^2/Hz, and the SI unit of the signal; None for a bare number.
+
+    Raises
+    ------
+    Hint
+        If there is no finite number, or the unit is not the square of one of these units per Hz.
     """
-    bracketed = _BRACKETED.search(text)
-    unit = (bracketed[1] or bracketed[2] if bracketed else text).strip()
-    unit = re.sub(r"\*\*|(?<=s)(?=2$)", "^", unit.replace("²", "^2").replace("μ", "µ"))
-    if "m/s^2" in units and unit.lower() in ("g", "gn", "g0", "g_0"):
-        unit = "g_0"
+    match = _NUMBER.match(value) if isinstance(value, str) else None
+    if match is None or not match[2]:
+        return float(numbers(value)), None
+    _check_comma(value)
+    number, text = float(match[1]), _spelt(match[2])
+    for unit in units:
+        if text in _DENSITIES.get(unit, ()):
+            return _finite(number), unit
+    squared = _DENSITY.match(text)
+    known = squared and factor_of(squared[1], units)
+    if not known:
+        raise Hint(
+            f"{match[2]!r} is not the unit of a power spectral density, the square of a unit per Hz",
+            " or ".join(f'"1 {unit}"' for unit in ("g_0^2/Hz", "(m/s^2)^2/Hz", "N^2/Hz")),
+        )
+    factor, unit = known
+    return _finite(number * factor**2), unit
+
+
+def factor_of(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:
+    """Return the factor to SI of a unit that stands alone, and the SI unit; None if it is none of these dimensions.
+
+    Parameters
+    ----------
+    unit
+        Unit from the tables of these dimensions, in any usual spelling, or a quotient that pint reads.
+    units
+        SI units of the dimensions allowed.
+    """
+    unit = _spelt(unit)
+    if "m/s^2" in units and unit.lower() in ("g", "g0", "g_0", "gn", "gal"):
+        unit = unit.lower().replace("g0", "g_0")
     if "/" not in unit and not any(unit in _COMMON.get(si, {}) for si in units):
-        return None  # a(t), F (rod): what registries know as units is not meant as one
+        return None  # a(t), F (rod): pint would read them as year and rod
     try:
         factor, si = parse(f"1 {unit}", units)
     except Hint:
         return None
     return factor, str(si)
+
+
+def unit_above(heads: list[str], units: tuple[str, ...]) -> tuple[float, str] | None:
+    """Return the factor to SI and the SI unit that the lines above a column state, None if they state none.
+
+    Parameters
+    ----------
+    heads
+        Text above the column, from top to bottom: a name, a unit, or both, as in "a (g)" or "t [ms]".
+    units
+        SI units that the column may have.
+
+    Raises
+    ------
+    Hint
+        If a unit in brackets is unknown or of another dimension.
+    """
+    for head in reversed(heads):
+        bracketed = _BRACKETED.search(head)
+        unit = (bracketed[1] or bracketed[2] or "" if bracketed else head).strip()
+        if known := factor_of(unit, units):
+            return known
+        if bracketed and not _LABELS.fullmatch(unit):
+            table = ", ".join(dict.fromkeys(name for si in units for name in _COMMON[si]))
+            kinds = " or ".join(_NAMES[si] for si in units)
+            raise Hint(f"{unit!r}, written above the column as {head!r}, is not a unit of {kinds}; known: {table}")
+    return None
+
+
+def _spelt(unit: str) -> str:
+    """Return the spelling that the tables use: m/s², m/s2, m/s**2, m/s/s, m/sec^2 and m s^-2 are m/s^2."""
+    unit = unit.replace("**", "^").replace("²", "^2").replace("μ", "µ").replace("·", " ")
+    unit = re.sub(r"/\s*sec\b|/\s*sec(?=[\d^])", "/s", unit)
+    unit = re.sub(r"/s(?:2|/s)$", "/s^2", unit)
+    return re.sub(r"(?<=[a-z])[ *]s\^?-2$", "/s^2", unit)
 
 
 def _check_comma(text: str) -> None:
@@ -211,9 +325,9 @@ def are_alike(one: str, other: str) -> bool:
     Hint
         When a unit is unknown.
     """
-    one, other = (next((si for si, known in _COMMON.items() if unit in known), unit) for unit in (one, other))
-    if one == other:
+    if one == other or any(one in known and other in known for known in _COMMON.values()):
         return True
+    one, other = (next((si for si, known in _COMMON.items() if unit in known), unit) for unit in (one, other))
     first, second = (_with_pint(1.0, _pint_unit(unit), ()) for unit in (one, other))
     return bool(first.is_compatible_with(second))
 
@@ -440,6 +554,7 @@ PositiveMass = Annotated[float, *_make("kg", _positive)]
 Stiffness = Annotated[float, *_make("N/m", _not_negative)]
 PositiveStiffness = Annotated[float, *_make("N/m", _positive)]
 Damping = Annotated[float, *_make("N s/m", _not_negative)]
+Force = Annotated[float, *_make("N")]
 Velocity = Annotated[float, *_make("m/s")]
 PositiveVelocity = Annotated[float, *_make("m/s", _positive)]
 Acceleration = Annotated[float, *_make("m/s^2")]

@@ -1,4 +1,4 @@
-"""Figures in one style."""
+"""Figures in one style, and the style itself for figures of your own."""
 
 from .basins import plot_basins
 from .bifurcation import plot_bifurcation
@@ -11,11 +11,34 @@ from .motion import plot_motion
 from .particles import film_particles, plot_particles
 from .phase import plot_phase_portrait
 from .response import plot_frequency_response
-from .style import paper
+from .style import (
+    CHANNEL_COLOURS,
+    FAINT,
+    INK,
+    SERIES_COLOURS,
+    SERIES_MARKERS,
+    SERIES_STYLES,
+    StyledFigure,
+    figure_style,
+    label,
+    legend_above,
+    pen,
+    scaled,
+)
 
 __all__ = [
+    "CHANNEL_COLOURS",
+    "FAINT",
+    "INK",
+    "SERIES_COLOURS",
+    "SERIES_MARKERS",
+    "SERIES_STYLES",
+    "StyledFigure",
+    "figure_style",
     "film_particles",
-    "paper",
+    "label",
+    "legend_above",
+    "pen",
     "plot_basins",
     "plot_bifurcation",
     "plot_comparison",
@@ -27,4 +50,5 @@ __all__ = [
     "plot_motion",
     "plot_particles",
     "plot_phase_portrait",
+    "scaled",
 ]

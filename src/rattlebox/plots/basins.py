@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..model.errors import Hint
-from .style import FAINT, INK, PaperFigure, Size, label, paper, pen, scaled
+from .style import FAINT, INK, Size, StyledFigure, figure_style, label, pen, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,8 +50,8 @@ def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
         raise Hint(
             f"starts vary along {', '.join(dims)}; two axes can be drawn", "maps.isel(...) for one value of an axis"
         )
-    with paper(size):
-        figure = PaperFigure(size, 1.0 if size == "column" else 0.62)
+    with figure_style(size):
+        figure = StyledFigure(size, 1.0 if size == "column" else 0.62)
         axes = figure.subplots()
         x, y = (_Axis(maps[dim]) for dim in dims)
         attractor = maps["attractor"].values.T

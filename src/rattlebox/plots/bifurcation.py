@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..model.errors import Hint, nearest
-from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, legend_above, paper, pen, scaled
+from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -68,8 +68,8 @@ def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, 
             raise Hint(f"ball = {ball!r}: there is no such ball", f"0 to {values.sizes['ball'] - 1}")
         values = values.isel(ball=ball)
     parameter = maps[next(str(dim) for dim in maps["period"].dims if dim != "direction")]
-    with paper(size):
-        figure = PaperFigure(size, 0.95 if size == "column" else 0.6)
+    with figure_style(size):
+        figure = StyledFigure(size, 0.95 if size == "column" else 0.6)
         ways = maps["direction"].values.tolist()
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(8 - len(ways) * 0.5, len(ways) * 0.6))
         x, unit = _across(parameter)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ..results import Run
 from .energy import draw_ledger
 from .motion import draw_cavity, draw_structure, row_places
-from .style import PaperFigure, Size, letters, paper, scaled, shorten, time_axis
+from .style import Size, StyledFigure, figure_style, letters, scaled, shorten, time_axis
 
 
 def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
@@ -41,8 +41,8 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
     moving = any(run.arrays.mode_frequency.size for run in every)
     dampers = any(np.any(run.arrays.ball_damper == 0) for run in every)
     rows = int(moving) + int(dampers) + 1
-    with paper(size):
-        figure = PaperFigure(size, 0.1 + 0.17 * rows)
+    with figure_style(size):
+        figure = StyledFigure(size, 0.1 + 0.17 * rows)
         panels = figure.subplots(rows, len(every), sharex="col", sharey="row", squeeze=False)
         length = scaled([np.abs(run.arrays.displacement).max(initial=0.0) for run in every], "m")
         places = [np.abs(row_places(run.arrays, 0)).max() for run in every if run.arrays.dampers]

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from .shown import Shown
-from .style import INK, SERIES_COLOURS, PaperFigure, Size, label, legend_above, paper
+from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,9 +48,9 @@ def plot_design(found: xr.Dataset, *, size: Size = "page") -> Figure:
     paths = [str(name) for name, values in found.coords.items() if values.dims == ("trial",) and name != "trial"]
     paths = paths[:_PARAMETERS]
     count = 1 + len(paths)
-    with paper(size):
+    with figure_style(size):
         narrow = size == "column"
-        figure = PaperFigure(size, 0.62 * count if narrow else 0.42 if count < 4 else 0.34)
+        figure = StyledFigure(size, 0.62 * count if narrow else 0.42 if count < 4 else 0.34)
         panels = figure.subplots(*((count, 1) if narrow else (1, count)), squeeze=False).ravel()
         (_draw_progress if len(goals) == 1 else _draw_front)(panels[0], found, goals)
         for panel, path in zip(panels[1:], paths, strict=True):

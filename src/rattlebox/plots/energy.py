@@ -11,12 +11,12 @@ from .style import (
     CHANNEL_COLOURS,
     INK,
     SERIES_STYLES,
-    PaperFigure,
     Scale,
     Size,
+    StyledFigure,
+    figure_style,
     label,
     legend_above,
-    paper,
     pen,
     scaled,
     time_axis,
@@ -60,8 +60,8 @@ def plot_energy(run: Run, *, size: Size = "column", log: bool = False) -> Figure
     ValueError
         When the size is unknown.
     """
-    with paper(size):
-        figure = PaperFigure(size, 1.15 if size == "column" else 0.62)
+    with figure_style(size):
+        figure = StyledFigure(size, 1.15 if size == "column" else 0.62)
         upper, lower = figure.subplots(2, 1, sharex=True)
         time = scaled(run.arrays.time, "s")
         draw_energies(run, upper, time, log=log)

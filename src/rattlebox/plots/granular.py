@@ -12,12 +12,12 @@ from .style import (
     FAINT,
     SERIES_COLOURS,
     SERIES_STYLES,
-    PaperFigure,
     Scale,
     Size,
+    StyledFigure,
+    figure_style,
     label,
     legend_above,
-    paper,
     pen,
     scaled,
     time_axis,
@@ -47,8 +47,8 @@ def plot_granular_motion(run: GranularRun, *, size: Size = "column") -> Figure:
     arrays = run.arrays
     moving = arrays.mode_frequency.size > 0
     panels = int(moving) + len(arrays.dampers) + 1
-    with paper(size):
-        figure = PaperFigure(size, 0.14 + 0.36 * panels if size == "column" else 0.1 + 0.2 * panels)
+    with figure_style(size):
+        figure = StyledFigure(size, 0.14 + 0.36 * panels if size == "column" else 0.1 + 0.2 * panels)
         axes = list(np.ravel(figure.subplots(panels, 1, sharex=True)))
         time = scaled(arrays.time, "s")
         left = iter(axes)

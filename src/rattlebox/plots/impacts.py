@@ -16,11 +16,11 @@ from .style import (
     FAINT,
     INK,
     SERIES_COLOURS,
-    PaperFigure,
     Size,
+    StyledFigure,
+    figure_style,
     label,
     letters,
-    paper,
     pen,
     scaled,
     shorten,
@@ -68,8 +68,8 @@ def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figur
     )
     shown = [panel for panel in offered if np.any(np.isfinite(panel[2]))] or [offered[0]]
     time = scaled(run.arrays.time, "s")
-    with paper(size):
-        figure = PaperFigure(
+    with figure_style(size):
+        figure = StyledFigure(
             size, (0.2 if size == "column" else 0.1) + (0.34 if size == "column" else 0.18) * len(shown)
         )
         axes = list(np.ravel(figure.subplots(len(shown), 1, sharex=True)))

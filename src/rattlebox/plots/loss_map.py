@@ -6,11 +6,20 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from .maps import draw_map, explain_gaps
-from .style import PaperFigure, Size, paper
+from .maps import draw_lines, draw_map, explain_gaps
+from .shown import value_of
+from .style import Size, StyledFigure, figure_style, letters, shorten
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_AMPLITUDE, _FREQUENCY = _AXES = ("structure.motion.amplitude", "structure.motion.frequency")
+_NAMES = {_AMPLITUDE: "Amplitude", _FREQUENCY: "Frequency"}
+_PANELS = (
+    ("loss_factor", "Loss factor $m''/|m'|$"),
+    ("mass_ratio", "Effective mass $m'/m$"),
+    ("reduced_loss", "Loss a cycle $/\\,mV^2$"),
+)
 
 
 def plot_loss_map(study: xr.Dataset, *, size: Size = "page") -> Figure:
@@ -28,28 +37,49 @@ def plot_loss_map(study: xr.Dataset, *, size: Size = "page") -> Figure:
     Returns
     -------
     Figure
-        With three panels over frequency and amplitude: side by side, or in a column below each other.
+        With three panels over frequency and amplitude: side by side, or in a column below each other. A study of one
+        frequency is drawn as lines over the amplitude, one of one amplitude as lines over the frequency.
 
     Raises
     ------
     ValueError
         When the size is unknown.
     """
-    amplitude, frequency = "structure.motion.amplitude", "structure.motion.frequency"
     ratio = (study["effective_mass"] / study["particle_mass"]).drop_attrs(deep=False)
     shown = study.assign(mass_ratio=ratio)
-    panels = (
-        ("loss_factor", "Loss factor $m''/|m'|$"),
-        ("mass_ratio", "Effective mass $m'/m$"),
-        ("reduced_loss", "Loss a cycle $/\\,mV^2$"),
-    )
-    with paper(size):
-        figure = PaperFigure(size, 1.9 if size == "column" else 0.33)
-        axes = figure.subplots(3, 1, sharex=True) if size == "column" else figure.subplots(1, 3, sharey=True)
-        for panel, (name, text) in zip(axes, panels, strict=True):
-            draw_map(figure, panel, shown, name, frequency, amplitude, text=text)
-            panel.label_outer()
-            panel.set_xlabel("Frequency (Hz)" if panel.get_xlabel() else "")
-            panel.set_ylabel(panel.get_ylabel().replace("Structure motion amplitude", "Amplitude"))
-        explain_gaps(figure, study, "loss_factor")
+    single = [axis for axis in _AXES if study.sizes[axis] == 1]
+    with figure_style(size):
+        figure = StyledFigure(size, 1.9 if size == "column" else 0.33)
+        if single:
+            _draw_lines(figure, shown, single[-1], size)
+        else:
+            _draw_maps(figure, shown, size)
     return figure
+
+
+def _draw_maps(figure: Figure, study: xr.Dataset, size: Size) -> None:
+    panels = figure.subplots(3, 1, sharex=True) if size == "column" else figure.subplots(1, 3, sharey=True)
+    for panel, (name, text) in zip(panels, _PANELS, strict=True):
+        draw_map(figure, panel, study, name, _FREQUENCY, _AMPLITUDE, text=text)
+        panel.label_outer()
+        panel.set_xlabel("Frequency (Hz)" if panel.get_xlabel() else "")
+        panel.set_ylabel(panel.get_ylabel().replace("Structure motion amplitude", "Amplitude"))
+    explain_gaps(figure, study, "loss_factor")
+
+
+def _draw_lines(figure: Figure, study: xr.Dataset, fixed: str, size: Size) -> None:
+    """Draw the panels as lines over one axis, where the other has one value."""
+    (along,) = (axis for axis in _AXES if axis != fixed)
+    line = study.isel({fixed: 0})
+    panels = figure.subplots(3, 1, sharex=True) if size == "column" else figure.subplots(1, 3, sharex=True)
+    marks = []
+    for panel, (name, text) in zip(panels, _PANELS, strict=True):
+        marks = draw_lines(figure, panel, line, name, [along])
+        panel.set_xlabel(panel.get_xlabel().replace("Structure motion " + _NAMES[along].lower(), _NAMES[along]))
+        panel.set_ylabel(text)
+        if size == "column":
+            panel.label_outer()
+    if marks:
+        figure.legend(handles=marks, loc="outside lower left", ncols=2, handlelength=1.0)
+    told = f"{_NAMES[fixed]} {value_of(study[fixed], study[fixed].values[0])}"
+    figure.suptitle(shorten(told, letters(panels[0])), x=0.01, ha="left", fontsize="medium")

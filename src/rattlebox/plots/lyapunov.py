@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..model.errors import CaseError
-from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, paper, pen, scaled
+from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
 
 if TYPE_CHECKING:
     import xarray
@@ -42,12 +42,12 @@ def plot_lyapunov(study: xarray.Dataset, *, size: Size = "column") -> Figure:
     values = study.growth_per_cycle if "growth_per_cycle" in study else study.exponent
     if values.ndim > 2:
         raise CaseError(f"{' x '.join(map(str, values.dims))} are too many axes\n  try: study.sel(...), two at most")
-    with paper(size):
+    with figure_style(size):
         if values.ndim == 2:
-            figure = PaperFigure(size, 0.75 if size == "column" else 0.6)
+            figure = StyledFigure(size, 0.75 if size == "column" else 0.6)
             _map(figure, study, values)
             return figure
-        figure = PaperFigure(size, 0.6 if values.ndim == 0 else 1.1 if size == "column" else 0.45)
+        figure = StyledFigure(size, 0.6 if values.ndim == 0 else 1.1 if size == "column" else 0.45)
         if values.ndim == 0:
             _convergence(figure.subplots(), study, values)
         else:

@@ -22,11 +22,11 @@ from .style import (
     SERIES_COLOURS,
     SERIES_MARKERS,
     SERIES_STYLES,
-    PaperFigure,
     Size,
+    StyledFigure,
+    figure_style,
     legend_above,
     letters,
-    paper,
     pen,
     shorten,
 )
@@ -88,9 +88,8 @@ def plot_map(
     Examples
     --------
     >>> import rattlebox as rb
-    >>> from rattlebox.paper.seed import seed_case
     >>> gaps = {"damper.gap": rb.linspace("0.2 mm", "1 mm", 5)}
-    >>> figure = rb.plot_map(rb.sweep(seed_case(duration=1.0), gaps, ["impact_share"]))
+    >>> figure = rb.plot_map(rb.sweep(rb.reference_case(duration=1.0), gaps, ["impact_share"]))
     """
     if kind not in (None, "map", "lines"):
         raise CaseError(f"kind = {kind!r}: there is no such kind\n  {nearest(str(kind), ('map', 'lines'))}")
@@ -102,7 +101,7 @@ def plot_map(
     chosen = chosen.drop_duplicates(repeated).squeeze(drop=True)
     dims = [str(dim) for dim in chosen[name].dims if dim != _BAND]
     _check_axes(chosen, name, dims, kind)
-    with paper(size):
+    with figure_style(size):
         many = len(dims) == 2 and min(chosen.sizes[dim] for dim in dims) > len(SERIES_COLOURS)
         if kind == "map" or (kind is None and many):
             figure = _map_figure(chosen, name, dims, size)
@@ -235,7 +234,7 @@ def _check_axes(study: xr.Dataset, name: str, dims: list[str], kind: str | None)
 
 
 def _map_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> Figure:
-    figure = PaperFigure(size, 0.78 if size == "column" else 0.56)
+    figure = StyledFigure(size, 0.78 if size == "column" else 0.56)
     axes = figure.subplots()
     draw_map(figure, axes, study, name, dims[0], dims[1])
     explain_gaps(figure, study, name)
@@ -345,6 +344,9 @@ class _Axis(NamedTuple):
         shown = Shown.of(coord)
         log = shown.names is None and _grows_by_factor(shown.numbers)
         inner = np.log(shown.numbers) if log else shown.numbers
+        if inner.size == 1:
+            half = 0.5 * abs(inner[0]) or 0.5
+            return cls(shown, np.array([inner[0] - half, inner[0] + half]), log)
         between = 0.5 * (inner[1:] + inner[:-1])
         edges = np.concatenate(([2 * inner[0] - between[0]], between, [2 * inner[-1] - between[-1]]))
         return cls(shown, np.asarray(np.exp(edges) if log else edges, dtype=float), log)
@@ -364,8 +366,34 @@ def _grows_by_factor(values: Vector) -> bool:
 
 
 def _lines_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> Figure:
-    figure = PaperFigure(size, 0.72 if size == "column" else 0.5)
+    figure = StyledFigure(size, 0.72 if size == "column" else 0.5)
     axes = figure.subplots()
+    marks = draw_lines(figure, axes, study, name, dims)
+    legend_above(axes)
+    if marks:
+        figure.legend(handles=marks, loc="outside lower left", ncols=2, handlelength=1.0)
+    return figure
+
+
+def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: list[str]) -> list[Line2D]:
+    """Draw a measure over the longest axis, one line for each value of the other.
+
+    Parameters
+    ----------
+    figure, axes
+        Figure and axes to draw into.
+    study
+        Dataset over the axes, and perhaps replicas, whose median and band are drawn.
+    name
+        Measure.
+    dims
+        One or two axes of the study.
+
+    Returns
+    -------
+    list of Line2D
+        Marks of runs without a value, with their legend texts.
+    """
     along, *others = sorted(dims, key=lambda dim: study.sizes[dim], reverse=True)
     across, values = _Axis.of(study[along]), study[name]
     measure = Shown.of(values)
@@ -384,10 +412,7 @@ def _lines_figure(study: xr.Dataset, name: str, dims: list[str], size: Size) -> 
     marks = _cut_leaps(axes, name, values, along, across) + _mark_gaps(axes, study, name, along, across)
     across.finish(axes, "x")
     measure.along(axes, "y")
-    legend_above(axes)
-    if marks:
-        figure.legend(handles=marks, loc="outside lower left", ncols=2, handlelength=1.0)
-    return figure
+    return marks
 
 
 def _cut_leaps(axes: Axes, name: str, values: xr.DataArray, along: str, across: _Axis) -> list[Line2D]:

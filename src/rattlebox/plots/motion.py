@@ -15,12 +15,12 @@ from .style import (
     INK,
     SERIES_COLOURS,
     SERIES_STYLES,
-    PaperFigure,
     Scale,
     Size,
+    StyledFigure,
+    figure_style,
     label,
     legend_above,
-    paper,
     pen,
     scaled,
     shorten,
@@ -60,8 +60,8 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
     shown = _window(arrays, between)
     moving = arrays.mode_frequency.size > 0 or not arrays.balls
     panels = int(moving) + sum(bool(np.any(arrays.ball_damper == d)) for d in range(len(arrays.dampers)))
-    with paper(size):
-        figure = PaperFigure(size, 0.14 + 0.36 * panels if size == "column" else 0.1 + 0.2 * panels)
+    with figure_style(size):
+        figure = StyledFigure(size, 0.14 + 0.36 * panels if size == "column" else 0.1 + 0.2 * panels)
         axes = list(np.ravel(figure.subplots(panels, 1, sharex=True)))
         time = scaled(arrays.time[shown], "s")
         left = iter(axes)

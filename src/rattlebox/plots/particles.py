@@ -20,12 +20,13 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
+from rattlebox._util.atomic_io import atomic_write
+
 from ..model.cavities import AnyCavity, Box, Cavity, Cylinder
 from ..results import GranularRun
 from ..results.snapshots import Frame, Snapshots
-from ..results.whole import telling, whole
 from .spheres import Renderer, draw_spheres
-from .style import INK, PaperFigure, Size, paper, pen, scaled
+from .style import INK, Size, StyledFigure, figure_style, pen, scaled
 
 Array = NDArray[np.float64]
 
@@ -73,7 +74,7 @@ def plot_particles(
     if isinstance(of, Snapshots) and not len(of):
         raise ValueError(f"{of.path} holds no snapshot yet")
     frame = of[number] if isinstance(of, Snapshots) else _end(of)
-    with paper(size):
+    with figure_style(size):
         return _Scene([frame], of.case_toml, size, renderer).figure
 
 
@@ -128,7 +129,7 @@ def film_particles(
         raise ValueError(f"{snapshots.path} holds no snapshot yet")
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
-    with paper(size):
+    with figure_style(size):
         import matplotlib as mpl
 
         if path.suffix == ".mp4":
@@ -140,7 +141,7 @@ def film_particles(
         scene.figure.savefig(io.BytesIO(), dpi=dpi)
         scene.figure.set_layout_engine("none")  # all pictures are laid out as the first
         writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
-        with telling(path, _LOST), whole(path) as name:
+        with atomic_write(path, _LOST) as name:
             writer.setup(scene.figure, os.fspath(name), dpi=dpi)
             try:
                 for number in range(len(snapshots)):
@@ -254,7 +255,7 @@ class _Scene:
         extents = [self._extent(k) for k in range(len(cavities))]
         sides = [(right - left, top - bottom) for left, right, bottom, top in extents]
         ratio = max(h for _, h in sides) / sum(w for w, _ in sides)
-        self.figure = PaperFigure(size, min(0.86 * ratio + 0.1, 1.1))
+        self.figure = StyledFigure(size, min(0.86 * ratio + 0.1, 1.1))
         panels = self.figure.subplots(1, len(cavities), squeeze=False, width_ratios=[w for w, _ in sides])[0]
         self._panels = [self._panel(k, axes, extents[k]) for k, axes in enumerate(panels)]
         bar = self.figure.colorbar(ScalarMappable(self._norm, _colours()), ax=list(panels), aspect=28, pad=0.02)

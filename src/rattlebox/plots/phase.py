@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from ..analysis import phase_portrait
 from ..results import Run
-from .style import FAINT, INK, PaperFigure, Size, label, paper, pen, scaled
+from .style import FAINT, INK, Size, StyledFigure, figure_style, label, pen, scaled
 
 
 def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column") -> Figure:
@@ -47,8 +47,8 @@ def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column
     x_scale, x_unit = scaled(x if half is None else np.append(x, half), "m")
     v_scale, v_unit = scaled(v, "m/s")
     t_scale, t_unit = scaled(arrays.time, "s")
-    with paper(size):
-        figure = PaperFigure(size, 0.8 if size == "column" else 0.6)
+    with figure_style(size):
+        figure = StyledFigure(size, 0.8 if size == "column" else 0.6)
         axes = figure.subplots()
         points = np.column_stack((x / x_scale, v / v_scale))
         line = LineCollection(

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ..model.errors import CaseError, nearest
-from .style import FAINT, INK, SERIES_COLOURS, PaperFigure, Size, label, paper, pen, scaled
+from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, pen, scaled
 
 if TYPE_CHECKING:
     import xarray
@@ -55,8 +55,8 @@ def plot_frequency_response(
         if name not in response or response[name].dims != ("direction", "level", "frequency"):
             known = [str(n) for n, v in response.items() if v.dims == ("direction", "level", "frequency")]
             raise CaseError(f"the response has no measure {name!r}\n  {nearest(name, known)}")
-    with paper(size):
-        figure = PaperFigure(size, 0.3 + (0.4 if size == "column" else 0.2) * len(names))
+    with figure_style(size):
+        figure = StyledFigure(size, 0.3 + (0.4 if size == "column" else 0.2) * len(names))
         panels = np.atleast_1d(figure.subplots(len(names), 1, sharex=True, height_ratios=[2] + [1] * (len(names) - 1)))
         for axes, name in zip(panels, names, strict=True):
             _draw(axes, response, name, per_level and name in _LENGTHS)

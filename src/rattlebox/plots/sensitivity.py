@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from .style import INK, SERIES_COLOURS, PaperFigure, Size, paper, pen, shorten
+from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, pen, shorten
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,9 +37,9 @@ def plot_sensitivity(found: xr.Dataset, *, size: Size = "column") -> Figure:
     """
     order = np.argsort(found.total.mean("measure").values)
     rows, count = found.isel(parameter=order), found.sizes["measure"]
-    with paper(size):
+    with figure_style(size):
         inches = count * (0.5 + 0.36 * order.size) + 0.5
-        figure = PaperFigure(size, 1.0)
+        figure = StyledFigure(size, 1.0)
         scale = 1.0 if size != "slide" else 15 / 8
         figure.set_figheight(scale * inches)
         panels = figure.subplots(count, 1, sharex=True, squeeze=False).ravel()

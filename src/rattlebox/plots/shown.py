@@ -54,9 +54,8 @@ class Shown(NamedTuple):
             places = {name: float(place) for place, name in enumerate(names)}
             numbers = np.array([places[str(value)] for value in values.values.ravel()])
             return cls(numbers.reshape(values.shape), 1.0, "", text, names)
-        own, factor = _prefixable(unit_of(values))
-        divisor, unit = scaled(factor * values.values, own) if own else (1.0, "")
-        divisor /= factor
+        own = unit_of(values)
+        divisor, unit = scaled(values.values, own) if own else (1.0, "")
         return cls(np.asarray(values.values / divisor, dtype=float), divisor, unit.replace("^2", "²"), text, None)
 
     @property
@@ -110,13 +109,8 @@ def value_of(coord: xr.DataArray, value: Any) -> str:
     """Write one value of a coordinate with its unit, without zeros behind the last decimal."""
     if coord.dtype.kind not in "fiu":
         return str(value)
-    unit, factor = _prefixable(unit_of(coord))
-    number = factor * float(value) + 0.0  # no minus before a zero
+    unit = unit_of(coord)
+    number = float(value) + 0.0  # no minus before a zero
     if not unit and number.is_integer() and abs(number) < _EXACT:
         return f"{number:.0f}"
     return re.sub(r"\.0+(?!\d)|(\.\d*[1-9])0+(?!\d)", r"\1", quantity(number, unit))
-
-
-def _prefixable(unit: str) -> tuple[str, float]:
-    """The unit that takes prefixes, and how many of it are in the SI unit: nobody writes mkg."""
-    return ("g", 1e3) if unit == "kg" else (unit, 1.0)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import io
 import math
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Literal, NamedTuple, cast
 
 import matplotlib as mpl
@@ -14,7 +16,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from ..results.quantities import prefix
+from rattlebox._util.atomic_io import atomic_write
+
+from ..results.quantities import in_unit
 
 Size = Literal["column", "page", "slide"]
 
@@ -101,7 +105,7 @@ def _settings(size: Size) -> dict[str, Any]:
 
 
 @contextmanager
-def paper(size: Size = "column") -> Iterator[None]:
+def figure_style(size: Size = "column") -> Iterator[None]:
     """Draw in the style of all figures of Rattlebox while the context lasts.
 
     Parameters
@@ -120,7 +124,7 @@ def paper(size: Size = "column") -> Iterator[None]:
         yield
 
 
-class PaperFigure(Figure):
+class StyledFigure(Figure):
     """Figure without a window, shown by notebooks, that also keeps the style while it is saved.
 
     Parameters
@@ -146,8 +150,18 @@ class PaperFigure(Figure):
         **options
             Passed on to matplotlib.
         """
-        with paper(self._size_name):
-            super().savefig(fname, **options)
+        with figure_style(self._size_name):
+            if isinstance(fname, (str, os.PathLike)):
+                self._save(Path(fname), options)
+            else:
+                super().savefig(fname, **options)
+
+    def _save(self, path: Path, options: dict[str, Any]) -> None:
+        """Write a file; matplotlib adds a suffix to a name without one."""
+        form = options.pop("format", None) or path.suffix[1:] or str(mpl.rcParams["savefig.format"])
+        path = path if path.suffix else path.with_name(f"{path.name}.{form}")
+        with atomic_write(path, "make room and save the figure again") as name:
+            super().savefig(name, format=form, **options)
 
     def _repr_png_(self) -> bytes:
         buffer = io.BytesIO()
@@ -181,8 +195,7 @@ def scaled(values: Any, unit: str) -> Scale:
     array = array[np.isfinite(array)]
     # One reads 0.4 mm and 0.5 s, not 400 µm and 500 ms.
     least = 0.1 if unit in ("m", "s") else 1.0
-    scale, name = prefix(float(array.max()) if array.size else 0.0, least)
-    return Scale(scale, name + unit)
+    return Scale(*in_unit(float(array.max()) if array.size else 0.0, unit, least))
 
 
 def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.atomic_io import atomic_write, check_suffix, require_folder
+
 from .datasets import columns, labels
-from .whole import check_suffix, needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from .run import Run
@@ -60,7 +61,7 @@ def to_mat(run: Run, path: Path) -> Path:
     from scipy.io import savemat
 
     check_suffix(path, ".mat")
-    needs_folder(path)
+    require_folder(path)
     arrays = run.arrays
     names = labels(arrays)
     content: dict[str, Any] = {}
@@ -89,7 +90,7 @@ def to_mat(run: Run, path: Path) -> Path:
         "wall_time": arrays.wall_time,
         "counts": dict(arrays.counts) or np.zeros((0, 0)),
     }
-    with telling(path, _LOST), whole(path) as name:
+    with atomic_write(path, _LOST) as name:
         savemat(
             name,
             content | {"units": units, "info": info},
@@ -156,7 +157,7 @@ def to_csv(run: Run, folder: Path) -> tuple[Path, ...]:
         header, data = zip(*_columns(run, group), strict=True)
         # tolist() gives Python numbers, whose repr is the shortest text that reads back equal.
         lists = [array.astype(int).tolist() if array.dtype == bool else array.tolist() for array in data]
-        with path.open("w", newline="", encoding="utf-8") as file:
+        with atomic_write(path, _LOST) as name, name.open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(header)
             writer.writerows(zip(*lists, strict=True))

@@ -108,15 +108,20 @@ class Ledger:
             return 0.0
         return float(worst / reference) if reference != 0.0 else float("inf")
 
-    def closes(self, bound: float) -> bool:
-        """Whether the closure is within a bound, or the residual is no more than rounding.
+    def closes(self, bound: float, floor: float = 0.0) -> bool:
+        """Return whether the energy balance holds, up to rounding, which is all there is of a ball at rest.
 
-        Of a ball that rests and takes nothing up, rounding is all there is.
+        Parameters
+        ----------
+        bound
+            Largest closure.
+        floor
+            Residual [J] that is rounding, added to 1e-10 of the largest energy of the run.
         """
         arrays = self.arrays
         handled = self.motion + np.abs(self.gravity) + arrays.viscous_loss
         handled = handled + np.abs(arrays.load_work) + np.abs(arrays.base_work)
-        return self.closure <= bound or float(np.max(np.abs(self.residual))) <= 1e-10 * float(np.max(handled))
+        return self.closure <= bound or float(np.max(np.abs(self.residual))) <= 1e-10 * float(np.max(handled)) + floor
 
     @cached_property
     def shares(self) -> dict[str, float]:

@@ -17,13 +17,14 @@ from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder
+
 from .arrays import ImpactArrays, RunArrays
 from .datasets import columns, labels
 from .granular import GranularArrays, GranularRun
 from .provenance import Provenance
 from .schema import COUNTS, FIGURES, GRANULAR, IMPACT, IMPACT_VARIABLES, Form, Kind
 from .snapshots import ROOT as SNAPSHOTS
-from .whole import DAMAGE, check_suffix, needs_folder, telling, whole
 
 if TYPE_CHECKING:
     from .run import Run
@@ -162,10 +163,10 @@ def save(run: Run, path: Path) -> Path:
         When the name is that of another kind of file.
     """
     check_suffix(path, ".nc")
-    needs_folder(path)
+    require_folder(path)
     content = io.BytesIO()  # HDF5 cannot be rid of what a full disk does not take, and takes the process with it
     _write(run, content)
-    with telling(path, _LOST), whole(path) as name:
+    with atomic_write(path, _LOST) as name:
         name.write_bytes(content.getbuffer())
     return path
 
@@ -237,7 +238,7 @@ def _from(path: Path, read: Callable[[Any], Read]) -> Read:
             refused = _refused(file, path)
             if not refused:
                 return read(file)
-    except DAMAGE as error:
+    except HDF5_ERRORS as error:
         raise ValueError(f"{path} is not a netCDF-4 file that is whole") from error
     raise ValueError(refused)
 

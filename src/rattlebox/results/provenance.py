@@ -22,8 +22,6 @@ class Provenance:
         Date and time in UTC, ISO 8601.
     platform
         Operating system, machine and Python version.
-    gpu
-        Graphics card that computed the run, and how long its kernels were compiled; empty on the processor.
     """
 
     version: str = ""
@@ -31,10 +29,9 @@ class Provenance:
     seed: int = 0
     created: str = ""
     platform: str = ""
-    gpu: str = ""
 
     @classmethod
-    def now(cls, method: str = "", seed: int = 0, gpu: str = "") -> Provenance:
+    def now(cls, method: str = "", seed: int = 0) -> Provenance:
         """Provenance of a run that is made here and now.
 
         Parameters
@@ -43,8 +40,6 @@ class Provenance:
             Method of the engine, in one line.
         seed
             Seed of the case.
-        gpu
-            Graphics card that computed it, if one did.
         """
         import platform
         from datetime import UTC, datetime
@@ -55,7 +50,6 @@ class Provenance:
             seed=int(seed),
             created=datetime.now(UTC).isoformat(timespec="seconds"),
             platform=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
-            gpu=gpu,
         )
 
 

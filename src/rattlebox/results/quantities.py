@@ -41,6 +41,28 @@ def prefix(value: float, least: float = 1.0) -> tuple[float, str]:
     return 10.0**power, PREFIXES[power]
 
 
+def in_unit(value: float, unit: str, least: float = 1.0) -> tuple[float, str]:
+    """Return the divisor and the unit with its prefix in which a number is written.
+
+    Masses are written in grams, kilograms and tonnes: kkg and Mg are not used.
+
+    Parameters
+    ----------
+    value
+        Number in SI units.
+    unit
+        SI unit.
+    least
+        Power of ten that the written number reaches.
+    """
+    base = 1.0
+    if unit == "kg":
+        heavy = math.isfinite(value) and value != 0.0 and _exponent(value, 4) >= 3
+        base, unit = (1e3, "t") if heavy else (1e-3, "g")
+    scale, name = prefix(value / base, least)
+    return base * scale, name + unit
+
+
 def digits(value: float, significant: int = 4) -> str:
     """Write a number with a fixed count of significant digits and no exponent for ordinary sizes.
 
@@ -84,7 +106,5 @@ def quantity(value: float, unit: str, significant: int = 4) -> str:
         return f"{digits(100.0 * value if abs(value) >= 1e-12 else 0.0, significant)} %"
     if unit in ("", "1"):
         return digits(value, significant)
-    if unit == "kg" and abs(value) < 1.0:
-        value, unit = 1e3 * value, "g"
-    scale, name = prefix(value)
-    return f"{digits(value / scale, significant)} {name}{unit}"
+    divisor, written = in_unit(value, unit)
+    return f"{digits(value / divisor, significant)} {written}"

@@ -289,5 +289,10 @@ FIGURES: dict[str, tuple[str, str]] = {
     "largest_approach_speed": ("m/s", "largest approach speed at a first touch"),
     "steps_per_contact": ("1", "steps in the shortest contact"),
     "largest_overlap": ("1", "largest overlap over the smaller radius"),
+    "softening": ("1", "largest softening of a damper"),
+    "bed_resonance": ("Hz", "estimated resonance of the softest bed under its own weight"),
+    "softening_change": ("1", "estimated change of the loss in a cycle by softening, over m V^2"),
+    "enduring_share": ("1", "share of the loss in contacts older than a quarter of a period"),
+    "softened_enduring_share": ("1", "the same, of dampers with a softening above 1"),
 }
 """Units and meanings of the numbers in `figures`."""

@@ -18,8 +18,9 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, disk_errors, reserve_space, sync
+
 from .arrays import FloatArray, IntArray
-from .whole import DAMAGE, reserve, telling, whole
 
 FORMAT = 1
 """Number of what is said beside the VTKHDF; files with a higher one are refused."""
@@ -32,6 +33,9 @@ _MOVING = {"velocity": (3,), "spin": (3,), "push": ()}
 _FIXED = ("radius", "mass", "cavity", "species")
 _OFFSETS, _LAYOUT = 25, 1 << 16
 """Numbers of a snapshot that tell where it is; what names, places and sizes take at most [bytes]."""
+
+_HEAD = 1 << 20
+"""Length of the first part of a file, in which the name of our attribute lies [bytes]."""
 
 _LOST = "make room and give the same call again, with fewer snapshots or another folder"
 
@@ -68,19 +72,25 @@ class Frame:
     displacement: FloatArray
 
 
-def _may_be_snapshots(path: Path) -> bool:
-    """Whether a file holds snapshots, or may have before it was torn."""
+def is_snapshots(path: Path) -> bool:
+    """Return whether Rattlebox wrote a file of snapshots, which may be damaged.
+
+    Parameters
+    ----------
+    path
+        An existing file.
+    """
     import h5py  # type: ignore[import-untyped]
 
     with path.open("rb") as file:
-        begin = file.read(len(_SIGNATURE))
-    if begin != _SIGNATURE:
-        return not begin
+        begin = file.read(_HEAD)
+    if not begin.startswith(_SIGNATURE):
+        return False
     try:
-        with h5py.File(path, "r", locking=False) as whole_file:
-            return ROOT in whole_file
-    except OSError:
-        return True
+        with h5py.File(path, "r", locking=False) as content:
+            return "rattlebox_format" in content.attrs and ROOT in content
+    except HDF5_ERRORS:  # it is damaged
+        return b"rattlebox_format" in begin
 
 
 class SnapshotFile:
@@ -127,13 +137,13 @@ class SnapshotFile:
         """
         import h5py
 
-        if self.path.is_file() and not _may_be_snapshots(self.path):
+        if self.path.is_file() and not is_snapshots(self.path):
             raise FileExistsError(f"{self.path} holds no snapshots, and is kept\n  try: another file for the snapshots")
-        with telling(self.path, _LOST), whole(self.path) as name:
-            reserve(name, self._room())
+        with atomic_write(self.path, _LOST) as name:
+            reserve_space(name, self._room())
             with h5py.File(name, "w") as file:
                 self._lay_out(file)
-            reserve(name, name.stat().st_size)  # no holes that are to be filled when the disk may be full
+            reserve_space(name, name.stat().st_size)  # no holes that are to be filled when the disk may be full
 
     def _room(self) -> int:
         """How large the file is, or a little more [bytes]."""
@@ -185,6 +195,18 @@ class SnapshotFile:
             if dataset.size:
                 dataset[-1] = 0.0
 
+    def sync(self) -> None:
+        """Wait until the snapshots are on the disk.
+
+        Raises
+        ------
+        OSError
+            If they cannot be written.
+        """
+        if self.path.exists():
+            with disk_errors(self.path, _LOST):
+                sync(self.path)
+
     @property
     def taken(self) -> int:
         """Number of snapshots of this very run in the file; 0 without a file.
@@ -224,7 +246,7 @@ class SnapshotFile:
         displacement = np.array([each["displacement"] for each in cavities])
         placed = [each["position"] + place for each, place in zip(cavities, self._places, strict=True)]
         # Without a lock, so that others may look at the file during the run.
-        with telling(self.path, _LOST), h5py.File(self.path, "r+", locking=False) as file:
+        with disk_errors(self.path, _LOST), h5py.File(self.path, "r+", locking=False) as file:
             root = file[ROOT]
             count = root["NumberOfPoints"][0]
             rows = slice(number * count, (number + 1) * count)
@@ -289,7 +311,7 @@ class Snapshots:
         try:
             with h5py.File(self.path, "r", locking=False) as file:
                 yield file
-        except DAMAGE as error:
+        except HDF5_ERRORS as error:
             raise ValueError(f"{self.path} is not an HDF5 file that is whole") from error
 
     def _refused(self, file: Any) -> str:

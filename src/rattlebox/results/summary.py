@@ -23,7 +23,6 @@ Value = float | int | str
 _MOST_SHOWN = 4
 _STILL = 1e-9
 """Of the largest motion of any point: a point that moves no more stands still but for rounding."""
-_OPEN = 0.01  # of the energy supplied: beyond it a run does not show what it says
 _CHANNEL_LABELS = {
     "viscous": "lost in the structure",
     "impact": "lost in impacts",
@@ -121,11 +120,7 @@ def _extremes(run: Run) -> dict[str, Value]:
 def _notes(run: Run) -> tuple[str, ...]:
     """What is said below the numbers."""
     message = (run.message,) if run.message and not run.ok else ()
-    steps: tuple[str, ...] = ()
-    if run.ok and not run.ledger.closes(_OPEN):
-        told = quantity(run.closure, "%")
-        steps = (f"warning: the energy ledger is open by {told} of the energy supplied; shorten the time steps",)
-    return message + steps + run.arrays.notes
+    return message + run.arrays.notes
 
 
 def _largest(x: Any) -> float:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.owned_folder import read_marker
 from rattlebox.model.errors import CaseError, Hint, nearest
 from rattlebox.model.paths import replaced
 
@@ -118,8 +119,7 @@ def design(
     Examples
     --------
     >>> import rattlebox as rb
-    >>> from rattlebox.paper.seed import seed_case
-    >>> case = seed_case(duration=8.0, contact=rb.Tsuji(restitution=0.6))
+    >>> case = rb.reference_case(rb.Tsuji(restitution=0.6), duration=8.0)
     >>> found = rb.design(case, {"damper.gap": ("0.1 mm", "2 mm")}, starts=3, trials=5)
     >>> best = rb.Case.from_toml(found.case.item(0))
     """
@@ -427,7 +427,7 @@ def _storage(optuna: Any, store: str | os.PathLike[str] | None) -> Iterator[Any]
         yield None
         return
     with taken(Path(store)) as progress:
-        if (progress / "finished").exists():
+        if (marker := read_marker(Path(store))) and marker.complete:
             raise CaseError(f"{store} holds another study\n  try: another folder, or remove this one")
         path = progress / JOURNAL
         if path.exists():

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from functools import partial
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,7 +37,6 @@ _FINISHED = [name for name, _ in STATUSES].index("finished")
 _STARTS = ("start", "velocity", "displacement")
 _EARLIER = np.arange(1, 8) / 8  # parts of a cycle
 _CLOSED = -1e-12  # part of the clearance, far above rounding
-_WALKS = 2**13  # at once on a card
 
 
 def follow(
@@ -158,7 +156,7 @@ def _named(measure: Sequence[str]) -> list[str]:
 
 
 @dataclass
-class Walks(SweepTask):
+class FollowTask(SweepTask):
     """Variants that are followed along the last dimension of the design, in the directions of the first one.
 
     Attributes
@@ -234,11 +232,6 @@ class Walks(SweepTask):
         after = step.back(after, closed)
         return {**found, "state": after.state, "early": after.early}
 
-
-@dataclass
-class FollowTask(Walks):
-    """On threads of the processor, a walk on each."""
-
     def chains(self, blocks: Blocks) -> list[list[int]]:
         """Return the numbers of the blocks of each walk, in the order in which they follow each other."""
         rows = np.arange(len(blocks)).reshape(len(self.ways), -1, blocks.counts[-1])
@@ -257,7 +250,7 @@ class FollowTask(Walks):
         stop: int,
         *,
         threads: int = 1,
-        cancelled: Callable[..., bool] | None = None,
+        cancelled: Callable[[], bool] | None = None,
         before: Values | None = None,
     ) -> Values | None:
         """Run variants of one walk.
@@ -283,61 +276,6 @@ class FollowTask(Walks):
             found[index] = values
         return {name: np.concatenate([found[index][name] for index in range(start, stop)]) for name in self.outputs}
 
-    def on_card(self) -> Walks:
-        """Return the same work for the card of this machine.
-
-        Raises
-        ------
-        CaseError
-            When there is only one walk.
-        """
-        walks = self.size // self.design.shape[-1] // (len(self.ways) if self.turning else 1)
-        if walks == 1:
-            raise Hint(
-                'on = "gpu": each value goes on from the one before, so there is nothing to run side by side',
-                'the processor, direction = "fresh", or basins or lyapunov, which have work for a card',
-            )
-        given = {each.name: getattr(self, each.name) for each in fields(self) if each.init}
-        return FollowOnCard(**{**given, "gpu": True})
-
-
-@dataclass
-class FollowOnCard(Walks):
-    """On the graphics card, all walks at once, value by value."""
-
-    def side_by_side(self, most: int) -> int:
-        """Return the largest number of variants in a block: whole walks, up to eight times what a block should hold."""
-        length = self.design.shape[-1]
-        return length * max(1, min(_WALKS, 8 * most // length))
-
-    def run(
-        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[..., bool] | None = None
-    ) -> Values | None:
-        """Run whole walks.
-
-        Parameters
-        ----------
-        start, stop
-            Variants.
-        threads
-            Not used.
-        cancelled
-            Asked some fifty times a second with the number of variants done; True stops.
-        """
-        rows = np.arange(start, stop).reshape(-1, self.design.shape[-1])
-        walks = np.array([row if self.way(int(row[0])) == "up" else row[::-1] for row in rows])
-        whole: dict[str, NDArray[Any]] = {}
-        at: At | None = None
-        for k, members in enumerate(walks.T):
-            done = k * len(walks)
-            values = self.step(at, members, partial(cancelled, done) if cancelled else None)
-            if values is None:
-                return None
-            at = At(values["state"], values["early"])
-            for name, array in values.items():
-                whole.setdefault(name, np.empty((stop - start, *array.shape[1:]), array.dtype))[members - start] = array
-        return whole
-
 
 @dataclass
 class At:
@@ -350,8 +288,8 @@ class At:
 class _Step:
     """A variant of each of some walks, from where they are."""
 
-    def __init__(self, task: Walks, at: At | None, members: Members, cancelled: Callable[[], bool] | None) -> None:
-        self._cancelled, self._gpu, self._count = cancelled, task.gpu, len(members)
+    def __init__(self, task: FollowTask, at: At | None, members: Members, cancelled: Callable[[], bool] | None) -> None:
+        self._cancelled, self._count = cancelled, len(members)
         shape, look = task.design.shape, task.look
         self._own: Packed = chosen(task.packed, shape, members)
 
@@ -374,7 +312,6 @@ class _Step:
             count,
             look,
             progress=lambda _: not (self._cancelled and self._cancelled()),
-            gpu=self._gpu,
         )
         return None if found is None else dict(found)
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -15,10 +14,8 @@ from scipy.integrate import trapezoid
 
 from rattlebox.analysis import settling_time, shaken_cavity
 from rattlebox.analysis.granular import LEAST_SAMPLES, StillCavity
-from rattlebox.engines import dem_gpu
 from rattlebox.engines.batch import Look
-from rattlebox.engines.card import Card
-from rattlebox.engines.dem import objection, run_on_card, settled, simulate_dem
+from rattlebox.engines.dem import objection, settled, simulate_dem
 from rattlebox.engines.dem_step import WARNINGS, warnings_of
 from rattlebox.engines.status import REFUSED, STATUSES
 from rattlebox.model.errors import CaseError, Hint
@@ -33,11 +30,11 @@ from .measures import MEASURES
 from .task import Extra, SweepTask, Values
 
 if TYPE_CHECKING:
+    import xarray
+
     from rattlebox.model.case import Case
 
 _BLOCKS = 2000
-_SIDE_BY_SIDE = 1024
-_PARTICLES = 2_000_000  # some kilobytes each
 _SUMS = ("load_work", "base_work", "viscous_loss", "normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
 _NUMBERS = {name: number for number, (name, _) in enumerate(STATUSES)}
 
@@ -50,6 +47,8 @@ class Seen:
     ----------
     run
         From the begin of the window on; work and losses count from there.
+    whole, start
+        The whole run, and the begin of the window [s].
     motion, speed : (T,) float
         Of the point that is watched [m], [m/s].
     frequency
@@ -57,6 +56,8 @@ class Seen:
     """
 
     run: GranularRun
+    whole: GranularRun
+    start: float
     motion: NDArray[np.float64]
     speed: NDArray[np.float64]
     frequency: float
@@ -91,18 +92,22 @@ class Seen:
         times = self.run.arrays.time
         return settling_time(times, self.motion) if self.motion.any() else float(times[0])
 
+    def shaken(self, damper: str) -> xarray.Dataset:
+        """Return loss and mass of a damper in the first harmonic, from the samples of the run alone."""
+        after = self.start - 1e-9 / self.frequency  # so that rounding takes no cycle away
+        return shaken_cavity(self.whole, frequency=self.frequency, damper=damper, after=after)
+
     @property
     def speed_of_cavity(self) -> float:
         """Amplitude of the velocity of the first cavity [m/s]."""
-        first = self.run.arrays.dampers[0]
-        return float(shaken_cavity(self.run, frequency=self.frequency, damper=first).attrs["velocity_amplitude"])
+        return float(self.shaken(self.run.arrays.dampers[0]).attrs["velocity_amplitude"])
 
     @cached_property
     def apparent_mass(self) -> complex:
         """Force of all cavities on their particles over the acceleration of the first one, m' - i m'' [kg]."""
         total = 0j
         for name in self.run.arrays.dampers:
-            one = shaken_cavity(self.run, frequency=self.frequency, damper=name).sel(way="complex power")
+            one = self.shaken(name).sel(way="complex power")
             lost = float(one.active_power) / (math.pi * self.frequency)
             total += float(one.effective_mass) * one.attrs["velocity_amplitude"] ** 2 - 1j * lost
         return total / self.speed_of_cavity**2
@@ -135,7 +140,7 @@ _OF_THE_FIRST_HARMONIC = ("reduced_loss", "effective_mass", "damping_mass", "los
 
 
 @dataclass
-class Granular(SweepTask):
+class GranularTask(SweepTask):
     """A case with particles in space, its variants, and what is kept of each; attributes as those of SweepTask.
 
     Functions of a run are given the run that the measures are found from, whose samples are those of the case's output, or
@@ -188,6 +193,62 @@ class Granular(SweepTask):
         """Return the coordinates of the further dimensions, of which there are none."""
         return {}
 
+    @property
+    def block(self) -> int:
+        """Largest number of variants in a block: one, unless there are very many."""
+        return math.ceil(self.size / _BLOCKS)
+
+    def chains(self, blocks: Blocks) -> list[list[int]]:
+        """Return the numbers of blocks, each by itself: they need nothing of each other, and take very different times."""
+        return [[number] for number in range(len(blocks))]
+
+    def order(self, start: int, stop: int) -> range:
+        """Return variants of a block in the order in which they are run."""
+        return range(start, stop)
+
+    def run(
+        self,
+        start: int,
+        stop: int,
+        *,
+        threads: int = 1,
+        cancelled: Callable[[], bool] | None = None,
+        before: Values | None = None,
+    ) -> Values | None:
+        """Run variants start to stop.
+
+        Parameters
+        ----------
+        start, stop
+            Variants, counted along the grid with its last axis fastest.
+        threads
+            Of each run.
+        cancelled
+            Asked some fifty times a second; True stops.
+        before
+            Not needed.
+
+        Returns
+        -------
+        dict of str to array, or None
+            Each output, (stop - start,); None when it was stopped.
+        """
+
+        def go_on(*_: int) -> bool:
+            return not (cancelled and cancelled())
+
+        rows = {}
+        for index in range(start, stop):
+            try:
+                case = self.variant(index)
+                run = simulate_dem(case, threads=threads, progress=go_on) if settled(case, go_on) else None
+            except CaseError:  # one corner of many; run alone it says why
+                continue
+            if run is None or run.status == "interrupted":
+                return None
+            rows[index] = self.row(case, run, index)
+        return self.columns(rows, start, stop)
+
     def row(self, case: Case, run: GranularRun, index: int) -> dict[str, float]:
         """Return what is kept of a run, and of what was run, by name."""
         arrays = run.arrays
@@ -196,6 +257,8 @@ class Granular(SweepTask):
             "status": _NUMBERS[run.status],
             "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in warned),
         }
+        if run.status == "energy_error" and "closure" in self.named:
+            row["closure"] = self._seen_in(run, case).value("closure")
         if run.ok:
             seen = self._seen_in(run, case)
             row |= {name: seen.value(name) for name in self.named}
@@ -260,17 +323,23 @@ class Granular(SweepTask):
 
     def _seen_in(self, run: GranularRun, case: Case) -> Seen:
         frequency = _frequency(case)
-        window = since(run, self.skip if self.cycles is None else self.cycles[0] / frequency)
+        start = self.skip if self.cycles is None else self.cycles[0] / frequency
+        window = since(run, start)
         if (driver := _driver(case)) and driver.amplitude == 0:
             frequency = math.nan  # nothing has cycles
         arrays = window.arrays
         if self.point is None:
             along = unit_vector(case.particle_dampers[0].direction)
             return Seen(
-                window, arrays.cavity_displacement[:, 0] @ along, arrays.cavity_velocity[:, 0] @ along, frequency
+                window,
+                run,
+                start,
+                arrays.cavity_displacement[:, 0] @ along,
+                arrays.cavity_velocity[:, 0] @ along,
+                frequency,
             )
         column = arrays.points.index(self.point)
-        return Seen(window, arrays.displacement[:, column], arrays.velocity[:, column], frequency)
+        return Seen(window, run, start, arrays.displacement[:, column], arrays.velocity[:, column], frequency)
 
 
 def since(run: GranularRun, start: float) -> GranularRun:
@@ -291,10 +360,6 @@ def since(run: GranularRun, start: float) -> GranularRun:
                 values = values[first:]
             cut[variable.name] = values - values[0] if variable.name in _SUMS else values
     return GranularRun(replace(arrays, **cut), run.case_toml, run.provenance) if first else run
-
-
-def _particles(case: Case) -> int:
-    return sum(damper.contents.mass.size for damper in case.particle_dampers)
 
 
 def _driver(case: Case) -> Harmonic | None:
@@ -327,148 +392,3 @@ def _check_dense(case: Case, name: str) -> None:
             f"{name} needs {LEAST_SAMPLES} samples in a cycle, and there are {each:.3g}",
             "more samples; without a number there are enough",
         )
-
-
-# ---- where it runs
-
-
-@dataclass
-class GranularTask(Granular):
-    """On threads of the processor, each run on one of its own."""
-
-    @property
-    def block(self) -> int:
-        """Largest number of variants in a block: one, unless there are very many."""
-        return math.ceil(self.size / _BLOCKS)
-
-    def on_card(self) -> GranularOnCard:
-        """Return the same work for the card of this machine."""
-        return GranularOnCard(**{each.name: getattr(self, each.name) for each in fields(Granular) if each.init})
-
-    def chains(self, blocks: Blocks) -> list[list[int]]:
-        """Return the numbers of blocks, each by itself: they need nothing of each other, and take very different times."""
-        return [[number] for number in range(len(blocks))]
-
-    def order(self, start: int, stop: int) -> range:
-        """Return variants of a block in the order in which they are run."""
-        return range(start, stop)
-
-    def run(
-        self,
-        start: int,
-        stop: int,
-        *,
-        threads: int = 1,
-        cancelled: Callable[[], bool] | None = None,
-        before: Values | None = None,
-    ) -> Values | None:
-        """Run variants start to stop.
-
-        Parameters
-        ----------
-        start, stop
-            Variants, counted along the grid with its last axis fastest.
-        threads
-            Of each run.
-        cancelled
-            Asked some fifty times a second; True stops.
-        before
-            Not needed.
-
-        Returns
-        -------
-        dict of str to array, or None
-            Each output, (stop - start,); None when it was stopped.
-        """
-
-        def go_on(*_: int) -> bool:
-            return not (cancelled and cancelled())
-
-        rows = {}
-        for index in range(start, stop):
-            try:
-                case = self.variant(index)
-                run = simulate_dem(case, threads=threads, progress=go_on) if settled(case, go_on) else None
-            except CaseError:  # one corner of many; run alone it says why
-                continue
-            if run is None or run.status == "interrupted":
-                return None
-            rows[index] = self.row(case, run, index)
-        return self.columns(rows, start, stop)
-
-
-@dataclass
-class GranularOnCard(Granular):
-    """On the graphics card, many side by side."""
-
-    _compiling: float = field(default=0.0, init=False)
-
-    def side_by_side(self, most: int) -> int:
-        """Return the largest number of variants in a block: about twice as many as a card holds at once, or one large."""
-        counts = [_particles(self.case)]
-        for end in (0, self.size - 1):
-            with suppress(CaseError):
-                counts.append(_particles(self.variant(end)))
-        return max(1 if max(counts) > dem_gpu.SMALL else _SIDE_BY_SIDE, math.ceil(self.size / _BLOCKS))
-
-    def ready(self) -> str:
-        """See to it that there is a card, and return what decides the last bits."""
-        return dem_gpu.ready()
-
-    def told(self) -> str:
-        """Return what to tell of the card, once all is run."""
-        return Card().told(self._compiling)
-
-    def run(
-        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[..., bool] | None = None
-    ) -> Values | None:
-        """Run variants start to stop.
-
-        Parameters
-        ----------
-        start, stop
-            Variants, counted along the grid with its last axis fastest.
-        threads
-            Of the processor, on which beds settle.
-        cancelled
-            Asked some ten times a second with how many are done, parts of them included; True stops.
-
-        Returns
-        -------
-        dict of str to array, or None
-            Each output, (stop - start,); None when it was stopped.
-
-        Raises
-        ------
-        CaseError
-            When the card's memory is too small for one variant, with the number.
-        """
-        rows: dict[int, dict[str, float]] = {}
-        card = Card()
-        for cases in self._portions(start, stop):
-            before = min(cases, default=start) - start
-
-            def go_on(part: float, before: int = before, count: int = len(cases)) -> bool:
-                return not (cancelled and cancelled(before + part * count))
-
-            runs = run_on_card(list(cases.values()), card, threads=threads, progress=go_on)
-            if runs is None:
-                return None
-            ended = zip(cases.items(), runs, strict=True)
-            rows |= {index: self.row(case, run, index) for (index, case), run in ended if isinstance(run, GranularRun)}
-        self._compiling += card.compiling
-        return self.columns(rows, start, stop)
-
-    def _portions(self, start: int, stop: int) -> Iterator[dict[int, Case]]:
-        """Variants by number, as many at once as this machine's memory is likely to hold."""
-        cases: dict[int, Case] = {}
-        particles = 0
-        for index in range(start, stop):
-            with suppress(CaseError):
-                case = self.variant(index)
-                particles += _particles(case)
-                if cases and particles > _PARTICLES:
-                    yield cases
-                    cases, particles = {}, _particles(case)
-                cases[index] = case
-        yield cases

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -25,9 +25,6 @@ if TYPE_CHECKING:
     import xarray
 
     from rattlebox.model.case import Case
-
-
-_MOTIONS = 2**16  # at once on a card: some for each of its threads
 
 
 def lyapunov(
@@ -146,13 +143,7 @@ def lyapunov(
 
 @dataclass
 class LyapunovTask:
-    """A case, its variants, and how their neighbours are watched; attributes as of `lyapunov`.
-
-    Attributes
-    ----------
-    gpu
-        Run on the graphics card.
-    """
+    """A case, its variants, and how their neighbours are watched; attributes as of `lyapunov`."""
 
     case: Case
     design: Design
@@ -163,7 +154,6 @@ class LyapunovTask:
     distance: float = 1e-7
     reach: float = 1e-3
     seed: int = 0
-    gpu: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "sweep"}
@@ -186,24 +176,6 @@ class LyapunovTask:
                 "motions under a record cannot be started anew in its middle\n"
                 "  try: rattlebox.analysis.lyapunov_exponent with pairs of runs"
             )
-
-    # ---- on a card
-
-    def on_card(self) -> LyapunovTask:
-        """Return the same work for the card of this machine, where motions and neighbours of many variants run at once."""
-        return replace(self, gpu=True)
-
-    def side_by_side(self, most: int) -> int:
-        """Return the largest number of variants in a block."""
-        return max(1, min(most, _MOTIONS // (2 * self.pairs)))
-
-    def ready(self) -> str:
-        """See to it that there is a card with compiled kernels, and return what decides the last bits there."""
-        return self.sweep.ready()
-
-    def told(self) -> str:
-        """Return what to tell of the card."""
-        return self.sweep.told()
 
     # ---- as any study
 
@@ -253,7 +225,7 @@ class LyapunovTask:
         return SweepTask(self.case, self.design, skip=self.skip, cycles=self.cycles)
 
     def run(
-        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[..., bool] | None = None
+        self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None
     ) -> Mapping[str, NDArray[Any]] | None:
         """Run variants start to stop; None when it was stopped."""
         pairs = Pairs(self, start, stop, threads, cancelled)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rattlebox.engines.batch import Look, run_block
 from rattlebox.engines.pack import Packed
-from rattlebox.engines.status import LEDGER_OPEN, STATUSES
+from rattlebox.engines.status import ENERGY_ERROR, STATUSES
 
 from .chosen import chosen
 
@@ -46,10 +46,10 @@ class Pairs:
     """
 
     def __init__(
-        self, task: LyapunovTask, start: int, stop: int, threads: int, cancelled: Callable[..., bool] | None
+        self, task: LyapunovTask, start: int, stop: int, threads: int, cancelled: Callable[[], bool] | None
     ) -> None:
         self._task, self._threads, self._asked = task, threads, cancelled
-        self._count, self._part = stop - start, 0.0
+        self._count = stop - start
         shape = task.design.shape
         members = np.arange(start, stop)
         self._packed: Packed = chosen(task.sweep.packed, shape, members, 2)
@@ -68,9 +68,7 @@ class Pairs:
         self._begin(rate)
 
     def _cancelled(self) -> bool:
-        if not self._asked:
-            return False
-        return self._asked(self._part * self._count) if self._task.gpu else self._asked()
+        return self._asked is not None and self._asked()
 
     def _each(self, number: Any) -> Array:
         """A packed number of each variant, (variants, 1)."""
@@ -115,7 +113,7 @@ class Pairs:
     @property
     def _whole(self) -> NDArray[np.bool_]:
         """Pairs of which no run has failed."""
-        return np.isin(self.status, (_FINISHED, LEDGER_OPEN))
+        return np.isin(self.status, (_FINISHED, ENERGY_ERROR))
 
     def _sums(self) -> tuple[Array, Array]:
         """Times at which neighbours were brought back, and growth until then, (times, variants, pairs)."""
@@ -147,7 +145,6 @@ class Pairs:
             grown = np.where(merged, -np.inf, np.where(taken, grown + np.log(size / distance), grown))
             state = np.where(taken[..., None, None], ended, state)
             alive &= ~merged
-            self._part = float(np.mean(time / self._end))
             times.append(time)
             sums.append(grown)
         return np.array(times), np.array(sums)
@@ -210,13 +207,12 @@ class Pairs:
             look,
             threads=self._threads,
             progress=lambda _: not self._cancelled(),
-            gpu=self._task.gpu,
         )
         if result is None or self._cancelled():
             raise _Stopped
         status = result["status"].reshape(shape).max(axis=-1)
         self.status = np.where(going & (status != _FINISHED), status, self.status)
-        alive = alive & ~(going & ~np.isin(status, (_FINISHED, LEDGER_OPEN)))
+        alive = alive & ~(going & ~np.isin(status, (_FINISHED, ENERGY_ERROR)))
         return result["state"].reshape(state.shape), alive
 
     # ---- states

@@ -1,4 +1,4 @@
-"""Where a study runs, block by block: threads of this process, a graphics card, or the workers of a Dask cluster."""
+"""Where a study runs, block by block: threads of this process, or the workers of a Dask cluster."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,27 +56,6 @@ class Task(Protocol):
 
     def run(self, start: int, stop: int, *, threads: int, cancelled: Callable[[], bool] | None) -> Values | None:
         """Return each output of variants start to stop, variants first; anything soon after `cancelled`."""
-
-
-class CardTask(Task, Protocol):
-    """Work on a graphics card, whose `cancelled` takes the number of variants done, parts of them included."""
-
-    def side_by_side(self, most: int) -> int:
-        """Return the number of variants in a block, which keep the card busy; it should hold at most so many."""
-
-    def ready(self) -> str:
-        """See to it that there is a card, and return what decides the last bits there."""
-
-    def told(self) -> str:
-        """Return what to tell of the card, once all is run."""
-
-
-@runtime_checkable
-class OnCard(Task, Protocol):
-    """Work that a graphics card can do."""
-
-    def on_card(self) -> CardTask:
-        """Return the same work for the card of this machine."""
 
 
 @runtime_checkable
@@ -128,7 +107,7 @@ def run_task(
     *,
     design: Grid,
     store: str | os.PathLike[str] | None = None,
-    on: Client | Literal["gpu"] | None = None,
+    on: Client | None = None,
     threads: int | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
     block: int | None = None,
@@ -146,15 +125,14 @@ def run_task(
         Folder on disk for the result, which need not exist. What is finished is there whatever happens, and the same
         call goes on from it.
     on
-        Client of a Dask cluster, or "gpu" for the graphics card of this machine; default this process.
+        Client of a Dask cluster that runs the blocks; default this process.
     threads
         Threads that share a block; default as many as this process may use cores, or one on a cluster.
     progress
         True or False for a bar, default a bar on a terminal; or a function of the number of variants that are there and
-        of all. A card tells of those under way, too.
+        of all.
     block
-        Largest number of variants in a block; default so many as take about a second, or five on a cluster, or as keep
-        a card busy.
+        Largest number of variants in a block; default so many as take about a second, or five on a cluster.
     coords
         Further coordinates.
 
@@ -167,8 +145,7 @@ def run_task(
     Raises
     ------
     CaseError
-        When the store holds something else or is being written to, when the cluster fails, or when there is no card
-        that can be used or the card cannot do this.
+        When `on` is no Dask client, when the store holds something else or is being written to, or when the cluster fails.
     OSError
         When the store cannot be written.
     Stopped
@@ -176,25 +153,23 @@ def run_task(
     """
     from rattlebox import __version__
 
-    bits = _core()
-    card: CardTask | None = None
-    if isinstance(on, str):
-        task = card = _on_card(task, on)
-        on, bits = None, card.ready()
+    if on is not None and not hasattr(on, "nthreads"):
+        raise Hint(
+            f"on = {on!r} is not a client of a Dask cluster",
+            "on = distributed.Client(...), or leave it out to run on this machine",
+        )
     threads = threads or (1 if on else cores())
     plan = Plan(
         dims=tuple(design.dims),
         shape=tuple(design.shape),
         outputs=task.outputs,
         coords={**design.coords(), **(coords or {})},
-        about={**task.describe(), "design": dict(design.describe()), "version": __version__, "core": bits},
+        about={**task.describe(), "design": dict(design.describe()), "version": __version__, "core": _core()},
     )
 
     _check_names(plan)
 
     def cut() -> Blocks:
-        if card:
-            return Blocks.of(plan.shape, card.side_by_side(_held(card.size, plan)))
         size = (block and _held(block, plan)) or _block_size(
             task, plan, on, 1 if isinstance(task, Chained) else threads
         )
@@ -210,19 +185,12 @@ def run_task(
             keeper = stack.enter_context(ThreadPoolExecutor(1))  # ends what it has begun when Ctrl-C comes
             tell(kept.done)
             todo = _chains(task, kept, plan.dims)
-
-            def part(done: float) -> None:
-                tell(kept.done + int(done))
-
-            if card:
-                results = _here(task, todo, threads, 1, part)
-            else:
-                results = _on_cluster(on, task, todo, threads) if on else _here(task, todo, threads, threads)
+            results = _on_cluster(on, task, todo, threads) if on else _here(task, todo, threads)
             stack.callback(results.close)
             for (number, _, _), values in results:
                 _heard(keeper.submit(kept.write, number, values))
                 tell(kept.done)
-            return kept.result().assign_attrs({"gpu": card.told()} if card else {})
+            return kept.result()
     except KeyboardInterrupt:
         raise Stopped(_how_to_go_on(sum(kept.done for kept in opened), task.size, store)) from None
 
@@ -250,15 +218,6 @@ def _check_names(plan: Plan) -> None:
     for name in plan.outputs:
         if name in inner:
             raise Hint(f"a function cannot be called {name}: studies hold something else by that name", "another name")
-
-
-def _on_card(task: Task, on: str) -> CardTask:
-    """The work for a card."""
-    if on != "gpu":
-        raise Hint(f"on = {on!r}", '"gpu", or a dask.distributed.Client')
-    if not isinstance(task, OnCard):
-        raise Hint('on = "gpu": a card cannot run this study', "threads of the processor, or a cluster")
-    return task.on_card()
 
 
 def _bits() -> str:
@@ -374,43 +333,23 @@ def _heard(future: Future[Any]) -> Any:
     return future.result()
 
 
-class _Ear:
-    """Tells a block whether to stop, and hears how much of it is done."""
-
-    def __init__(self, stop: threading.Event) -> None:
-        self.stop, self.done = stop, 0.0
-
-    def __call__(self, done: float = 0.0) -> bool:
-        self.done = done
-        return self.stop.is_set()
-
-
-def _here(
-    task: Task,
-    chains: Sequence[_Chain],
-    threads: int,
-    beside: int,
-    tell: Callable[[float], None] = lambda _: None,
-) -> Generator[tuple[Block, Values]]:
+def _here(task: Task, chains: Sequence[_Chain], threads: int) -> Generator[tuple[Block, Values]]:
     """Run chains, several beside each other, block after block, the next one while a result is being kept."""
     waiting = [(deque(chain.blocks), chain.before) for chain in chains if chain.blocks]
-    beside = max(1, min(beside, len(waiting)))
-    running: dict[Future[Values | None], tuple[deque[Block], _Ear]] = {}
+    beside = max(1, min(threads, len(waiting)))
+    running: dict[Future[Values | None], deque[Block]] = {}
     with _aside(beside) as (pool, stop):
 
         def submit(blocks: deque[Block], before: Values | None) -> None:
-            work = partial(_from(task, before), threads=threads // beside, cancelled=(ear := _Ear(stop)))
-            running[pool.submit(work, *blocks[0][1:])] = blocks, ear
+            work = partial(_from(task, before), threads=threads // beside, cancelled=stop.is_set)
+            running[pool.submit(work, *blocks[0][1:])] = blocks
 
         for _ in range(beside):
             if waiting:
                 submit(*waiting.pop(0))
         while running:
-            ended = wait(running, timeout=0.05, return_when=FIRST_COMPLETED).done  # with an ear for Ctrl-C
-            if not ended:
-                tell(sum(ear.done for _, ear in running.values()))
-            for future in ended:
-                (blocks, _), values = running.pop(future), _whole(future.result())
+            for future in wait(running, timeout=0.05, return_when=FIRST_COMPLETED).done:  # with an ear for Ctrl-C
+                blocks, values = running.pop(future), _whole(future.result())
                 block = blocks.popleft()
                 if blocks:
                     submit(blocks, _end(task, block, values))

@@ -109,9 +109,8 @@ def sensitivity(
     Examples
     --------
     >>> import rattlebox as rb
-    >>> from rattlebox.paper.seed import seed_case
     >>> bounds = {"damper.gap": ("0.1 mm", "2 mm"), "load.amplitude": ("1 kN", "5 kN")}
-    >>> found = rb.sensitivity(seed_case(duration=1.0), bounds, "impact_share", 64)
+    >>> found = rb.sensitivity(rb.reference_case(duration=1.0), bounds, "impact_share", 64)
     >>> found.total.dims
     ('measure', 'parameter')
     """

@@ -6,20 +6,30 @@ import errno
 import json
 import math
 import os
-import shutil
+import re
 import socket
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.owned_folder import (
+    MARKER,
+    DamagedError,
+    Marker,
+    damaged_files,
+    fill,
+    is_free,
+    read_marker,
+    write_marker,
+)
 from rattlebox.model.differences import differences
 from rattlebox.model.errors import CaseError
 
@@ -28,8 +38,13 @@ from .blocks import Blocks
 if TYPE_CHECKING:
     import xarray as xr
 
-FORMAT = 1
+FORMAT = 2
 """Number of the layout; stores with a higher one are refused."""
+
+KIND = "Rattlebox study"
+"""Kind of folder in the marker of a study."""
+
+_MAP_KIND = "Rattlebox map"
 
 Output = tuple[tuple[tuple[str, int], ...], Any, Mapping[str, Any]]
 """Further dimensions with their lengths, number type, attributes."""
@@ -37,8 +52,13 @@ Output = tuple[tuple[tuple[str, int], ...], Any, Mapping[str, Any]]
 JOURNAL = "trials.journal"
 """In which a design, which has no runs of its own, keeps its trials."""
 
-_PROGRESS, _MAP = IN_STORE = "progress", "map"
-"""Groups in a store beside the outputs."""
+_PROGRESS, _MAP = "progress", "map"
+
+IN_STORE = _PROGRESS, _MAP, MARKER
+"""Names in a store beside the outputs."""
+
+_PARTIAL = re.compile(r"(\d+|c|zarr)\.[0-9a-f]{32}\.partial")  # names that Zarr gives to files while it writes them
+_FOREIGN = "{} was not written by Rattlebox\n  try: move it out of this folder"
 
 
 @dataclass(frozen=True)
@@ -133,9 +153,9 @@ class Memory:
 class Store:
     """A study on disk, open for writing by this process alone.
 
-    Each variable is cut into chunks as the study is into blocks, so that a block is one file of each variable.
-    Files are written beside and renamed, and a block is marked finished after its last one: whatever ends the process,
-    what is marked is whole.
+    Each variable is cut into chunks as the study is into blocks, so that a block is one file of each variable. Every chunk
+    ends with a checksum. A block counts as computed if all its chunks are there and unchanged; any other block is computed
+    again.
 
     Parameters
     ----------
@@ -171,7 +191,7 @@ class Store:
         self._held.close()
 
     def write(self, block: int, values: Mapping[str, NDArray[Any]]) -> None:
-        """Put the result of a block on disk, then mark it finished.
+        """Write the result of a block to the disk.
 
         Raises
         ------
@@ -180,10 +200,12 @@ class Store:
         """
         region, sides = self.blocks.region(block), self.blocks.sides(block)
         with _telling(self.path):
-            for name in self._plan.outputs:
-                self._group[name][region] = values[name].reshape((*sides, *values[name].shape[1:]))
-            self.finished[block] = True
-            self._mask[...] = self.finished
+            if not (self.path / MARKER).is_file():
+                raise OSError(errno.ENOENT, "it was removed while the study ran")
+            for name, array in self._arrays.items():
+                (self.path / self._chunks.key(name, block)).unlink(missing_ok=True)  # it may be damaged
+                array[region] = values[name].reshape((*sides, *values[name].shape[1:]))
+        self.finished[block] = True
 
     @property
     def done(self) -> int:
@@ -192,52 +214,72 @@ class Store:
 
     def result(self) -> xr.Dataset:
         """Return all of it, read from disk when it is used."""
-        return _open(self.path, list(self._plan.outputs))
+        return _open_runs(self.path, _marker(self.path))
 
     def _open(self, cut: Callable[[], Blocks]) -> None:
         if (self.path / _PROGRESS / JOURNAL).exists():
             raise CaseError(f"{self.path} holds a design\n  try: another folder, or remove this one")
-        if (self.path / _PROGRESS / "finished" / "zarr.json").exists():
-            _check_format(self.path)
-            self._compare()
-            for left in self.path.rglob("*.partial"):  # of a process that was killed while it wrote
-                left.unlink(missing_ok=True)
+        marker = read_marker(self.path)
+        if marker and marker.complete:
+            self._compare(marker)
+            if damaged_files(self.path, marker):
+                marker = self._lay_out(_blocks(marker))
+            self._remove_partial()
         else:
-            self._create(cut())
-        self._group = _group(self.path, "r+")
-        self._mask = self._group[f"{_PROGRESS}/finished"]
-        self.finished: NDArray[np.bool_] = self._mask[...]
-        self.blocks = _blocks(self._group)
-
-    def _create(self, blocks: Blocks) -> None:
-        """Write all but the numbers; the mask comes last and says that the rest is there."""
-        import zarr
-
-        for left in (*self.path.iterdir(), *(self.path / _PROGRESS).iterdir()):  # of a process that was killed here
-            if left.name not in (_PROGRESS, "lock", "writer"):
-                shutil.rmtree(left) if left.is_dir() else left.unlink()
-        plan = self._plan
-        kept = {"format": FORMAT, "shape": blocks.shape, "box": blocks.box, "manifest": plan.manifest}
-        progress = zarr.create_group(self.path, path=_PROGRESS, attributes=kept)
-        plan.frame.to_zarr(self.path, mode="a", zarr_format=3, consolidated=False)
+            marker = self._lay_out(cut())
+        has_map(self.path)  # raises where it is damaged beyond repair
         group = _group(self.path, "r+")
+        # A block of nothing but missing values is written, too, so that each computed block has its files.
+        self._arrays = {name: group[name].with_config({"write_empty_chunks": True}) for name in self._plan.outputs}
+        self._chunks = _Chunks(self.path, marker)
+        self.blocks = self._chunks.blocks
+        self.finished: NDArray[np.bool_] = self._chunks.finished()
+
+    def _lay_out(self, blocks: Blocks) -> Marker:
+        """Write all but the numbers. The marker is complete once the rest is there."""
+        from rattlebox import __version__
+
+        earlier = read_marker(self.path) or Marker(KIND, __version__)
+        about = {"format": FORMAT, "shape": blocks.shape, "box": blocks.box, "manifest": self._plan.manifest}
+        for name in self._plan.outputs:
+            if os.path.lexists(self.path / name) and not any(file.startswith(f"{name}/") for file in earlier.files):
+                raise CaseError(_FOREIGN.format(self.path / name))
+        begun = Marker(KIND, __version__, earlier.identifier, about=about)
+        try:
+            return fill(self.path, begun, self._files(blocks))
+        except FileExistsError as error:
+            raise CaseError(str(error)) from None
+
+    def _files(self, blocks: Blocks) -> dict[str, bytes]:
+        """The files of a study before its first block."""
+        import zarr
+        from zarr.codecs import Crc32cCodec, ZstdCodec
+
+        plan, files = self._plan, _InMemory()
+        plan.frame.to_zarr(files.store, mode="a", zarr_format=3, consolidated=False)
+        group = zarr.open_group(files.store, mode="r+", use_consolidated=False)
         for name, dims, shape, kind, attributes in plan.arrays():
             group.create_array(
                 name,
                 shape=shape,
                 chunks=(*blocks.box, *shape[len(blocks.box) :]),
                 dtype=kind,
+                compressors=[ZstdCodec(), Crc32cCodec()],
                 fill_value=_missing(kind),
                 dimension_names=dims,
                 attributes=attributes,
             )
-        with warnings.catch_warnings():  # of the lock, and of a part of the format not agreed on that xarray asks for
-            warnings.simplefilter("ignore", zarr.errors.ZarrUserWarning)
-            zarr.consolidate_metadata(group.store)
-        progress.create_array("finished", shape=(len(blocks),), chunks=(len(blocks),), dtype="bool", fill_value=False)
+        return files.content()
 
-    def _compare(self) -> None:
-        there, here = _attributes(self.path)["manifest"], self._plan.manifest
+    def _remove_partial(self) -> None:
+        """Remove the files that Zarr was writing when its process was killed."""
+        for name in self._plan.outputs:
+            for left in (self.path / name).rglob("*.partial"):
+                if _PARTIAL.fullmatch(left.name):
+                    left.unlink(missing_ok=True)
+
+    def _compare(self, marker: Marker) -> None:
+        there, here = marker.about["manifest"], self._plan.manifest
         lines = differences(there, here)
         if not lines:
             return
@@ -245,6 +287,93 @@ class Store:
         if len(lines) == 1 and there["core"] != here["core"]:
             hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another folder"
         raise CaseError("\n".join([f"{self.path} holds another study", *lines, f"  try: {hint}"]))
+
+
+class _InMemory:
+    """A Zarr store in memory, from which the files of one on disk are made."""
+
+    def __init__(self) -> None:
+        from zarr.storage import MemoryStore
+
+        self._files: dict[str, Any] = {}
+        self.store = MemoryStore(self._files)
+
+    def content(self) -> dict[str, bytes]:
+        """Return the content of each file, by its path."""
+        import zarr
+
+        with warnings.catch_warnings():  # of a part of the format not agreed on that xarray asks for
+            warnings.simplefilter("ignore", zarr.errors.ZarrUserWarning)
+            zarr.consolidate_metadata(self.store)
+        return {name: buffer.to_bytes() for name, buffer in self._files.items()}
+
+
+class _Chunks:
+    """The files of the blocks of a study."""
+
+    def __init__(self, path: Path, marker: Marker) -> None:
+        self.blocks = _blocks(marker)
+        self._path = path
+        # "float64 step=3 mode=2": one further dimension for each word after the first
+        self._further = {name: len(text.split()) - 1 for name, text in marker.about["manifest"]["outputs"].items()}
+        self._keys: dict[str, int] = {}
+
+    def key(self, name: str, block: int) -> str:
+        """Return the path of the chunk of a variable."""
+        place = np.unravel_index(block, self.blocks.counts) if self.blocks.shape else ()
+        return "/".join([name, "c", *(str(int(i)) for i in place), *"0" * self._further[name]])
+
+    def is_there(self, block: int) -> bool:
+        """Return whether all chunks of a block are there and unchanged."""
+        return all(_is_unchanged(self._path / self.key(name, block)) for name in self._further)
+
+    def finished(self) -> NDArray[np.bool_]:
+        """Return for each block whether it is there."""
+        return np.array([self.is_there(block) for block in range(len(self.blocks))], bool)
+
+    def block_of(self, key: str) -> int | None:
+        """Return the block to which a path belongs; None for other files."""
+        name, _, rest = key.partition("/c")
+        if name not in self._further or not re.fullmatch(r"(/\d+)*", rest):
+            return None
+        place = [int(i) for i in rest.split("/")[1:]][: len(self.blocks.shape)]
+        return int(np.ravel_multi_index(place, self.blocks.counts)) if place else 0
+
+
+def _is_unchanged(chunk: Path) -> bool:
+    """Return whether the checksum at the end of a chunk fits it."""
+    import google_crc32c
+
+    try:
+        content = chunk.read_bytes()
+    except OSError:
+        return False
+    return len(content) > 4 and google_crc32c.value(content[:-4]) == int.from_bytes(content[-4:], "little")
+
+
+@cache
+def _computed_only() -> Any:
+    """Return the class of a Zarr store on disk that hides the blocks that are not computed, or are damaged."""
+    from zarr.storage import LocalStore, WrapperStore
+
+    class ComputedOnly(WrapperStore[LocalStore]):
+        def __init__(self, store: Any, chunks: _Chunks) -> None:
+            super().__init__(store)
+            self._chunks = chunks
+            self._there: dict[int, bool] = {}
+
+        def _with_store(self, store: Any) -> Any:
+            return type(self)(store, self._chunks)
+
+        async def get(self, key: str, prototype: Any, byte_range: Any = None) -> Any:
+            block = self._chunks.block_of(key)
+            if block is None:
+                return await super().get(key, prototype, byte_range)
+            if not self._there.get(block):
+                self._there[block] = self._chunks.is_there(block)
+            return await super().get(key, prototype, byte_range) if self._there[block] else None
+
+    return ComputedOnly
 
 
 @contextmanager
@@ -265,15 +394,23 @@ def taken(path: Path) -> Iterator[Path]:
     """
     from filelock import FileLock, Timeout
 
+    from rattlebox import __version__
+
     progress = path / _PROGRESS
-    if path.exists() and not progress.is_dir():
-        if not path.is_dir():
-            raise CaseError(f"{path} is a file; a study needs a folder\n  try: another name, as study.zarr")
-        if any(path.iterdir()):
-            raise CaseError(f"{path} holds other files\n  try: a folder that does not exist yet, as study.zarr")
-    lock, name = FileLock(progress / "lock"), progress / "writer"
-    with _telling(path):
-        progress.mkdir(parents=True, exist_ok=True)
+    if path.exists() and not path.is_dir():
+        raise CaseError(f"{path} is a file; a study needs a folder\n  try: another name, as study.zarr")
+    with _telling(path), readable(path):
+        path.mkdir(parents=True, exist_ok=True)
+        if read_marker(path) is None:
+            if not is_free(path):
+                raise CaseError(
+                    f"{path} holds other files, or a study of an earlier version\n"
+                    "  try: a folder that does not exist yet, as study.zarr"
+                )
+            write_marker(path, Marker(KIND, __version__), new=True)
+        _check(path)
+        progress.mkdir(exist_ok=True)
+        lock, name = FileLock(progress / "lock"), progress / "writer"
         try:
             lock.acquire(blocking=False)
         except Timeout:
@@ -355,16 +492,40 @@ def keep_map(found: xr.Dataset, kind: str, path: str | os.PathLike[str] | None) 
     OSError
         When the folder cannot be written.
     """
+    from rattlebox import __version__
+
     found = found.assign_attrs(study=kind)
     if path is not None:
-        new, old = Path(path) / _PROGRESS / _MAP, Path(path) / _MAP
-        with _telling(Path(path)):
-            shutil.rmtree(new, ignore_errors=True)
-            kept = _with_texts(found).drop_encoding().assign_attrs(variables=list(found.data_vars))
-            kept.to_zarr(new, zarr_format=3, consolidated=False)
-            shutil.rmtree(old, ignore_errors=True)
-            new.rename(old)
+        files = _InMemory()
+        kept = _with_texts(found).drop_encoding().assign_attrs(variables=list(found.data_vars))
+        kept.to_zarr(files.store, zarr_format=3, consolidated=False)
+        with taken(Path(path)), _telling(Path(path)):
+            try:
+                fill(Path(path) / _MAP, Marker(_MAP_KIND, __version__), files.content())
+            except FileExistsError as error:
+                raise CaseError(str(error)) from None
     return found
+
+
+def add_attributes(path: str | os.PathLike[str], attributes: Mapping[str, str]) -> None:
+    """Add attributes to a study on disk; `open_study` returns them with those of its plan.
+
+    Parameters
+    ----------
+    path
+        Folder of the study.
+    attributes
+        Attributes that are known once the study has run.
+
+    Raises
+    ------
+    OSError
+        When the folder cannot be written.
+    """
+    if attributes:
+        with taken(Path(path)), _telling(Path(path)):
+            marker = _marker(path)
+            write_marker(Path(path), replace(marker, about={**marker.about, "added": dict(attributes)}))
 
 
 @dataclass(frozen=True)
@@ -397,8 +558,24 @@ class Progress:
 
 
 def has_map(path: str | os.PathLike[str]) -> bool:
-    """Tell whether a study is a ready map that is finished."""
-    return (Path(path) / _MAP).is_dir()
+    """Return whether a study is a ready map that is finished.
+
+    Parameters
+    ----------
+    path
+        Folder of the study.
+
+    Raises
+    ------
+    CaseError
+        If the list of the files of the map is damaged.
+    """
+    folder = Path(path) / _MAP
+    try:
+        marker = read_marker(folder)
+    except DamagedError as error:
+        raise CaseError(f"{folder} is damaged: {error}\n  try: remove {folder}, and give its command again") from None
+    return marker is not None and marker.complete
 
 
 def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
@@ -422,19 +599,41 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
         When there is no study.
     """
     if has_map(path):
-        return _open(Path(path) / _MAP)
+        return _open_map(Path(path) / _MAP)
     with readable(path):
-        _check_format(path)
-        return _open(path, list(_attributes(path)["manifest"]["outputs"]))
+        marker = _marker(path)
+        return _open_runs(Path(path), marker).assign_attrs(marker.about.get("added", {}))
 
 
-def _open(path: str | os.PathLike[str], names: list[str] | None = None) -> xr.Dataset:
-    """Variables in their order."""
+def _open_map(folder: Path) -> xr.Dataset:
     import xarray as xr
 
+    with readable(folder):
+        marker = read_marker(folder)
+        if marker and (damaged := damaged_files(folder, marker)):
+            raise CaseError(
+                f"{folder} is damaged: {damaged[0]} is lost or has changed\n"
+                "  try: its command again, which makes the map anew from the runs"
+            )
+        data = xr.open_zarr(folder, chunks=None)
+        found: xr.Dataset = data[data.attrs.pop("variables")]
+        return found
+
+
+def _open_runs(path: Path, marker: Marker) -> xr.Dataset:
+    """Variables in their order, without the blocks that are not computed or damaged."""
+    import xarray as xr
+    from zarr.storage import LocalStore
+
+    if damaged := damaged_files(path, marker):
+        raise CaseError(
+            f"{path} is damaged: {damaged[0]} is lost or has changed\n"
+            "  try: the command that began it, which repairs it and computes only what is missing"
+        )
     with readable(path):
-        data: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
-        return data[names or data.attrs.pop("variables")]
+        store = _computed_only()(LocalStore(path, read_only=True), _Chunks(path, marker))
+        data: xr.Dataset = xr.open_zarr(store, chunks=None)
+        return data[list(marker.about["manifest"]["outputs"])]
 
 
 def progress_of(path: str | os.PathLike[str]) -> Progress:
@@ -451,11 +650,13 @@ def progress_of(path: str | os.PathLike[str]) -> Progress:
         When there is no study.
     """
     with readable(path):
-        _check_format(path)
-        group = _group(path, "r")
-        files = (Path(path) / _PROGRESS / "finished").rglob("*")
-        last = max(file.stat().st_mtime for file in files)
-        return Progress(_blocks(group), group[f"{_PROGRESS}/finished"][...], last)
+        marker = _marker(path)
+        chunks = _Chunks(Path(path), marker)
+        finished = chunks.finished()
+        (name, *_) = marker.about["manifest"]["outputs"]
+        files = [Path(path) / chunks.key(name, block) for block in np.flatnonzero(finished).tolist()]
+        last = max((file.stat().st_mtime for file in files), default=0.0)
+        return Progress(chunks.blocks, finished, last)
 
 
 def _group(path: str | os.PathLike[str], mode: Literal["r", "r+"]) -> Any:
@@ -464,23 +665,27 @@ def _group(path: str | os.PathLike[str], mode: Literal["r", "r+"]) -> Any:
     return zarr.open_group(path, mode=mode, use_consolidated=False)
 
 
-def _attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """What is told of the study beside its progress."""
-    attributes: dict[str, Any] = json.loads((Path(path) / _PROGRESS / "zarr.json").read_bytes())["attributes"]
-    return attributes
-
-
-def _check_format(path: str | os.PathLike[str]) -> None:
-    if not (Path(path) / _PROGRESS / "finished" / "zarr.json").is_file():
-        what = "is not a study" if Path(path).exists() else "is not there"
-        raise CaseError(f"{path} {what}\n  try: the folder that 'rattlebox sweep -o' wrote")
-    if _attributes(path)["format"] > FORMAT:
+def _check(path: str | os.PathLike[str]) -> Marker | None:
+    """Return the marker of a study, which may not be complete; raise if it belongs to something else."""
+    marker = read_marker(Path(path))
+    if marker and marker.name not in (KIND, ""):
+        raise CaseError(f"{path} is no study, but a {marker.name}\n  try: another folder")
+    if marker and marker.about.get("format", 0) > FORMAT:
         raise CaseError(f"{path} was written by a later Rattlebox\n  try: update Rattlebox")
+    return marker
 
 
-def _blocks(group: Any) -> Blocks:
-    kept = group[_PROGRESS].attrs
-    return Blocks(tuple(kept["shape"]), tuple(kept["box"]))
+def _marker(path: str | os.PathLike[str]) -> Marker:
+    """Return the marker of a study whose files are there."""
+    marker = _check(path)
+    if marker and marker.complete:
+        return marker
+    what = "is not a study" if Path(path).exists() else "is not there"
+    raise CaseError(f"{path} {what}\n  try: the folder that 'rattlebox sweep -o' wrote")
+
+
+def _blocks(marker: Marker) -> Blocks:
+    return Blocks(tuple(marker.about["shape"]), tuple(marker.about["box"]))
 
 
 def _missing(kind: np.dtype[Any]) -> Any:

@@ -133,7 +133,7 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
                 "this is a case, not a study of one", f'rattlebox run {source}, or a study with case.file = "{source}"'
             )
         kind = given.get("kind", "sweep")
-        if kind not in KINDS:
+        if not isinstance(kind, str) or kind not in KINDS:
             raise Hint(f"kind = {kind!r}: there is no such kind of study", nearest(str(kind), KINDS))
         given = {name: _NESTED.get(name, _as_it_is)(value) for name, value in given.items()}
         study = KINDS[kind].model_validate(given)

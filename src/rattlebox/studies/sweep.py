@@ -14,6 +14,7 @@ from .axes import Design
 from .granular import GranularTask
 from .measures import MEASURES, check_names
 from .runner import run_task
+from .store import add_attributes
 from .studytables import checked
 from .task import SweepTask
 
@@ -73,7 +74,7 @@ def sweep(
     threads
         Threads of this process; default as many as there are cores. Results do not depend on it, to the last bit.
     on
-        A dask.distributed Client to run blocks of variants on instead, or "gpu" for the graphics card of this machine.
+        Client of a Dask cluster (`dask.distributed.Client`) that runs the blocks of variants; default this process.
     store
         Folder of a Zarr store for results: what is finished is on disk, and the same call goes on after a stop.
     progress
@@ -82,21 +83,20 @@ def sweep(
     Returns
     -------
     xarray.Dataset
-        Over the axes: `status` and each measure with its unit; NaN where a run did not finish. A variant with particles in
+        Over the axes: `status` and each measure with its unit; NaN where a run did not finish, or ended
+        with the status "energy_error" (but `closure`). A variant with particles in
         space whose particles do not fit or settle, or whose step is too long, has the status "refused"; `attrs["refused"]`
         says why the first of them was. There `warnings` tells of each run in what it left its bounds (`flag_meanings`).
 
     Raises
     ------
     CaseError
-        When an argument does not fit, alone or to the case, before anything runs; when there is no card that can be used;
-        when a function of a Run gives no number.
+        When an argument does not fit, alone or to the case, before anything runs; when a function of a Run gives no number.
 
     Examples
     --------
     >>> import rattlebox as rb
-    >>> from rattlebox.paper.seed import seed_case
-    >>> case = seed_case(duration=1.0)
+    >>> case = rb.reference_case(duration=1.0)
     >>> maps = rb.sweep(case, {"damper.gap": rb.linspace("0.2 mm", "1 mm", 5)}, ["impacts", "impact_share"])
     >>> maps.impacts.dims
     ('damper.gap',)
@@ -127,7 +127,12 @@ def sweep(
         progress=progress,
         block=task.block,
     )
-    return found.assign_attrs(_refused(task, found)) if isinstance(task, GranularTask) else found
+    if not isinstance(task, GranularTask):
+        return found
+    refused = _refused(task, found)
+    if store is not None:
+        add_attributes(store, refused)
+    return found.assign_attrs(refused)
 
 
 def _refused(task: GranularTask, found: xarray.Dataset) -> dict[str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.analysis.granular import LEAST_SAMPLES
-from rattlebox.engines import gpu_impact
 from rattlebox.engines.batch import Look, run_block
 from rattlebox.engines.pack import Batch, Packed, pack_parts
 from rattlebox.engines.simulate import simulate_many
@@ -32,7 +31,6 @@ Extra = tuple[tuple[str, int], ...]
 Values = Mapping[str, NDArray[Any]]
 UserMeasure = Callable[["Run"], float]
 _UNHEARD = 0.05  # s, after which a stop is asked for between runs
-_CARD_BLOCK = 2**18  # variants: some seconds of a card
 
 
 @dataclass
@@ -55,8 +53,6 @@ class SweepTask:
         Of the structure, that is watched; default the first damper's.
     motion, last, state
         Keep samples of the motion, the last impacts, the state at the end.
-    gpu
-        Run on the graphics card.
     """
 
     case: Case
@@ -69,32 +65,6 @@ class SweepTask:
     motion: bool = False
     last: int = 0
     state: bool = False
-    gpu: bool = False
-    _about: str = field(default="", init=False)
-
-    def on_card(self) -> SweepTask:
-        """Return the same work for the card of this machine.
-
-        Raises
-        ------
-        CaseError
-            When a card cannot do it.
-        """
-        if self.own:
-            raise Hint(
-                f'on = "gpu": {next(iter(self.own))} is a function of a Run, which a card does not make',
-                "measures by name (rb.MEASURES), or the processor",
-            )
-        return replace(self, gpu=True)
-
-    def ready(self) -> str:
-        """See to it that there is a card with compiled kernels, and return what decides the last bits there."""
-        bits, self._about = gpu_impact.ready()
-        return bits
-
-    def told(self) -> str:
-        """Return what to tell of the card."""
-        return self._about
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
@@ -108,10 +78,6 @@ class SweepTask:
     def block(self) -> int | None:
         """Largest number of variants in a block; None for what takes about a second."""
         return None
-
-    def side_by_side(self, most: int) -> int:
-        """Return the largest number of variants in a block on a card; a block should hold at most so many."""
-        return min(_CARD_BLOCK, most)
 
     @property
     def named(self) -> list[str]:
@@ -195,7 +161,7 @@ class SweepTask:
         stop: int,
         *,
         threads: int = 1,
-        cancelled: Callable[..., bool] | None = None,
+        cancelled: Callable[[], bool] | None = None,
     ) -> Values | None:
         """Run variants start to stop.
 
@@ -206,7 +172,7 @@ class SweepTask:
         threads
             How many work at once.
         cancelled
-            Asked some fifty times a second, on a card with the number of variants done; True stops.
+            Asked some fifty times a second; True stops.
 
         Returns
         -------
@@ -214,8 +180,8 @@ class SweepTask:
             Each output, (stop - start, ...); None when it was stopped.
         """
 
-        def go_on(done: int) -> bool:
-            return not (cancelled and (cancelled(done) if self.gpu else cancelled()))
+        def go_on(*_: int) -> bool:
+            return not (cancelled and cancelled())
 
         result = self._measured(start, stop, threads, go_on)
         if result is None or not self.own:
@@ -223,7 +189,7 @@ class SweepTask:
         columns = {name: np.full(stop - start, np.nan) for name in self.own}
         first, count = start, threads
         while first < stop:
-            if not go_on(first - start):
+            if not go_on():
                 return None
             began = perf_counter()
             members = range(first, min(first + count, stop))
@@ -263,9 +229,7 @@ class SweepTask:
             first, last = (start, stop) if numbers is None else np.searchsorted(numbers, (start, stop)).tolist()
             if first == last:
                 continue
-            values = run_block(
-                part.packed, part.shape, first, last, look, threads=threads, progress=go_on, gpu=self.gpu
-            )
+            values = run_block(part.packed, part.shape, first, last, look, threads=threads, progress=go_on)
             if values is None or numbers is None:
                 return values
             for name, array in values.items():

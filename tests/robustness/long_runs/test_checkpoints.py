@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox._util.owned_folder import MARKER
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.dem_follow import Journey
 from rattlebox.model.differences import differences
@@ -208,7 +209,10 @@ def test_two_processes_cannot_share_a_checkpoint(tmp_path: Path) -> None:
 def test_what_a_killed_process_left_unfinished_is_removed(tmp_path: Path) -> None:
     """A state that was being written when its process was killed goes with the next run; other files stay."""
     file = tmp_path / "run.checkpoint"
-    left, other = tmp_path / ".run.checkpoint.ab3_xyz9.checkpoint", tmp_path / ".run.2.checkpoint.ab3_xyz9.checkpoint"
+    left, other = (
+        tmp_path / ".run.checkpoint.ab3_xyz9.partial.checkpoint",
+        tmp_path / ".run.2.checkpoint.ab3_xyz9.checkpoint",
+    )
     for path in (left, other):
         path.write_bytes(b"half of it")
     assert rb.simulate(case(duration="1 ms"), checkpoint=file, snapshots=tmp_path / "run.vtkhdf").ok
@@ -415,7 +419,7 @@ def test_a_particle_that_leaves_is_told(tmp_path: Path) -> None:
     told = run.message.removeprefix(where).split()
     assert float(told[0]) == pytest.approx(40, rel=0.1)
     step = run.arrays.figures["step"]
-    assert f"The step was {step:.4g} s. The last checkpoint is of t = 0 s, in {file}." in run.message
+    assert f"The step was {step:.4g} s. The last checkpoint is of t = 0 s, in {file.name}." in run.message
     time_told = float(run.message.split("at t = ")[1].split()[0])
     assert 0.012 / 40 < time_told < 0.0185 / 40 + 3 * step
 
@@ -548,7 +552,7 @@ def test_the_command_goes_on(number: int, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert "going on from out/run.checkpoint" in done.stderr
     assert "written to out: run.vtkhdf, run.nc" in done.stdout
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"run.nc", "run.vtkhdf"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {MARKER, "run.nc", "run.vtkhdf"}
     assert len(Snapshots(tmp_path / "out/run.vtkhdf")) == 11
 
 

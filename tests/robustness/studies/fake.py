@@ -8,10 +8,14 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rattlebox._util.owned_folder import read_marker
+from rattlebox.studies.store import progress_of
 
 
 @dataclass
@@ -80,6 +84,17 @@ class Logistic:
             x = (self.grid.first + 0.4 * number / self.size) * x * (1 - x)
         orbit = np.stack([x, x**2, x**3], axis=1).astype("f4")
         return {"value": x, "status": (number % 7 == 0).astype("i1"), "orbit": orbit}
+
+
+def done_in(store: Path) -> int:
+    """Return how many variants a store holds, which may not have been made yet."""
+    return progress_of(store).done if is_made(store) else 0
+
+
+def is_made(store: Path) -> bool:
+    """Return whether a store waits for its first block, or has more."""
+    marker = read_marker(store)
+    return marker is not None and marker.complete
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ import rattlebox as rb
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.store import progress_of
 
+from .fake import done_in
 from .test_cluster import running_scheduler, worker
 
 AMPLITUDE = "structure.motion.amplitude"
@@ -62,7 +63,7 @@ def test_killed_on_the_way(after: int, tmp_path: Path) -> None:
     store = tmp_path / "study.zarr"
     process = subprocess.Popen([sys.executable, "-c", KILLED], cwd=tmp_path)
     until = time.monotonic() + 60
-    while not (store / "progress/finished/c/0").exists() or progress_of(store).done < after:
+    while done_in(store) < after:
         assert time.monotonic() < until and process.poll() is None
         time.sleep(0.002)
     process.kill()

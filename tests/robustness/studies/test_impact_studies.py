@@ -20,6 +20,8 @@ from rattlebox.studies.store import open_study, progress_of
 from rattlebox.studies.studyfile import read_study
 from rattlebox.studies.task import SweepTask
 
+from .fake import done_in
+
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
 STUDY = f"""\
 measure = ["impacts", "impact_share"]
@@ -47,7 +49,7 @@ def test_a_killed_study_goes_on(tmp_path: Path) -> None:
     store = tmp_path / "study.zarr"
     process = subprocess.Popen([sys.executable, "-c", SMALL_BLOCKS], cwd=tmp_path)
     until = time.monotonic() + 30
-    while not (store / "progress/finished/c/0").exists() and time.monotonic() < until:
+    while not done_in(store) and time.monotonic() < until:
         time.sleep(0.01)
     process.kill()
     process.wait()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import pytest
 import xarray as xr
 
 import rattlebox as rb
+from rattlebox._util.owned_folder import MARKER, read_marker, write_marker
 from rattlebox.cli.show import show_study
 from rattlebox.studies.runner import run_task
 from rattlebox.studies.store import open_study, progress_of
@@ -139,20 +141,28 @@ def test_folders_of_other_things_are_refused(tmp_path: Path) -> None:
 
 def test_a_later_format_is_refused(tmp_path: Path) -> None:
     """A store of a later layout is neither read nor written."""
-    study(tmp_path / "study.zarr")
-    kept = tmp_path / "study.zarr" / "progress" / "zarr.json"
-    kept.write_text(kept.read_text().replace('"format": 1', '"format": 2'))
+    store = tmp_path / "study.zarr"
+    study(store)
+    marker = read_marker(store)
+    assert marker
+    write_marker(store, replace(marker, about={**marker.about, "format": 3}))
     for use in (study, open_study, progress_of):
         with pytest.raises(rb.CaseError, match="later Rattlebox"):
-            use(tmp_path / "study.zarr")
+            use(store)
 
 
 def test_a_store_that_was_half_made_is_made_again(tmp_path: Path) -> None:
-    """A store whose maker was killed before its last file is begun anew."""
-    study(tmp_path / "study.zarr")
-    shutil.rmtree(tmp_path / "study.zarr" / "progress" / "finished")
-    (tmp_path / "study.zarr" / "value" / "zarr.json").unlink()
-    assert bits(study(tmp_path / "study.zarr")) == bits(study())
+    """A store whose maker was killed before its last file is begun anew, also by another study."""
+    for again in (Logistic(), Logistic(Grid(shape=(4, 10)))):
+        store = tmp_path / f"{again.grid.shape[0]}.zarr"
+        study(store)
+        marker = read_marker(store)
+        assert marker
+        write_marker(store, replace(marker, complete=False, files=dict.fromkeys(marker.files, "")))
+        (store / "value" / "zarr.json").unlink()
+        for name in ("value", "status", "orbit"):
+            shutil.rmtree(store / name / "c")
+        assert bits(study(store, again)) == bits(study(task=again))
 
 
 def test_a_full_disk_is_told_and_what_is_there_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -164,7 +174,7 @@ def test_a_full_disk_is_told_and_what_is_there_goes_on(tmp_path: Path, monkeypat
     def fill(path: Path, value: Any, exclusive: bool = False) -> int:
         nonlocal written
         written += 1
-        if written > 40:
+        if written > 10:
             raise OSError(errno.ENOSPC, "No space left on device")
         return put(path, value, exclusive)
 
@@ -200,15 +210,76 @@ def test_a_task_that_fails_is_not_hidden(tmp_path: Path) -> None:
     assert bits(study(tmp_path / "study.zarr")) == bits(study())
 
 
-@pytest.mark.parametrize(
-    "name", ["progress/zarr.json", "progress/finished/c/0", "zarr.json", "value/zarr.json"], ids=lambda name: name
-)
-def test_a_damaged_store_is_told(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Files that were cut off are told with the folder, by what shows a study and by what goes on with it."""
+@pytest.mark.parametrize("name", ["zarr.json", "value/zarr.json", "gap/zarr.json", "gap/c/0", "material/c/0"])
+@pytest.mark.parametrize("how", ["cut", "changed", "emptied", "removed"])
+def test_damage_of_the_fixed_part_is_reported_and_repaired(name: str, how: str, tmp_path: Path) -> None:
+    """A damaged description or axis is reported by what reads a study; the command that began it repairs it."""
+    store = tmp_path / "study.zarr"
+    before = bits(study(store))
+    damage(store / name, how)
+    for use in (open_study, show_study):
+        with pytest.raises(rb.CaseError, match=f"{name} is lost or has changed\n  try: the command that began it"):
+            use(store)
+    again = run_task(Logistic(broken=True), design=Grid(), store=store, progress=False)  # which computes nothing
+    assert bits(again) == before
+    xr.testing.assert_equal(again.load(), study())
+
+
+@pytest.mark.parametrize("how", ["cut", "changed"])
+def test_a_damaged_marker_is_reported(how: str, tmp_path: Path) -> None:
+    """Without its list of files a study is not touched."""
     store = tmp_path / "study.zarr"
     study(store)
-    damaged = store / name
-    damaged.write_bytes(damaged.read_bytes()[: damaged.stat().st_size // 2])
-    for use in (study, show_study):
+    damage(store / MARKER, how)
+    before = {path: path.read_bytes() for path in store.rglob("*") if path.is_file()}
+    for use in (study, open_study, show_study):
         with pytest.raises(rb.CaseError, match=r"study.zarr is damaged: .*\n  try: a copy of it"):
             use(store)
+    assert {path: path.read_bytes() for path in store.rglob("*") if path.is_file()} == before
+
+
+@pytest.mark.parametrize("how", ["cut", "changed", "emptied", "removed"])
+def test_a_damaged_block_counts_as_not_computed(how: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A lost or changed chunk of any variable makes all of its block missing, until the same command computes it again."""
+    store = tmp_path / "study.zarr"
+    task = Logistic(Grid(shape=(6, 14)))
+    before = bits(study(store, task))
+    for name, block in (("value", 4), ("status", 0), ("orbit", 11)):
+        damage(store / name / "c" / str(block // 2) / str(block % 2) / ("0" if name == "orbit" else ""), how)
+        assert progress_of(store).done == 84 - 7
+        data = open_study(store)
+        missing = np.zeros((6, 14), bool)
+        missing[block // 2, 7 * (block % 2) : 7 * (block % 2) + 7] = True
+        assert np.array_equal(data.status.values == -128, missing)
+        assert np.array_equal(np.isnan(data.value.values), missing)
+        assert np.array_equal(np.isnan(data.orbit.values).all(axis=2), missing)
+        show_study(store)
+        assert "77 of 84 variants" in capsys.readouterr().out
+        seen: list[int] = []
+        run_task(task, design=task.grid, store=store, progress=lambda done, total, seen=seen: seen.append(done))
+        assert (seen[0], seen[-1]) == (77, 84)
+        assert bits(open_study(store)) == before
+
+
+def test_a_block_of_missing_values_is_kept(tmp_path: Path) -> None:
+    """A block whose values are all not-a-number is computed once."""
+
+    class Nothing(Logistic):
+        def run(self, start: int, stop: int, **options: Any) -> Any:
+            return {name: values * np.nan for name, values in super().run(start, stop, **options).items()} | {
+                "status": np.full(stop - start, -128, "i1")
+            }
+
+    study(tmp_path / "study.zarr", Nothing())
+    assert progress_of(tmp_path / "study.zarr").done == 60
+
+
+def damage(file: Path, how: str) -> None:
+    """Damage a file."""
+    content = bytearray(file.read_bytes())
+    if how == "removed":
+        file.unlink()
+        return
+    if how == "changed":
+        content[len(content) // 2] ^= 4
+    file.write_bytes(content[: {"cut": len(content) // 2, "changed": None, "emptied": 0}[how]])

@@ -115,14 +115,6 @@ def test_complex_power_of_mass_dashpot_and_spring(mass, stiffness):
     assert power.effective_mass.attrs == {"units": "kg", "long_name": "effective mass"}
 
 
-def test_complex_power_when_cycles_do_not_end_on_samples():
-    """Cycles that begin between two samples still give the mass, to the second order of the sampling step."""
-    for samples, allowed in ((40.5, 1e-3), (400.5, 1e-5)):
-        time = np.arange(0, 3.0, 1 / (8.0 * samples))
-        power = complex_power(time, *driven(time, 8.0, mass=1.2, damping=5.0), frequency=8.0)
-        assert float(power.effective_mass) == pytest.approx(1.2, rel=allowed)
-
-
 def test_complex_power_of_a_simulated_damper():
     """The power that a damper in periodic motion takes up, times a cycle, is what its impacts lose in the cycle."""
     frequency, amplitude = 10.0, 1e-3

@@ -50,7 +50,7 @@ def test_a_case_with_particles_runs_from_its_file(tmp_path: Path) -> None:
         assert said in told
     for said in ("particle-steps a second", "limited by the contact of glass and glass", "moduli are divided by 100"):
         assert said in told
-    names = {path.name for path in (tmp_path / "out").iterdir()}
+    names = {path.name for path in (tmp_path / "out").iterdir()} - {"rattlebox.json"}
     assert {"run.nc", "motion.csv", "energy.csv", "particles.csv", "motion.png", "energy.png"} <= names
     assert rb.load(tmp_path / "out" / "run.nc").ok
 
@@ -125,7 +125,7 @@ def test_only_snapshots_that_are_asked_for_are_written(tmp_path: Path) -> None:
     done = run(tmp_path, "--no-figures", case=CASE.replace('rate = "5 kHz"', 'rate = "5 kHz", snapshots = []'))
     assert done.returncode == 0, done.stderr
     assert done.stdout.endswith("run.nc\n")
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"run.nc"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"rattlebox.json", "run.nc"}
 
 
 def test_files_that_collide_are_refused(tmp_path: Path) -> None:

@@ -343,9 +343,9 @@ def test_an_open_ledger_is_a_status() -> None:
         simulate(alone, structure=rb.Fixed(), duration=0.02, output=rb.Output(), method=rb.Dem(dt=dt))
         for dt in ("2.8 us", "1 us")
     )
-    assert (long.status, short.status) == ("ledger_open", "finished")
+    assert (long.status, short.status) == ("energy_error", "finished")
     assert 0.01 < long.closure < 0.1
-    assert "its energy ledger closes only to 0.04" in long.message
+    assert "0.04" in long.message
     assert short.closure < 0.01
 
 
@@ -359,7 +359,7 @@ def test_laws_that_give_no_rebound_are_told(ending: str) -> None:
     assert run.status == "no_rebound"
     assert "Particle 0, in 'damper', was struck at 20 m/s" in run.message
     assert np.isfinite(run.arrays.position).all()
-    assert not any("warning" in note for note in run.arrays.notes)
+    assert not any("warning: only" in note or "overlaps reach" in note for note in run.arrays.notes)
 
 
 @pytest.mark.parametrize("how", ["ctrl-c", "false"])
@@ -459,9 +459,8 @@ JUST_TOUCHING: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("engine", ["Dem", "DemWide"])
 @pytest.mark.parametrize("law", JUST_TOUCHING)
-def test_particles_may_just_touch_at_the_start(law: str, engine: str) -> None:
+def test_particles_may_just_touch_at_the_start(law: str) -> None:
     """Heaps of balls that touch each other and the walls to the last digit move as those a little apart do."""
     rng = np.random.default_rng(1)
     kicks = rng.normal(0, 0.1, (27, 3))
@@ -478,7 +477,7 @@ def test_particles_may_just_touch_at_the_start(law: str, engine: str) -> None:
         case = rb.Case(structure=rb.Fixed(), damper=made, duration=1e-3, method=rb.Dem(dt="1 us"))
         packed, _, _ = pack_dem(case)
         packed["cavities"][0]["velocity"] = kicks
-        dem = getattr(core(), engine)(packed)
+        dem = core().Dem(packed)
         assert dem.run(300)
         return dem.state()["cavities"][0]["velocity"]
 
@@ -515,3 +514,18 @@ def test_a_structure_lighter_than_its_particle_gives_it_back_what_it_should(mass
     assert run.arrays.counts["first_touches_wall"] == 1
     assert run.arrays.figures["steps_per_contact"] >= 40
     assert apart == pytest.approx(0.7, abs=1e-3)
+
+
+def test_particles_that_float_take_up_no_energy_while_the_base_shakes() -> None:
+    """Particles that nothing touches keep their energy as seen from outside, though the base ends at another speed."""
+    alone = damper(
+        particles=rb.Particles(material="steel", diameter="4 mm"),
+        packing=rb.Positions(positions=[[0, 0, 0]], velocities=[[0.01, 0, 0]]),
+        gravity=(0, 0, 0),
+    )
+    motion = [rb.Harmonic(amplitude="0.1 mm", frequency=frequency) for frequency in ("40 Hz", "67 Hz")]
+    run = simulate(alone, structure=rb.Shaker(motion=motion), duration=0.1)
+    assert not run.arrays.contacts.any()
+    found = rb.analysis.shaken_cavity(run, frequency=40)
+    mass, speed = run.arrays.particle_mass[0], found.attrs["velocity_amplitude"]
+    assert abs(float(found.stored_power)) < 1e-4 * mass * speed**2 * 40

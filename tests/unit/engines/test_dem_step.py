@@ -10,12 +10,20 @@ import pytest
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 import rattlebox as rb
+from rattlebox.engines.core import core
 from rattlebox.engines.dem import pack_dem
 from rattlebox.engines.dem_settle import insert, push_apart
-from rattlebox.engines.dem_step import choose_step, contact_time, expected_speeds, limits, outcome
+from rattlebox.engines.dem_step import choose_step, expected_speeds, limits, outcome
 from rattlebox.model.packing import check_packing
 
 STEEL = rb.materials()["steel"]
+
+
+def contact_time(law: str, values: dict[str, float], speed: float) -> float:
+    """Return how long an undamped contact lasts, from the core."""
+    return float(core().NormalLaw({"law": law, **values}).contact_time(speed))
+
+
 CUBE = rb.Box(size=("40 mm",) * 3)
 
 
@@ -79,7 +87,7 @@ def test_yielding_contacts_are_not_stiffer_than_told(speed: float) -> None:
     energy = cumulative_trapezoid(along, d, initial=0.0)
     largest = float(np.interp(0.5 * mass * speed**2, energy, along))
     if largest <= yielding:
-        assert lasts == pytest.approx(contact_time("hertz_tsuji", law, speed))
+        assert lasts == pytest.approx(contact_time("hertz_tsuji", {"stiffness": stiffness, "mass": mass}, speed))
         return
     wide = 4 * modulus / (3 * largest) * ((2 * largest + yielding) / (2 * math.pi * pressure)) ** 1.5
     steepest = 2 * modulus * math.sqrt(wide) * (3 * largest / (4 * modulus * math.sqrt(wide))) ** (1 / 3)
@@ -288,3 +296,37 @@ def test_what_cannot_be_inserted_is_told() -> None:
     """Where there is no room, inserting ends with a message."""
     with pytest.raises(rb.CaseError, match="cannot be inserted at random: they would fill 7"):
         push_apart(CUBE, np.zeros((100, 3)) + np.linspace(0, 1e-3, 300).reshape(100, 3), np.full(100, 4.77e-3), 2e-3)
+
+
+def test_a_wall_weighs_as_much_as_the_structure() -> None:
+    """The contact of a particle with the wall of a light structure lasts as long as the mass of both says."""
+    weight = 4 / 3 * math.pi * 2e-3**3 * STEEL.density
+    for structure in (0.2 * weight, 5 * weight):
+        made = case(
+            {"particles": rb.Particles(material="steel", diameter="4 mm", count=1)},
+            structure=rb.SDOF(mass=structure, stiffness=0),
+        )
+        modulus = STEEL.young / (2 * (1 - STEEL.poisson**2))
+        pair = {
+            "stiffness": 4 / 3 * modulus * math.sqrt(2e-3),
+            "mass": weight * structure / (weight + structure),
+        }
+        step = choose_step(made, tables(made), (1.0,))
+        assert step.shortest.duration == pytest.approx(contact_time("hertz_tsuji", pair, 1.0))
+
+
+@pytest.mark.parametrize("speed", [0.1, 2.0])
+def test_friction_springs_lower_the_bound(speed: float) -> None:
+    """A Mindlin spring at the largest overlap of an impact swings a free sphere faster than the contact lasts."""
+    made = case(
+        {"particles": rb.Particles(material="steel", diameter="4 mm", count=2), "friction": rb.Mindlin(coefficient=0.3)}
+    )
+    modulus = STEEL.young / (2 * (1 - STEEL.poisson**2))
+    shear = STEEL.young / (2 * (1 + STEEL.poisson)) / (2 * (2 - STEEL.poisson))
+    radius, mass = 1e-3, 0.5 * 4 / 3 * math.pi * 2e-3**3 * STEEL.density
+    stiffness = 4 / 3 * modulus * math.sqrt(radius)
+    deepest = (5 * mass * speed**2 / (4 * stiffness)) ** 0.4
+    frequency = math.sqrt(7 / 2 * 8 * shear * math.sqrt(radius * deepest) / mass)
+    step = choose_step(made, tables(made), (speed,))
+    assert step.shortest.bound == pytest.approx(1.2 / frequency, rel=1e-6)
+    assert step.shortest.bound < 0.2 * step.shortest.duration

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.simulate import _with_contacts
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -30,13 +29,66 @@ def test_flights_are_drawn_from_wall_to_wall(method: Any) -> None:
     opened = np.nextafter(log.time + log.duration, np.inf)
     end = np.searchsorted(a.time, opened)
     assert -side * a.relative_velocity[end, 0] == pytest.approx(log.separation_speed, rel=1e-6, abs=1e-9)
-    inside = side * a.relative_position[begin + 1, 0] - half
-    if method.kind == "event_driven":
-        assert np.all((inside > 0) & (inside <= log.peak_overlap * (1 + 1e-9)))
+    if method.kind == "event_driven":  # the sample at the deepest overlap
+        inside = [np.max(side[k] * a.relative_position[begin[k] : end[k], 0] - half) for k in range(log.time.size)]
+        assert inside == pytest.approx(log.peak_overlap, rel=1e-6)
+
+
+@pytest.mark.parametrize("contact", [rb.Tsuji(restitution=0.3), rb.Linear(stiffness="50 MN/m", restitution=0.6)])
+@pytest.mark.parametrize("balls", [1, 3])
+def test_contacts_of_rows_are_sampled_in_one_pass(contact: Any, balls: int) -> None:
+    """Begin, deepest overlap and end of every contact are among the times, which rise, in rows and from rest, too."""
+    case = rb.Case(
+        structure=rb.SDOF(mass="2 kg", stiffness="80 kN/m", damping_ratio=0.01),
+        damper=rb.ImpactDamper(
+            balls=[rb.Sphere(radius="8 mm", material="steel")] * balls, gap="0.2 mm", start=-1, contact=contact
+        ),
+        load=rb.HalfSine(amplitude="1 kN", duration="1 ms"),
+        duration="0.2 s",
+    )
+    run = rb.simulate(case)
+    assert run.ok, run.message
+    a = run.arrays
+    log = a.impacts
+    assert np.all(np.diff(a.time) > 0) and a.time[0] == 0 and a.time[-1] == 0.2
+    assert log.time.size > 5 and log.time[0] == 0
+    finished = log.complete & (log.time + log.duration < 0.2)
+    for times in (log.time, (log.time + log.duration)[finished]):
+        nearest = np.abs(a.time[np.searchsorted(a.time, times).clip(1, a.time.size - 1)] - times)
+        before = np.abs(a.time[(np.searchsorted(a.time, times) - 1).clip(0)] - times)
+        assert np.all(np.minimum(nearest, before) < 1e-14)
+    few = rb.simulate(case.model_copy(update={"output": rb.Output(times=[0.1])})).arrays
+    assert few.impacts == log
+
+
+@pytest.mark.parametrize(
+    "contact", [rb.Tsuji(restitution=0.8), rb.Tsuji(alpha=0.0), rb.Linear(stiffness="5 MN/m", damping=9.0)]
+)
+def test_default_samples_are_those_of_chosen_times(contact: Any) -> None:
+    """Motion and ledger at each time of the default output are those of a run in which these times are chosen."""
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="33.17 mm", material="steel"), gap="0.1 mm", contact=contact, velocity="0.2 m/s"
+    )
+    case = example("steel_ball.toml", dampers=(damper,), duration=0.3)
+    a = rb.simulate(case).arrays
+    b = rb.simulate(case.model_copy(update={"output": rb.Output(times=a.time[1:-1])})).arrays
+    assert np.array_equal(a.time, b.time) and a.impacts.time.size > 20
+    for name in ("displacement", "velocity", "relative_position", "contact_energy", "viscous_loss", "normal_loss"):
+        one, other = getattr(a, name), getattr(b, name)
+        assert one == pytest.approx(other, rel=1e-9, abs=1e-9 * np.abs(other).max() + 1e-15), name
+
+
+@pytest.mark.parametrize("inner", ["rk4", "dopri5"])
+def test_contacts_of_fixed_steps_are_sampled(inner: str) -> None:
+    """The two-step scheme is sampled at the steps in which contacts begin and end."""
+    case = example("steel_ball.toml", method=rb.TwoStep(inner=inner), duration=0.05)
+    a = rb.simulate(case).arrays
+    assert a.impacts.time.size > 0
+    assert np.isin(a.impacts.time, a.time).all()
 
 
 def test_default_output_does_not_change_the_run() -> None:
-    """The run that is repeated for the default output is the same to the last bit, and says the time of both."""
+    """Samples at contacts change no bit of the run."""
     case = example("steel_ball.toml")
     chosen = case.model_copy(update={"output": rb.Output(times=[1.0])})
     default, few = rb.simulate(case).arrays, rb.simulate(chosen).arrays
@@ -69,17 +121,9 @@ def test_rate_that_nearly_divides_the_duration(duration: float) -> None:
     assert times[1:-1] == pytest.approx(np.arange(1, times.size - 1) / 1e5, rel=1e-15)
 
 
-def test_run_of_very_many_events_is_not_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_run_of_very_many_events_is_sampled_evenly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beyond the limit of events only the times known before the run are recorded."""
     case = example("steel_ball.toml", duration=0.5)
-    monkeypatch.setattr("rattlebox.engines.simulate._MOST_EVENTS", 10)
+    for module in ("pack", "simulate"):
+        monkeypatch.setattr(f"rattlebox.engines.{module}.MOST_EVENTS", 10)
     assert np.array_equal(rb.simulate(case).arrays.time, case.sample_times())
-
-
-def test_a_contact_that_begins_a_rounding_before_the_start_keeps_times_in_order() -> None:
-    """Samples at contacts stay between the first and the last time of the run, whatever the clock of a contact tells."""
-    touch, duration = np.array([-1.5e-54, 0.4]), np.array([1e-5, 1e-5])
-    raw = {"impacts": {"time": touch, "duration": duration}, "stopped_at": 1.0}
-    times = _with_contacts(np.array([0.0, 0.5, 1.0]), raw)
-    assert times[0] == 0 and times[-1] == 1
-    assert np.all(np.diff(times) > 0) and np.isin(0.4, times)

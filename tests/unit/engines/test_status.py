@@ -56,3 +56,24 @@ def test_dashpot_does_not_stop_a_ball(law: rb.JacksonGreen | rb.Tabulated, metho
     )
     assert run.status == status
     assert ("no rebound" in run.message) == (status == "no_rebound")
+
+
+@pytest.mark.parametrize(
+    ("velocity", "where"),
+    [
+        ([-3.0, 0.0], "second (trailing wall)"),
+        ([1.0, -3.0], "second (ball 1 - 2)"),
+        ([0.0, 3.0], "second (leading wall)"),
+    ],
+)
+def test_the_contact_is_named_in_the_damper_that_it_is_of(velocity: list[float], where: str) -> None:
+    """With several dampers a law that is left names the damper, and the wall or the balls in it."""
+    ball = rb.Sphere(radius="1 cm", material="steel")
+    law = rb.Tsuji(restitution=rb.JacksonGreen(yield_stress="5 MPa"))
+    first = rb.ImpactDamper(name="first", balls=[ball] * 3, gap="1 mm", contact=law)
+    second = rb.ImpactDamper(
+        name="second", balls=[ball] * 2, gap="1 mm", start=[-0.5, 0.5], velocity=velocity, contact=law
+    )
+    run = rb.simulate(rb.Case(structure=rb.Fixed(), dampers=[first, second], duration="0.02 s"))
+    assert run.status == "law_domain"
+    assert run.message.startswith(where)

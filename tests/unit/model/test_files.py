@@ -259,8 +259,6 @@ UNITS_ABOVE = {
     "t [µs],x [mm]": (1e-6, 1e-3, "m"),
     "t (s),a (in/s^2)": (1.0, 0.0254, "m/s^2"),
     "time,a(t)": (1.0, 1.0, None),
-    "t,F (rod)": (1.0, 1.0, None),
-    "time (a),speed (m/s)": (1.0, 1.0, None),
 }
 
 

@@ -73,14 +73,6 @@ def test_a_field_that_is_needed_is_told_with_an_example_that_is_taken(part: type
     assert [found for found in wrong if found["loc"][:1] == (name,)] == []
 
 
-def test_accelerations_in_g_are_told_how() -> None:
-    """What is given in g, which is grams, is told with the sign and the unit that means gravity; a mass in grams is not."""
-    with pytest.raises(rb.CaseError, match='not a mass\n  try: "-5 g_0"'):
-        rb.Harmonic(amplitude="-5 g", frequency=1)
-    with pytest.raises(rb.CaseError, match=r'not a mass\n  try: "0\.4 mm"'):
-        rb.Sphere(radius="5 g", material="steel")
-
-
 def test_units_that_only_pint_knows() -> None:
     """Inches, pounds of force and revolutions per minute are converted."""
     assert rb.Sphere(diameter="1 inch", material="steel").radius == pytest.approx(0.0127, rel=1e-14)
@@ -260,7 +252,7 @@ def test_random_record_has_its_density() -> None:
     assert np.mean(values**2) == pytest.approx(2e-3 * 90.0, rel=0.05)
 
 
-@pytest.mark.parametrize(("duration", "rate"), [(0.333, 100), (0.3, 100), (0.07, 100), (0.29, 100), (1 / 3, 300)])
+@pytest.mark.parametrize(("duration", "rate"), [(0.333, 1000), (0.3, 1000), (0.07, 1000), (0.29, 1000), (1 / 3, 3000)])
 def test_random_record_covers_its_duration(duration: float, rate: float) -> None:
     """A random record lasts to its duration or to the first point after it, whatever rounding makes of their number."""
     record = rb.random_record([(10.0, 1.0), (50.0, 1.0)], duration, rate)

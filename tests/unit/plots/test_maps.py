@@ -221,6 +221,7 @@ def test_few_points_of_lines_are_marked() -> None:
         ([0.0025, 1.23e-7, 4.0e20], "", ["0.0025", "1.23e-07", "4e+20"]),
         ([2e3, 3.4e3, 100.0], "N", ["2 kN", "3.4 kN", "100 N"]),
         ([0.02, 1.0, 0.0], "kg", ["20 g", "1 kg", "0 g"]),
+        ([5000.0, 999.9, 250.0], "kg", ["5 t", "999.9 kg", "250 kg"]),
     ],
 )
 def test_numbers_in_legends(values: list[float], unit: str, shown: list[str]) -> None:

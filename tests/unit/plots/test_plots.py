@@ -11,7 +11,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import rattlebox as rb
-from rattlebox.plots import paper, plot_comparison
+from rattlebox.plots import figure_style, plot_comparison
 from rattlebox.plots.style import CHANNEL_COLOURS, WIDTHS, Scale, scaled
 from rattlebox.results import Run
 
@@ -56,7 +56,7 @@ def test_style_leaves_no_trace() -> None:
     import matplotlib as mpl
 
     before = dict(mpl.rcParams)
-    with paper("slide"):
+    with figure_style("slide"):
         assert mpl.rcParams["font.size"] != before["font.size"]
     assert dict(mpl.rcParams) == before
 

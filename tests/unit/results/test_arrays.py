@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.paper.seed import seed_case
 from rattlebox.results import GranularArrays, ImpactArrays, Run, RunArrays
 
 
@@ -108,9 +107,9 @@ def test_how_a_run_was_computed_does_not_count(run: Run) -> None:
 
 def test_the_same_case_again_is_the_same_run() -> None:
     """A case that is simulated twice gives equal runs, another gap another run."""
-    first, again = (rb.simulate(seed_case(duration=0.05)) for _ in "12")
+    first, again = (rb.simulate(rb.reference_case(duration=0.05)) for _ in "12")
     assert first == again
-    case = seed_case(duration=0.05)
+    case = rb.reference_case(duration=0.05)
     wider = case.dampers[0].model_copy(update={"gap": 1.1 * case.dampers[0].gap})
     other = rb.simulate(case.model_copy(update={"dampers": (wider,)}))
     assert other != first

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import zlib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -175,6 +176,21 @@ def test_damage_is_told(run: Run, tmp_path: Path) -> None:
             np.testing.assert_array_equal(getattr(there.arrays, name), getattr(run.arrays, name))
     assert len(told) > 30
     assert all("run.nc" in message for message in told)
+
+
+def test_checksums_tell_numbers_that_were_changed(run: Run, tmp_path: Path) -> None:
+    """A block whose numbers were changed, though it unpacks without fault, is refused: its checksum is another one."""
+    path = run.save(tmp_path / "run.nc")
+    with h5py.File(path, "r+") as file:
+        stored = file["motion/displacement"]
+        start = (0,) * stored.ndim
+        mask, block = stored.id.read_direct_chunk(start)
+        unpacking = zlib.decompressobj()
+        numbers = bytearray(unpacking.decompress(block))
+        numbers[len(numbers) // 2] ^= 1
+        stored.id.write_direct_chunk(start, zlib.compress(bytes(numbers), 4) + unpacking.unused_data, mask)
+    with pytest.raises(ValueError, match=r"run\.nc"):
+        load(path)
 
 
 def test_loading_something_else(tmp_path: Path) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox._util.atomic_io import reserve_space
 from rattlebox.results.snapshots import SnapshotFile, Snapshots
-from rattlebox.results.whole import reserve
 
 
 def case(**output: Any) -> rb.Case:
@@ -112,7 +112,8 @@ def test_all_room_on_disk_is_taken_at_once(steps: int, count: int, cavities: int
     asked: list[int] = []
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(
-            "rattlebox.results.snapshots.reserve", lambda path, size: (asked.append(size), reserve(path, size))
+            "rattlebox.results.snapshots.reserve_space",
+            lambda path, size: (asked.append(size), reserve_space(path, size)),
         )
         file.create()
     size = (tmp_path / "run.vtkhdf").stat().st_size

@@ -107,3 +107,23 @@ def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_allclose(ridge.reduced_loss, 16 * np.cos(phase) ** 2, rtol=0.01)
     assert np.all((travel > 0.157e-3) & (travel < 0.26e-3))
     assert (tmp_path / "loss_map.png").stat().st_size > 5000
+
+
+@pytest.mark.parametrize("size", ["column", "page"])
+@pytest.mark.parametrize(
+    ("amplitudes", "frequencies", "along"),
+    [(["0.5 mm", "1 mm", "2 mm"], ["10 Hz"], "mm"), (["1 mm"], ["10 Hz", "20 Hz"], "Hz"), (["1 mm"], ["10 Hz"], "mm")],
+)
+def test_one_frequency_or_amplitude_is_drawn_as_lines(
+    amplitudes: list[str], frequencies: list[str], along: str, size: Any
+) -> None:
+    """Lines over the axis that has several values hold the numbers of the map; the single value is named above them."""
+    found = rb.loss_map(shaken(), amplitudes, frequencies, cycles=(40, 20), progress=False)
+    figure = rb.plot_loss_map(found, size=size)
+    figure.draw_without_rendering()
+    assert along in figure.axes[-1].get_xlabel()
+    mass_ratio = found.effective_mass / found.particle_mass
+    for panel, values in zip(figure.axes, (found.loss_factor, mass_ratio, found.reduced_loss), strict=True):
+        assert panel.lines[0].get_ydata() == pytest.approx(values.values.ravel())
+    title = figure.get_suptitle()
+    assert ("10 Hz" if along == "mm" else "1 mm") in title

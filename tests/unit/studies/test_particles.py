@@ -259,6 +259,16 @@ def test_corners_that_cannot_be_run_have_a_status() -> None:
     assert why[0] == "damper.softening = 1" and "40.0 µs is too long" in why[2]
 
 
+def test_stores_keep_why_a_variant_is_refused(tmp_path: Path) -> None:
+    """A study that is read from disk has the reason of a refusal, as the one that was returned, also when it ran before."""
+    case, axes = struck(method=rb.Dem(dt="40 us")), {"damper.softening": [1e5, 1.0]}
+    store = tmp_path / "study.zarr"
+    found = rb.sweep(case, axes, store=store, progress=False)
+    assert found.attrs["refused"]
+    assert rb.open_study(store).attrs["refused"] == found.attrs["refused"]
+    assert rb.sweep(case, axes, store=store, progress=False).attrs["refused"] == found.attrs["refused"]
+
+
 def test_runs_that_leave_their_bounds_are_marked() -> None:
     """Each run's flags are its own warnings: overlaps that are too deep, contacts of too few steps."""
     cases = {"damper.softening": [1.0, 1e5], "method.dt": ["0.1 us", "2 us"]}

@@ -10,12 +10,12 @@ import rattlebox as rb
 from rattlebox import analysis
 from rattlebox.engines.core import core
 from rattlebox.model.paths import replaced
-from rattlebox.paper.seed import PLASTIC_RIGID, seed_case
 from rattlebox.studies.axes import Design
 from rattlebox.studies.measures import MEASURES
 from rattlebox.studies.runner import run_task
 from rattlebox.studies.task import SweepTask
 
+PLASTIC_RIGID = rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid"), ending="zero_overlap")
 AXES = {"damper.gap": ["0.3 mm", "0.8 mm"], "load.amplitude": ["1 kN", "5 kN", "8 kN"]}
 
 
@@ -23,12 +23,12 @@ AXES = {"damper.gap": ["0.3 mm", "0.8 mm"], "load.amplitude": ["1 kN", "5 kN", "
 def swept() -> Any:
     """Every measure that needs no cycle, of six variants, at as many samples as the runs have."""
     names = [name for name, measure in MEASURES.items() if not measure.cyclic]
-    return rb.sweep(seed_case(PLASTIC_RIGID, duration=2.0), AXES, names, samples=2001)
+    return rb.sweep(rb.reference_case(PLASTIC_RIGID, duration=2.0), AXES, names, samples=2001)
 
 
 def run_of(gap: str, amplitude: str) -> Any:
     """Return the single run of a variant."""
-    case = seed_case(PLASTIC_RIGID, duration=2.0, rate=1000.0)
+    case = rb.reference_case(PLASTIC_RIGID, duration=2.0, output=rb.Output(rate=1000.0))
     return rb.simulate(replaced(case, {"damper.gap": gap, "load.amplitude": amplitude}))
 
 
@@ -124,7 +124,7 @@ def test_cyclic_measures_refer_to_the_window() -> None:
 
 def test_skip_leaves_the_beginning_out() -> None:
     """Impacts and losses before `skip` do not count."""
-    case = seed_case(duration=2.0, times=[0.5, 2.0])
+    case = rb.reference_case(duration=2.0, output=rb.Output(times=[0.5, 2.0]))
     run = rb.simulate(case)
     found = rb.sweep(case, {"damper.gap": [case.dampers[0].gap]}, ["impacts", "impact_loss"], skip="0.5 s")
     assert float(found.impacts[0]) == (run.arrays.impacts.time >= 0.5).sum()
@@ -133,7 +133,7 @@ def test_skip_leaves_the_beginning_out() -> None:
 
 def test_motion_and_last_impacts_on_request() -> None:
     """Samples of the motion and the last impacts are those of the run; fewer impacts are padded at the front."""
-    case = seed_case(duration=0.2, times=np.linspace(0, 0.2, 41).tolist())
+    case = rb.reference_case(duration=0.2, output=rb.Output(times=np.linspace(0, 0.2, 41).tolist()))
     run = rb.simulate(case)
     found = rb.sweep(case, {"damper.start": [0.0]}, ["impacts"], motion=True, samples=41, last=1000).isel(
         {"damper.start": 0}
@@ -151,7 +151,7 @@ def test_own_measures_are_functions_of_a_run() -> None:
     def third_speed(run: rb.Run) -> float:
         return float(run.arrays.impacts.approach_speed[2])
 
-    case = seed_case(duration=0.3)
+    case = rb.reference_case(duration=0.3)
     found = rb.sweep(case, {"damper.start": rb.linspace(-0.5, 0.5, 5)}, [third_speed], last=1000)
     logged = [row[np.isfinite(row)][2] for row in found.last_approach_speed.values]
     assert found.third_speed.values.tolist() == logged
@@ -159,7 +159,7 @@ def test_own_measures_are_functions_of_a_run() -> None:
 
 def test_threads_and_neighbours_change_no_bit() -> None:
     """One thread or two, alone or among others: the same bits."""
-    case = seed_case(duration=1.0)
+    case = rb.reference_case(duration=1.0)
     axes = {"damper.start": rb.linspace(-0.9, 0.9, 23)}
     one = rb.sweep(case, axes, ["impact_share", "settling_time"], threads=1)
     two = rb.sweep(case, axes, ["impact_share", "settling_time"], threads=2)
@@ -171,7 +171,9 @@ def test_threads_and_neighbours_change_no_bit() -> None:
 def test_a_member_that_fails_carries_its_status() -> None:
     """Where a law is left, the variant says so and has no numbers; the others have theirs."""
     law = rb.Tsuji(restitution=rb.JacksonGreen(yield_stress="20 MPa"))
-    found = rb.sweep(seed_case(law, duration=0.2), {"load.amplitude": ["10 N", "5 kN"]}, ["impacts", "impact_share"])
+    found = rb.sweep(
+        rb.reference_case(law, duration=0.2), {"load.amplitude": ["10 N", "5 kN"]}, ["impacts", "impact_share"]
+    )
     names = found.status.attrs["flag_meanings"].split()
     assert names[int(found.status[0])] == "finished"
     assert names[int(found.status[1])] == "law_domain"
@@ -191,12 +193,13 @@ def test_a_member_that_fails_carries_its_status() -> None:
         ({"cycles": (10, 5)}, "harmonic"),
         ({"skip": "9 kg"}, "s"),
         ({"point": "tip"}, "mass"),
+        ({"on": "gpu"}, "not a client of a Dask cluster"),
     ],
 )
 def test_what_does_not_fit_is_told_before_anything_runs(options: dict[str, Any], told: str) -> None:
     """Unknown measures, windows outside the run and cycles without a load are refused with a hint."""
     with pytest.raises(rb.CaseError, match=told):
-        rb.sweep(seed_case(duration=1.0), {"damper.gap": ["1 mm"]}, **options)
+        rb.sweep(rb.reference_case(duration=1.0), {"damper.gap": ["1 mm"]}, **options)
 
 
 @pytest.mark.parametrize("value", ["2", None, np.ones(3), 1j], ids=str)
@@ -208,7 +211,7 @@ def test_function_that_gives_no_number_is_told(value: Any) -> None:
 
     said = f"measure loudness: of variant 1 it is {type(value).__name__}, not one number"
     with pytest.raises(rb.CaseError, match=said):
-        rb.sweep(seed_case(duration=0.1), {"load.amplitude": [0.1, 5e3]}, loudness)
+        rb.sweep(rb.reference_case(duration=0.1), {"load.amplitude": [0.1, 5e3]}, loudness)
 
 
 def test_what_is_no_number_to_the_core_varies_too(tmp_path: Path) -> None:
@@ -252,7 +255,7 @@ def test_what_is_no_number_to_the_core_varies_too(tmp_path: Path) -> None:
 
 def test_dimensions_have_coordinates() -> None:
     """Samples, balls and last impacts have coordinates with units: times, cycles, numbers."""
-    case = seed_case(PLASTIC_RIGID, duration=2.0)
+    case = rb.reference_case(PLASTIC_RIGID, duration=2.0)
     maps = rb.sweep(case, {"damper.gap": [1e-3]}, [], skip="1 s", samples=5, motion=True, last=3)
     assert maps.instant.values.tolist() == [1.0, 1.25, 1.5, 1.75, 2.0] and maps.instant.units == "s"
     assert maps.ball.values.tolist() == [1]
@@ -264,7 +267,7 @@ def test_dimensions_have_coordinates() -> None:
 
 def test_balls_that_do_not_line_up_are_refused() -> None:
     """Motions of different numbers of balls have no common shape; their measures have."""
-    case = seed_case(PLASTIC_RIGID, duration=1.0)
+    case = rb.reference_case(PLASTIC_RIGID, duration=1.0)
     axes = {"dampers": [list(case.dampers), []]}
     assert rb.sweep(case, axes, ["impacts"]).impacts.values.tolist()[1] == 0
     with pytest.raises(rb.CaseError, match="differ in more than numbers"):

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 import rattlebox as rb
+from rattlebox import alpha_of_restitution
 from rattlebox.analysis import shaken_cavity
-from rattlebox.model.contacts import alpha_of_restitution
 
 from ..exact import dashpot, oblique, printed, restitution_laws, shaken
 from ..measures import Line

@@ -59,10 +59,10 @@ def gas(
     return rb.Case(structure=structure or rb.Fixed(), damper=damper, duration=0.05, output=rb.Output(rate=20e3))
 
 
-def follow(case: Any, checks: int = 40, *, engine: str = "Dem") -> dict[str, int]:
+def follow(case: Any, checks: int = 40) -> dict[str, int]:
     """Compare contacts, forces, force and moment on the cavity with brute force all along a run."""
     damper = case.dampers[0]
-    dem, last = cases.dem_of(case, engine=engine)
+    dem, last = cases.dem_of(case)
     contents, walls = damper.contents, damper.cavity.walls()
     soft = [(1 - each.material.poisson**2) / each.material.young for each in damper.particles]
     compliance = np.array(soft)[contents.species]
@@ -109,10 +109,9 @@ def cavity_shape(case: Any) -> Any:
 
 
 @pytest.mark.parametrize("name", CAVITIES)
-@pytest.mark.parametrize("engine", ["Dem", "DemWide"])
-def test_nothing_is_missed_in_any_cavity(name: str, engine: str) -> None:
+def test_nothing_is_missed_in_any_cavity(name: str) -> None:
     """Spheres that fly and crowd in a cavity touch just those that overlap, with just the force that the overlap tells."""
-    seen = follow(gas(CAVITIES[name], ALIKE, 150, 1.0), checks=100, engine=engine)
+    seen = follow(gas(CAVITIES[name], ALIKE, 150, 1.0), checks=100)
     assert seen["pairs"] > 150 and seen["walls"] > 50 and seen["builds"] > 3
 
 
@@ -135,18 +134,15 @@ def of_sizes(cavity: Any, sizes: dict[str, int], speed: float) -> Any:
     return rb.Case(structure=rb.Fixed(), damper=damper, duration=0.01, output=rb.Output(rate=20e3))
 
 
-@pytest.mark.parametrize(
-    ("cavity", "engine"),
-    [("box", "Dem"), ("flat box", "Dem"), ("sphere", "Dem"), ("box", "DemWide"), ("sphere", "DemWide")],
-)
+@pytest.mark.parametrize("cavity", ["box", "flat box", "sphere"])
 @pytest.mark.parametrize(
     "sizes",
     [{"1.5 mm": 1500, "14 mm": 4}, {"1.2 mm": 800, "1.9 mm": 600, "3 mm": 60, "7 mm": 8, "13 mm": 2}],
     ids=["two", "five"],
 )
-def test_nothing_is_missed_among_a_few_large_and_many_small(cavity: str, engine: str, sizes: dict[str, int]) -> None:
+def test_nothing_is_missed_among_a_few_large_and_many_small(cavity: str, sizes: dict[str, int]) -> None:
     """So it is where cells fit the small ones only, and the large ones lie in layers of their own."""
-    seen = follow(of_sizes(CAVITIES[cavity], sizes, 2.0), checks=25, engine=engine)
+    seen = follow(of_sizes(CAVITIES[cavity], sizes, 2.0), checks=25)
     assert seen["pairs"] > 300 and seen["walls"] > 200 and seen["builds"] > 3
 
 

@@ -69,7 +69,7 @@ OBLIQUE = {
 }
 """Y. C. Chung, J. Y. Ooi, Granular Matter 13 (2011) 643, test 4: angle from the normal, tangential restitution,
 spin [rad/s]. Read off the figures, as the tests of other programs have them: angles are off by up to 0.17 degrees there."""
-OBLIQUE_MEASURED = {20.2: 0.599, 39.5: 0.774, 49.6: 0.848, 71.1: 0.937}
+OBLIQUE_MEASURED = {4.2: 0.746, 20.2: 0.599, 39.5: 0.774, 49.6: 0.848, 71.1: 0.937}
 """A. H. Kharaz, D. A. Gorham, A. D. Salman, Powder Technology 120 (2001) 281: the same, measured."""
 ELASTIC = {
     "two glass spheres": (10696.9, 274.113e-6, 40.3395e-6),

@@ -1,0 +1,56 @@
+// What every normal law computes with. The laws are written for any number type T: one number in the 1-D
+// engine, a SIMD register of contacts in the 3-D engine.
+#pragma once
+
+#include "base/rows.hpp"
+
+namespace rattlebox {
+
+// An overlap d with the two roots that the laws need. The caller fills it from the quantity it integrates:
+// the 1-D engine from x = d^(1/4), the 3-D engine from d.
+template <class T> struct Depth {
+    T overlap;     // d, m
+    T root;        // d^(1/2)
+    T fourth_root; // d^(1/4)
+};
+
+template <class T> RATTLEBOX_INLINE Depth<T> depth_from_overlap(const T& overlap) {
+    const T s = root(overlap);
+    return {overlap, s, root(s)};
+}
+
+// x may be negative for an instant inside a step of an integrator; d and its root are then those of |x|.
+inline Depth<real> depth_from_fourth_root(real x) {
+    const real s = x * x;
+    return {s * s, s, x};
+}
+
+// The two numbers that one contact computes with from first touch to its end. Their units are stated in the
+// header of each law.
+template <class T> struct Coefficients {
+    T stiffness{};
+    T second{}; // the coefficient of the dashpot, 0 without one; of a law that yields see its header
+};
+
+// Of a law with hysteresis: the largest overlap so far, and the unloading curve from there.
+template <class T> struct History {
+    T deepest{};   // m
+    T stiffness{}; // of the unloading curve, in the law's unit
+    T origin{};    // overlap at which the unloading curve ends, m
+};
+
+template <class T> struct NormalForce {
+    T total;   // N, positive pushes the bodies apart
+    T elastic; // without the dashpot
+};
+
+// Duration of an undamped Hertz impact times its speed over its largest overlap:
+// 2 sqrt(pi) Gamma(7/5) / Gamma(9/10).
+inline constexpr real hertz_time = 2.9432752;
+
+// Effective radius R* [m] and effective mass m* [kg] of a pair.
+struct PairSize {
+    real radius, mass;
+};
+
+} // namespace rattlebox

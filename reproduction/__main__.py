@@ -1,0 +1,72 @@
+"""`python -m reproduction`: compute the figures and claims of the reference paper, and write the report."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+from pathlib import Path
+
+
+def main() -> int:
+    """Write the report that the arguments of this process ask for.
+
+    Returns
+    -------
+    int
+        Exit code: 0, or 2 for bad input, which is reported without a traceback.
+    """
+    parser = argparse.ArgumentParser(
+        prog="python -m reproduction",
+        description="Reproduce and judge the reference paper: all figures and claims on one page.",
+    )
+    parser.add_argument(
+        "-o", "--out", type=Path, default=Path("report"), help="new folder, or that of an earlier report (report)"
+    )
+    parser.add_argument(
+        "--only", action="append", default=[], metavar="FIGURE", help='figure to make: "4", "7c", "A1"; may be repeated'
+    )
+    parser.add_argument("--workers", type=_positive, help="processes (one for each core)")
+    given = parser.parse_args()
+
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from .report import choose, cores, write_report
+
+    console = Console(highlight=False, markup=False, emoji=False)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    try:
+        figures = choose(given.only)
+    except ValueError as error:
+        parser.error(str(error))
+    try:
+        with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+            task = bar.add_task("reproducing the paper", total=len(figures))
+
+            def progress(done: int, _: int, last: str) -> None:
+                bar.update(task, completed=done, description=f"{last} done")
+
+            page = write_report(given.out, given.only, workers=given.workers or cores(), progress=progress)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        parser.error(f"{where}{error.strerror or error}")
+    console.print(
+        f"written to {given.out}: {page.name}, and each figure as SVG, PNG and CSV with its case files", soft_wrap=True
+    )
+    return 0
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number >= 1")
+    return int(text)
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.stderr.write("stopped\n")
+        sys.exit(128 + signal.SIGINT)

@@ -1,0 +1,350 @@
+"""Figure A4: chattering, shown in time, and where it ends in a lasting contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from math import pi
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from rattlebox import Case, JacksonGreen, Run, contact_pairs
+from rattlebox.analysis import impacts_per_cycle
+from rattlebox.plots import FAINT, INK, SERIES_COLOURS, SERIES_MARKERS, StyledFigure, figure_style, pen
+
+from .ensemble import band, ensemble
+from .figure import Claim, Reproduction
+from .harmonic import harmonic_case, resonance, riding
+from .models import COLOURS, CONSTANT_E, MODELS, RIGID, STEEL, STYLES, by_model, described
+from .reference import GAP
+from .runs import simulate_many
+
+SHOWN = CONSTANT_E, RIGID
+LOAD = 500.0
+"""Of the runs shown in time [N]."""
+LOADS = np.array([50.0, 100.0, 200.0, 300.0, 375.0, 400.0, 500.0, 600.0])
+"""Of the runs that are counted [N]."""
+CYCLES, COUNTED, DRAWN = 16, 8, 1.25
+"""Length of each run, of its part that is counted and of its part that is drawn [cycles]."""
+SAMPLES = 2500
+MEMBERS = 6
+_LASTING = 5.0
+"""A contact lasts when it takes that many times as long as the collision of its speed."""
+
+
+def _case(model: str, amplitude: float, offset: float = 0.0) -> Case:
+    """At resonance, begun on the steady motion, so that few cycles settle."""
+    frequency = resonance()
+    end = CYCLES / frequency
+    return harmonic_case(
+        MODELS[model],
+        amplitude=amplitude,
+        frequency=frequency,
+        state=riding(amplitude, frequency, 0.9 * GAP + offset),
+        duration=end,
+        times=tuple(np.linspace(end - DRAWN / frequency, end, SAMPLES)) if amplitude == LOAD else (0.0,),
+    )
+
+
+def cases() -> Mapping[str, Case]:
+    """Return the runs shown in time, and those of the smallest load that is only counted."""
+    shown = {f"{model}, {LOAD:g} N": _case(model, LOAD) for model in MODELS}
+    return shown | {f"{model}, {LOADS[0]:g} N": _case(model, float(LOADS[0])) for model in MODELS}
+
+
+def data() -> xr.Dataset:
+    """Run all models at all loads; keep motion and impacts of one load."""
+    runs = simulate_many([_case(model, float(load)) for model in MODELS for load in LOADS])
+    grid = [runs[k : k + LOADS.size] for k in range(0, len(runs), LOADS.size)]
+    shown = [
+        row[int(np.flatnonzero(LOADS == LOAD)[0])] for row, model in zip(grid, MODELS, strict=True) if model in SHOWN
+    ]
+    begin = float(shown[0].arrays.time[1])
+    hits = _padded([_hits(run, begin) for run in shown])
+    ensembles = [[ensemble(partial(_case, model, float(load)), MEMBERS) for load in LOADS] for model in MODELS]
+    beside = [
+        row[int(np.flatnonzero(LOADS == LOAD)[0])]
+        for row, model in zip(ensembles, MODELS, strict=True)
+        if model in SHOWN
+    ]
+    other_hits = _padded([_hits(run, begin) for many in beside for run in many])
+    other_hits = other_hits.reshape(len(SHOWN), MEMBERS, *other_hits.shape[1:])
+    moved = [[run.arrays.displacement[1:, 0] for run in many] for many in beside]
+    places = [[run.arrays.relative_position[1:, 0] for run in many] for many in beside]
+
+    def spread(of: Callable[[Run], float], units: str, text: str) -> tuple[Any, ...]:
+        values = band([[[of(run) for run in many] for many in row] for row in ensembles], axis=2)
+        return described(("quantile", *over), values, units, f"{text}, ensemble of start positions")
+
+    law = MODELS[RIGID].restitution
+    assert isinstance(law, JacksonGreen)
+    motion = np.array([(run.arrays.displacement[1:, 0], run.arrays.relative_position[1:, 0]) for run in shown])
+    peak = float(np.abs(motion[0, 0]).max()) * (2 * pi * resonance()) ** 2
+    over = ("model", "amplitude")
+    hit = ("shown", "hit")
+    return xr.Dataset(
+        {
+            "displacement": described(("shown", "time"), motion[:, 0], "m", "displacement of the structure"),
+            "displacement_spread": described(
+                ("quantile", "shown", "time"),
+                band(moved, axis=1),
+                "m",
+                "displacement of the structure, ensemble of start positions",
+            ),
+            "place": described(("shown", "time"), motion[:, 1], "m", "place of the ball in its cavity"),
+            "place_spread": described(
+                ("quantile", "shown", "time"),
+                band(places, axis=1),
+                "m",
+                "place of the ball, ensemble of start positions",
+            ),
+            "hit_time": described(hit, hits[:, 0], "s", "time of first touch"),
+            "approach_speed": described(hit, hits[:, 1], "m/s", "relative speed at first touch"),
+            "restitution": described(hit, hits[:, 2], "", "restitution"),
+            "contact_time": described(hit, hits[:, 3], "s", "duration of the contact"),
+            "hit_end": described(hit, hits[:, 0] + hits[:, 3], "s", "time of the last touch"),
+            "lasting": described(hit, hits[:, 4] == 1, "", "contact lasts"),
+            "other_hit_time": described(
+                ("shown", "start", "other_hit"), other_hits[:, :, 0], "s", "time of first touch"
+            ),
+            "other_approach_speed": described(
+                ("shown", "start", "other_hit"), other_hits[:, :, 1], "m/s", "relative speed at first touch"
+            ),
+            "contacts": described(
+                over, [[_counted(run) for run in row] for row in grid], "", "contacts a cycle, one run"
+            ),
+            "contacts_spread": spread(_counted, "", "contacts a cycle"),
+            "longest": described(
+                over, [[_longest(run) for run in row] for row in grid], "s", "longest contact, one run"
+            ),
+            "longest_spread": spread(_longest, "s", "longest contact"),
+            "held": described(over, [[_held(run) for run in row] for row in grid], "", "some contacts last, one run"),
+            "held_starts": described(
+                over,
+                [[np.mean([_held(run) for run in many]) for many in row] for row in ensembles],
+                "",
+                "share of the starts in which some contacts last",
+            ),
+            "shown_load": described((), LOAD, "N", "amplitude of the load of the motion shown"),
+            "frequency": described((), resonance(), "Hz", "frequency of the load"),
+            "peak_acceleration": described((), peak, "m/s^2", "largest acceleration of the walls"),
+            "critical_speed": described(
+                (), law.critical_speed(contact_pairs(_case(RIGID, LOAD), 0)[0]), "m/s", "elastic limit"
+            ),
+            "wall_place": described("side", [-GAP, GAP], "m", "place of the walls"),
+        },
+        {
+            "model": described("model", list(MODELS), "", "contact model"),
+            "shown": described("shown", list(SHOWN), "", "contact model shown in time"),
+            "time": described("time", shown[0].arrays.time[1:] - begin, "s", "time"),
+            "hit": described("hit", np.arange(hits.shape[2]), "", "number of the impact"),
+            "start": described("start", np.arange(MEMBERS), "", "number of the start position"),
+            "other_hit": described("other_hit", np.arange(other_hits.shape[3]), "", "number of the impact"),
+            "side": described("side", [-1, 1], "", "side of the cavity"),
+            "quantile": described("quantile", [0.1, 0.5, 0.9], "", "quantile of the ensemble"),
+            "amplitude": described("amplitude", LOADS, "N", "amplitude of the load"),
+        },
+    )
+
+
+def _padded(hits: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Impacts of several runs, NaN where there are fewer."""
+    size = max(each.shape[1] for each in hits)
+    return np.array([np.pad(each, ((0, 0), (0, size - each.shape[1])), constant_values=np.nan) for each in hits])
+
+
+def _hits(run: Run, begin: float) -> NDArray[np.float64]:
+    """Time, speed, restitution and duration of each impact after a time, and whether its contact lasts."""
+    log = run.arrays.impacts
+    end = np.where(log.complete, log.time + log.duration, run.arrays.time[-1])
+    kept = end > begin
+    columns = log.time - begin, log.approach_speed, log.restitution, end - log.time, _lasting(run)
+    return np.array([np.asarray(column, dtype=float)[kept] for column in columns])
+
+
+def _lasting(run: Run) -> NDArray[np.bool_]:
+    """Whether each contact lasts much longer than a collision of its approach speed."""
+    log = run.arrays.impacts
+    pair = contact_pairs(Case.from_toml(run.case_toml), 0)[0]
+    depth = (1.25 * pair.mass * log.approach_speed**2 / pair.hertz_stiffness) ** 0.4
+    return np.asarray(log.duration > _LASTING * 2.9432752 * depth / log.approach_speed)
+
+
+def _counted(run: Run) -> float:
+    end = float(run.arrays.time[-1])
+    start = end - COUNTED / resonance()
+    return float(impacts_per_cycle(run.arrays.impacts.time, 1 / resonance(), start=start, end=end).mean())
+
+
+def _longest(run: Run) -> float:
+    log = run.arrays.impacts
+    return float(log.duration[_late(run)].max())
+
+
+def _held(run: Run) -> bool:
+    return bool(_lasting(run)[_late(run)].any())
+
+
+def _late(run: Run) -> NDArray[np.bool_]:
+    """Impacts whose contacts opened within the cycles that count."""
+    log = run.arrays.impacts
+    return np.asarray(log.complete & (log.time > run.arrays.time[-1] - COUNTED / resonance()))
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Draw the motion in time, one column a model, and below how contacts change with the load."""
+    with figure_style("page"):
+        figure = StyledFigure("page", 1.03)
+        panels = figure.subplots(4, 2, height_ratios=(0.5, 1, 1, 1))
+        for column, model in zip(panels.T, data.shown.values, strict=True):
+            column[0].set_title(f"{model}, {float(data.shown_load):g} N")
+            for axes in column[1:3]:
+                axes.sharex(column[0])
+            _draw_in_time(column[:3], data.sel(shown=model), COLOURS[model])
+        for row, texts in zip(
+            panels[:3], ("Structure\n(mm)", "Ball in its cavity\n(mm)", "Speed at impact\n(m/s)"), strict=True
+        ):
+            row[0].set_ylabel(texts)
+            row[1].sharey(row[0])
+        panels[2, 0].set_ylim(0.004, 1.2)
+        panels[1, 0].set_ylim(-0.5, 0.5)
+        _draw_over_load(panels[3], data)
+        handles = [line for axes in panels[1:3, 0] for line in axes.get_legend_handles_labels()[0]]
+        figure.legend(handles=handles, loc="outside upper left", ncols=3)
+        figure.align_ylabels()
+    return figure
+
+
+_BESIDE: Mapping[str, Any] = {"color": SERIES_COLOURS[3]}
+"""Look of the ensemble in time."""
+
+
+def _draw_in_time(panels: Sequence[Axes], one: xr.Dataset, colour: str) -> None:
+    time = 1e3 * one.time
+    moved, place, speed = panels
+    for axes, name in ((moved, "displacement"), (place, "place")):
+        low, median, high = 1e3 * one[f"{name}_spread"].transpose("quantile", "time").values
+        text = f"{MEMBERS} starts within 1 µm, 10 to 90 %"
+        axes.fill_between(time, low, high, alpha=0.4, lw=0, zorder=1, label=text, **_BESIDE)
+        axes.plot(time, median, lw=pen(0.5), zorder=1.5, label="their median", **_BESIDE)
+    moved.plot(time, 1e3 * one.displacement, color=INK)
+    place.plot(time, 1e3 * one.place, color=colour, lw=pen(0.6))
+    for side in 1e3 * one.wall_place.values:
+        place.axhline(side, color=INK, lw=pen(0.6))
+    others = 1e3 * one.other_hit_time.values.ravel(), one.other_approach_speed.values.ravel()
+    speed.semilogy(*others, "o", ms=1.5, mew=0, alpha=0.5, label="their impacts", **_BESIDE)
+    speed.semilogy(1e3 * one.hit_time, one.approach_speed, "o", ms=2.0, mew=0, color=colour)
+    for begin, end in zip(one.hit_time.values[one.lasting], one.hit_end.values[one.lasting], strict=True):
+        for axes in (place, speed):
+            axes.axvspan(1e3 * begin, 1e3 * end, color=FAINT, alpha=0.5, lw=0, zorder=0)
+    if one.lasting.any():
+        limit = float(one.critical_speed)
+        speed.axhline(limit, color=INK, ls=(0, (4, 3)), lw=pen(0.6), zorder=0)
+        speed.text(38.0, 0.8 * limit, "elastic below", va="top", fontsize="small")
+    speed.set_xlim(0, float(time[-1]))
+    speed.set_xlabel("Time (ms)")
+
+
+def _draw_over_load(panels: Sequence[Axes], data: xr.Dataset) -> None:
+    for k, model in enumerate(data.model.values):
+        one = data.sel(model=model)
+        look: dict[str, Any] = {"color": COLOURS[model], "marker": SERIES_MARKERS[k], "ls": ""}
+        for axes, name, divisor in zip(panels, ("contacts", "longest"), (1.0, 1e-3), strict=True):
+            low, median, high = one[f"{name}_spread"].transpose("quantile", "amplitude").values / divisor
+            axes.fill_between(one.amplitude, low, high, color=COLOURS[model], alpha=0.3, lw=0)
+            axes.plot(one.amplitude, median, color=COLOURS[model], ls=STYLES[model], label=model)
+            axes.plot(one.amplitude, one[name] / divisor, **look)
+    panels[1].set_yscale("log")
+    for axes in panels:
+        axes.set_xlabel("Amplitude of the load (N)")
+        axes.margins(x=0.03)
+    panels[0].set_ylabel("Contacts a cycle")
+    panels[0].set_ylim(bottom=0)
+    panels[1].set_ylabel("Longest contact\n(ms)")
+    panels[1].legend(loc="upper left")
+
+
+def caption(data: xr.Dataset) -> str:
+    """Say what one sees."""
+    rigid, constant = data.sel(model=RIGID, shown=RIGID), data.sel(model=CONSTANT_E, shown=CONSTANT_E)
+    text = (
+        f"Chattering under a load of {float(data.shown_load):g} N at {float(data.frequency):.2f} Hz, where the walls reach "
+        f"{float(data.peak_acceleration) / 9.80665:.0f} g. With constant restitution each wall is hit some "
+        f"{float(constant.contacts.sel(amplitude=data.shown_load)) / 2:.0f} times before the ball crosses, never below "
+        f"{float(constant.approach_speed.min()):.2g} m/s: incomplete chatter. The ball's band is "
+        f"{1e3 * _width(constant.place_spread):.2g} mm wide on average there, and "
+        f"{1e3 * _width(rigid.place_spread):.2g} mm with the elasto-plastic model; the structure's, "
+        f"{1e3 * _width(constant.displacement_spread):.2g} and {1e3 * _width(rigid.displacement_spread):.2g} mm, is too "
+        "narrow to be seen."
+    )
+    steel = data.sel(model=STEEL)
+    lasting = rigid.where(rigid.lasting, drop=True)
+    if lasting.hit.size == 0:
+        return text + " With the elasto-plastic model no contact lasts either."
+    speed = float(lasting.approach_speed.max())
+    before = rigid.approach_speed.values[: int(lasting.hit[0]) + 1]
+    burst = before[int(np.argmax(before)) :]
+    loads = rigid.amplitude.values[rigid.held]
+    return text + (
+        f" With the elasto-plastic model the speed falls from {burst[0]:.2f} m/s within {burst.size} hits; the last one, at "
+        f"{1e3 * speed:.0f} mm/s, closes a contact that lasts {1e3 * float(lasting.contact_time.max()):.0f} ms (grey): "
+        f"complete chatter. "
+        + _why(speed, float(data.critical_speed))
+        + " Below, after settling (median and band of the "
+        f"starts; marks: one run, which need not lie in the band of so few): contacts "
+        f"last from {loads.min():g} N on, and fewer fit into a cycle; with a steel wall "
+        + (f"from {steel.amplitude.values[steel.held].min():g} N on." if steel.held.any() else "none lasts.")
+    )
+
+
+def _width(spread: xr.DataArray) -> float:
+    low, _, high = spread.transpose("quantile", "time")
+    return float((high - low).mean())
+
+
+def _why(speed: float, limit: float) -> str:
+    if speed < limit:
+        return (
+            f"At that speed impacts lose nothing (limit {1e3 * limit:.0f} mm/s); it is the growing acceleration of the "
+            "wall that keeps the contact closed, and it opens when the acceleration falls."
+        )
+    return f"That is above the elastic limit of {1e3 * limit:.0f} mm/s."
+
+
+def claims(data: xr.Dataset) -> Sequence[Claim]:
+    """Judge the expected chattering."""
+    rigid = data.sel(model=RIGID)
+    ours = by_model(
+        {
+            model: f"{float(one.contacts_spread.sel(quantile=0.5).max()):.0f} and {1e3 * float(one.longest.max()):.2g} ms"
+            for model in data.model.values
+            for one in [data.sel(model=model)]
+        }
+    )
+    many = float(rigid.contacts.max()) > 10
+    return (
+        Claim(
+            "The elasto-plastic model is expected to chatter: contacts follow each other and are sustained within a cycle.",
+            "section 6.1",
+            f"most contacts a cycle and longest contact: {ours}",
+            f"expected there, not computed; up to {float(data.amplitude.max()):g} N at {float(data.frequency):.2f} Hz are "
+            "ours; judged with the rigid wall",
+            "reproduced" if bool(rigid.held.any()) else "reproduced in kind" if many else "not reproducible",
+        ),
+    )
+
+
+FIGURE = Reproduction(
+    number="A4",
+    title="Chattering in time",
+    data=data,
+    draw=draw,
+    caption=caption,
+    cases=cases,
+    claims=claims,
+)

@@ -1,0 +1,92 @@
+"""Runs that start within a micrometre of each other, and the band in which most of their results lie."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .reference import GAP
+from .runs import simulate_many
+
+if TYPE_CHECKING:
+    from rattlebox import Case, Run
+
+
+class Band(NamedTuple):
+    """Tenth percentile, median and ninetieth percentile of an ensemble."""
+
+    low: NDArray[np.float64]
+    median: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+
+def ensemble(make_case: Callable[[float], Case], members: int = 64, reach: float = 1e-6) -> list[Run]:
+    """Run a case from many start positions close to each other.
+
+    Parameters
+    ----------
+    make_case
+        Returns the case whose ball starts displaced by an offset [m], most easily with `near`:
+        `lambda offset: paper_case(start=near(START[2], offset))`.
+    members
+        Number of runs.
+    reach
+        Largest offset to either side [m].
+
+    Returns
+    -------
+    list of Run
+        By rising offset; the offsets are evenly spaced and the same in every call.
+
+    Raises
+    ------
+    ValueError
+        When there is no member.
+
+    Examples
+    --------
+    >>> from reproduction.reference import paper_case
+    >>> runs = ensemble(lambda offset: paper_case(start=near(0.0, offset), duration=2.0), members=8)
+    >>> low, median, high = band([run.ledger.impact_loss for run in runs])
+    """
+    if members < 1:
+        raise ValueError(f"members is {members}, but an ensemble needs at least 1")
+    # A quarter step off centre: no two starts coincide when offsets are mirrored at a wall.
+    steps = (np.arange(members) + 0.25) / members
+    return simulate_many([make_case(float(offset)) for offset in reach * (2 * steps - 1)])
+
+
+def near(start: float, offset: float) -> float:
+    """Return the reduced start position displaced by an offset, mirrored at the walls.
+
+    Parameters
+    ----------
+    start
+        Reduced start position, -1 to 1.
+    offset
+        Displacement [m].
+    """
+    place = start + offset / GAP
+    return place if abs(place) <= 1 else float(np.copysign(2.0, place)) - place
+
+
+def band(values: ArrayLike, axis: int = 0) -> Band:
+    """Return the median of an ensemble and the band that holds four fifths of it.
+
+    Parameters
+    ----------
+    values
+        Results of the members along `axis`, any shape.
+    axis
+        Axis of the members.
+
+    Returns
+    -------
+    Band
+        10 %, 50 % and 90 % quantiles; NaN wherever a member is NaN.
+    """
+    low, median, high = np.quantile(np.asarray(values, dtype=float), (0.1, 0.5, 0.9), axis=axis)
+    return Band(low, median, high)

@@ -1,0 +1,227 @@
+"""Figure 6: phase portrait of the ball in a cavity that does not move."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from rattlebox import Body, Case, Fixed, ImpactDamper, JacksonGreen, Output, Pair, Run, Sphere, restitution_curve
+from rattlebox.plots import FAINT, INK, SERIES_COLOURS, StyledFigure, figure_style, pen
+
+from .ensemble import ensemble, near
+from .figure import Claim, Reproduction
+from .models import described
+from .reference import GAP, PLASTIC, RADIUS
+from .runs import simulate_many
+
+_BALL = Sphere(radius=RADIUS, material="steel")
+PAIR = Pair(Body(_BALL.material, RADIUS, _BALL.weight), Body(_BALL.material))
+"""The ball and a wall that cannot move."""
+_LAW = JacksonGreen()
+_STARTS = {"plastic": 10.0, "elastic": 0.8}
+"""Speeds at the start over the elastic limit."""
+_HITS = 2000
+_TIMES = 0.2 * np.linspace(0, 1, 12001) ** 2
+"""Of the portrait [s]: closer at the beginning, when the ball is fast."""
+_MEMBERS = 8
+_YIELD = (1e6, 1e7, 1e8, 1.03e9)
+
+
+def _case(zone: str, portrait: bool, offset: float = 0.0) -> Case:
+    """A ball that flies from the middle."""
+    speed = _STARTS[zone] * _LAW.critical_speed(PAIR)
+    damper = ImpactDamper(balls=(_BALL,), gap=GAP, start=near(0.0, offset), velocity=(speed,), contact=PLASTIC)
+    # At the elastic limit a flight and a hit last 5.3 ms.
+    times, duration = (tuple(_TIMES.tolist()), _TIMES[-1]) if portrait else ((0.0,), 5.5e-3 * _HITS)
+    return Case(structure=Fixed(), dampers=(damper,), duration=duration, output=Output(times=times))
+
+
+def cases() -> Mapping[str, Case]:
+    """Return the balls of the phase portrait and of the many hits, by the zone in which they start."""
+    return {
+        f"{zone} zone, {what}": _case(zone, portrait)
+        for zone in _STARTS
+        for what, portrait in (("portrait", True), ("many hits", False))
+    }
+
+
+def data() -> xr.Dataset:
+    """Compute the phase portrait and the speeds after every hit."""
+    limit = _LAW.critical_speed(PAIR)
+    plastic, elastic = simulate_many([_case(zone, portrait=False) for zone in _STARTS])
+    portraits = [run.arrays for run in simulate_many([_case(zone, portrait=True) for zone in _STARTS])]
+    others = [ensemble(partial(_case, zone, False), _MEMBERS) for zone in _STARTS]
+    spread = [_speeds(runs) / limit for runs in others]
+    place = [arrays.relative_position[:, 0] / GAP for arrays in portraits]
+    speed = [arrays.relative_velocity[:, 0] / limit for arrays in portraits]
+    after = _speeds([plastic])[0] / limit
+    kept = elastic.impacts.separation_speed.values / limit
+    hits = np.arange(1, after.size + 1)
+
+    return xr.Dataset(
+        {
+            "place": described(("zone", "time"), place, "", "place of the ball in the cavity over d0"),
+            "speed": described(("zone", "time"), speed, "", "velocity of the ball over V_c"),
+            "simulated": described("hit", after, "", "V* after the hit"),
+            "above": described("hit", after - 1, "", "V* - 1 after the hit"),
+            "predicted_above": described(
+                "hit", _predicted(hits.size) - 1, "", "V* - 1 after the hit, from the law alone"
+            ),
+            "asymptote": described("hit", _asymptote(hits), "", "V* - 1 after the hit, for many hits"),
+            "spread": described(
+                "zone",
+                [np.ptp(speeds, axis=0).max() for speeds in spread],
+                "",
+                "largest difference of V* after the same hit, ensemble of start positions",
+            ),
+            "limit": described(
+                "side", [-1.0, 1.0], "", "limits of the cavity over d0 and of the elastic zone over V_c"
+            ),
+            "elastic_hits": described((), kept.size, "", "hits of the ball that starts in the elastic zone"),
+            "elastic_drift": described(
+                (), np.abs(kept / _STARTS["elastic"] - 1).max(), "", "largest change of its speed"
+            ),
+            "critical_speed": described(
+                "yield_stress",
+                np.array([JacksonGreen(yield_stress=strength).critical_speed(PAIR) for strength in _YIELD]),
+                "m/s",
+                "elastic limit V_c",
+            ),
+        },
+        {
+            "zone": described("zone", list(_STARTS), "", "zone of the start"),
+            "time": described("time", portraits[0].time, "s", "time"),
+            "side": described("side", [-1, 1], "", "side"),
+            "hit": described("hit", hits, "", "number of the hit"),
+            "yield_stress": described("yield_stress", _YIELD, "Pa", "yield stress"),
+        },
+    )
+
+
+def _speeds(runs: Sequence[Run]) -> NDArray[np.float64]:
+    """Speed after each of the first hits, (run, hit) [m/s]."""
+    hits = min(_HITS, *(len(run.arrays.impacts) for run in runs))
+    return np.array([run.arrays.impacts.separation_speed[:hits] for run in runs])
+
+
+def _predicted(hits: int) -> NDArray[np.float64]:
+    """V* after each hit, by applying the law again and again."""
+    limit = _LAW.critical_speed(PAIR)
+    speeds = [_STARTS["plastic"]]
+    for _ in range(hits):
+        speeds.append(speeds[-1] * float(restitution_curve(_LAW, PAIR, speeds[-1] * limit)))
+    return np.array(speeds[1:])
+
+
+def _asymptote(hits: NDArray[np.int64]) -> NDArray[np.float64]:
+    """V* - 1 after many hits: near 1 the law takes 0.1 (V* - 1)^1.156 / 59^0.156 from it each time."""
+    taken: NDArray[np.float64] = 0.156 * 0.1 / 59.0**0.156 * hits
+    return taken ** (-1 / 0.156)
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Draw the portrait, and beside it the approach to the elastic limit."""
+    with figure_style("page"):
+        figure = StyledFigure("page", 0.52)
+        left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
+        _portrait(left, data)
+        late = data.asymptote.where(data.hit >= 200)
+        shown = np.unique(np.geomspace(1, data.sizes["hit"], 28).astype(int))
+        right.plot(
+            shown, data.above.sel(hit=shown), "o", color=SERIES_COLOURS[0], mfc="white", ms=3.5, label="simulated"
+        )
+        right.plot(data.hit, data.predicted_above, color=INK, zorder=1, label="from the law alone")
+        right.plot(data.hit, late, color=SERIES_COLOURS[1], linestyle=(0, (4, 1.5)), label="power law for many hits")
+        right.set(xscale="log", yscale="log", xlim=(0.8, 1.3 * data.sizes["hit"]))
+        right.set(xlabel="Number of hits", ylabel="V* - 1 after the hit")
+        right.legend(loc="lower left")
+    return figure
+
+
+def _portrait(axes: Axes, data: xr.Dataset) -> None:
+    """Draw velocity against place, with zones and walls."""
+    reach = 1.05 * float(np.abs(data.place).max())
+    top = 1.08 * float(np.abs(data.speed).max())
+    for side in data.limit.values:
+        axes.axvspan(side, side * reach, facecolor=FAINT, alpha=0.45, lw=0, zorder=0)
+        axes.axvline(side, color=INK, lw=pen(0.7), zorder=0)
+        axes.axhline(side, color=INK, lw=pen(0.7), linestyle=(0, (1, 1.2)))
+    axes.axhspan(*data.limit.values, facecolor=SERIES_COLOURS[2], alpha=0.3, lw=0, zorder=0)
+    for zone, colour, width in zip(data.zone.values, SERIES_COLOURS, (0.6, 1.6), strict=False):
+        one = data.sel(zone=zone)
+        axes.plot(one.place, one.speed, color=colour, lw=pen(width), label=f"starts in the {zone} zone")
+    axes.text(0, 0, "elastic zone", ha="center", va="center")
+    axes.text(-0.5, 0.88 * top, "plastic zone", ha="center", va="center")
+    axes.set(xlim=(-reach, reach), ylim=(-top, top))
+    axes.set(xlabel="Place in the cavity over $d_0$", ylabel="Velocity V* = $V/V_c$")
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
+
+
+def caption(data: xr.Dataset) -> str:
+    """Say what one sees."""
+    reduced = {n: float(data.simulated.sel(hit=n)) for n in (1, 10, 100)}
+    apart = float(np.abs(data.above - data.predicted_above).max())
+    last, spread = int(data.hit[-1]), float(data.spread.max())
+    return (
+        "A ball in a cavity of length 2 that does not move, in units of d_0 and of the elastic limit V_c; grey is where "
+        "the ball presses into a wall. In the plastic zone every hit takes speed away: from "
+        f"V* = {float(data.speed[0, 0]):g} to {reduced[1]:.3f} after 1 hit, {reduced[10]:.3f} after 10 and "
+        f"{reduced[100]:.4f} after 100. In the elastic zone the ball keeps its speed (change over "
+        f"{int(data.elastic_hits)} hits: {float(data.elastic_drift):.1g}). The right panel shows that the approach to "
+        f"V* = 1 never ends: it follows the law alone (to {apart:.0e}) into a power law, and after {last} hits the ball "
+        f"is still {float(data.above[-1]):.1e} above the limit. There is no band, for the motion is not chaotic: "
+        f"{_MEMBERS} starts within 1 µm have {'the same V*' if spread == 0 else f'V* alike to {spread:.0e}'} after each hit."
+    )
+
+
+def claims(data: xr.Dataset) -> Sequence[Claim]:
+    """Judge what the paper says of the two zones."""
+    drift = float(data.elastic_drift)
+    change = f"changes by {drift:.1g}" if drift else "does not change, to the last bit,"
+    loses = bool((data.simulated.diff("hit") < 0).all() and (data.simulated > 1).all())
+    keeps = drift < 1e-9
+    limits = data.critical_speed
+    order = float(np.polyfit(np.log(data.yield_stress), np.log(limits), 1)[0])
+    return (
+        Claim(
+            "Above V* = 1 a ball in a fixed cavity loses energy with every hit; below, it oscillates on without loss.",
+            "section 5, figure 6",
+            f"V* falls with each of {data.sizes['hit']} hits and stays above 1; from V* = "
+            f"{float(data.speed.sel(zone='elastic')[0]):g} it {change} in {int(data.elastic_hits)} hits",
+            "steel wall, m* = m",
+            "reproduced" if loses and keeps else "not reproducible",
+        ),
+        Claim(
+            "There is dissipation in the elastic phase.",
+            "conclusion 1",
+            f"the speed {change} in the elastic zone; all loss is in the plastic one",
+            "the first 'elastic' of the sentence is right, the second stands for 'plastic'",
+            "misprint" if keeps and loses else "reproduced",
+        ),
+        Claim(
+            "Both zones exist for any positive yield stress.",
+            "section 5",
+            f"V_c grows as the yield stress to the power {order:.1f}, from {float(limits[0]):.1e} m/s at "
+            f"{float(data.yield_stress[0]) / 1e6:g} MPa to {float(limits[-1]):.3f} m/s at "
+            f"{float(data.yield_stress[-1]) / 1e6:g} MPa",
+            "steel wall, m* = m",
+            "reproduced" if bool((limits > 0).all()) else "not reproducible",
+        ),
+    )
+
+
+FIGURE = Reproduction(
+    number="6",
+    title="Phase portrait in a fixed cavity",
+    data=data,
+    draw=draw,
+    caption=caption,
+    cases=cases,
+    claims=claims,
+)

@@ -1,0 +1,234 @@
+"""The page of the report, made of figures that are computed and drawn."""
+
+from __future__ import annotations
+
+import platform
+import re
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from math import sqrt
+from pathlib import Path
+from typing import NamedTuple, get_args
+
+from markupsafe import Markup, escape
+
+from .figure import Claim, Verdict
+from .runs import Files
+
+GENERATOR = '<meta name="generator" content="Rattlebox">'
+"""Marks a page as ours."""
+PAPER = "Energy Dissipation in Particle-based Impact Damper Systems: Investigation based on Elasto-plastic impact model"
+
+
+class Column(NamedTuple):
+    """A column of a table: its name, unit and meaning."""
+
+    name: str
+    units: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Table:
+    """A CSV file; its path is relative to the page."""
+
+    path: str
+    rows: int
+    columns: tuple[Column, ...]
+
+
+@dataclass(frozen=True)
+class Made:
+    """A figure that is computed, drawn and written; paths are relative to the page.
+
+    Attributes
+    ----------
+    number, title, name, caption, claims
+        As in `Reproduction`, for the data computed.
+    picture
+        Address of the drawing that holds all of it, for the page.
+    svg, png, tables
+        Files.
+    cases
+        Case files by name, and the studies of the runs that differ from them.
+    computing, drawing
+        Time taken [s].
+    """
+
+    number: str
+    title: str
+    name: str
+    caption: str
+    claims: tuple[Claim, ...]
+    picture: str
+    svg: str
+    png: str
+    tables: tuple[Table, ...]
+    cases: Mapping[str, Files]
+    computing: float
+    drawing: float
+
+    @property
+    def label(self) -> str:
+        """How the page calls the figure."""
+        return f"{'Figures' if ',' in self.number else 'Figure'} {self.number}"
+
+    @property
+    def further(self) -> int:
+        """Number of runs in study files."""
+        return sum(files.runs for files in self.cases.values())
+
+
+def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float) -> str:
+    """Return the page as HTML that needs nothing from elsewhere.
+
+    Parameters
+    ----------
+    figures
+        In the order of the page.
+    cores, workers
+        Of the machine, and processes that were used.
+    seconds
+        Time that the whole took.
+    """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    from rattlebox import EventDriven, __version__
+
+    claims = sorted(((claim, figure) for figure in figures for claim in figure.claims), key=lambda x: place(x[0].where))
+    counts = Counter(claim.verdict for claim, _ in claims)
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).with_name("templates")),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.filters["typeset"] = typeset
+    return environment.get_template("report.html").render(
+        generator=Markup(GENERATOR),
+        title="A particle damper, reproduced and judged",
+        paper=PAPER,
+        figures=figures,
+        groups=(
+            ("Figures of the paper", [figure for figure in figures if figure.number[0].isdigit()]),
+            ("Where the paper can be read in more than one way", [f for f in figures if f.number.startswith("R")]),
+            ("What the paper left for later", [figure for figure in figures if figure.number.startswith("A")]),
+        ),
+        claims=claims,
+        counts=[(verdict, counts[verdict]) for verdict in get_args(Verdict)],
+        system=system(),
+        version=__version__,
+        platform=f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+        created=datetime.now(UTC).isoformat(" ", timespec="minutes")[:16],
+        cores=cores,
+        workers=workers,
+        tolerance=EventDriven().tolerance,
+        seconds=seconds,
+    )
+
+
+def _power(found: re.Match[str]) -> str:
+    """Write 4e+02 as 400 and 4e-09 as a power of ten."""
+    exponent = int(found[2])
+    return f"{float(found[0]):g}" if 0 <= exponent <= 3 else f"{found[1]} × 10<sup>{exponent}</sup>"
+
+
+_TYPESET: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
+    (r"(\d+(?:\.\d+)?)e([+-]?\d+)\b", _power),
+    (r"\b(\w)_(\w+)\b", r"\1<sub>\2</sub>"),
+    (r"\^(-?[\d.]*\d)", r"<sup>\1</sup>"),
+    (r"\bsqrt\b", "√"),
+    (r"\blog10\b", "log<sub>10</sub>"),
+    (r"(?<![\w)])-(?=[\dα-ω])", "−"),
+)
+
+
+def typeset(text: str) -> Markup:
+    """Return text as HTML with powers of ten, subscripts, exponents and minus signs as they are printed.
+
+    Parameters
+    ----------
+    text
+        Such as "V_c is 4e-09 m/s", "N/m^1.5".
+    """
+    html = str(escape(text))
+    for pattern, printed in _TYPESET:
+        html = re.sub(pattern, printed, html)
+    return Markup(html)
+
+
+_SECTION_OF = {
+    "figure": {1: 3.0, 2: 3.1, 3: 4.1, 4: 4.2, 5: 4.3, 6: 5.0, 7: 5.1},
+    "equation": {1: 3.0, 8: 3.1, 11: 3.2, 17: 5.1},
+    "table": {1: 4.25},
+    "conclusion": {1: 6.0},
+}
+"""Where the paper's numbered things stand; those between stand with the one before."""
+
+
+def place(where: str) -> tuple[float, ...]:
+    """Return a key that sorts what `Claim.where` says as in the paper: by section, then by figure.
+
+    Parameters
+    ----------
+    where
+        Such as "section 5.1, figure 7c", "equation (5)", "table 1" or "conclusion 3".
+    """
+    where = where.lower()
+    section = re.search(r"sections? (\d+(?:\.\d+)?)", where)
+    things = re.search(r"(fig|equation|table|conclusion)(?:ure)?s?\.? \(?(\d+)([a-z]?)", where)
+    if things is None:
+        return (float(section[1]) if section else float("abstract" not in where) * 9.0,)
+    kind, number, part = things.groups()
+    starts = _SECTION_OF[{"fig": "figure"}.get(kind, kind)]
+    found = starts[max(start for start in starts if start <= int(number))]
+    return float(section[1]) if section else found, float(number), float(ord(part or "a"))
+
+
+class Quantity(NamedTuple):
+    """A line of the table of numbers."""
+
+    name: str
+    symbol: str
+    value: str
+    unit: str
+
+
+def system() -> tuple[Quantity, ...]:
+    """Return the numbers of the paper's system."""
+    from rattlebox import HalfSine, JacksonGreen, contact_pairs, restitution_of_alpha
+
+    from .reference import ALPHA, DAMPING, GAP, MASS, PULSE, RADIUS, STIFFNESS, paper_case
+
+    case = paper_case()
+    pair, pulse = contact_pairs(case, 0)[0], case.loads[0]
+    ball = pair.above
+    assert ball.material is not None and isinstance(pulse, HalfSine)
+    steel, rigid = JacksonGreen(), JacksonGreen(wall="rigid")
+    together = MASS + ball.mass
+    return (
+        Quantity("Mass of the structure", "M", f"{MASS:g}", "kg"),
+        Quantity("Stiffness", "K", f"{STIFFNESS / 1e3:g}", "kN/m"),
+        Quantity("Viscous damping", "C", f"{DAMPING:g}", "N s/m"),
+        Quantity("Damping ratio", "C / 2√(KM)", f"{100 * DAMPING / (2 * sqrt(STIFFNESS * MASS)):.4f}", "%"),
+        Quantity("Natural frequency, ball in flight", "√(K/M)", f"{sqrt(STIFFNESS / MASS):.4f}", "rad/s"),
+        Quantity("Natural frequency, ball riding along", "√(K/(M+m))", f"{sqrt(STIFFNESS / together):.4f}", "rad/s"),
+        Quantity("Radius of the ball", "R", f"{1e3 * RADIUS:g}", "mm"),
+        Quantity("Mass of the ball", "m", f"{ball.mass:.6f}", "kg"),
+        Quantity("Mass ratio", "m/M", f"{100 * ball.mass / MASS:.4f}", "%"),
+        Quantity("Clearance on each side of the centred ball", "d_0", f"{1e3 * GAP:g}", "mm"),
+        Quantity("Young's modulus of steel", "E", f"{ball.material.young / 1e9:g}", "GPa"),
+        Quantity("Poisson's ratio", "ν", f"{ball.material.poisson:g}", ""),
+        Quantity("Yield stress", "S_y", f"{(ball.material.yield_stress or 0) / 1e6:g}", "MPa"),
+        Quantity("Density", "ρ", f"{ball.material.density:g}", "kg/m³"),
+        Quantity("Hertz stiffness, ball on steel wall", "A", f"{pair.hertz_stiffness / 1e9:.5f}", "GN/m^1.5"),
+        Quantity("Damping coefficient of the constant model", "α", f"{ALPHA:g}", ""),
+        Quantity("Its restitution", "e", f"{restitution_of_alpha(ALPHA, 'zero_overlap'):.6f}", ""),
+        Quantity("Speed of first yield, steel wall", "V_c", f"{steel.critical_speed(pair):.5f}", "m/s"),
+        Quantity("Speed of first yield, rigid wall", "V_c", f"{rigid.critical_speed(pair):.5f}", "m/s"),
+        Quantity("Amplitude of the pulse", "F_0", f"{pulse.amplitude:g}", "N"),
+        Quantity("Duration of the pulse", "t_f", f"{1e3 * PULSE:g}", "ms"),
+    )

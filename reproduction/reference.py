@@ -1,0 +1,91 @@
+"""The reference paper's system: a steel ball in a cavity on a sprung mass, hit by a short pulse."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import rattlebox as rb
+
+Contact = rb.Tsuji | rb.Linear | rb.Thornton
+Ending = Literal["zero_overlap", "zero_force"]
+
+_CASE = rb.reference_case()
+_STRUCTURE, _DAMPER, _PULSE = _CASE.structure, _CASE.dampers[0], _CASE.loads[0]
+assert isinstance(_STRUCTURE, rb.SDOF) and isinstance(_DAMPER, rb.ImpactDamper) and isinstance(_PULSE, rb.HalfSine)
+assert isinstance(_DAMPER.contact, rb.Tsuji) and _DAMPER.contact.alpha is not None
+_RADIUS = _DAMPER.balls[0].radius
+assert _STRUCTURE.damping is not None and _DAMPER.gap is not None and _RADIUS is not None
+
+MASS, STIFFNESS, DAMPING = _STRUCTURE.mass, _STRUCTURE.stiffness, _STRUCTURE.damping
+"""Structure [kg, N/m, N s/m]."""
+RADIUS, GAP = _RADIUS, _DAMPER.gap
+"""Radius of the ball; d0, the clearance on each side when it is centred [m]."""
+ALPHA = _DAMPER.contact.alpha
+"""Tsuji's coefficient of the constant-restitution model."""
+PULSE = _PULSE.duration
+"""Duration of the half sine [s]."""
+
+START = {1: 0.0, 2: -1.0, 3: 1.0}
+"""Reduced start position of the paper's cases: centred, touching the trailing wall, touching the leading wall."""
+
+CONSTANT = _DAMPER.contact
+"""The constant-restitution model."""
+PLASTIC = rb.Tsuji(restitution=rb.JacksonGreen(), ending="zero_overlap")
+"""The elasto-plastic impact model between a steel ball and a steel wall."""
+PLASTIC_RIGID = rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid"), ending="zero_overlap")
+"""The same with a wall that counts as rigid in the critical speed."""
+
+
+def paper_case(
+    contact: Contact = CONSTANT,
+    *,
+    start: float = 0.0,
+    amplitude: float = 5000.0,
+    duration: float = 10.0,
+    times: Sequence[float] | None = None,
+    rate: float | None = None,
+    method: rb.EventDriven | rb.TwoStep | rb.Newton | None = None,
+    wall: Literal["rigid"] | None = None,
+    ball: bool = True,
+    name: str = "",
+) -> rb.Case:
+    """Return the paper's case.
+
+    Parameters
+    ----------
+    contact
+        Contact law: CONSTANT, PLASTIC, PLASTIC_RIGID, or any other.
+    start
+        Reduced start position of the ball, -1 at the trailing wall to 1 at the leading wall; see START.
+    amplitude
+        Amplitude of the half sine [N].
+    duration
+        Duration of the run [s].
+    times, rate
+        Output times [s], or samples a second [Hz]; default those that suit pictures of the motion.
+    method
+        Method; default event-driven.
+    wall
+        "rigid" makes the wall rigid in the contact stiffness too.
+    ball
+        False leaves the damper out.
+    name
+        Name of the case.
+    """
+    case = rb.reference_case(
+        contact,
+        start=start,
+        amplitude=amplitude,
+        duration=duration,
+        output=rb.Output(rate=rate) if times is None else rb.Output(times=tuple(times)),
+        method=method,
+    )
+    changes: dict[str, Any] = {}
+    if name:
+        changes["name"] = name
+    if wall is not None:
+        changes["damper.wall"] = wall
+    if not ball:
+        changes["dampers"] = ()
+    return case.replaced(changes) if changes else case

@@ -1,0 +1,1 @@
+"""Helpers without physics, used by all other parts of the package."""

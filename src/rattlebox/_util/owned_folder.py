@@ -1,0 +1,240 @@
+"""Folders that Rattlebox owns: a marker lists what was written there, and nothing else is ever changed or removed.
+
+The marker is a small JSON file in the folder. It holds the kind of the folder, the version that made it, an identifier, and
+the name and digest of each file of the fixed part. Files are removed by that list only; a file that is not in it is foreign.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import uuid
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from .atomic_io import atomic_write, disk_errors, sync, temporaries
+
+MARKER = "rattlebox.json"
+"""Name of the marker in an owned folder."""
+
+
+class DamagedError(ValueError):
+    """An owned folder has lost a file, or a file in it has changed."""
+
+
+@dataclass(frozen=True)
+class Marker:
+    """Content of the marker of an owned folder.
+
+    Attributes
+    ----------
+    name
+        Kind of the folder.
+    version
+        Version of Rattlebox that made it.
+    identifier
+        Text that no other folder has.
+    complete
+        Whether all files of the list were written.
+    about
+        Further facts, JSON types only.
+    files
+        Digests of the files of the fixed part by their paths in the folder; "" before the folder is complete.
+    """
+
+    name: str
+    version: str
+    identifier: str = field(default_factory=lambda: uuid.uuid4().hex)
+    complete: bool = False
+    about: Mapping[str, Any] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+
+
+def read_marker(folder: Path) -> Marker | None:
+    """Return the marker of a folder; None if there is none.
+
+    Parameters
+    ----------
+    folder
+        The folder, which need not exist.
+
+    Raises
+    ------
+    DamagedError
+        If the marker is damaged.
+    OSError
+        If it cannot be read.
+    """
+    file = folder / MARKER
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except UnicodeDecodeError:
+        raise DamagedError(f"{MARKER} is not text") from None
+    if not text:  # its writer was killed, or the machine was
+        return Marker("", "")
+    try:
+        content = json.loads(text)
+        digest = content.pop("digest")
+        marker = Marker(**content)
+        if digest == _digest(_text(marker).encode()) and all(map(_is_inside, marker.files)):
+            return marker
+    except (ValueError, TypeError, AttributeError, LookupError):
+        pass
+    raise DamagedError(f"{MARKER} has changed or is cut off")
+
+
+def write_marker(folder: Path, marker: Marker, *, new: bool = False) -> None:
+    """Write the marker of a folder.
+
+    Parameters
+    ----------
+    folder
+        The folder, which exists.
+    marker
+        Content of the marker.
+    new
+        Keep a marker that another process has written in the meantime.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    path = folder / MARKER
+    text = json.dumps({**asdict(marker), "digest": _digest(_text(marker).encode())}, indent=1)
+    if new:
+        with disk_errors(path), suppress(FileExistsError), path.open("x", encoding="utf-8") as file:
+            file.write(text)
+        return
+    with atomic_write(path) as name:
+        name.write_text(text, encoding="utf-8")
+
+
+def is_free(folder: Path, also: Iterable[str] = ()) -> bool:
+    """Return whether a folder holds nothing, except what a killed process may leave of a marker.
+
+    Parameters
+    ----------
+    folder
+        The folder, which exists.
+    also
+        Names that may be there.
+    """
+    left = {path.name for path in temporaries(folder / MARKER)}
+    return {path.name for path in folder.iterdir()} <= {*left, *also}
+
+
+def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
+    """Write the fixed part of an owned folder, in place of an earlier one.
+
+    Parameters
+    ----------
+    folder
+        The folder, made if needed.
+    marker
+        Its marker, without files.
+    files
+        Content by path in the folder, with slashes.
+
+    Returns
+    -------
+    Marker
+        The marker with the digests.
+
+    Raises
+    ------
+    FileExistsError
+        If one of the files exists and is foreign. Nothing is changed then.
+    OSError
+        If a file cannot be written.
+    """
+    earlier = read_marker(folder)
+    own = earlier.files if earlier else {}
+    foreign = [name for name in files if name not in own and os.path.lexists(folder / name)]
+    if foreign:
+        raise FileExistsError(f"{folder / foreign[0]} was not written by Rattlebox\n  try: move it out of this folder")
+    folder.mkdir(parents=True, exist_ok=True)
+    if not (earlier and earlier.complete and own.keys() == files.keys()):
+        write_marker(folder, replace(marker, complete=False, files=dict.fromkeys((*own, *files), "")))
+        remove(folder, own.keys() - files.keys())
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with atomic_write(path) as temporary:
+            temporary.write_bytes(content)
+    whole = replace(marker, complete=True, files={name: _digest(content) for name, content in files.items()})
+    write_marker(folder, whole)
+    return whole
+
+
+def damaged_files(folder: Path, marker: Marker) -> list[str]:
+    """Return the files of the fixed part that are lost or have changed.
+
+    Parameters
+    ----------
+    folder
+        The folder.
+    marker
+        Its marker.
+    """
+    return [name for name, digest in marker.files.items() if digest_of(folder / name) != digest]
+
+
+def remove(folder: Path, names: Iterable[str]) -> None:
+    """Remove files of an owned folder by their names, and the folders in it that are empty then.
+
+    Parameters
+    ----------
+    folder
+        The folder, which stays.
+    names
+        Paths in the folder, with slashes. They need not exist.
+    """
+    root = folder.resolve()
+    for name in names:
+        path = folder / name
+        if not path.parent.resolve().is_relative_to(root):  # a link leads out of the folder
+            continue
+        with suppress(FileNotFoundError, NotADirectoryError):
+            path.unlink()
+        for parent in path.parents:
+            if parent == folder:
+                break
+            try:
+                parent.rmdir()
+            except OSError:  # it holds something else, or is gone
+                break
+    sync(folder)
+
+
+def _is_inside(name: str) -> bool:
+    path = PurePosixPath(name)
+    return not path.is_absolute() and ".." not in path.parts
+
+
+def _text(marker: Marker) -> str:
+    return json.dumps(asdict(marker), sort_keys=True)
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def digest_of(path: Path) -> str:
+    """Return the digest of a file; "" if it cannot be read.
+
+    Parameters
+    ----------
+    path
+        The file.
+    """
+    try:
+        return _digest(path.read_bytes())
+    except OSError:
+        return ""

@@ -1,0 +1,30 @@
+"""Texts that come from files: control characters in them change a terminal, or break a line in two."""
+
+from __future__ import annotations
+
+import re
+
+_CONTROLS = "\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029"
+_NOT_IN_NAMES, _NOT_PRINTED = re.compile(f"[{_CONTROLS}\t\n]"), re.compile(f"[{_CONTROLS}]")
+
+
+def has_controls(name: str) -> bool:
+    """Return whether a name holds line breaks or other control characters.
+
+    Parameters
+    ----------
+    name
+        The name.
+    """
+    return _NOT_IN_NAMES.search(name) is not None
+
+
+def printable(text: str) -> str:
+    """Return a text with question marks for all control characters but line breaks and tabs.
+
+    Parameters
+    ----------
+    text
+        Text to print.
+    """
+    return _NOT_PRINTED.sub("?", text)

@@ -1,0 +1,334 @@
+"""Softening of contacts: its effect on a bed under its own weight, the value of "auto", and validity warnings.
+
+A softened bed is more compliant: the resonance of its compression under its own weight falls, and comes near the excitation.
+The loss in a cycle then changes by up to K ((f / f_s)^2 - (f / f_1)^2) m V^2, where f is the frequency of the motion and f_s
+the resonance at softening s. The coefficients K are from a table of computed runs, see docs/softening.md.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rattlebox.engines.base_motion import base_motion
+from rattlebox.model.contacts import Contact, Linear, PowerLaw, TabulatedNormal
+from rattlebox.model.signals import HalfSine, Harmonic, Signal
+from rattlebox.results.quantities import quantity
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rattlebox.model.case import Case
+    from rattlebox.model.granular import Entry, ParticleDamper
+
+PACKED = 0.58
+"""Fraction of a settled bed that is particles."""
+
+COLUMN = 0.75
+"""Resonance of a bed over that of a column of contacts in series: the least of four measured beds. Deep and narrow beds
+have up to twice of it, since their side walls hold them."""
+
+SENSITIVITY = (25.0, 7.0)
+"""K of the module's equation, below and above `THROWN`, from computed runs."""
+
+THROWN = 2.0
+"""Amplitude of the acceleration over gravity above which a bed is thrown in every cycle."""
+
+RESTING = 1.2
+"""Amplitude of the acceleration over gravity below which a bed stays on the floor for most of a cycle."""
+
+MOST_CHANGE = 0.2
+"""Change of the loss in a cycle over m V^2 above which a run has a warning: a tenth of what a thrown bed loses at best."""
+
+AUTO_CHANGE = 0.1
+"""The same, up to which "auto" softens."""
+
+ENDURING = 0.25
+"""Age, in periods of the excitation, beyond which a contact counts as enduring."""
+
+MOST_ENDURING = 0.1
+"""Share of the loss in enduring contacts above which a softened run has a warning."""
+
+_LEAST_PART = 0.1  # of the largest acceleration: weaker motions are left aside
+_INSTANTS = 1 << 14
+_LARGEST = 1e6
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """Motion of a cavity.
+
+    Attributes
+    ----------
+    main
+        Frequency of its largest acceleration [Hz]; 0 where there is none.
+    highest
+        Highest frequency with at least a tenth of that acceleration [Hz].
+    acceleration
+        Amplitude, from all frequencies [m/s^2].
+    is_given
+        Whether it does not depend on the particles, as on a shaker.
+    """
+
+    main: float
+    highest: float
+    acceleration: float
+    is_given: bool
+
+
+def shaking(case: Case, shape: NDArray[np.float64], state: NDArray[np.float64]) -> Shaking:
+    """Return the motion of a cavity with an empty damper.
+
+    Parameters
+    ----------
+    case
+        The case.
+    shape : (m, 3) float
+        Mode shapes at the cavity.
+    state : (T, m, 2) float
+        Modal displacements and velocities of the structure without particles.
+    """
+    parts = [_harmonic(signal, case.duration) for signal in case.base_acceleration()]
+    for mode, row in zip(np.moveaxis(state, 1, 0), shape, strict=True):
+        moved, speed = (float(values.std()) for values in mode.T)
+        rate = speed / moved if moved > 0 else 0.0
+        parts.append((rate / (2 * math.pi), math.sqrt(2) * rate * speed * float(np.linalg.norm(row))))
+    parts = [(f, a) for f, a in parts if f > 0 and a > 0]
+    if not parts:
+        return Shaking(0.0, 0.0, 0.0, not len(shape))
+    main, largest = max(parts, key=lambda part: part[1])
+    highest = max(f for f, a in parts if a >= _LEAST_PART * largest)
+    return Shaking(main, highest, math.hypot(*(a for _, a in parts)), not len(shape))
+
+
+def _harmonic(signal: Signal, duration: float) -> tuple[float, float]:
+    """Frequency [Hz] and amplitude of an acceleration, or of the harmonic with its mean rate and mean square."""
+    if isinstance(signal, Harmonic):
+        return signal.frequency, abs(signal.amplitude)
+    if isinstance(signal, HalfSine):
+        return 0.5 / signal.duration, abs(signal.amplitude)
+    _, velocity, acceleration = base_motion(signal, np.linspace(0.0, duration, _INSTANTS))
+    size, speed = float(acceleration.std()), float(velocity.std())
+    return (size / speed / (2 * math.pi) if speed > 0 else 0.0), math.sqrt(2) * size
+
+
+def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> float:
+    """Return the lowest resonance of the bed of a damper, compressed under its own weight [Hz]; 0 without gravity.
+
+    Parameters
+    ----------
+    damper
+        The damper.
+    softening
+        Instead of its own.
+
+    Notes
+    -----
+    A column of depth h under gravity, of contacts of stiffness k in series, has waves of speed c = (k / (d rho))^(1/2) at
+    its floor. Contacts with a force A x^n have k = n F/x at the force F = pi d^2 p / (phi Z) of the pressure p there, and a
+    wave takes 2n/(n + 1) h / c, which is 6/5 h / c with Hertz contacts. The resonance is a quarter wave.
+    """
+    gravity = np.array(damper.gravity)
+    size = float(np.linalg.norm(gravity))
+    if not size:
+        return 0.0
+    contents, table = damper.contents, damper.contact_table
+    species = int(np.bincount(contents.species, contents.mass).argmax())
+    alone = contents.radius.size == 1
+    entry = table.entries[table.wall_entry[species, 0] if alone else table.particle_entry[species, species]]
+    factor = damper.softening_factor if softening is None else softening
+    diameter = 2 * float(contents.radius[contents.species == species].mean())
+    volume = 4 / 3 * math.pi * float((contents.radius**3).sum())
+    area = damper.cavity.volume / damper.cavity.extent(gravity / size)
+    depth = max(diameter, volume / (PACKED * area))
+    density = PACKED * float(contents.mass.sum()) / volume
+    neighbours = 4.6
+    force = math.pi * diameter**2 * density * size * depth / (PACKED * neighbours)
+    exponent = exponent_of_force(entry.contact)
+    stiffness = exponent * force / _overlap(entry, factor, force)
+    slowed = 2 * exponent / (exponent + 1)
+    return float(COLUMN * math.sqrt(stiffness / (diameter * density)) / (4 * slowed * depth))
+
+
+def _overlap(entry: Entry, softening: float, force: float) -> float:
+    """Return the overlap of a softened contact at rest under a force [m]."""
+    contact = entry.contact
+    if isinstance(contact, TabulatedNormal):
+        return force * softening / contact.secant_stiffness(force * softening)
+    _, values = contact.softened(entry.pair, softening)
+    return float((force / values["stiffness"]) ** (1 / exponent_of_force(contact)))
+
+
+def exponent_of_force(contact: Contact) -> float:
+    """Return the power of the overlap with which a force grows; measured curves count as springs, with their secant."""
+    if isinstance(contact, PowerLaw):
+        return contact.exponent
+    return 1.0 if isinstance(contact, (Linear, TabulatedNormal)) else 1.5
+
+
+def change_of_loss(damper: ParticleDamper, motion: Shaking, level: float, softening: float) -> float:
+    """Return by how much softening may change the loss in a cycle, over m V^2 (see the module).
+
+    Parameters
+    ----------
+    damper
+        The damper.
+    motion
+        Motion of its cavity.
+    level
+        Amplitude of the acceleration over gravity.
+    softening
+        The softening.
+    """
+    soft, hard = bed_resonance(damper, softening), bed_resonance(damper, 1.0)
+    if not soft:
+        return 0.0
+    return _sensitivity(level) * motion.highest**2 * (soft**-2 - hard**-2)
+
+
+def _sensitivity(level: float) -> float:
+    return SENSITIVITY[level >= THROWN]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The value that "auto" takes.
+
+    Attributes
+    ----------
+    softening
+        The value.
+    note
+        The value, the reason, the possible change of the loss, and the cost of softening 1.
+    """
+
+    softening: float
+    note: str
+
+
+def choose_softening(damper: ParticleDamper, motion: Shaking, largest: float) -> Choice:
+    """Return the largest softening with a change of the loss of at most `AUTO_CHANGE`.
+
+    Parameters
+    ----------
+    damper
+        The damper.
+    motion
+        Motion of its cavity.
+    largest
+        Softening at which overlaps reach their limit.
+    """
+    gravity = float(np.linalg.norm(damper.gravity))
+    level = motion.acceleration / gravity if gravity and motion.is_given else 0.0
+    if not gravity:
+        return _none("without gravity the effect of softening cannot be estimated")
+    if not motion.highest:
+        return _none("the case has no frequency to compare the bed with")
+    if motion.is_given and level < RESTING:
+        return _none(
+            f"at {level:.2g} times gravity the bed stays on the floor for most of a cycle, and its loss grows with "
+            "softening; the model of friction matters there, too, and without friction that of the dashpot"
+        )
+    exponent = exponent_of_force(damper.contact)
+    room = AUTO_CHANGE / _sensitivity(level) * (bed_resonance(damper, 1.0) / motion.highest) ** 2
+    by_loss = (1 + room) ** exponent
+    value = _rounded(max(1.0, min(by_loss, largest, _LARGEST)))
+    if value == 1:
+        return _none("more would " + ("change the loss" if by_loss < largest else "make overlaps too large"))
+    change = change_of_loss(damper, motion, level, value)
+    faster = value ** (1 / (exponent + 1))
+    limit = "the loss" if by_loss <= largest else "overlaps"
+    return Choice(
+        value,
+        f"softening {value:g}, limited by {limit}: the loss in a cycle may change by {change:.2g} m V^2; "
+        f"softening 1 would cost {faster:.2g} times as much",
+    )
+
+
+def _none(why: str) -> Choice:
+    return Choice(1.0, f"softening 1: {why}")
+
+
+def _rounded(value: float) -> float:
+    """Two digits, rounded down."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return round(math.floor(value / unit * (1 + 1e-12)) * unit, 12)
+
+
+@dataclass(frozen=True)
+class Effect:
+    """Effect of softening on a damper in a run.
+
+    Attributes
+    ----------
+    softening
+        The softening.
+    resonance
+        Resonance of the bed under its own weight [Hz].
+    change
+        Change of the loss in a cycle, over m V^2.
+    share
+        Share of the loss in enduring contacts; 0 where none is known.
+    frequency
+        Highest frequency of the motion [Hz].
+    """
+
+    softening: float
+    resonance: float
+    change: float
+    share: float
+    frequency: float
+
+    def warnings(self, where: str) -> list[str]:
+        """Return the warnings, for a damper described by some words."""
+        notes = []
+        if self.softening > 1 and self.change > MOST_CHANGE:
+            notes.append(
+                f"warning: softening {self.softening:g}{where} lowers the resonance of the bed under its weight to about "
+                f"{quantity(self.resonance, 'Hz', 2)}, {self.resonance / self.frequency:.2g} times the frequency of the "
+                f"motion: the loss in a cycle may change by {min(self.change, 3):.2g} m V^2, and should by less than "
+                f'{MOST_CHANGE:g}: use softening = "auto", or compare with rb.check_softening'
+            )
+        if self.softening > 1 and self.share > MOST_ENDURING:
+            notes.append(
+                f"warning: {100 * self.share:.2g} % of the loss{where} is in contacts that last longer than a quarter of a "
+                f"period; above {100 * MOST_ENDURING:g} % it grows with softening ({self.softening:g} here): use "
+                "softening = 1; even then it depends on the model of friction, and without friction on that of the dashpot"
+            )
+        return notes
+
+
+def effects(
+    case: Case,
+    motions: Sequence[Shaking],
+    velocity: NDArray[np.float64],
+    lost: NDArray[np.float64],
+    enduring: NDArray[np.float64],
+) -> list[Effect]:
+    """Return the effect of softening on each damper of a run.
+
+    Parameters
+    ----------
+    case
+        The case.
+    motions
+        Motions of the cavities, expected before the run.
+    velocity : (T, D, 3) float
+        Velocity of the cavities in the run, with that of the base [m/s].
+    lost, enduring : (D,) float
+        Loss in all contacts, and in enduring ones [J].
+    """
+    found = []
+    for index, (damper, motion) in enumerate(zip(case.particle_dampers, motions, strict=True)):
+        gravity = float(np.linalg.norm(damper.gravity))
+        speed = math.sqrt(2 * float(np.var(velocity[:, index], axis=0).sum()))
+        level = speed * 2 * math.pi * motion.main / gravity if gravity else 0.0
+        softening = damper.softening_factor
+        share = float(enduring[index] / lost[index]) if lost[index] > 0 else 0.0
+        change = change_of_loss(damper, motion, level, softening)
+        found.append(Effect(softening, bed_resonance(damper), change, share, motion.highest))
+    return found

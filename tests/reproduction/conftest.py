@@ -1,0 +1,49 @@
+"""What tests of the paper share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import NamedTuple
+
+import pytest
+import xarray as xr
+
+from rattlebox import Case
+from reproduction.figure import Reproduction
+from reproduction.report import FIGURES, load_figure
+from reproduction.runs import record_cases
+
+HEAVY = {"contacts_per_cycle", "bifurcation", "chattering", "lyapunov"}
+"""Modules whose data take some seconds."""
+
+
+class Computed(NamedTuple):
+    """A figure, its data, and the cases that were run for them."""
+
+    module: str
+    figure: Reproduction
+    data: xr.Dataset
+    runs: list[Case]
+
+
+@cache
+def _computed(module: str) -> Computed:
+    figure = load_figure(module)
+    with record_cases() as runs:
+        data = figure.data()
+    return Computed(module, figure, data, runs)
+
+
+@pytest.fixture(scope="session")
+def computed() -> Callable[[str], Computed]:
+    """Return a function that computes the figure of a module once."""
+    return _computed
+
+
+@pytest.fixture(
+    scope="session", params=[pytest.param(name, marks=pytest.mark.slow if name in HEAVY else ()) for name in FIGURES]
+)
+def every(request: pytest.FixtureRequest) -> Computed:
+    """Return each figure in turn."""
+    return _computed(request.param)

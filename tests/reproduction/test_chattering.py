@@ -1,0 +1,69 @@
+"""Figure A4: chattering."""
+
+import numpy as np
+import pytest
+
+from reproduction import chattering
+from reproduction.models import CONSTANT_E, RIGID
+from reproduction.reference import GAP
+
+
+@pytest.fixture(scope="module")
+def data():
+    """Two of the loads."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(chattering, "LOADS", np.array([100.0, chattering.LOAD]))
+        yield chattering.FIGURE.data()
+
+
+def test_restitution_is_jackson_and_greens(data):
+    """Each hit of the elasto-plastic model has the restitution of the law at its speed, 1 below 42.3652 mm/s."""
+    hits = data.sel(shown=RIGID).dropna("hit")
+    assert float(data.critical_speed) == pytest.approx(0.0423652, abs=5e-8)
+    ratio = hits.approach_speed / 0.0423652
+    plastic = hits.sel(hit=ratio > 1.001)
+    over = plastic.approach_speed / 0.0423652
+    law = 1 - 0.1 * np.log(over) * ((over - 1) / 59) ** 0.156
+    assert plastic.hit.size > 30
+    np.testing.assert_allclose(plastic.restitution, law, atol=1e-5)
+    elastic = hits.sel(hit=ratio < 0.999)
+    assert elastic.hit.size > 5
+    assert (elastic.restitution == 1).all()
+
+
+def test_chatter_ends_in_a_contact_that_opens_as_it_closed(data):
+    """The lasting contact is elastic, and lies around the instant at which the wall's acceleration is largest."""
+    one = data.sel(shown=RIGID)
+    lasting = one.where(one.lasting, drop=True)
+    assert lasting.hit.size == 2
+    assert float(lasting.approach_speed.max()) < float(data.critical_speed)
+    for begin, length in zip(lasting.hit_time.values, lasting.contact_time.values, strict=True):
+        turn = float(abs(one.displacement.sel(time=slice(begin, begin + length))).idxmax())
+        assert turn == pytest.approx(begin + length / 2, abs=0.1 * length)
+
+
+def test_constant_restitution_does_not_come_to_rest(data):
+    """With constant restitution no contact lasts, at either load, nor with the elasto-plastic model at the lower one."""
+    assert not data.held.sel(model=CONSTANT_E).any()
+    assert data.held.sel(model=RIGID).values.tolist() == [False, True]
+
+
+def test_ball_alone_is_irregular(data):
+    """The load decides where the structure is, to a thousandth; with constant restitution the ball may be anywhere."""
+    low, median, high = data.displacement_spread.transpose("quantile", ...)
+    size = float(abs(data.displacement).max())
+    assert float((high - low).max()) < 1e-3 * size
+    assert float(abs(median - data.displacement).max()) < 1e-3 * size
+    low, _, high = data.place_spread.sel(shown=CONSTANT_E).transpose("quantile", ...)
+    assert float((high - low).max()) > 0.5 * GAP
+
+
+def test_drawn_and_judged(data):
+    """The figure is drawn from the data; the verdict falls with the lasting contacts."""
+    figure = chattering.FIGURE
+    assert len(figure.draw(data).axes) == 8
+    assert "complete chatter" in figure.caption(data)
+    assert figure.claims(data)[0].verdict == "reproduced"
+    without = data.assign(held=data.held & False, lasting=data.lasting & False)
+    assert figure.claims(without)[0].verdict == "reproduced in kind"
+    assert "no contact lasts" in figure.caption(without)

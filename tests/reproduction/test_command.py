@@ -1,0 +1,77 @@
+"""The command `python -m reproduction`, run as a user runs it."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+FOUND = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
+"""Environment in which the package is found from any folder."""
+COMMAND = [sys.executable, "-m", "reproduction"]
+
+
+def reproduce(*arguments: object) -> subprocess.CompletedProcess[str]:
+    """Run the command in a process of its own."""
+    return subprocess.run(
+        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120, check=False, env=FOUND
+    )
+
+
+def test_report_on_chosen_figures(tmp_path: Path) -> None:
+    """Chosen figures alone make a page in a folder that need not exist; away from a terminal no bar is drawn."""
+    done = reproduce("-o", tmp_path / "new" / "report", "--only", "2", "--only", "5", "--workers", 2)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == [
+        f"written to {tmp_path / 'new' / 'report'}: index.html, and each figure as SVG, PNG and CSV with its case files"
+    ]
+    assert done.stderr == ""
+    drawn = {path.name for path in (tmp_path / "new" / "report" / "figures").glob("*.svg")}
+    assert drawn == {"figure_02.svg", "figure_05.svg"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--only", "99"), "there is no figure '99'; there are 2, "),
+        (("--workers", "0"), "workers"),
+        (("-o", "full"), "holds other files; choose a new folder"),
+        (("-o", "full/notes.txt"), "is a file; a report needs a folder"),
+        (("-o", "full/notes.txt/report"), "notes.txt"),
+    ],
+)
+def test_bad_input_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str], said: str) -> None:
+    """What cannot be done is told on one screen, before anything is computed, with exit code 2 and no traceback."""
+    monkeypatch.chdir(tmp_path)
+    Path("full").mkdir()
+    Path("full/notes.txt").write_text("mine")
+    done = reproduce(*arguments)
+    assert done.returncode == 2
+    assert said in " ".join(done.stderr.replace("│", " ").split())
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr.splitlines()) < 24
+    assert [path.name for path in tmp_path.rglob("*")] == ["full", "notes.txt"]
+
+
+def test_ctrl_c_stops_at_once(tmp_path: Path) -> None:
+    """Ctrl-C ends command and workers with one word, and the unfinished report can be written again."""
+    process = subprocess.Popen(
+        [*COMMAND, "-o", str(tmp_path)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=FOUND,
+        start_new_session=True,
+    )
+    until = time.monotonic() + 60
+    while not any(tmp_path.glob("figures/*.svg")) and time.monotonic() < until:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert (out, err) == ("", "stopped\n")
+    assert "not finished" in (tmp_path / "index.html").read_text()
+    assert reproduce("-o", tmp_path, "--only", "2").returncode == 0

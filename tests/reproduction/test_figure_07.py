@@ -1,0 +1,120 @@
+"""Figures 7a to 7e: energies and dissipation."""
+
+import pytest
+
+import rattlebox as rb
+from reproduction import figure_07a, figure_07de
+from reproduction.reference import DAMPING, MASS, PLASTIC_RIGID, paper_case
+
+PULSE_WORK = 0.2532  # J, of 5000 N
+
+
+@pytest.fixture(params=["figure_07a", "figure_07b"])
+def energies(request, computed):
+    """Return the data of figures 7a and 7b."""
+    return computed(request.param).data
+
+
+def test_pulse_gives_the_structure_its_work(energies):
+    """Right after the pulse the structure holds its work, less what damping can have taken; the ball holds nothing."""
+    energy = energies.begin_energy.sel(begin=1.2e-3, method="nearest")
+    most_damped = 2 * DAMPING / MASS * 1.2e-3
+    assert (energy.sel(part="structure") > (1 - most_damped) * PULSE_WORK).all()
+    assert (energy.sel(part="structure") < PULSE_WORK).all()
+    assert energy.sel(part="ball").values == pytest.approx(0.0, abs=1e-15)
+
+
+def test_band_of_energies_is_ordered_and_falls(energies):
+    """Median energies lie in their band and fall by more than a decade."""
+    low, median, high = energies["mean"].transpose("quantile", ...)
+    assert (low <= median).all()
+    assert (median <= high).all()
+    structure = median.sel(part="structure")
+    assert (structure.isel(window=-1) < 0.1 * structure.isel(window=0)).all()
+
+
+def test_smoothness_is_judged_by_the_data(computed):
+    """The verdict follows the numbers: with rises below those of constant restitution it turns."""
+    data = computed("figure_07a").data
+    (claim,) = figure_07a.FIGURE.claims(data)
+    assert claim.verdict == "not reproducible"
+    smooth = data.assign(rises=data.rises.where(data.judged == "constant restitution", 0.0))
+    (claim,) = figure_07a.FIGURE.claims(smooth)
+    assert claim.verdict == "reproduced"
+
+
+@pytest.fixture
+def losses(computed):
+    """Return the data of figure 7c."""
+    return computed("figure_07c").data
+
+
+@pytest.mark.parametrize(
+    ("model", "share", "scatter"),
+    [
+        ("constant restitution", 0.054, 0.0015),
+        ("elasto-plastic, steel wall", 0.0032, 0.0001),
+        ("elasto-plastic, rigid wall", 0.069, 0.003),
+    ],
+)
+def test_shares_of_the_centred_ball(losses, model, share, scatter):
+    """The damper takes the known part of the pulse's work, in each reading."""
+    lost = losses.lost.sel(model=model, quantile=0.5).isel(time=-1) / losses.work.sel(model=model)
+    assert float(lost) == pytest.approx(share, abs=scatter)
+
+
+def test_losses_only_grow(losses):
+    """No model gives lost energy back."""
+    assert (losses.single.diff("time") >= 0).all()
+
+
+def test_first_contact_has_the_ratio_of_the_two_laws(losses):
+    """After one contact with the same approach the losses differ as 1 - e^2 of the two laws."""
+    ratio = losses.ratio.sel(plastic="elasto-plastic, rigid wall", quantile=0.5).isel(time=1)
+    (pair, *_) = rb.contact_pairs(paper_case(PLASTIC_RIGID), 0)
+    approach = rb.simulate(paper_case(PLASTIC_RIGID, duration=4e-3)).arrays.impacts.approach_speed[0]
+    e = rb.restitution_curve(PLASTIC_RIGID.restitution, pair, approach)
+    assert float(ratio) == pytest.approx((1 - e**2) / (1 - 0.991170**2), rel=1e-3)
+
+
+@pytest.fixture
+def shares(computed):
+    """Return the data of figures 7d and 7e."""
+    return computed("figure_07de").data
+
+
+@pytest.mark.parametrize(
+    ("model", "known"),
+    [
+        ("constant restitution", (0.054, 0.015, 0.052)),
+        ("elasto-plastic, steel wall", (0.0032, 0.0, 0.0022)),
+        ("elasto-plastic, rigid wall", (0.069, 0.027, 0.070)),
+    ],
+)
+def test_shares_of_three_starts_at_the_printed_pulse(shares, model, known):
+    """At 5000 N the damper takes the known shares, within the scatter of a chaotic system."""
+    lost = shares.impact.sel(model=model, amplitude=5000.0)
+    assert lost.sel(quantile=0.5).values == pytest.approx(known, rel=0.08, abs=1e-4)
+
+
+def test_centred_ball_rests_under_the_small_pulse(shares):
+    """At 100 N the structure moves by 0.0503 mm, less than the gap: only the centred ball is never touched."""
+    contacts = shares.contacts_single.sel(amplitude=100.0)
+    assert (contacts.sel(start=1) == 0).all()
+    assert (contacts.sel(start=[2, 3]) > 0).all()
+
+
+def test_shares_never_exceed_the_work(shares):
+    """Impacts and viscous damping together take no more than the work of the pulse."""
+    assert (shares.impact_single + shares.viscous_single <= 1 + 1e-12).all()
+
+
+def test_claims_of_the_start_positions(shares):
+    """Each verdict follows the data: it turns when the data do."""
+    half, sensitive, consistent = figure_07de.FIGURE.claims(shares)
+    assert half.verdict == "reproduced in kind"
+    assert sensitive.interpretation == "elasto-plastic, steel wall"
+    assert consistent.verdict == "not reproducible"
+    like = shares.where(shares.start != 2, 0.5 * shares.sel(start=1, drop=True))
+    half, *_ = figure_07de.FIGURE.claims(like)
+    assert half.verdict == "reproduced"

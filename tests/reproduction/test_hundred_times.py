@@ -1,0 +1,45 @@
+"""Figure A1: losses of the elasto-plastic model over its yield stress."""
+
+import pytest
+
+from reproduction import hundred_times
+from reproduction.models import RIGID, STEEL
+
+
+@pytest.fixture
+def data(computed):
+    """Return the data of the figure."""
+    return computed("hundred_times").data
+
+
+@pytest.mark.parametrize(("model", "known"), [(STEEL, 0.0032 / 0.054), (RIGID, 0.069 / 0.054)])
+def test_printed_yield_stress_gives_the_known_ratio(data, model, known):
+    """With the printed yield stress the losses in 10 s compare as they are known to."""
+    ratio = data.ratio.sel(measure="total", model=model, yield_stress=1030e6, quantile=0.5)
+    assert float(ratio) == pytest.approx(known, rel=0.05)
+
+
+def test_one_contact_cannot_lose_a_hundred_times_more(data):
+    """A contact with e = 0.991170 loses 1 - e^2 of the energy, so another law loses at most 57 times as much."""
+    assert float(data.bound.sel(measure="first")) == pytest.approx(1 / (1 - 0.991170**2), rel=1e-4)
+    assert (data.ratio.sel(measure="first").dropna("yield_stress") < data.bound.sel(measure="first")).all()
+
+
+def test_no_yield_stress_reaches_the_bounds(data):
+    """Losses and speeds stay within what any restitution law can do, but for the scatter of the first touch."""
+    assert (data.ratio.where(data.ratio.notnull(), 0) <= 1.005 * data.bound).all()
+
+
+def test_curves_end_where_the_law_does(data):
+    """A rigid wall lowers the critical speed, so its curve leaves the law at a higher yield stress."""
+    ends = data.ratio.sel(measure="total", quantile=0.5).isnull().sum("yield_stress")
+    assert ends.sel(model=RIGID) > ends.sel(model=STEEL)
+
+
+def test_verdict_follows_the_data(data):
+    """The factor is not reproduced, and would be if the numbers were other."""
+    (claim,) = hundred_times.FIGURE.claims(data)
+    assert claim.verdict == "not reproducible"
+    (claim,) = hundred_times.FIGURE.claims(data.assign(ratio=data.ratio.where(data.model == STEEL, 10 * data.ratio)))
+    assert claim.verdict == "reproduced"
+    assert RIGID in claim.interpretation

@@ -1,0 +1,61 @@
+"""The readings of the paper side by side."""
+
+import numpy as np
+import pytest
+
+from reproduction.interpretations import FIGURE
+
+
+@pytest.fixture
+def data(computed):
+    """Compute the figure once."""
+    return computed("interpretations").data
+
+
+def test_size_of_the_ball(data):
+    """As a radius the printed size gives 6 % of the structure's mass and 0.8 mm of clearance, as a diameter neither."""
+    assert float(data.mass_share.sel(size="radius")) * 20 == pytest.approx(1.200037, abs=6e-7)
+    np.testing.assert_allclose(data.clearance, [0.8e-3, 33.97e-3], rtol=1e-12)
+    assert float(data.impacts.sel(size="diameter", start=1).max()) == 0
+    assert float(data.impacts.sel(size="radius", start=1).min()) > 100
+
+
+def test_elastic_limits(data):
+    """Wall and reduced mass give the four elastic limits."""
+    np.testing.assert_allclose(data.critical_speed, [[0.1694607, 0.1645947], [0.0423652, 0.0411487]], atol=6e-8, rtol=0)
+
+
+def test_numbers_of_the_contact(data):
+    """Stiffness, resonances and coefficients are those that follow from the paper's parameters."""
+    assert float(data.stiffness[0]) == pytest.approx(2.668518e10, rel=3e-7)
+    np.testing.assert_allclose(data.resonance, [61.4295, 63.2456], atol=6e-5)
+    assert float(data.needed.sel(ending="zero_overlap")) == pytest.approx(0.00715342, abs=6e-9)
+
+
+@pytest.mark.parametrize(
+    ("reading", "expected"),
+    [
+        ("constant α, contact ends at zero overlap", (0.054, 0.015, 0.052)),
+        ("elasto-plastic, steel wall", (0.0032, 0.0, 0.0022)),
+        ("elasto-plastic, rigid wall", (0.069, 0.027, 0.070)),
+    ],
+)
+def test_losses_of_the_main_readings(data, reading, expected):
+    """The known shares, given to their last digit, lie in the band of each case."""
+    low, _, high = data.share.sel(reading=reading).transpose("level", "start").values
+    last_digit = 1e-3 if max(expected) > 0.01 else 1e-4
+    assert np.all(low - last_digit <= expected)
+    assert np.all(high + last_digit >= expected)
+
+
+def test_loss_does_not_depend_on_the_ending_or_the_stiffness(data):
+    """With a constant coefficient the ending moves the loss by a few per cent, and so does the printed stiffness."""
+    first = data.share.sel(level=0.5, start=1)
+    np.testing.assert_allclose(first[[1, 3]] / first[0], 1, atol=0.05)
+
+
+def test_verdicts_follow_the_data(data):
+    """The mass is confirmed and three prints are not; with the two sizes swapped the diameter would be right."""
+    assert [claim.verdict for claim in FIGURE.claims(data)] == ["reproduced", "misprint", "misprint", "misprint"]
+    swapped = data.assign({name: ("size", data[name].values[::-1]) for name in ("mass_share", "clearance")})
+    assert [claim.verdict for claim in FIGURE.claims(swapped)][:2] == ["not reproducible", "reproduced"]

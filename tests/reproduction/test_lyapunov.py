@@ -1,0 +1,74 @@
+"""Figure A5: finite-time Lyapunov exponents."""
+
+import numpy as np
+import pytest
+
+from rattlebox import simulate
+from reproduction import lyapunov
+from reproduction.models import CONSTANT_E
+from reproduction.reference import CONSTANT, paper_case
+
+
+@pytest.fixture(scope="module")
+def data():
+    """Few pairs of one model."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lyapunov, "MODELS", {CONSTANT_E: CONSTANT})
+        patch.setattr(lyapunov, "PAIRS", 6)
+        yield lyapunov.FIGURE.data()
+
+
+def test_without_the_ball_neighbours_meet_as_the_structure_decays(data):
+    """The linear structure alone has the exponent -zeta omega = -25.3/40 per second."""
+    assert float(data.steady_exponent[2]) == pytest.approx(-0.6325, rel=1e-3)
+    assert float(data.expected[2]) == pytest.approx(-0.6325, rel=1e-12)
+
+
+def test_two_contacts_a_cycle_have_the_exponent_of_theory(data):
+    """The periodic motion attracts as fast as the exact one with hard impacts, to 3 %: contacts take time."""
+    assert float(data.steady_exponent[1]) == pytest.approx(float(data.expected[1]), rel=0.03)
+    assert not data.steady_chaotic[1]
+
+
+def test_irregular_motion_is_chaotic(data):
+    """Where no motion with two contacts is stable, neighbours part until they are as far as they can be."""
+    assert data.steady_chaotic[0]
+    assert float(data.steady_exponent[0]) > 5
+
+
+def test_without_contact_nothing_grows(data):
+    """After the weak pulse the centred ball touches no wall, and its neighbour stays where it is."""
+    calm = data.sel(pulse=100.0, model=CONSTANT_E, case=1)
+    np.testing.assert_allclose(calm.separation, lyapunov.DISTANCE, rtol=1e-6)
+    assert float(calm.exponent) == pytest.approx(0, abs=1e-6)
+    assert not calm.chaotic
+
+
+def test_growth_is_measured_from_its_onset_to_saturation():
+    """Of growth at 7 per second that begins after a second and ends at a millimetre, onset and rate are found."""
+    time = np.arange(1, 1501) * 4e-3
+    grown = 1e-12 * np.exp(7 * np.clip(time - 1, 0, None))
+    rows = np.minimum([grown, 2 * grown, 0.5 * grown], 1e-3)
+    found = lyapunov._parting(time, rows)
+    assert found.exponent == pytest.approx(7, rel=1e-9)
+    assert found.onset == pytest.approx(1 + np.log(100) / 7, abs=5e-3)
+    assert found.determination == pytest.approx(1)
+    assert np.nanmax(found.fit) < lyapunov.SATURATION < found.fit[np.isfinite(found.fit)][-1] * 1.03
+
+
+def test_neighbours_are_as_far_apart_as_they_start():
+    """The distance of runs whose balls start 0.1 nm apart is that, before anything has moved."""
+    one, other = (simulate(paper_case(start=start, duration=1e-3, times=(0.0,))) for start in (0.0, 2.5e-7))
+    assert lyapunov._distance(one, other)[0] == pytest.approx(1e-10, rel=1e-9)
+
+
+def test_drawn_and_judged(data):
+    """The figure is drawn from the data, and the verdicts follow them."""
+    figure = lyapunov.FIGURE
+    assert figure.draw(data).axes
+    assert "{" not in figure.caption(data)
+    assert [claim.verdict for claim in figure.claims(data)] == ["reproduced", "reproduced"]
+    calm = data.assign(chaotic=data.chaotic & (data.case == 2))
+    assert figure.claims(calm)[0].verdict == "reproduced in kind"
+    assert figure.claims(calm.assign(chaotic=calm.chaotic & False))[0].verdict == "not reproducible"
+    assert "neighbours are still within" in figure.caption(calm)

@@ -1,0 +1,74 @@
+"""Runs of figures as case and study files."""
+
+import pytest
+
+import rattlebox as rb
+from rattlebox.studies.axes import Design
+from rattlebox.studies.studyfile import read_study
+from reproduction.reference import PLASTIC, paper_case
+from reproduction.runs import grouped, record_cases, simulate, write_runs
+
+
+def stated(case):
+    """Return all that a case holds but its name."""
+    return case.model_dump_json(exclude={"name"})
+
+
+def read(folder, files):
+    """Return every case that stands in files."""
+    for each in files.values():
+        yield rb.Case.from_file(folder / each.case)
+        if each.study:
+            study = read_study(folder / each.study)
+            design = Design.of(study.case, study.axes)
+            assert design.size == each.runs
+            yield from (design.case_at(study.case, number) for number in range(design.size))
+
+
+def test_every_run_of_a_figure_stands_in_its_files(every, tmp_path):
+    """Case and study files hold each run that the data come from, to the last bit, and no other but named cases."""
+    (tmp_path / "cases").mkdir()
+    named = every.figure.cases()
+    written = [stated(case) for case in read(tmp_path, write_runs(named, every.runs, tmp_path, "cases", every.module))]
+    assert len(set(written)) == len(written)
+    assert set(written) == {stated(case) for case in every.runs} | {stated(case) for case in named.values()}
+
+
+def test_a_run_belongs_to_the_nearest_case():
+    """Fewest differences count first, then how far they lead away; a run twice is one run, a named one is none."""
+    named = {"centred": paper_case(), "wall": paper_case(start=1.0), "plastic": paper_case(PLASTIC)}
+    runs = [paper_case(start=0.9), paper_case(start=0.9), paper_case(start=0.1, amplitude=100.0), paper_case(PLASTIC)]
+    assert grouped(named, runs) == {
+        "wall": {"damper.start": [0.9]},
+        "centred": {"damper.start": [0.1], "load.amplitude": [100.0]},
+    }
+
+
+def test_a_run_without_a_name_is_refused():
+    """A run with another law or other output times than any named case is no variant of one."""
+    with pytest.raises(ValueError, match="in more than numbers"):
+        grouped({"constant": paper_case()}, [paper_case(PLASTIC)])
+    with pytest.raises(ValueError, match="in more than numbers"):
+        grouped({"constant": paper_case()}, [paper_case(times=[0.0])])
+
+
+def test_runs_are_noted_while_asked():
+    """Only what runs inside the context is noted."""
+    case = paper_case(duration=1e-3)
+    simulate(case)
+    with record_cases() as runs:
+        simulate(case)
+    simulate(case)
+    assert runs == [case]
+
+
+def test_a_study_of_a_figure_runs_by_itself(tmp_path):
+    """The study file gives a sweep the numbers of the runs it stands for."""
+    (tmp_path / "cases").mkdir()
+    runs = [paper_case(start=start, duration=0.5) for start in (0.2, 0.4)]
+    named = {"Centred, 5 kN": paper_case(duration=0.5)}
+    files = write_runs(named, runs, tmp_path, "cases", "figure_99")["Centred, 5 kN"]
+    assert files.study == "cases/figure_99_centred_5_kn_study.toml" and files.varied == ("damper.start",)
+    study = read_study(tmp_path / files.study)
+    found = rb.sweep(study.case, study.axes, **study.options)
+    assert found.impacts.values.tolist() == [simulate(case).impacts.sizes["impact"] for case in runs]

@@ -1,0 +1,104 @@
+"""States of particle runs that were changed behind their checksums are refused, or run on; they never end the process."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.engines.core import core
+from rattlebox.engines.dem import pack_dem
+
+FLIPS = 1500
+
+
+def shaken(kind: str) -> rb.Case:
+    """Return particles of two sizes that are shaken, with all that contacts remember."""
+    contact: Any = {
+        "hertz": rb.Tsuji(restitution=0.7),
+        "yielding": rb.Thornton(yield_pressure="20 MPa"),
+    }[kind]
+    boxes = [
+        rb.ParticleDamper(
+            name=name,
+            particles=[
+                rb.Particles(material="steel", diameter="4 mm", count=count),
+                rb.Particles(name="fine", material="steel", diameter="2 mm", count=count),
+            ],
+            cavity=cavity,
+            contact=contact,
+            friction=0.3,
+            rolling=rb.Rolling(0.1),
+            packing=rb.Settled(seed=1),
+            softening=1000,
+        )
+        for name, count, cavity in (
+            ("box", 80, rb.Box(size=("20 mm", "20 mm", "30 mm"))),
+            ("can", 5, rb.Cylinder(diameter="16 mm", length="20 mm", axis="z")),
+        )
+    ]
+    motion = rb.Harmonic(amplitude="1 mm", frequency="60 Hz", direction="z")
+    return rb.Case(structure=rb.Shaker(motion=motion), dampers=boxes, duration="4 ms", output=rb.Output(rate="2 kHz"))
+
+
+def run_flipped(kind: str, seed: int) -> tuple[int, int]:
+    """Flip a bit at a time in a state and go on from it; return how many states were refused, and how many ran on."""
+    packed, step, _ = pack_dem(shaken(kind))
+    first = core().Dem(packed)
+    first.run(step.count // 2)
+    state = np.asarray(first.save())
+    rng = np.random.default_rng(seed)
+    refused = ran = 0
+    for _ in range(FLIPS):
+        changed = state.copy()
+        changed[rng.integers(state.size)] ^= np.uint8(1 << int(rng.integers(8)))
+        dem = core().Dem(packed)
+        try:
+            dem.restore(changed)
+        except ValueError:
+            refused += 1
+            continue
+        dem.run(min(dem.step + 60, step.count))
+        dem.state(), dem.counters(), dem.records()
+        if dem.status:
+            dem.stopped()
+        ran += 1
+    return refused, ran
+
+
+@pytest.mark.parametrize("kind", ["hertz", "yielding"])
+def test_flipped_bits_do_no_harm(kind: str) -> None:
+    """Whatever bit of a state is flipped, the process lives; indices and counts that do not fit are refused."""
+    done = subprocess.run(
+        [sys.executable, "-c", f"import test_damaged_states as t; print(*t.run_flipped({kind!r}, 1))"],
+        cwd=Path(__file__).parent,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    refused, ran = map(int, done.stdout.split())
+    assert refused > FLIPS / 20
+    assert refused + ran == FLIPS
+
+
+def test_a_state_that_was_changed_is_refused_with_its_file(tmp_path: Path) -> None:
+    """A checkpoint with a sound archive, in whose state a count was changed, is refused by name before the run."""
+    case, path = shaken("hertz"), tmp_path / "run.checkpoint"
+    whole = rb.simulate(case, checkpoint=path)
+    assert whole.ok
+    with np.load(path) as file:
+        members = {name: file[name] for name in file.files}
+    packed, _, _ = pack_dem(case)
+    members["state"] = members["state"].copy()
+    members["state"][-2000:] ^= np.uint8(0x55)
+    assert core().Dem(packed).restore(np.load(path)["state"]) is None
+    with path.open("wb") as content:
+        np.savez(content, **members)
+    with pytest.raises(rb.CaseError, match=r"run\.checkpoint is (damaged|not a whole checkpoint)"):
+        rb.simulate(case, checkpoint=path)

@@ -1,0 +1,213 @@
+"""`rattlebox run --replace` keeps the earlier run until the new one is over, and files of a user in any case."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import rattlebox as rb
+from rattlebox._util.owned_folder import MARKER
+from rattlebox.cli import folder as folders
+from rattlebox.cli.commands import app
+from rattlebox.results.snapshots import Snapshots
+
+IMPACT = """
+duration = "50 ms"
+structure = { kind = "sdof", mass = "20 kg", stiffness = "80 kN/m", velocity = "0.1 m/s" }
+[damper]
+ball = { radius = "33 mm", material = "steel" }
+gap = "0.4 mm"
+contact = { kind = "tsuji", restitution = 0.8 }
+"""
+BEADS = """
+duration = "%s"
+structure = { kind = "sdof", mass = "0.1 kg", stiffness = "10 kN/m", velocity = "0.5 m/s" }
+output = { rate = "2 kHz", snapshots = 5 }
+method = { kind = "dem", checkpoint_every = "0.02 s" }
+[damper]
+particles = { material = "glass", diameter = "3 mm", count = 20 }
+cavity = { kind = "sphere", diameter = "20 mm" }
+contact = { kind = "tsuji", restitution = 0.8 }
+friction = %g
+softening = 100
+"""
+
+
+@pytest.fixture(autouse=True)
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Case files in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    for name, text in (
+        ("impact", IMPACT),
+        ("wider", IMPACT.replace("0.4 mm", "0.5 mm")),
+        ("first", BEADS % ("0.2 s", 0.2)),
+        ("second", BEADS % ("0.2 s", 0.3)),
+        ("long", BEADS % ("20 s", 0.3)),
+        ("longer", BEADS % ("30 s", 0.4)),
+    ):
+        Path(f"{name}.toml").write_text(text)
+
+
+def command(*arguments: str) -> list[str]:
+    """The command as a user gives it."""
+    return [sys.executable, "-m", "rattlebox.cli", "run", *arguments, "-o", "out", "--no-figures"]
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Give the command."""
+    return subprocess.run(command(*arguments), capture_output=True, text=True, check=False, timeout=120)
+
+
+def stop(*arguments: str, by: int, once: Callable[[], object]) -> str:
+    """Give the command, stop it once something is there, and return what it said."""
+    process = subprocess.Popen(command(*arguments), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    until = time.monotonic() + 60
+    while not once():
+        assert process.poll() is None and time.monotonic() < until
+        time.sleep(0.01)
+    process.send_signal(by)
+    return process.communicate(timeout=60)[1]
+
+
+def contents(folder: Path = Path("out")) -> dict[str, bytes]:
+    """Content of the files of a folder, without those below it."""
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+def changes(file: Path) -> Callable[[], bool]:
+    """Return what tells that a file is not what it is now."""
+    before = file.read_bytes()
+    return lambda: file.read_bytes() != before
+
+
+def begun() -> bool:
+    """Whether a replacement has a checkpoint."""
+    return any(Path("out").glob("replacement-*/run.checkpoint"))
+
+
+@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGKILL])
+def test_a_finished_run_is_kept_until_the_new_one_is_over(by: int) -> None:
+    """Results and snapshots are unchanged after a stop; the same command goes on, and takes their place in the end."""
+    assert run("first.toml", "--csv").returncode == 0
+    before = contents()
+    assert before.keys() == {MARKER, "run.nc", "run.vtkhdf", "motion.csv", "energy.csv", "particles.csv"}
+    stop("long.toml", "--replace", by=by, once=begun)
+    kept = contents()
+    assert {name: kept[name] for name in before} == before
+    assert {*kept} - {*before} <= {".run.checkpoint.lock"}
+    shown = subprocess.run(
+        [sys.executable, "-m", "rattlebox.cli", "show", "out"], capture_output=True, text=True, check=True
+    ).stdout
+    assert "takes its place is not over" in shown
+    # The earlier case is run again, and says that there is something else.
+    done = run("first.toml")
+    assert done.returncode == 0 and "begun with --replace and is not over" in done.stderr
+    said = stop("long.toml", "--replace", by=signal.SIGINT, once=changes(next(Path("out").glob("*/run.checkpoint"))))
+    assert "going on from out/replacement-" in said
+    # A third case takes the place of the first, and the second is kept.
+    assert run("second.toml", "--replace").returncode == 0
+    assert begun()
+    assert contents().keys() == {MARKER, "run.nc", "run.vtkhdf"}
+    assert rb.load("out/run.nc") == rb.simulate(rb.Case.from_file("second.toml"), snapshots="other.vtkhdf")
+    assert Snapshots("out/run.vtkhdf").numbers == Snapshots("other.vtkhdf").numbers
+
+
+@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGKILL])
+def test_a_checkpoint_is_kept_until_the_new_run_is_over(by: int) -> None:
+    """A run that was stopped goes on from its checkpoint, after another one has begun to replace it and was stopped."""
+    stop("longer.toml", by=signal.SIGINT, once=Path("out/run.checkpoint").is_file)
+    before = contents()
+    assert "--replace" in run("long.toml").stderr
+    stop("long.toml", "--replace", by=by, once=begun)
+    assert {name: text for name, text in contents().items() if "lock" not in name} == before
+    assert "going on from out/run.checkpoint" in stop(
+        "longer.toml", by=signal.SIGINT, once=changes(Path("out/run.checkpoint"))
+    )
+    assert run("impact.toml", "--replace").returncode == 0
+    assert contents().keys() == {MARKER, "run.nc"}
+
+
+@pytest.mark.parametrize("after", range(6))
+def test_a_stop_during_the_exchange(after: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The files of two runs are exchanged in steps; a stop between any of them is made up for by the next command."""
+    assert run("impact.toml", "--csv").returncode == 0
+    steps = 0
+
+    def stopping(step: Callable[..., object]) -> Callable[..., object]:
+        def taken(*arguments: object) -> object:
+            nonlocal steps
+            steps += 1
+            if steps > after:
+                raise SystemExit(9)
+            return step(*arguments)
+
+        return taken
+
+    with monkeypatch.context() as patched:
+        for name in ("remove", "sync", "write_marker", "_discard", "_swap"):
+            patched.setattr(folders, name, stopping(getattr(folders, name)))
+        with pytest.raises(SystemExit):
+            app(["run", "wider.toml", "-o", "out", "--no-figures", "--mat", "--replace"], standalone_mode=False)
+    assert run("wider.toml", "--replace").returncode == 0
+    assert rb.load("out/run.nc") == rb.simulate(rb.Case.from_file("wider.toml"))
+    assert contents().keys() <= {MARKER, "run.nc", "run.mat"}
+    assert not any(Path("out").glob("replacement-*"))
+
+
+@pytest.mark.parametrize(
+    "name", ["motion.csv", "motion.png", "run.mat", "run.vtkhdf", "run.checkpoint", "run.nc", "energy.csv"]
+)
+def test_files_of_a_user_are_not_replaced(name: str) -> None:
+    """A file with the name of a result that this command did not write is refused before anything is computed."""
+    Path("out").mkdir()
+    mine = Path("out", name)
+    mine.write_text("mine")
+    case = "first.toml" if name in ("run.vtkhdf", "run.checkpoint") else "impact.toml"
+    for options in ([], ["--replace"]):
+        arguments = ["run", case, "-o", "out", "--csv", "--mat", *options]
+        done = subprocess.run(
+            [sys.executable, "-m", "rattlebox.cli", *arguments], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 2 and str(mine) in done.stderr and "\n  try: " in done.stderr
+        assert mine.read_text() == "mine"
+
+
+def test_a_result_that_was_edited_is_not_replaced() -> None:
+    """A table that the user has changed since is neither written again nor removed."""
+    assert run("impact.toml", "--csv").returncode == 0
+    edited = Path("out/motion.csv")
+    edited.write_text(edited.read_text() + "my note\n")
+    assert run("impact.toml").returncode == 0
+    assert edited.read_text().endswith("my note\n")
+    assert run("impact.toml", "--csv").returncode == 2
+    assert run("wider.toml", "--replace").returncode == 0
+    assert edited.read_text().endswith("my note\n")
+    assert contents().keys() == {MARKER, "run.nc", "motion.csv"}
+
+
+def test_the_demonstration_replaces_its_own_files_only() -> None:
+    """The folder of the demonstration may be used again; a user's file in it is refused before anything is computed."""
+    demo = [sys.executable, "-m", "rattlebox.cli", "demo", "-o", "out"]
+    for _ in range(2):
+        assert subprocess.run(demo, capture_output=True, check=False).returncode == 0
+    Path("out/demo.png").write_text("mine")
+    done = subprocess.run(demo, capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and "out/demo.png was not written by this command" in done.stderr
+    assert Path("out/demo.png").read_text() == "mine"
+
+
+def test_files_beside_a_replacement_stay() -> None:
+    """Files that a user has put into the folder of a replacement stay there when it is over."""
+    assert run("first.toml").returncode == 0
+    stop("long.toml", "--replace", by=signal.SIGKILL, once=begun)
+    Path("long.toml").write_text(BEADS % ("0.2 s", 0.3))
+    (folder,) = Path("out").glob("replacement-*")
+    (folder / "notes.txt").write_text("mine")
+    assert run("second.toml", "--replace").returncode == 0
+    assert (folder / "notes.txt").read_text() == "mine" and (folder / "run.checkpoint").is_file()

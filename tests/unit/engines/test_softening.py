@@ -1,0 +1,228 @@
+"""Softening: warnings where it changes the loss, the value of "auto", and the estimates behind both."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.engines.core import core
+from rattlebox.engines.dem import pack_dem
+from rattlebox.engines.softening import AUTO_CHANGE, MOST_CHANGE, Shaking, bed_resonance, change_of_loss
+from rattlebox.studies.granular import WARNINGS
+
+
+def shaken(amplitude: float, frequency: float, softening: Any, cycles: float = 10, **changes: Any) -> rb.Case:
+    """A cylinder of tungsten carbide balls on a shaker."""
+    damper: dict[str, Any] = {
+        "particles": rb.Particles(material="tungsten_carbide", diameter="6 mm", fill_ratio=0.45),
+        "cavity": rb.Cylinder(diameter="40 mm", length="60 mm", axis="x"),
+        "contact": rb.Tsuji(restitution=0.6),
+        "friction": 0.2,
+        "direction": "z",
+        "wall": "steel",
+        "packing": rb.Settled(seed=1),
+        "softening": softening,
+    }
+    motion = rb.Harmonic(amplitude=(amplitude, "m/s^2"), frequency=frequency, direction="z")
+    return rb.Case(
+        structure=rb.Shaker(motion=motion),
+        damper=rb.ParticleDamper(**damper | changes),
+        duration=cycles / frequency,
+        output=rb.Output(rate=20 * frequency),
+    )
+
+
+def small(amplitude: float, frequency: float, softening: Any, **changes: Any) -> rb.Case:
+    """A few steel balls."""
+    few: dict[str, Any] = {
+        "particles": rb.Particles(material="steel", diameter="5 mm", count=30),
+        "cavity": rb.Box(size=("20 mm", "20 mm", "25 mm")),
+        "wall": None,
+    }
+    return shaken(amplitude, frequency, softening, **few | changes)
+
+
+def warnings(run: rb.Run) -> list[str]:
+    """Return the warnings of a run."""
+    return [note for note in run.arrays.notes if note.startswith("warning")]
+
+
+@pytest.mark.parametrize("softening", [100, 20])
+def test_a_resting_softened_bed_has_both_warnings(softening: float) -> None:
+    """At half of gravity the loss is 1.1 and 0.18 m V^2 at softening 100 and 20, and 0.01 without."""
+    run = rb.simulate(shaken(5, 180, softening))
+    assert run.arrays.figures["softening_change"] > MOST_CHANGE
+    assert run.arrays.figures["enduring_share"] > 0.4
+    found = warnings(run)
+    assert len(found) == 2 and "resonance" in found[0] and "quarter of a period" in found[1]
+
+
+@pytest.mark.parametrize(("amplitude", "softening"), [(49, 5), (49, 1), (5, 1)])
+def test_beds_that_softening_changes_little_have_none(amplitude: float, softening: float) -> None:
+    """Thrown beds with little softening, and all beds without."""
+    assert warnings(rb.simulate(shaken(amplitude, 180, softening))) == []
+
+
+def test_motions_given_as_displacement_are_judged_alike() -> None:
+    """They are accelerations with the opposite sign."""
+    motion = rb.Harmonic(amplitude=(12 / (2 * math.pi * 160) ** 2, "m"), frequency=160, direction="z")
+    made = small(12, 160, 300)
+    moved = rb.simulate(made.model_copy(update={"structure": rb.Shaker(motion=motion)}))
+    assert moved.arrays.figures["softening_change"] == rb.simulate(made).arrays.figures["softening_change"] > 0.2
+
+
+def test_each_damper_has_its_own_warnings() -> None:
+    """Named where there are several."""
+    case = small(5, 160, 1)
+    hard = case.particle_dampers[0].model_copy(update={"name": "hard"})
+    soft = hard.model_copy(update={"name": "soft", "softening": 300})
+    found = warnings(rb.simulate(case.model_copy(update={"dampers": (hard, soft)})))
+    assert len(found) == 2
+    assert all("in soft" in note and "in hard" not in note for note in found)
+
+
+def test_the_loss_of_contacts_of_any_age_is_all_loss() -> None:
+    """Sampled in every eighth step it is that of the ledger; no contact is older than the run."""
+    packed, step, _ = pack_dem(small(12, 80, 100))
+    shares = []
+    for age in (0.0, 1 / 320, 1.0):
+        dem = core().Dem({**packed, "enduring": age})
+        dem.run(step.count, None)
+        records = dem.records()
+        lost = sum(records[f"{name}_loss"][-1].sum() for name in ("normal", "plastic", "sliding", "rolling"))
+        shares.append(float(dem.counters()["enduring_loss"][0] / lost))
+    assert shares[0] == pytest.approx(1, abs=0.02)
+    assert 0 < shares[1] < 0.9 and shares[2] == 0
+
+
+@pytest.mark.parametrize("softening", [100, 20])
+def test_the_resonance_is_that_of_a_bed_shaken_gently(softening: float) -> None:
+    """Well below its resonance f0 the effective mass of a column is m tan(x) / x with x = pi f / (2 f0)."""
+    wide = {
+        "particles": rb.Particles(material="steel", diameter="5 mm", count=100),
+        "cavity": rb.Box(size=("30 mm", "30 mm", "25 mm")),
+    }
+    case = small(0.05, 1, softening, **wide)
+    estimate = bed_resonance(case.particle_dampers[0])
+    frequency = estimate / 5
+    run = rb.simulate(small(0.05, frequency, softening, cycles=0.08 * frequency + 15, **wide))
+    found = rb.analysis.shaken_cavity(run, frequency=frequency, after=0.08).sel(way="complex power")
+    ratio = float(found.effective_mass) / run.arrays.particle_mass[0]
+    measured = math.pi * frequency / 2 / math.sqrt(3 * (ratio - 1))
+    assert estimate == pytest.approx(measured, rel=0.3)
+
+
+def test_the_resonance_depends_on_the_force_and_not_on_the_law() -> None:
+    """A power law with the numbers of another law has its resonance; a measured curve counts as a spring."""
+
+    def resonances(contact: Any) -> list[float]:
+        damper = small(5, 160, 1, contact=contact, friction=None).particle_dampers[0]
+        return [bed_resonance(damper, softening) for softening in (1, 8)]
+
+    hertz, linear = resonances(rb.Tsuji(restitution=0.6)), resonances(rb.Linear(stiffness=1e6, restitution=0.6))
+    assert resonances(rb.PowerLaw(damping_exponent=0.25, restitution=0.6)) == pytest.approx(hertz)
+    assert resonances(rb.PowerLaw(stiffness=1e6, exponent=1, damping_exponent=0, restitution=0.6)) == pytest.approx(
+        linear
+    )
+    curve = rb.TabulatedNormal(overlap=(0, 1e-6, 2e-6), force=(0, 1, 2))
+    assert resonances(curve) == pytest.approx(linear)
+
+
+def test_the_resonance_falls_with_softening() -> None:
+    """With its cube root for Hertz contacts, with its square root for linear ones; no weight, no resonance."""
+    hertz = small(5, 100, 1).particle_dampers[0]
+    linear = small(5, 100, 1, contact=rb.Linear(stiffness="1 MN/m", restitution=0.6), friction=0).particle_dampers[0]
+    assert bed_resonance(hertz, 1.0) / bed_resonance(hertz, 64.0) == pytest.approx(4)
+    assert bed_resonance(linear, 1.0) / bed_resonance(linear, 64.0) == pytest.approx(8)
+    still = small(5, 100, 1, gravity=(0, 0, 0), packing=rb.Lattice()).particle_dampers[0]
+    assert bed_resonance(still) == 0
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "frequency", "limit"), [(49, 400, "the loss"), (15, 160, "the loss"), (30, 20, "overlaps")]
+)
+def test_auto_takes_the_largest_within_its_bounds(amplitude: float, frequency: float, limit: str) -> None:
+    """It runs as that number does, says so, and has no warning."""
+    run = rb.simulate(small(amplitude, frequency, "auto"))
+    chosen = run.arrays.figures["softening"]
+    assert chosen > 1
+    change = run.arrays.figures["softening_change"]
+    assert 0.9 * AUTO_CHANGE < change <= AUTO_CHANGE if limit == "the loss" else change < AUTO_CHANGE
+    assert any(note.startswith(f"softening {chosen:g}, limited by {limit}") for note in run.arrays.notes)
+    assert warnings(run) == []
+    same = rb.simulate(small(amplitude, frequency, chosen))
+    assert np.array_equal(run.arrays.cavity_force, same.arrays.cavity_force)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"amplitude": 5.0},
+        {"gravity": (0, 0, 0), "packing": rb.Lattice()},
+    ],
+)
+def test_auto_is_one_where_nothing_can_be_promised(changes: dict[str, Any]) -> None:
+    """For beds that stay on the floor, and without weight."""
+    run = rb.simulate(small(**{"amplitude": 30.0, "frequency": 100, "softening": "auto", "cycles": 2, **changes}))
+    assert run.arrays.figures["softening"] == 1
+    assert any(note.startswith("softening 1: ") for note in run.arrays.notes)
+
+
+def test_auto_on_a_structure_looks_at_its_modes() -> None:
+    """The higher their frequency, the less."""
+
+    def softening(stiffness: float) -> float:
+        structure = rb.SDOF(mass="1 kg", stiffness=stiffness, velocity="0.3 m/s")
+        case = small(10, 100, "auto").model_copy(update={"structure": structure, "duration": 1e-3})
+        return rb.simulate(rb.Case.model_validate(case.model_dump())).arrays.figures["softening"]
+
+    assert 1 < softening(2.5e6) < softening(1e6)
+
+
+def test_auto_is_read_from_case_files_and_written() -> None:
+    """As text, in place of a number."""
+    case = small(10, 100, "auto")
+    assert 'softening = "auto"' in case.to_toml()
+    assert rb.Case.from_toml(case.to_toml()) == case
+
+
+def test_studies_and_loss_maps_mark_softened_variants() -> None:
+    """As they do with all other limits."""
+    case = small(5, 160, 300, cycles=6)
+    found = rb.loss_map(case, [5.0, 49.0], [20.0, 160.0], cycles=(2, 4), progress=False)
+    names = list(WARNINGS)
+    soft, enduring = (found.warnings.values & 2 ** names.index(name) > 0 for name in ("soft_bed", "enduring_contacts"))
+    assert soft.tolist() == [[False, True], [False, True]]
+    assert enduring[0].all() and not enduring[1, 0]
+
+
+def test_the_estimate_covers_computed_changes() -> None:
+    """Changes of the loss in a cycle over m V^2, from long runs (docs/softening.md)."""
+    carbide, steel = (
+        shaken(5, 180, 1).particle_dampers[0],
+        shaken(
+            5,
+            160,
+            1,
+            particles=rb.Particles(material="steel", diameter="5 mm", count=100),
+            cavity=rb.Box(size=("30 mm", "30 mm", "25 mm")),
+            contact=rb.Tsuji(restitution=0.8),
+            wall=None,
+        ).particle_dampers[0],
+    )
+    computed = [
+        (carbide, 180, 1.53, 5, 1.454 - 1.107),
+        (carbide, 180, 1.53, 20, 2.538 - 1.107),
+        (carbide, 180, 1.02, 20, 0.870 - 0.062),
+        (carbide, 180, 4.99, 5, 0.999 - 0.880),
+        (steel, 160, 1.53, 30, 1.576 - 0.963),
+        (steel, 160, 1.02, 100, 0.745 - 0.006),
+        (steel, 60, 1.53, 300, 1.200 - 0.929),
+    ]
+    for damper, frequency, level, softening, change in computed:
+        motion = Shaking(frequency, frequency, 9.81 * level, is_given=True)
+        assert change < 1.05 * change_of_loss(damper, motion, level, softening)

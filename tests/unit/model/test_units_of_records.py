@@ -1,0 +1,142 @@
+"""Units of records: those above columns and in arguments, those that are unknown, and those that nobody states."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.model.doubts import doubts
+
+G = 9.80665
+
+
+def written(folder: Path, above: str) -> Path:
+    """Write a record with a line above its numbers."""
+    path = folder / "quake.csv"
+    path.write_text((f"{above}\n" if above else "") + "0,0.1\n0.02,-0.2\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "si"),
+    [
+        ("g", G, "m/s^2"), ("G", G, "m/s^2"), ("gn", G, "m/s^2"), ("mg", G / 1e3, "m/s^2"), ("gal", 0.01, "m/s^2"),
+        ("Gal", 0.01, "m/s^2"), ("GAL", 0.01, "m/s^2"), ("cm/s^2", 0.01, "m/s^2"), ("cm/s2", 0.01, "m/s^2"),
+        ("cm/sec^2", 0.01, "m/s^2"), ("cm/sec/sec", 0.01, "m/s^2"), ("m s^-2", 1, "m/s^2"), ("ft/s^2", 0.3048, "m/s^2"),
+        ("in/s^2", 0.0254, "m/s^2"), ("N", 1, "N"), ("kN", 1e3, "N"), ("lbf", 4.4482216152605, "N"), ("kgf", G, "N"),
+        ("mm", 1e-3, "m"), ("in", 0.0254, "m"), ("ft", 0.3048, "m"),
+    ],
+)  # fmt: skip
+def test_usual_units_above_a_column(tmp_path: Path, unit: str, factor: float, si: str) -> None:
+    """Values are converted from the unit above their column, which means what it means for such a quantity."""
+    for above in (f"time (s),x ({unit})", f"time [s],x [{unit}]", f"time,x\ns,{unit}"):
+        record = rb.Record(file=written(tmp_path, above))
+        assert record.unit == si
+        assert record.scale == pytest.approx(factor, rel=1e-14)
+
+
+@pytest.mark.parametrize("unit", ["furlong", "rod", "a", "V", "counts", "m/s", "s", "banana/s^2"])
+def test_other_units_above_a_column_are_refused(tmp_path: Path, unit: str) -> None:
+    """A unit that is unknown or of another dimension is refused; the arguments that are advised take its place."""
+    path = written(tmp_path, f"time (s),x ({unit})")
+    with pytest.raises(rb.CaseError, match=r"file = .*\n  .* is not a unit of .*known: .*\n  try: unit = \"m/s\^2\""):
+        rb.Record(file=path)
+    advised = rb.Record(file=path, unit="m/s^2", scale=2.0)
+    assert (advised.unit, advised.scale) == ("m/s^2", 2.0)
+    assert rb.Record(file=path, unit="m/s^2").scale == 1
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("ms", 1e-3), ("min", 60.0), ("s", 1.0)])
+def test_units_of_time(tmp_path: Path, unit: str, factor: float) -> None:
+    """Times are converted from the unit above their column."""
+    assert rb.Record(file=written(tmp_path, f"t ({unit}),x (N)")).times[1] == pytest.approx(0.02 * factor)
+
+
+def test_unknown_units_of_time_are_refused(tmp_path: Path) -> None:
+    """Times in an unknown unit are refused with what to write."""
+    with pytest.raises(rb.CaseError, match=r'fortnight.* is not a unit of time.*\n  try: .*"time \(s\)"'):
+        rb.Record(file=written(tmp_path, "t (fortnight),x (N)"))
+
+
+@pytest.mark.parametrize("above", ["t,a(t)", "t,a (X)", "t,force (1)", "t,accelerometer", ""])
+def test_a_unit_that_nobody_states_is_noted(tmp_path: Path, above: str) -> None:
+    """A run notes the unit that it assumes and the peak in g, also after the case was written and read."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=1, stiffness=100), base=rb.Record(file=written(tmp_path, above)), duration=0.02
+    )
+    for each in (case, rb.Case.from_toml(case.to_toml())):
+        assert each == case
+        (note,) = rb.simulate(each).arrays.notes
+        assert "quake.csv" in note and "m/s^2 is assumed" in note and "0.2 m/s^2 = 0.02039 g" in note
+    assert "m/s^2 is assumed" in str(rb.simulate(case).summary())
+    assert doubts(case, signals=False) == (note,)  # of studies, too
+
+
+def test_a_unit_that_is_stated_is_not_noted(tmp_path: Path) -> None:
+    """Nothing is noted where the file or the user states the unit."""
+    for above, options in (("t,a (g)", {}), ("t,a", {"unit": "m/s^2"})):
+        base = rb.Record(file=written(tmp_path, above), **options)
+        case = rb.Case(structure=rb.SDOF(mass=1, stiffness=100), base=base, duration=0.02)
+        assert rb.simulate(case).arrays.notes == ()
+
+
+def test_units_mean_what_their_quantity_is() -> None:
+    """In accelerations g is gravity, mg a thousandth of it and gal cm/s^2; in masses g is gram."""
+    for text, value in (("-5 g", -5 * G), ("3 mg", 3e-3 * G), ("3 gal", 0.03), ("1 gn", G), ("1 ft/s²", 0.3048)):
+        assert rb.Harmonic(amplitude=text, frequency=1).amplitude == pytest.approx(value, rel=1e-14)
+    assert rb.SDOF(mass="5 g", stiffness=1).mass == 0.005
+    with pytest.raises(rb.CaseError, match="try: did you mean 'kg'"):
+        rb.SDOF(mass="5 Kg", stiffness=1)
+
+
+PSD_UNITS: list[tuple[dict[str, Any], float, str | None]] = [
+    ({"unit": "g_0", "density": 0.04}, G, "m/s^2"),
+    ({"unit": "gal", "density": 0.04}, 0.01, "m/s^2"),
+    ({"unit": "kN", "density": 0.04}, 1e3, "N"),
+    ({"density": "0.04 g_0^2/Hz"}, G, "m/s^2"),
+    ({"density": "0.04 g²/Hz"}, G, "m/s^2"),
+    ({"density": "0.04 (m/s^2)^2/Hz"}, 1, "m/s^2"),
+    ({"density": "0.04 m^2/s^3"}, 1, "m/s^2"),
+    ({"density": "0.04 kN^2/Hz"}, 1e3, "N"),
+    ({"density": "0.04 mm^2/Hz"}, 1e-3, "m"),
+    ({"density": "0.04 g^2/Hz", "unit": "m/s^2"}, G, "m/s^2"),
+    ({"density": 0.04}, 1, None),
+]
+
+
+@pytest.mark.parametrize(("given", "factor", "unit"), PSD_UNITS)
+def test_units_of_densities(given: dict[str, Any], factor: float, unit: str | None) -> None:
+    """A random record takes densities in squares of units per Hz, and is in SI."""
+    plain = rb.random_record([(10, 0.04), (20, 0.04)], 1.0)
+    density = given.pop("density")
+    record = rb.random_record([("10 Hz", density), ("0.02 kHz", density)], "1 s", direction="x", **given)
+    assert (record.unit, record.direction) == (unit, "x")
+    np.testing.assert_allclose(record.values, factor * np.array(plain.values), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("psd", "options", "said"),
+    [
+        ([(10, 1), (20, 1)], {"unit": "furlong"}, r"unit\n  'furlong' is not a unit"),
+        ([(10, "1 g/Hz"), (20, 1)], {}, r"psd\[0\]\[1\]\n  'g/Hz' is not the unit of a power spectral density"),
+        ([(10, "1 g^2/Hz"), (20, "1 N^2/Hz")], {}, r"psd\[1\]\[1\]\n  the density of a force, but others"),
+        ([(10, "1 g^2/Hz"), (20, "1 g^2/Hz")], {"unit": "N"}, r"psd\[0\]\[1\]\n  the density of an acceleration"),
+        ([(10, "1 furlong^2/Hz"), (20, 1)], {}, "not the unit of a power spectral density"),
+        ("psd.csv", {}, "positive .* pairs"),
+    ],
+)
+def test_wrong_units_of_densities(psd: Any, options: dict[str, Any], said: str) -> None:
+    """Units that are none of a density, or contradict each other, are refused with what to write."""
+    with pytest.raises(rb.CaseError, match=said):
+        rb.random_record(psd, 1.0, **options)
+
+
+def test_a_rate_that_is_too_low_is_raised() -> None:
+    """A random record has sixteen points in the shortest period at least, and more where they are asked for."""
+    psd = [(10, 1.0), (50, 1.0)]
+    assert len(rb.random_record(psd, 1.0, 100).times) == len(rb.random_record(psd, 1.0).times) == 801
+    assert len(rb.random_record(psd, 1.0, 2000).times) == 2001
