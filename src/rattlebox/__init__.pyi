@@ -71,20 +71,20 @@ from rattlebox.plots.sensitivity import plot_sensitivity as plot_sensitivity
 from rattlebox.results import Run as Run
 from rattlebox.results import load as load
 from rattlebox.results.snapshots import Snapshots as Snapshots
-from rattlebox.studies.basins import basins as basins
-from rattlebox.studies.bifurcation import bifurcation as bifurcation
 from rattlebox.studies.check_softening import check_softening as check_softening
-from rattlebox.studies.design import design as design
-from rattlebox.studies.designs import geomspace as geomspace
-from rattlebox.studies.designs import linspace as linspace
-from rattlebox.studies.designs import random_design as random_design
-from rattlebox.studies.designs import replicas as replicas
-from rattlebox.studies.frequency_response import frequency_response as frequency_response
-from rattlebox.studies.loss_map import loss_map as loss_map
-from rattlebox.studies.lyapunov import lyapunov as lyapunov
+from rattlebox.studies.kinds.basins import basins as basins
+from rattlebox.studies.kinds.bifurcation import bifurcation as bifurcation
+from rattlebox.studies.kinds.design import design as design
+from rattlebox.studies.kinds.frequency_response import frequency_response as frequency_response
+from rattlebox.studies.kinds.loss_map import loss_map as loss_map
+from rattlebox.studies.kinds.lyapunov import lyapunov as lyapunov
+from rattlebox.studies.kinds.sensitivity import sensitivity as sensitivity
+from rattlebox.studies.kinds.sweep import sweep as sweep
 from rattlebox.studies.measures import MEASURES as MEASURES
-from rattlebox.studies.sensitivity import sensitivity as sensitivity
+from rattlebox.studies.sampling import geomspace as geomspace
+from rattlebox.studies.sampling import linspace as linspace
+from rattlebox.studies.sampling import random_design as random_design
+from rattlebox.studies.sampling import replicas as replicas
 from rattlebox.studies.store import open_study as open_study
-from rattlebox.studies.sweep import sweep as sweep
 
 __version__: str

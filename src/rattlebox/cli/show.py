@@ -16,7 +16,7 @@ from rattlebox.cli.terminal import terminal
 from rattlebox.engines.dem_step import WARNINGS
 from rattlebox.results.quantities import MISSING, quantity
 from rattlebox.results.schema import HOW_ENDED
-from rattlebox.studies.design import trials_in
+from rattlebox.studies.kinds.design import trials_in
 from rattlebox.studies.store import Progress, has_map, open_study, progress_of, readable
 
 if TYPE_CHECKING:

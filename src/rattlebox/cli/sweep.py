@@ -17,7 +17,7 @@ from rattlebox.cli.terminal import terminal
 from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import CaseError
 from rattlebox.studies.runner import Stopped
-from rattlebox.studies.studyfile import read_study
+from rattlebox.studies.study_file import read_study
 
 
 def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None) -> None:

@@ -19,8 +19,8 @@ from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, all_paths, get, replaced, unit_of
 from rattlebox.model.restitutions import Constant
 
-from .designs import RandomDesign, Replicas
-from .parameters import Column, Parameter, Values, objects
+from .parameter import Column, Parameter, Values, objects
+from .sampling import RandomDesign, Replicas
 
 Axes = Mapping[Any, Any] | RandomDesign | Replicas | Sequence[Mapping[Any, Any] | RandomDesign | Replicas]
 

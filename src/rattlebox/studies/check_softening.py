@@ -13,8 +13,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.granular import ParticleDamper
 from rattlebox.model.packing import Lattice, Settled
 from rattlebox.model.units import whole_number
-
-from .sweep import sweep
+from rattlebox.studies.kinds.sweep import sweep
 
 if TYPE_CHECKING:
     import xarray

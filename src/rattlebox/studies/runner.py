@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.progress import progress_bar
 from rattlebox.model.errors import CaseError, Hint
 
-from .bar import telling
 from .blocks import Blocks
 from .store import IN_STORE, Memory, Output, Plan, Store
 
@@ -102,7 +102,7 @@ class Stopped(KeyboardInterrupt):
     """A study that was stopped by Ctrl-C, with a message that says how to go on."""
 
 
-def run_task(
+def run_work(
     task: Task,
     *,
     design: Grid,
@@ -181,7 +181,7 @@ def run_task(
             kept: Memory | Store = Memory(plan, cut()) if store is None else Store(store, plan, cut)
             opened.append(kept)
             stack.enter_context(kept)
-            tell = stack.enter_context(telling(progress, task.size))
+            tell = stack.enter_context(progress_bar(progress, task.size))
             keeper = stack.enter_context(ThreadPoolExecutor(1))  # ends what it has begun when Ctrl-C comes
             tell(kept.done)
             todo = _chains(task, kept, plan.dims)

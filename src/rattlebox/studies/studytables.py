@@ -12,8 +12,8 @@ from rattlebox.model.base import examples
 from rattlebox.model.errors import CaseError, Hint, nearest, translate
 from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, Whole
 
-from .designs import Method
 from .measures import MEASURES, check_names
+from .sampling import Method
 
 
 class Table(BaseModel):

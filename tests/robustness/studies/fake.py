@@ -98,6 +98,6 @@ def is_made(store: Path) -> bool:
 
 
 if __name__ == "__main__":
-    from rattlebox.studies.runner import run_task
+    from rattlebox.studies.runner import run_work
 
-    run_task(Logistic(pause=float(sys.argv[2])), design=Grid(), store=sys.argv[1], block=5)
+    run_work(Logistic(pause=float(sys.argv[2])), design=Grid(), store=sys.argv[1], block=5)

@@ -21,7 +21,7 @@ from distributed import Client, LocalCluster
 
 import rattlebox as rb
 from rattlebox.engines.core import choice, supported
-from rattlebox.studies.runner import Stopped, run_task
+from rattlebox.studies.runner import Stopped, run_work
 from rattlebox.studies.store import progress_of
 
 from . import fake
@@ -95,10 +95,10 @@ def test_a_worker_is_killed_in_the_middle(scheduler: Path, tmp_path: Path) -> No
         client.wait_for_workers(2, timeout=30)
         assert set(client.run(os.getpid).values()) == {first.pid, second.pid}
         slow = Logistic(pause=0.02)
-        found = run_task(slow, design=Grid(), on=client, store=tmp_path / "study.zarr", block=3, progress=kill)
+        found = run_work(slow, design=Grid(), on=client, store=tmp_path / "study.zarr", block=3, progress=kill)
         assert first.poll() is not None
         assert len(client.scheduler_info()["workers"]) == 1
-    assert bits(found) == bits(run_task(Logistic(), design=Grid()))
+    assert bits(found) == bits(run_work(Logistic(), design=Grid()))
 
 
 @pytest.fixture(scope="module")
@@ -113,10 +113,10 @@ def local() -> Iterator[Client]:
 
 def test_a_local_cluster(local: Client) -> None:
     """A cluster of processes gives the bits of this process; blocks are chosen by time, and a fault arrives as it is."""
-    found = run_task(Logistic(), design=Grid(), on=local)
-    assert bits(found) == bits(run_task(Logistic(), design=Grid()))
+    found = run_work(Logistic(), design=Grid(), on=local)
+    assert bits(found) == bits(run_work(Logistic(), design=Grid()))
     with pytest.raises(ZeroDivisionError, match="a fault in the task"):
-        run_task(Logistic(broken=True), design=Grid(), on=local, block=20)
+        run_work(Logistic(broken=True), design=Grid(), on=local, block=20)
 
 
 def last_speed(run: rb.Run) -> float:
@@ -191,10 +191,10 @@ def test_ctrl_c_stops_the_workers_too(scheduler: Path, tmp_path: Path) -> None:
         client.wait_for_workers(1, timeout=30)
         threading.Timer(1.0, press).start()
         with pytest.raises(Stopped, match="0 of 60 variants are in"):
-            run_task(Logistic(pause=10), design=Grid(), on=client, store=tmp_path / "study.zarr", block=10)
+            run_work(Logistic(pause=10), design=Grid(), on=client, store=tmp_path / "study.zarr", block=10)
         assert time.perf_counter() - pressed[0] < 2.0
         wait_for(lambda: sum(client.run(busy).values()) == 0)
-        run_task(Logistic(), design=Grid(), on=client, store=tmp_path / "study.zarr")
+        run_work(Logistic(), design=Grid(), on=client, store=tmp_path / "study.zarr")
     assert progress_of(tmp_path / "study.zarr").done == 60
 
 
@@ -205,7 +205,7 @@ def test_a_worker_with_other_instructions_is_refused(scheduler: Path) -> None:
     with worker(scheduler, RATTLEBOX_SIMD=other), Client(scheduler_file=str(scheduler)) as client:
         client.wait_for_workers(1, timeout=30)
         with pytest.raises(rb.CaseError, match=rf" and {other} instructions, the study with .* {choice()[0]} "):
-            run_task(Logistic(), design=Grid(), on=client, block=20)
+            run_work(Logistic(), design=Grid(), on=client, block=20)
 
 
 def test_a_block_that_kills_its_worker(tmp_path: Path) -> None:
@@ -218,7 +218,7 @@ def test_a_block_that_kills_its_worker(tmp_path: Path) -> None:
     ):
         client.wait_for_workers(2, timeout=30)
         with pytest.raises(rb.CaseError, match="2 workers in turn died of one block"):
-            run_task(Logistic(deadly=True), design=Grid(), on=client, block=60)
+            run_work(Logistic(deadly=True), design=Grid(), on=client, block=60)
 
 
 def test_the_scheduler_dies(tmp_path: Path) -> None:
@@ -236,6 +236,6 @@ def test_the_scheduler_dies(tmp_path: Path) -> None:
                 process.kill()
 
         with pytest.raises(rb.CaseError, match="the cluster is lost"):
-            run_task(Logistic(pause=0.02), design=Grid(), on=client, store=store, block=3, progress=kill)
+            run_work(Logistic(pause=0.02), design=Grid(), on=client, store=store, block=3, progress=kill)
     assert 20 <= progress_of(store).done < 60
-    assert bits(run_task(Logistic(), design=Grid(), store=store)) == bits(run_task(Logistic(), design=Grid()))
+    assert bits(run_work(Logistic(), design=Grid(), store=store)) == bits(run_work(Logistic(), design=Grid()))

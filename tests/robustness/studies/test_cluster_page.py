@@ -10,7 +10,7 @@ import pytest
 
 from rattlebox.engines.core import choice
 from rattlebox.studies.store import open_study
-from rattlebox.studies.studyfile import study_from_toml
+from rattlebox.studies.study_file import study_from_toml
 
 ROOT = Path(__file__).parents[3]
 

@@ -15,10 +15,10 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.studies.axes import Design
-from rattlebox.studies.runner import Stopped, run_task
+from rattlebox.studies.impact_work import ImpactWork
+from rattlebox.studies.runner import Stopped, run_work
 from rattlebox.studies.store import open_study, progress_of
-from rattlebox.studies.studyfile import read_study
-from rattlebox.studies.task import SweepTask
+from rattlebox.studies.study_file import read_study
 
 from .fake import done_in
 
@@ -33,13 +33,13 @@ file = "{EXAMPLE}"
 """
 SMALL_BLOCKS = """\
 from rattlebox.studies.axes import Design
-from rattlebox.studies.runner import run_task
-from rattlebox.studies.studyfile import read_study
-from rattlebox.studies.task import SweepTask
+from rattlebox.studies.runner import run_work
+from rattlebox.studies.study_file import read_study
+from rattlebox.studies.impact_work import ImpactWork
 study = read_study("study.toml")
 design = Design.of(study.case, study.axes)
-task = SweepTask(study.case, design, study.options["measure"])
-run_task(task, design=design, store="study.zarr", threads=1, block=100)
+task = ImpactWork(study.case, design, study.options["measure"])
+run_work(task, design=design, store="study.zarr", threads=1, block=100)
 """
 
 
@@ -83,7 +83,7 @@ def one_block(store: Path) -> None:
     """One block that takes minutes."""
     case = rb.Case.from_file(EXAMPLE)
     design = Design.of(case, {"damper.start": rb.linspace(-0.5, 0.5, 100_000)})
-    run_task(SweepTask(case, design, ["impacts"]), design=design, store=store, block=100_000, progress=False)
+    run_work(ImpactWork(case, design, ["impacts"]), design=design, store=store, block=100_000, progress=False)
 
 
 STARTS = {"damper.start": rb.linspace(-0.5, 0.5, 100_000)}

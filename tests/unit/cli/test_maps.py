@@ -12,7 +12,7 @@ import xarray as xr
 import rattlebox as rb
 from rattlebox.cli.main import main
 from rattlebox.studies.runner import Stopped
-from rattlebox.studies.studyfile import read_study
+from rattlebox.studies.study_file import read_study
 
 CASES = {
     "shaken.toml": """\

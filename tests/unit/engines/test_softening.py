@@ -12,7 +12,7 @@ import rattlebox as rb
 from rattlebox.engines.core import core
 from rattlebox.engines.dem import pack_dem
 from rattlebox.engines.softening import AUTO_CHANGE, MOST_CHANGE, Shaking, bed_resonance, change_of_loss
-from rattlebox.studies.granular import WARNINGS
+from rattlebox.studies.particle_work import WARNINGS
 
 
 def shaken(amplitude: float, frequency: float, softening: Any, cycles: float = 10, **changes: Any) -> rb.Case:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.follow import follow
+from rattlebox.studies.continuation import follow
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "bifurcation.py"
 AMPLITUDE = "structure.motion.amplitude"

@@ -16,7 +16,7 @@ import pytest
 import xarray as xr
 
 import rattlebox as rb
-from rattlebox.studies.design import trials_in
+from rattlebox.studies.kinds.design import trials_in
 from rattlebox.studies.runner import Stopped
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "design.py"

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.follow import follow
-from rattlebox.studies.sweep import sweep
+from rattlebox.studies.continuation import follow
+from rattlebox.studies.kinds.sweep import sweep
 
 QUIET = {"progress": False}
 

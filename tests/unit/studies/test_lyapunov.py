@@ -11,7 +11,7 @@ import pytest
 import rattlebox as rb
 from rattlebox import analysis
 from rattlebox.studies.axes import Design
-from rattlebox.studies.lyapunov import LyapunovTask
+from rattlebox.studies.kinds.lyapunov import LyapunovWork
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "lyapunov.py"
 QUICK = {"cycles": (60, 60), "pairs": 3, "progress": False}
@@ -175,7 +175,7 @@ def test_loads_that_cannot_be_begun_anew_are_refused():
 
 def test_it_stops_when_asked():
     """Long work ends soon after it is told to, also while motions settle."""
-    task = LyapunovTask(case(), Design.of(case(), {"load.frequency": np.linspace(29, 33, 64)}), cycles=(20000, 20000))
+    task = LyapunovWork(case(), Design.of(case(), {"load.frequency": np.linspace(29, 33, 64)}), cycles=(20000, 20000))
     begun = time.perf_counter()
     assert task.run(0, 64, threads=1, cancelled=lambda: time.perf_counter() - begun > 0.3) is None
     assert time.perf_counter() - begun < 1.5

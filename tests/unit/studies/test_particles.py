@@ -12,7 +12,7 @@ import rattlebox as rb
 from rattlebox.analysis import shaken_cavity
 from rattlebox.engines import dem_settle
 from rattlebox.results import GranularRun
-from rattlebox.studies import granular
+from rattlebox.studies import particle_work
 from rattlebox.studies.axes import Design
 from rattlebox.studies.runner import Stopped
 
@@ -116,7 +116,7 @@ def test_friction_is_a_number_along_an_axis() -> None:
 def test_windows_begin_between_samples() -> None:
     """A time to skip that is no sample's is where the window begins, with what the line between its neighbours says."""
     run = rb.simulate(shaken(duration="0.02 s", output=rb.Output(rate=1000)))
-    window = granular.since(run, 0.0104).arrays
+    window = particle_work.since(run, 0.0104).arrays
     assert window.time[0] == 0.0104
     assert window.time[1] == run.arrays.time[11]
     between = 0.6 * run.arrays.cavity_displacement[10] + 0.4 * run.arrays.cavity_displacement[11]
@@ -238,9 +238,9 @@ def test_a_stop_loses_no_finished_run(tmp_path: Path, monkeypatch: pytest.Monkey
     with pytest.raises(Stopped, match="2 of 4 variants are in"):
         rb.sweep(struck(), axes, "impact_share", store=store, threads=1, progress=stopping)
     ran = []
-    simulate = granular.simulate_dem
+    simulate = particle_work.simulate_dem
     monkeypatch.setattr(
-        granular, "simulate_dem", lambda case, **options: (ran.append(case), simulate(case, **options))[1]
+        particle_work, "simulate_dem", lambda case, **options: (ran.append(case), simulate(case, **options))[1]
     )
     found = rb.sweep(struck(), axes, "impact_share", store=store, threads=1, progress=False)
     assert len(ran) == 2
@@ -316,10 +316,10 @@ def test_other_studies_say_that_they_are_for_impact_dampers() -> None:
 def test_stops_are_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     """A task that is told to stop ends within a run, and within the settling before it."""
     case = shaken(duration="1000 s", dampers=[box(packing=rb.Settled(seed=9))])
-    task = granular.GranularTask(case, Design.of(case, {AMPLITUDE: [60.0]}), ["work"])
+    task = particle_work.ParticleWork(case, Design.of(case, {AMPLITUDE: [60.0]}), ["work"])
     assert task.run(0, 1, cancelled=lambda: True) is None
     asked: list[bool] = []
-    monkeypatch.setattr(granular, "settled", lambda case, go_on: True)
+    monkeypatch.setattr(particle_work, "settled", lambda case, go_on: True)
     assert task.run(0, 1, cancelled=lambda: (asked.append(True), len(asked) > 3)[1]) is None
 
 

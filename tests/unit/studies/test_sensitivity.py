@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import rattlebox as rb
-from rattlebox.studies.sensitivity import _indices
+from rattlebox.studies.kinds.sensitivity import _indices
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "sensitivity.py"
 BOUNDS: dict[str, Any] = {"damper.gap": ("0.2 mm", "1 mm"), "load.amplitude": ("4 kN", "6 kN")}

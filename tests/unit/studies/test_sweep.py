@@ -11,9 +11,9 @@ from rattlebox import analysis
 from rattlebox.engines.core import core
 from rattlebox.model.paths import replaced
 from rattlebox.studies.axes import Design
+from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.measures import MEASURES
-from rattlebox.studies.runner import run_task
-from rattlebox.studies.task import SweepTask
+from rattlebox.studies.runner import run_work
 
 PLASTIC_RIGID = rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid"), ending="zero_overlap")
 AXES = {"damper.gap": ["0.3 mm", "0.8 mm"], "load.amplitude": ["1 kN", "5 kN", "8 kN"]}
@@ -244,8 +244,8 @@ def test_what_is_no_number_to_the_core_varies_too(tmp_path: Path) -> None:
             np.testing.assert_allclose(maps.displacement.values[index], run.arrays.displacement[:, 0], rtol=1e-9)
     assert 0 < np.mean(maps.status == 0) < 1
     assert np.unique(maps.impacts.values[np.isfinite(maps.impacts.values)]).size > 6
-    blocks = run_task(
-        SweepTask(case, design, ["impacts"], samples=3, motion=True), design=design, store=tmp_path / "s.zarr", block=3
+    blocks = run_work(
+        ImpactWork(case, design, ["impacts"], samples=3, motion=True), design=design, store=tmp_path / "s.zarr", block=3
     )
     for name in maps.data_vars:
         np.testing.assert_array_equal(maps[name], blocks[name])

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint
 from rattlebox.model.signals import Harmonic
-
-from .axes import Design
-from .follow import follow
-from .orbits import period_of
-from .store import keep_map
-from .studytables import checked
-from .sweep import beside, sweep
-from .task import SweepTask
+from rattlebox.studies.axes import Design
+from rattlebox.studies.continuation import follow
+from rattlebox.studies.impact_work import ImpactWork
+from rattlebox.studies.kinds.sweep import beside, sweep
+from rattlebox.studies.orbits import period_of
+from rattlebox.studies.store import keep_map
+from rattlebox.studies.studytables import checked
 
 if TYPE_CHECKING:
     import os
@@ -118,7 +117,7 @@ def frequency_response(
     hertz = design.coords()[at][1]
     if np.any(np.diff(hertz) <= 0):
         raise Hint("frequencies must rise from each to the next", "each once, in order")
-    bare = _bare(SweepTask(case, design, cycles=(0, 1), point=point))
+    bare = _bare(ImpactWork(case, design, cycles=(0, 1), point=point))
     options: dict[str, Any] = {
         "measure": beside(_MEASURES, measure),
         "cycles": cycles,
@@ -158,7 +157,7 @@ def _driver(case: Case) -> tuple[str, Harmonic]:
     return harmonics[0]
 
 
-def _bare(task: SweepTask) -> NDArray[np.float64]:
+def _bare(task: ImpactWork) -> NDArray[np.float64]:
     """Amplitude of the structure without dampers, (levels, frequencies)."""
     packed = task.packed
     load = next(load for load in packed["loads"] if load["kind"] == "harmonic")

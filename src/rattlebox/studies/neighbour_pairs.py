@@ -12,10 +12,10 @@ from rattlebox.engines.batch import Look, run_block
 from rattlebox.engines.pack import Packed
 from rattlebox.engines.status import ENERGY_ERROR, STATUSES
 
-from .chosen import chosen
+from .gather_variants import gather_variants
 
 if TYPE_CHECKING:
-    from .lyapunov import LyapunovTask
+    from rattlebox.studies.kinds.lyapunov import LyapunovWork
 
 Array = NDArray[np.float64]
 
@@ -46,16 +46,16 @@ class Pairs:
     """
 
     def __init__(
-        self, task: LyapunovTask, start: int, stop: int, threads: int, cancelled: Callable[[], bool] | None
+        self, task: LyapunovWork, start: int, stop: int, threads: int, cancelled: Callable[[], bool] | None
     ) -> None:
         self._task, self._threads, self._asked = task, threads, cancelled
         self._count = stop - start
         shape = task.design.shape
         members = np.arange(start, stop)
-        self._packed: Packed = chosen(task.sweep.packed, shape, members, 2)
+        self._packed: Packed = gather_variants(task.sweep.packed, shape, members, 2)
         self._modes = len(self._packed["mode_decay"])
         self.status = np.full((self._count, task.pairs), _FINISHED)
-        self.period = self._each(chosen(np.asarray(task.sweep.look.period), shape, members, 2))
+        self.period = self._each(gather_variants(np.asarray(task.sweep.look.period), shape, members, 2))
         duration = self._each(self._packed["settings"]["duration"])
         length = duration - task.skip if task.cycles is None else task.cycles[1] * self.period
         self.leg = length / task.count

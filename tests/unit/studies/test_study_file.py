@@ -8,8 +8,8 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.studies.axes import Design
-from rattlebox.studies.designs import RandomDesign, Replicas
-from rattlebox.studies.studyfile import read_study, study_from_toml
+from rattlebox.studies.sampling import RandomDesign, Replicas
+from rattlebox.studies.study_file import read_study, study_from_toml
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 BALL = 'case = "steel_ball.toml"\n'

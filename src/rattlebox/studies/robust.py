@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
 
-def members(case: Case, levels: Any = None, starts: int | Sequence[Any] | None = None) -> list[Any]:
+def robust_axes(case: Case, levels: Any = None, starts: int | Sequence[Any] | None = None) -> list[Any]:
     """Return the axes of the runs that judge one design together; none where it is judged by one run.
 
     Parameters

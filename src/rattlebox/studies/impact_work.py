@@ -17,8 +17,8 @@ from rattlebox.engines.pack import Batch, Packed, pack_parts
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
 
+from .case_digest import describe_case
 from .fingerprint import fingerprint
-from .inputs import described
 from .measures import MEASURES, name_of
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ _UNHEARD = 0.05  # s, after which a stop is asked for between runs
 
 
 @dataclass
-class SweepTask:
+class ImpactWork:
     """A case, its variants, and what is kept of each.
 
     Attributes
@@ -149,7 +149,7 @@ class SweepTask:
         """What is computed besides the design, in JSON's types."""
         kept = {name: getattr(self, name) for name in ("skip", "samples", "point", "motion", "last", "state")}
         return {
-            **described(self.case, self.design.columns),
+            **describe_case(self.case, self.design.columns),
             "measures": [*self.named, *(f"{name} {fingerprint(own)}" for name, own in self.own.items())],
             "cycles": None if self.cycles is None else list(self.cycles),
             **kept,

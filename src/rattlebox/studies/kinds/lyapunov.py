@@ -11,13 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import CaseError
-
-from .axes import Axes, Design
-from .inputs import described
-from .pairs import Pairs
-from .runner import run_task
-from .studytables import checked
-from .task import Extra, SweepTask
+from rattlebox.studies.axes import Axes, Design
+from rattlebox.studies.case_digest import describe_case
+from rattlebox.studies.impact_work import Extra, ImpactWork
+from rattlebox.studies.neighbour_pairs import Pairs
+from rattlebox.studies.runner import run_work
+from rattlebox.studies.studytables import checked
 
 if TYPE_CHECKING:
     import os
@@ -122,14 +121,14 @@ def lyapunov(
         threads=threads,
     )
     threads = given.pop("threads")
-    task = LyapunovTask(
+    task = LyapunovWork(
         case,
         Design((), (), {}, {}) if axes is None else Design.of(case, axes),
         **given,
     )
     task.check()
     block = 1 if task.size == 1 else None
-    return run_task(
+    return run_work(
         task,
         design=task.design,
         coords=task.coords(),
@@ -142,7 +141,7 @@ def lyapunov(
 
 
 @dataclass
-class LyapunovTask:
+class LyapunovWork:
     """A case, its variants, and how their neighbours are watched; attributes as of `lyapunov`."""
 
     case: Case
@@ -216,13 +215,13 @@ class LyapunovTask:
         """What is computed besides the design, in JSON's types."""
         names = "skip", "steps", "pairs", "distance", "reach", "seed"
         cycles = None if self.cycles is None else list(self.cycles)
-        about = {"study": "lyapunov", **described(self.case, self.design.columns), "cycles": cycles}
+        about = {"study": "lyapunov", **describe_case(self.case, self.design.columns), "cycles": cycles}
         return about | {name: getattr(self, name) for name in names}
 
     @cached_property
-    def sweep(self) -> SweepTask:
+    def sweep(self) -> ImpactWork:
         """The variants as they are swept."""
-        return SweepTask(self.case, self.design, skip=self.skip, cycles=self.cycles)
+        return ImpactWork(self.case, self.design, skip=self.skip, cycles=self.cycles)
 
     def run(
         self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None

@@ -16,22 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.owned_folder import read_marker
+from rattlebox._util.progress import progress_bar
 from rattlebox.model.errors import CaseError, Hint, nearest
 from rattlebox.model.paths import replaced
-
-from .axes import Design, labels, materials_in
-from .bar import telling
-from .extras import extra
-from .fingerprint import fingerprint
-from .inputs import described
-from .measures import check_names
-from .members import members
-from .parameters import Parameter
-from .runner import Stopped
-from .store import JOURNAL, keep_map, taken
-from .studytables import checked
-from .sweep import known, sweep
-from .task import SweepTask
+from rattlebox.studies.axes import Design, labels, materials_in
+from rattlebox.studies.case_digest import describe_case
+from rattlebox.studies.extras import extra
+from rattlebox.studies.fingerprint import fingerprint
+from rattlebox.studies.impact_work import ImpactWork
+from rattlebox.studies.kinds.sweep import known, sweep
+from rattlebox.studies.measures import check_names
+from rattlebox.studies.parameter import Parameter
+from rattlebox.studies.robust import robust_axes
+from rattlebox.studies.runner import Stopped
+from rattlebox.studies.store import JOURNAL, keep_map, taken
+from rattlebox.studies.studytables import checked
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -133,7 +132,7 @@ def design(
         case=case,
         parameters=[_Parameter.of(case, path, given, path in log) for path, given in _some(parameters).items()],
         goals=_goals(objective),
-        axes=members(case, levels, starts),
+        axes=robust_axes(case, levels, starts),
         robust=robust,
         limit=limit,
         options={**given, "point": point},
@@ -142,7 +141,7 @@ def design(
     search.check(log)
     done = 0
     try:
-        with _quiet(optuna), _storage(optuna, store) as storage, telling(progress, trials, "trials") as tell:
+        with _quiet(optuna), _storage(optuna, store) as storage, progress_bar(progress, trials, "trials") as tell:
             study = _study(optuna, storage, search, seed, store)
             while (done := len(_told(optuna, study))) < trials:
                 tell(done)
@@ -266,7 +265,7 @@ class _Search:
             together.append(new)
         check_names(goal.measure for goal in self.goals)
         measures = known([goal.measure for goal in self.measured])
-        task = SweepTask(self.case, self.members, measures=measures, **self.options)
+        task = ImpactWork(self.case, self.members, measures=measures, **self.options)
         assert task.look
 
     @cached_property
@@ -287,7 +286,7 @@ class _Search:
         """What tells this search from others, in JSON's types."""
         functions = {goal.name: fingerprint(goal.measure) for goal in self.goals if not isinstance(goal.measure, str)}
         return {
-            **described(self.case, self.members.columns),
+            **describe_case(self.case, self.members.columns),
             "parameters": {parameter.path: parameter.describe() for parameter in self.parameters},
             "objective": {goal.name: "max" if goal.largest else "min" for goal in self.goals},
             **({"functions": functions} if functions else {}),
@@ -346,7 +345,7 @@ class _Search:
         """All trials, and the best ones."""
         import xarray as xr
 
-        from .measures import MEASURES
+        from rattlebox.studies.measures import MEASURES
 
         masses = np.array([trial.user_attrs[_MASS] for trial in trials], dtype=float)
         missing = np.array([trial.constraints["missing"] for trial in trials])

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox.model.errors import CaseError
-
-from .axes import Axes, Design
-from .orbits import attractors, period_of, reduced_strobes
-from .store import keep_map
-from .studytables import checked
-from .sweep import beside, sweep
-from .task import SweepTask
+from rattlebox.studies.axes import Axes, Design
+from rattlebox.studies.impact_work import ImpactWork
+from rattlebox.studies.kinds.sweep import beside, sweep
+from rattlebox.studies.orbits import attractors, period_of, reduced_strobes
+from rattlebox.studies.store import keep_map
+from rattlebox.studies.studytables import checked
 
 if TYPE_CHECKING:
     import xarray
@@ -101,7 +100,7 @@ def basins(
     cycles, tolerance, apart, threads = given.values()
     look = cycles[1]
     design = Design.of(case, starts, source="basins")
-    task = SweepTask(case, design, cycles=cycles, point=point)
+    task = ImpactWork(case, design, cycles=cycles, point=point)
     assert task.packed  # what differs in more than numbers is told before anything runs
     basic = ("impacts", "impacts_per_cycle")
     maps = sweep(

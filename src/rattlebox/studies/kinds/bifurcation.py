@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 import numpy as np
 
 from rattlebox.model.errors import CaseError, Hint
-
-from .axes import Design
-from .follow import follow
-from .orbits import period_of, reduced_strobes
-from .store import keep_map
-from .studytables import checked
-from .sweep import beside, sweep
-from .task import SweepTask
+from rattlebox.studies.axes import Design
+from rattlebox.studies.continuation import follow
+from rattlebox.studies.impact_work import ImpactWork
+from rattlebox.studies.kinds.sweep import beside, sweep
+from rattlebox.studies.orbits import period_of, reduced_strobes
+from rattlebox.studies.store import keep_map
+from rattlebox.studies.studytables import checked
 
 if TYPE_CHECKING:
     import os
@@ -111,7 +110,7 @@ def bifurcation(
     look = cycles[1]
     path = tuple(map(str, path)) if isinstance(path, (list, tuple)) else str(path)
     design = Design.of(case, {path: values}, source="bifurcation")
-    task = SweepTask(case, design, cycles=cycles, point=point)
+    task = ImpactWork(case, design, cycles=cycles, point=point)
     assert task.packed  # what differs in more than numbers is told before anything runs
     _check_order(design, direction)
     basic = ("impacts", "impacts_per_cycle")
@@ -146,7 +145,7 @@ def _check_order(design: Design, direction: str) -> None:
         raise Hint(f"{path}: its values are no numbers that rise or fall", 'direction = "fresh"')
 
 
-def _looked_at(maps: xarray.Dataset, task: SweepTask, tolerance: float) -> xarray.Dataset:
+def _looked_at(maps: xarray.Dataset, task: ImpactWork, tolerance: float) -> xarray.Dataset:
     """Take the strobes and the impacts of the cycles looked at, and find the periods."""
     over, period = maps.status.dims, np.asarray(task.look.period)
     maps = maps.isel(instant=slice(1, None)).rename(instant="cycle")

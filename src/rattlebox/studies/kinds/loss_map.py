@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 from rattlebox.model.errors import CaseError, Hint
 from rattlebox.model.signals import Harmonic
 from rattlebox.model.structures import Shaker
-
-from .axes import Design
-from .store import keep_map
-from .sweep import sweep
+from rattlebox.studies.axes import Design
+from rattlebox.studies.kinds.sweep import sweep
+from rattlebox.studies.store import keep_map
 
 if TYPE_CHECKING:
     import os

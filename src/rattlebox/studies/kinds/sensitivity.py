@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 from rattlebox.model.errors import CaseError, Hint
 from rattlebox.results.schema import HOW_ENDED
-
-from .axes import Design
-from .designs import RandomDesign, random_design
-from .extras import extra
-from .members import members
-from .store import keep_map
-from .studytables import checked
-from .sweep import sweep
+from rattlebox.studies.axes import Design
+from rattlebox.studies.extras import extra
+from rattlebox.studies.kinds.sweep import sweep
+from rattlebox.studies.robust import robust_axes
+from rattlebox.studies.sampling import RandomDesign, random_design
+from rattlebox.studies.store import keep_map
+from rattlebox.studies.studytables import checked
 
 if TYPE_CHECKING:
     import os
@@ -124,7 +123,7 @@ def sensitivity(
     Design.of(case, points, source="bounds")  # for messages, in the words of this study
     runs = sweep(
         case,
-        [points, *members(case, levels, starts)],
+        [points, *robust_axes(case, levels, starts)],
         measure,  # type: ignore[arg-type]
         skip=skip,
         cycles=cycles,

@@ -17,10 +17,10 @@ from rattlebox.model.paths import place_of
 
 from .axes import Axes, Design
 from .blocks import Blocks
-from .chosen import chosen
+from .gather_variants import gather_variants
+from .impact_work import Extra, ImpactWork
 from .measures import MEASURES, check_names
-from .runner import run_task
-from .task import Extra, SweepTask
+from .runner import run_work
 
 if TYPE_CHECKING:
     import os
@@ -115,7 +115,7 @@ def follow(
             raise CaseError(
                 f"{name} is a start, which only the first value would have\n  try: it as an axis of a sweep"
             )
-    task = FollowTask(
+    task = ContinuationWork(
         case,
         _there_and_back(Design.of(case, axes), ways),
         measures=_named(measure),
@@ -129,7 +129,7 @@ def follow(
         turning=turning,
     )
     task.check()
-    found = run_task(
+    found = run_work(
         task, design=task.design, coords=task.coords(), store=store, on=on, threads=threads, progress=progress
     )
     return found.drop_dims("component").drop_vars("early")
@@ -156,7 +156,7 @@ def _named(measure: Sequence[str]) -> list[str]:
 
 
 @dataclass
-class FollowTask(SweepTask):
+class ContinuationWork(ImpactWork):
     """Variants that are followed along the last dimension of the design, in the directions of the first one.
 
     Attributes
@@ -288,13 +288,15 @@ class At:
 class _Step:
     """A variant of each of some walks, from where they are."""
 
-    def __init__(self, task: FollowTask, at: At | None, members: Members, cancelled: Callable[[], bool] | None) -> None:
+    def __init__(
+        self, work: ContinuationWork, at: At | None, members: Members, cancelled: Callable[[], bool] | None
+    ) -> None:
         self._cancelled, self._count = cancelled, len(members)
-        shape, look = task.design.shape, task.look
-        self._own: Packed = chosen(task.packed, shape, members)
+        shape, look = work.design.shape, work.look
+        self._own: Packed = gather_variants(work.packed, shape, members)
 
         def each(number: Any) -> Any:
-            return chosen(np.asarray(number, dtype=float), shape, members)
+            return gather_variants(np.asarray(number, dtype=float), shape, members)
 
         self.look = replace(look, shape=each(look.shape), start=each(look.start), period=each(look.period))
         self.period = np.asarray(self.look.period)
@@ -392,7 +394,7 @@ class _Step:
             duration = np.asarray(settings["duration"] - early * self.period)
             sooner = {**self._packed, "settings": {**settings, "duration": duration}}
             members = np.flatnonzero(waiting)
-            there = [chosen(part, (self._count,), members) for part in (sooner, self.look.shape, self.period)]
+            there = [gather_variants(part, (self._count,), members) for part in (sooner, self.look.shape, self.period)]
             found = self._found(there[0], replace(bare, shape=there[1], period=there[2]), len(members))
             if found is None:
                 break

@@ -22,7 +22,7 @@ class _Rate(ProgressColumn):
 
 
 @contextmanager
-def telling(
+def progress_bar(
     progress: bool | Callable[[int, int], object] | None, total: int, what: str = "variants"
 ) -> Iterator[Callable[[int], object]]:
     """Give a function to tell the number of variants that are done.

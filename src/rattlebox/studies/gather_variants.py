@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 _TABLES = "times", "values", "speeds"
 
 
-def chosen(node: Any, shape: Sequence[int], members: NDArray[np.intp], further: int = 0) -> Any:
+def gather_variants(node: Any, shape: Sequence[int], members: NDArray[np.intp], further: int = 0) -> Any:
     """Return what some variants have of packed variants, or of a number or vector among them.
 
     Parameters
@@ -30,14 +30,14 @@ def chosen(node: Any, shape: Sequence[int], members: NDArray[np.intp], further: 
     Any
         The same with one axis for the variants, and the further ones, in place of the grid's.
     """
-    return _chosen(node, np.unravel_index(members, tuple(shape)) if shape else (), (1,) * further)
+    return _gather(node, np.unravel_index(members, tuple(shape)) if shape else (), (1,) * further)
 
 
-def _chosen(node: Any, places: tuple[NDArray[np.intp], ...], further: tuple[int, ...], key: str = "") -> Any:
+def _gather(node: Any, places: tuple[NDArray[np.intp], ...], further: tuple[int, ...], key: str = "") -> Any:
     if isinstance(node, dict):
-        return {name: _chosen(item, places, further, name) for name, item in node.items()}
+        return {name: _gather(item, places, further, name) for name, item in node.items()}
     if isinstance(node, list):
-        return [_chosen(item, places, further) for item in node]
+        return [_gather(item, places, further) for item in node]
     if not isinstance(node, np.ndarray) or key in _TABLES or node.ndim == 0:
         return node
     own = node.ndim - len(places)  # axes of a vector

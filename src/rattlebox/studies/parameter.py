@@ -22,7 +22,7 @@ from rattlebox.model.restitutions import Constant
 from rattlebox.model.signals import Signal
 from rattlebox.model.units import parse, plain
 
-from .designs import Spaced
+from .sampling import Spaced
 
 Column = NDArray[Any]  # float64, or objects
 

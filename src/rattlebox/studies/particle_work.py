@@ -26,8 +26,8 @@ from rattlebox.results import GranularRun
 from rattlebox.results.schema import GRANULAR_CHANNELS
 
 from .blocks import Blocks
+from .impact_work import Extra, ImpactWork, Values
 from .measures import MEASURES
-from .task import Extra, SweepTask, Values
 
 if TYPE_CHECKING:
     import xarray
@@ -140,8 +140,8 @@ _OF_THE_FIRST_HARMONIC = ("reduced_loss", "effective_mass", "damping_mass", "los
 
 
 @dataclass
-class GranularTask(SweepTask):
-    """A case with particles in space, its variants, and what is kept of each; attributes as those of SweepTask.
+class ParticleWork(ImpactWork):
+    """A case with particles in space, its variants, and what is kept of each; attributes as those of ImpactWork.
 
     Functions of a run are given the run that the measures are found from, whose samples are those of the case's output, or
     what `samples` or `cycles` ask for. Motions, impacts and states are not kept.
@@ -149,7 +149,7 @@ class GranularTask(SweepTask):
 
     @cached_property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, Any]]]:
-        """Those of a SweepTask, and in what each run left its bounds."""
+        """Those of a ImpactWork, and in what each run left its bounds."""
         found = dict(super().outputs)
         masks, names = [2**bit for bit in range(len(WARNINGS))], " ".join(WARNINGS)
         about = {"long_name": "in what the run left its bounds", "flag_masks": masks, "flag_meanings": names}

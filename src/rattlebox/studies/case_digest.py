@@ -19,7 +19,7 @@ _TOLD = 12
 """Letters of a digest, enough to tell one file from another."""
 
 
-def described(case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:
+def describe_case(case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:
     """Return a case in JSON's types, and digests of the files that it or its variants name, if there are any.
 
     Parameters

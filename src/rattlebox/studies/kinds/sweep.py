@@ -9,14 +9,13 @@ import numpy as np
 
 from rattlebox.engines.status import REFUSED
 from rattlebox.model.errors import Hint, nearest
-
-from .axes import Design
-from .granular import GranularTask
-from .measures import MEASURES, check_names
-from .runner import run_task
-from .store import add_attributes
-from .studytables import checked
-from .task import SweepTask
+from rattlebox.studies.axes import Design
+from rattlebox.studies.impact_work import ImpactWork
+from rattlebox.studies.measures import MEASURES, check_names
+from rattlebox.studies.particle_work import ParticleWork
+from rattlebox.studies.runner import run_work
+from rattlebox.studies.store import add_attributes
+from rattlebox.studies.studytables import checked
 
 if TYPE_CHECKING:
     import os
@@ -107,7 +106,7 @@ def sweep(
     if not (measures or motion or given["last"]):
         raise Hint("there is no measure", ", ".join(MEASURES))
     design = Design.of(case, axes)
-    kind = GranularTask if case.particle_dampers else SweepTask
+    kind = ParticleWork if case.particle_dampers else ImpactWork
     task = kind(
         case,
         design,
@@ -117,7 +116,7 @@ def sweep(
         **given,
     )
     assert task.look  # what does not fit is told before anything runs
-    found = run_task(
+    found = run_work(
         task,
         design=design,
         coords=task.coords(),
@@ -127,7 +126,7 @@ def sweep(
         progress=progress,
         block=task.block,
     )
-    if not isinstance(task, GranularTask):
+    if not isinstance(task, ParticleWork):
         return found
     refused = _refused(task, found)
     if store is not None:
@@ -135,7 +134,7 @@ def sweep(
     return found.assign_attrs(refused)
 
 
-def _refused(task: GranularTask, found: xarray.Dataset) -> dict[str, str]:
+def _refused(task: ParticleWork, found: xarray.Dataset) -> dict[str, str]:
     """Tell of the first variant that cannot be run why."""
     refused = np.flatnonzero(found.status.values == REFUSED)
     if not refused.size or not (why := task.why_refused(int(refused[0]))):

@@ -17,7 +17,7 @@ from rattlebox.model.errors import CaseError, Hint, nearest, translate
 from rattlebox.model.files import existing, read_toml
 from rattlebox.model.materials import Material
 
-from . import designs
+from . import sampling
 from .axes import Design
 from .studytables import INSIDE, KINDS, Range, Spaced, shape_of
 from .studytables import Study as Content
@@ -67,7 +67,7 @@ class Study(NamedTuple):
         if self.kind == "bifurcation":
             ((name, values),) = self.axes[0].items()
             given = (tuple(values), tuple(values.values())) if isinstance(values, Mapping) else (name, values)
-        study = getattr(import_module(f"rattlebox.studies.{self.kind}"), self.kind)
+        study = getattr(import_module(f"rattlebox.studies.kinds.{self.kind}"), self.kind)
         found: xarray.Dataset = study(self.case, *given, **{**self.options, **where})
         return found
 
@@ -260,7 +260,7 @@ def _text(file: Path) -> str:
 def _read_values(path: str, values: Any, own: Mapping[str, Material]) -> Any:
     """Values of a parameter as the functions take them."""
     if isinstance(values, Spaced):
-        return designs.Spaced(values.start, values.to, values.count, values.spacing == "log", ("from", "to"))
+        return sampling.Spaced(values.start, values.to, values.count, values.spacing == "log", ("from", "to"))
     if isinstance(values, Range):
         return values.start, values.to
     if isinstance(values, list) and path.rpartition(".")[2] in ("material", "wall"):
@@ -282,9 +282,11 @@ def _axes(study: Content, own: Mapping[str, Material]) -> list[Any]:
     axes: list[Any] = [_read_axes(given["axes"], own)] if given["axes"] else []
     if random := given["design"]:
         ranges = {path: _read_values(path, values, own) for path, values in random.ranges.items()}
-        axes.append(designs.random_design(ranges, random.count, method=random.method, seed=random.seed, log=random.log))
+        axes.append(
+            sampling.random_design(ranges, random.count, method=random.method, seed=random.seed, log=random.log)
+        )
     if copies := given["replicas"]:
-        axes.append(designs.replicas(copies.reach, copies.count, seed=copies.seed))
+        axes.append(sampling.replicas(copies.reach, copies.count, seed=copies.seed))
     return axes
 
 
