@@ -5,11 +5,22 @@ from .decay import damping_ratio, decay_envelope
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
 from .granular import shaken_cavity
 from .measures import peak_reduction, rms_reduction, settling_time
+from .power_spectra import (
+    band_levels,
+    miles_rms,
+    power_spectral_density,
+    transfer_function,
+    transmissibility,
+)
 from .sections import impacts_per_cycle, phase_portrait, poincare_section
+from .shock import shock_response_spectrum
 from .spectra import amplitude_spectrum
+from .statistics import Interval, mean_interval
 
 __all__ = [
+    "Interval",
     "amplitude_spectrum",
+    "band_levels",
     "complex_power",
     "damping_ratio",
     "decay_envelope",
@@ -17,11 +28,17 @@ __all__ = [
     "impacts_per_cycle",
     "loss_factor",
     "lyapunov_exponent",
+    "mean_interval",
+    "miles_rms",
     "peak_reduction",
     "phase_portrait",
     "poincare_section",
+    "power_spectral_density",
     "rms_reduction",
     "settling_time",
     "shaken_cavity",
+    "shock_response_spectrum",
     "specific_damping_capacity",
+    "transfer_function",
+    "transmissibility",
 ]

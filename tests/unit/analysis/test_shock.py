@@ -1,0 +1,93 @@
+"""Shock response spectra against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from rattlebox.analysis import shock_response_spectrum
+
+
+def half_sine(duration, rate, total):
+    """Return times and a half sine of amplitude 1."""
+    time = np.arange(round(total * rate) + 1) / rate
+    return time, np.where(time < duration, np.sin(math.pi * time / duration), 0.0)
+
+
+def exact_half_sine(ratio):
+    """Return the undamped maximax over the amplitude; ratio is frequency times duration of the pulse."""
+    k = 2 * ratio
+    residual = 2 * abs(math.cos(math.pi * ratio) / (1 / k - k)) if abs(k - 1) > 1e-9 else math.pi / 2
+    primary = 0.0
+    if k > 1:
+        # During the pulse: (sin(x) - sin(k x) / k) / (1 - 1 / k^2), largest where cos(x) = cos(k x).
+        turns = np.concatenate([2 * math.pi * np.arange(1, 40) / (k + s) for s in (1, -1)])
+        turns = turns[(turns > 0) & (turns <= math.pi)]
+        primary = max(((np.sin(turns) - np.sin(k * turns) / k) / (1 - 1 / k**2)).max(), 0.0) if turns.size else 0.0
+    return max(primary, residual)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.3, 0.5, 0.8, 1.0, 1.5, 2.5, 4.0])
+def test_half_sine(ratio):
+    """The undamped spectrum of a half sine is that of its closed form, during and after the pulse."""
+    duration = 0.011
+    time, pulse = half_sine(duration, 50_000.0, 0.02)
+    found = shock_response_spectrum(time, pulse, [ratio / duration], damping_ratio=0.0)
+    assert float(found.maximax[0]) == pytest.approx(exact_half_sine(ratio), rel=1e-3)
+
+
+def test_limits():
+    """A stiff oscillator follows the base, a soft one keeps still: acceleration 1, displacement that of the base."""
+    time, pulse = half_sine(0.011, 50_000.0, 0.05)
+    found = shock_response_spectrum(time, pulse, [0.02, 4000.0], damping_ratio=0.05)
+    assert float(found.positive[1]) == pytest.approx(1.0, rel=2e-3)
+    # The soft one is thrown with the velocity step 2 T / pi and swings to v / w, less by its damping.
+    speed, w = 2 * 0.011 / math.pi, 2 * math.pi * 0.02
+    swing = speed / w * math.exp(-0.05 / math.sqrt(1 - 0.05**2) * math.acos(0.05))
+    assert float(found.relative_displacement[0]) == pytest.approx(swing, rel=2e-3)
+
+
+def test_a_random_record_against_an_integrator():
+    """Damped peaks of a coarse random record are those of DOP853 over its straight lines."""
+    rng = np.random.default_rng(3)
+    time = np.arange(200) / 1000.0
+    record = rng.normal(size=time.size)
+    frequencies = np.array([7.0, 60.0, 310.0])
+    found = shock_response_spectrum(time, record, frequencies, damping_ratio=0.03)
+    for k, f in enumerate(frequencies):
+        w, z = 2 * math.pi * f, 0.03
+        end = time[-1] + 1.0 / f
+
+        def motion(t, y, w=w, z=z):
+            return [y[1], -np.interp(t, time, record, right=0.0) - 2 * z * w * y[1] - w * w * y[0]]
+
+        fine = np.linspace(0, end, 40_000)
+        y = solve_ivp(motion, (0, end), [0, 0], "DOP853", t_eval=fine, rtol=1e-9, atol=1e-14, max_step=5e-4).y
+        absolute = -(2 * z * w * y[1] + w * w * y[0])
+        assert float(found.maximax[k]) == pytest.approx(np.abs(absolute).max(), rel=1e-3)
+        assert float(found.relative_displacement[k]) == pytest.approx(np.abs(y[0]).max(), rel=1e-3)
+
+
+def test_direction():
+    """A reversed record exchanges positive and negative."""
+    time, pulse = half_sine(0.011, 20_000.0, 0.03)
+    one, other = (shock_response_spectrum(time, s * pulse) for s in (1, -1))
+    np.testing.assert_allclose(one.positive, other.negative)
+    np.testing.assert_allclose(one.maximax, other.maximax)
+    assert float(one.frequency[0]) == pytest.approx(1 / 0.03) and float(one.frequency[-1]) <= 2000.0
+
+
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [
+        ({"frequencies": [600.0]}, "Hz"),
+        ({"frequencies": [-1.0]}, "frequencies"),
+        ({"frequencies": [100.0], "damping_ratio": 1.0}, "damping_ratio"),
+    ],
+)
+def test_bad_input(options, word):
+    """What does not fit is named."""
+    time = np.arange(100) / 1000.0
+    with pytest.raises(ValueError, match=word):
+        shock_response_spectrum(time, np.sin(time), **options)
