@@ -15,7 +15,8 @@ _STRUCTURE, _DAMPER, _PULSE = _CASE.structure, _CASE.dampers[0], _CASE.loads[0]
 assert isinstance(_STRUCTURE, rb.SDOF) and isinstance(_DAMPER, rb.ImpactDamper) and isinstance(_PULSE, rb.HalfSine)
 assert isinstance(_DAMPER.contact, rb.Tsuji) and _DAMPER.contact.alpha is not None
 _RADIUS = _DAMPER.balls[0].radius
-assert _STRUCTURE.damping is not None and _DAMPER.gap is not None and _RADIUS is not None
+assert _STRUCTURE.stiffness is not None and _STRUCTURE.damping is not None
+assert _DAMPER.gap is not None and _RADIUS is not None
 
 MASS, STIFFNESS, DAMPING = _STRUCTURE.mass, _STRUCTURE.stiffness, _STRUCTURE.damping
 """Structure [kg, N/m, N s/m]."""

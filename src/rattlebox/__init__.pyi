@@ -7,6 +7,7 @@ from rattlebox.engines.laws import restitution_curve as restitution_curve
 from rattlebox.engines.laws import restitution_of_alpha as restitution_of_alpha
 from rattlebox.engines.simulate import simulate as simulate
 from rattlebox.engines.simulate import simulate_many as simulate_many
+from rattlebox.model.beams import Beam as Beam
 from rattlebox.model.case import Case as Case
 from rattlebox.model.cavities import Box as Box
 from rattlebox.model.cavities import Cylinder as Cylinder
@@ -27,6 +28,7 @@ from rattlebox.model.granular import PairLaws as PairLaws
 from rattlebox.model.granular import ParticleDamper as ParticleDamper
 from rattlebox.model.materials import Material as Material
 from rattlebox.model.materials import materials as materials
+from rattlebox.model.matrices import Matrices as Matrices
 from rattlebox.model.methods import Dem as Dem
 from rattlebox.model.methods import EventDriven as EventDriven
 from rattlebox.model.methods import Newton as Newton
@@ -42,12 +44,14 @@ from rattlebox.model.particles import LogNormal as LogNormal
 from rattlebox.model.particles import Normal as Normal
 from rattlebox.model.particles import Particles as Particles
 from rattlebox.model.particles import Sieve as Sieve
+from rattlebox.model.plates import Plate as Plate
 from rattlebox.model.reference import reference_case as reference_case
 from rattlebox.model.restitutions import Constant as Constant
 from rattlebox.model.restitutions import JacksonGreen as JacksonGreen
 from rattlebox.model.restitutions import Johnson as Johnson
 from rattlebox.model.restitutions import Tabulated as Tabulated
 from rattlebox.model.restitutions import ThorntonRestitution as ThorntonRestitution
+from rattlebox.model.shear_buildings import ShearBuilding as ShearBuilding
 from rattlebox.model.signals import HalfSine as HalfSine
 from rattlebox.model.signals import Harmonic as Harmonic
 from rattlebox.model.signals import Record as Record
@@ -55,7 +59,6 @@ from rattlebox.model.signals import chirp as chirp
 from rattlebox.model.signals import random_record as random_record
 from rattlebox.model.structures import SDOF as SDOF
 from rattlebox.model.structures import Fixed as Fixed
-from rattlebox.model.structures import Matrices as Matrices
 from rattlebox.model.structures import Modal as Modal
 from rattlebox.model.structures import Shaker as Shaker
 from rattlebox.plots.basins import plot_basins as plot_basins

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox.model.base import Part
 from rattlebox.model.errors import CaseError, Hint
 from rattlebox.model.paths import Place, get, part_at, place_of, replaced
-from rattlebox.model.restitutions import Tabulated
-from rattlebox.model.signals import Record
-from rattlebox.model.structures import Matrices
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,7 +40,8 @@ def is_number(case: Case, path: str, values: NDArray[Any]) -> bool:
     if values.dtype == object or isinstance(get(case, path), int):
         return False
     place = place_of(case, path)
-    return not any(isinstance(part_at(case, place[:n]), (Matrices, Record, Tabulated)) for n in range(len(place)))
+    parts = (part_at(case, place[:n]) for n in range(len(place)))
+    return all(part.elementwise for part in parts if isinstance(part, Part))
 
 
 def with_value(node: Any, place: Place, value: Any) -> Any:

@@ -61,6 +61,7 @@ class Part(BaseModel, metaclass=_Explaining):
     unnamed: ClassVar[tuple[str, ...]] = ()  # fields that may be given without their names
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = ()  # fields that say the same thing: one of each pair
     in_file: ClassVar[tuple[str, ...]] = ()  # fields that a file stands for
+    elementwise: ClassVar[bool] = True  # whether arrays of variants may stand in place of its numbers
     examples_in: ClassVar[
         dict[str, dict[str, str]]
     ] = {}  # of fields, as a file has them, where the part is held as such

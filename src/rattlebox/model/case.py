@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError
 
 from rattlebox._util.atomic_io import atomic_write
 
+from .any_structure import AnyStructure
 from .base import AlsoTakes, Part, vocabulary
 from .dampers import ImpactDamper
 from .elementwise import Vector
@@ -22,11 +23,12 @@ from .files import existing, read_toml
 from .granular import ParticleDamper
 from .in_space import check_in_space
 from .materials import Material, materials
+from .matrices import Matrices
 from .methods import AnyMethod, Dem, EventDriven, Newton, Output
 from .modes import ModalModel
 from .pairs import contact_pairs
 from .signals import AnySignal, HalfSine, Harmonic, Record, Signal, Unit, as_several, signals_in
-from .structures import AnyStructure, Matrices, Shaker
+from .structures import Shaker
 from .units import PositiveTime, Whole
 
 _MEMORY = 16e9  # bytes
@@ -53,7 +55,7 @@ class Case(Part):
     Parameters
     ----------
     structure
-        SDOF, Modal, Matrices, Fixed or Shaker.
+        SDOF, Modal, Matrices, Beam, Plate, ShearBuilding, Fixed or Shaker.
     damper, dampers
         One ImpactDamper or ParticleDamper, several of one kind, or none.
     load, loads

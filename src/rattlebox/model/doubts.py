@@ -41,7 +41,8 @@ def doubts(case: Case, *, signals: bool = True) -> tuple[str, ...]:
         for told in _of_damper(case, damper, " ".join(damper.label(index).split()))
     )
     warnings = (*_of_structure(case), *(_of_signals(case) if signals else ()), *dampers)
-    return (*_assumed_units(case), *(f"warning: {told}" for told in warnings))
+    notes = (*(f"note: {told}" for told in case.structure.notes()), *_assumed_units(case))
+    return (*notes, *(f"warning: {told}" for told in warnings))
 
 
 def _named_signals(case: Case) -> list[tuple[str, Signal]]:
@@ -74,6 +75,7 @@ def _of_structure(case: Case) -> Iterator[str]:
             f"the structure's damping ratio is {ratio:.3g}; structures that vibrate have less than {_OVERDAMPED:g}; "
             "per cent need their sign: 2 % is 0.02"
         )
+    yield from case.structure.warnings()
 
 
 def _of_signals(case: Case) -> Iterator[str]:

@@ -84,6 +84,7 @@ class Tabulated(Restitution):
         Restitution at each of them.
     """
 
+    elementwise: ClassVar[bool] = False
     kind: Literal["table"] = "table"
     speeds: tuple[PositiveVelocity, ...] = Field(examples=[["0.1 m/s", "1 m/s"]])
     values: tuple[Fraction, ...] = Field(examples=[[0.9, 0.8]])

@@ -311,6 +311,7 @@ class Record(Signal):
         neither states a unit, the run notes the unit that is assumed, and the peak.
     """
 
+    elementwise: ClassVar[bool] = False
     in_file: ClassVar[tuple[str, ...]] = ("times", "values")
     kind: Literal["record"] = "record"
     times: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()

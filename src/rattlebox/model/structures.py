@@ -1,22 +1,33 @@
-"""Structures: single degree of freedom, modes, matrices, a fixed cavity, a shaker."""
+"""Structures: single degree of freedom, modes, a fixed cavity, a shaker; and what all structures share."""
 
 from __future__ import annotations
 
 import math
 import operator
-import os
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_serializer, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
 from .base import AlsoTakes, Part
 from .elementwise import Vector, power, stacked
-from .errors import Hint, at, nearest, several
-from .files import absolute, check_finite, existing, read_arrays
+from .errors import Hint, at, one_of, several
 from .modes import ModalModel
 from .signals import AnySignal, Signal, Unit, signals_in
-from .units import LARGEST, SI, Damping, Frequency, Length, Number, PositiveMass, Stiffness, Velocity, numbers
+from .units import (
+    LARGEST,
+    SI,
+    Damping,
+    Frequency,
+    Length,
+    Number,
+    PositiveFrequency,
+    PositiveMass,
+    Stiffness,
+    Velocity,
+    numbers,
+)
 
 if TYPE_CHECKING:
     from typing import Self
@@ -68,31 +79,56 @@ _ratio_schema = WithJsonSchema({"type": "number", "minimum": 0, "description": "
 Ratio = Annotated[Number, Field(ge=0, le=LARGEST), _ratio_schema]
 
 
-class SDOF(Part):
+class StructurePart(Part):
+    """What all structures share."""
+
+    held_as: ClassVar[tuple[str, ...]] = ("structure",)
+    kind: str
+
+    def modes(self) -> ModalModel:
+        """Return the modes."""
+        raise NotImplementedError
+
+    def notes(self) -> Iterator[str]:
+        """Return what was assumed about data that do not say it, such as units of files."""
+        return iter(())
+
+    def warnings(self) -> Iterator[str]:
+        """Return where the structure leaves the limits of its theory."""
+        return iter(())
+
+
+class SDOF(StructurePart):
     """Mass, spring and dashpot: M z'' + C z' + K z = F. Its only point is called "mass".
 
     Parameters
     ----------
-    mass, stiffness
-        M [kg], K [N/m]; stiffness 0 is a free body.
+    mass
+        M [kg].
+    stiffness, frequency
+        K [N/m], 0 for a free body; or instead the undamped natural frequency sqrt(K / M) / (2 pi) [Hz].
     damping, damping_ratio
         C [N s/m] or C / (2 sqrt(K M)); at most one of them, none means undamped. Any ratio, also above 1.
     displacement, velocity
         At the start, relative to the base [m], [m/s].
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("structure",)
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("damping", "damping_ratio"),)
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("stiffness", "frequency"),
+        ("damping", "damping_ratio"),
+    )
     kind: Literal["sdof"] = "sdof"
     mass: PositiveMass
-    stiffness: Stiffness
+    stiffness: Stiffness | None = None
+    frequency: PositiveFrequency | None = None
     damping: Damping | None = None
     damping_ratio: Ratio | None = None
     displacement: Length = 0.0
     velocity: Velocity = 0.0
 
     @model_validator(mode="after")
-    def _one_damping(self) -> Self:
+    def _one_of_each(self) -> Self:
+        one_of('stiffness = "80 kN/m"', stiffness=self.stiffness, frequency=self.frequency)
         if self.damping is not None and self.damping_ratio is not None:
             raise Hint("damping and damping_ratio say the same thing twice", "give one of them")
         if self.damping_ratio and self.stiffness == 0:
@@ -101,7 +137,11 @@ class SDOF(Part):
 
     def modes(self) -> ModalModel:
         """Reduce to one mode."""
-        stiffness = self.stiffness / self.mass
+        if self.stiffness is None:
+            assert self.frequency is not None
+            stiffness = power(2 * math.pi * self.frequency, 2)
+        else:
+            stiffness = self.stiffness / self.mass
         if self.damping_ratio is not None:
             decay = self.damping_ratio * power(stiffness, 0.5)
         else:
@@ -117,6 +157,54 @@ class SDOF(Part):
         )
 
 
+class DampedModes(StructurePart):
+    """Damping of structures whose modes are computed.
+
+    Parameters
+    ----------
+    damping_ratio
+        Damping ratio of all modes, or a list with one for each mode; left out, there is no damping. Modes of frequency 0
+        have none.
+    rayleigh
+        Instead: alpha [1/s] and beta [s] of Rayleigh damping, C = alpha M + beta K; the damping ratio at the angular
+        frequency omega is alpha / (2 omega) + beta omega / 2.
+    """
+
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("damping_ratio", "rayleigh"),)
+    damping_ratio: Ratio | list[Ratio] | None = None
+    rayleigh: tuple[Ratio, Ratio] | None = Field(default=None, examples=[[0.1, 1e-4]])
+
+    @model_validator(mode="after")
+    def _one_kind_of_damping(self) -> Self:
+        given = [name for name in ("C", "damping_ratio", "rayleigh") if getattr(self, name, None) is not None]
+        if len(given) > 1:
+            raise Hint(f"{' and '.join(given)} are both damping", "give one of them", [given[-1]])
+        return self
+
+    def decay_rates(self, stiffness: Vector) -> Vector:
+        """Return the decay rate of each mode [1/s].
+
+        Parameters
+        ----------
+        stiffness : (m,) float
+            Squared natural angular frequencies [1/s^2].
+
+        Raises
+        ------
+        Hint
+            If a list of damping ratios has another length.
+        """
+        if self.rayleigh is not None:
+            return np.asarray((self.rayleigh[0] + self.rayleigh[1] * stiffness) / 2)
+        if isinstance(self.damping_ratio, list) and len(self.damping_ratio) != stiffness.size:
+            raise Hint(
+                f"{several(len(self.damping_ratio), 'number')}, but {several(stiffness.size, 'mode')}",
+                "one number for all modes, or one for each",
+                ["damping_ratio"],
+            )
+        return np.asarray(np.array(self.damping_ratio or 0.0) * np.sqrt(stiffness))
+
+
 def _one_each(value: Any) -> Any:
     if isinstance(value, (int, float, str)) and not isinstance(value, bool):
         one = f'"{value}"' if isinstance(value, str) else f"{value}"
@@ -124,7 +212,7 @@ def _one_each(value: Any) -> Any:
     return value
 
 
-class Modal(Part):
+class Modal(StructurePart):
     """A structure given by its modes.
 
     Parameters
@@ -143,7 +231,6 @@ class Modal(Part):
         Modal amplitudes at the start [kg^1/2 m], [kg^1/2 m/s]; default 0.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("structure",)
     kind: Literal["modal"] = "modal"
     frequencies: list[Frequency] = Field(examples=[["10 Hz", "62 Hz"]])
     damping_ratios: Annotated[list[Ratio], BeforeValidator(_one_each)] = Field(examples=[[0.01, 0.01]])
@@ -196,228 +283,14 @@ class Modal(Part):
         )
 
 
-class Matrices(Part):
-    """A structure given by its matrices, M z'' + C z' + K z = F, reduced to modes.
-
-    Damping must be proportional (diagonal in the modes); otherwise the size of what is not is reported.
-
-    Parameters
-    ----------
-    M, C, K
-        Mass, damping and stiffness, (n, n), SI units; C is left out for a structure without damping.
-    points
-        Named points: number of the degree of freedom, counted from 0, or a vector of n weights; or three of them, along x, y
-        and z, for a point that moves in space.
-    file
-        Instead of M, C, K: a NPZ or MAT file that holds them under these names, full or sparse, and, if it likes, points as
-        vectors of n weights, or three of them: `point_tip` for a point "tip", or the fields of a struct `points`. Points
-        given beside the file come before those in it.
-    influence
-        Motion of each degree of freedom with the base; default 1 for all. Where points move in space three rows, for motion
-        of the base along x, y and z, without which there is none.
-    displacement, velocity
-        Of each degree of freedom at the start [m], [m/s]; default 0.
-    """
-
-    held_as: ClassVar[tuple[str, ...]] = ("structure",)
-    in_file: ClassVar[tuple[str, ...]] = ("M", "C", "K")
-    kind: Literal["matrices"] = "matrices"
-    M: Annotated[Matrix, SI("kg")] = Field(examples=[[[2, 0], [0, 1]]])
-    C: Annotated[Matrix | None, SI("N s/m")] = None
-    K: Annotated[Matrix, SI("N/m")] = Field(examples=[[[3e4, -1e4], [-1e4, 1e4]]])
-    points: dict[str, Point] = Field(examples=[{"tip": 1}])
-    file: str | None = None
-    influence: Weights | None = None
-    displacement: Annotated[Numbers | None, SI("m")] = None
-    velocity: Annotated[Numbers | None, SI("m/s")] = None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_file(cls, values: Any) -> Any:
-        if not isinstance(values, dict) or values.get("file") is None:
-            return values
-        twice = sorted({"M", "C", "K"} & set(values))
-        if twice:
-            raise Hint(f"give {twice[0]} or a file, not both")
-        with at("file"):
-            path = absolute(values["file"])
-            matrices, points = _read_matrices(path)
-        own = values.get("points")
-        if own is not None and not isinstance(own, dict):
-            return values
-        return {**values, **matrices, "points": points | (own or {}), "file": path}
-
-    @model_validator(mode="after")
-    def _sound(self) -> Self:
-        mass, damping, stiffness = self.matrices()
-        n = len(self.M)
-        for name, matrix in (("M", mass), ("C", damping), ("K", stiffness)):
-            if matrix.shape != (n, n) or n == 0:
-                raise Hint(
-                    f"{name} has shape {matrix.shape}" + (f", but M has {n} rows" if name != "M" else ""),
-                    "three square matrices of one size",
-                    self._where(name),
-                )
-            if not np.allclose(matrix, matrix.T, rtol=1e-12, atol=1e-12 * np.abs(matrix).max(initial=0)):
-                raise Hint(
-                    f"{name} is not symmetric",
-                    f"{name} = ({name} + {name}^T) / 2, if the difference is rounding",
-                    self._where(name),
-                )
-        if np.linalg.eigvalsh(mass).min() <= 0:
-            raise Hint("M is not positive definite: some motion would have no mass", place=self._where("M"))
-        if not self.points:
-            raise Hint("at least one named point is needed", "points = { tip = 0 }", ["points"])
-        for name, point in self.points.items():
-            if isinstance(point, int) and not 0 <= point < n:
-                raise Hint("there is no such degree of freedom", f"0 to {n - 1}", ["points", name])
-            if not isinstance(point, int) and np.shape(point)[-1] != n:
-                raise Hint(
-                    f"{np.shape(point)[-1]} weights, but there are {n} degrees of freedom", place=["points", name]
-                )
-        for name in ("influence", "displacement", "velocity"):
-            row = getattr(self, name)
-            if row is not None and np.shape(row)[-1] != n:
-                raise Hint(f"{np.shape(row)[-1]} numbers, but there are {n} degrees of freedom", place=[name])
-        if self.influence is not None and (np.ndim(self.influence) == 2) != bool(self._spatial()):
-            raise Hint("influence has three rows if points move in space, else one", place=["influence"])
-        self.modes()
-        return self
-
-    def _spatial(self) -> frozenset[str]:
-        """Points that move in space."""
-        return frozenset(name for name, point in self.points.items() if np.ndim(point) == 2)
-
-    def _where(self, name: str) -> list[str]:
-        """The field that gives a matrix, for messages."""
-        return ["file"] if self.file else [name]
-
-    @model_serializer(mode="wrap")
-    def _file_stands_for_matrices(self, handler: Any) -> Any:
-        data = handler(self)
-        if self.file is not None:
-            for name in self.in_file:
-                data.pop(name, None)
-        return data
-
-    @classmethod
-    def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Matrices:
-        """Read a structure from a NPZ or MAT file.
-
-        Parameters
-        ----------
-        path
-            The file; it holds M, K, C unless there is no damping, and points as `point_<name>` or in a struct `points`.
-        **options
-            points, influence, displacement, velocity.
-
-        Raises
-        ------
-        CaseError
-            When a matrix is missing or describes no structure, naming the file and what it holds.
-        """
-        return cls(**{"file": os.fspath(path), **options})
-
-    def matrices(self) -> tuple[Vector, Vector, Vector]:
-        """Return mass, damping and stiffness, (n, n) each."""
-        mass, stiffness = np.array(self.M), np.array(self.K)
-        return mass, np.zeros_like(mass) if self.C is None else np.array(self.C), stiffness
-
-    def modes(self) -> ModalModel:
-        """Reduce to modes; raises when damping is not proportional."""
-        from scipy.linalg import eigh
-
-        mass, damping, stiffness = self.matrices()
-        values, vectors = eigh(stiffness, mass)
-        largest = np.abs(values).max()
-        if values.min() < -1e-9 * largest:
-            raise Hint("K is not positive semidefinite: the structure would be unstable", place=self._where("K"))
-        values = np.where(np.abs(values) < 1e-12 * largest, 0.0, values)
-        vectors = _align(vectors, values, damping, 1e-9 * largest)
-        modal = vectors.T @ damping @ vectors
-        diagonal = np.diag(modal)
-        size = np.sqrt(np.abs(np.outer(diagonal, diagonal)))
-        off = np.abs(modal - np.diag(diagonal)) / np.where(size > 0, size, max(np.abs(modal).max(), 1e-300))
-        if off.size and off.max() > 1e-8:
-            i, j = np.unravel_index(off.argmax(), off.shape)
-            raise Hint(
-                f"damping is not proportional: between modes {i + 1} and {j + 1} |C_ij|/sqrt(C_ii C_jj) = {off[i, j]:.3g}",
-                "Rayleigh damping C = a M + b K, or Modal with damping ratios",
-                self._where("C"),
-            )
-        if diagonal.size and diagonal.min() < -1e-9 * np.abs(diagonal).max():
-            raise Hint(
-                f"C is not positive semidefinite: mode {diagonal.argmin() + 1} would gain energy",
-                place=self._where("C"),
-            )
-        n = len(values)
-        weights = {name: np.eye(n)[p] if isinstance(p, int) else np.array(p) for name, p in self.points.items()}
-        projection = vectors.T @ mass
-        spatial, zero = self._spatial(), np.zeros(n)
-        influence = self.influence if self.influence is not None or spatial else np.ones(n)
-        return ModalModel(
-            decay=np.maximum(diagonal, 0) / 2,
-            stiffness=values,
-            shapes={name: (weight @ vectors).T for name, weight in weights.items()},
-            participation=None if influence is None else projection @ np.transpose(influence),
-            q0=zero if self.displacement is None else projection @ np.array(self.displacement),
-            p0=zero if self.velocity is None else projection @ np.array(self.velocity),
-            spatial=spatial,
-        )
-
-
-def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
-    """Matrices and points in a file, by name."""
-    file = existing(path)
-    if file.suffix.lower() not in (".npz", ".mat"):
-        raise Hint(f"{path} is neither NPZ nor MAT", "numpy.savez('beam.npz', M=M, C=C, K=K, point_tip=weights)")
-    arrays = read_arrays(file)
-    if not arrays:
-        raise Hint(f"{path} holds no numbers", "arrays M, C and K")
-    for name in ("M", "K"):
-        if name not in arrays:
-            raise Hint(f"{path} holds no {name}, but {', '.join(arrays)}", nearest(name, arrays))
-    matrices: dict[str, Vector] = {name: np.atleast_2d(arrays[name]) for name in ("M", "C", "K") if name in arrays}
-    points: dict[str, Vector] = {}
-    for name, array in arrays.items():
-        mark = next((mark for mark in ("point_", "points.") if name.startswith(mark)), None)
-        if mark is not None:
-            n = len(matrices["M"])
-            if array.size != n and array.shape != (3, n):
-                raise Hint(
-                    f"{path}: {name} has {array.size} numbers, but there are {n} degrees of freedom",
-                    f"a vector of weights, or points = {{ {name.removeprefix(mark)} = 0 }} beside the file",
-                )
-            points[name.removeprefix(mark)] = array.ravel() if array.size == n else array
-    for name, array in (matrices | points).items():
-        check_finite(array, f"{path}: {name}")
-    return matrices, points
-
-
-def _align(vectors: Vector, values: Vector, damping: Vector, tolerance: float) -> Vector:
-    """Turn the modes of a repeated frequency so that damping is diagonal among them."""
-    vectors = vectors.copy()
-    start = 0
-    for end in range(1, len(values) + 1):
-        if end < len(values) and values[end] - values[start] <= tolerance:
-            continue
-        if end - start > 1:
-            block = vectors[:, start:end]
-            _, turn = np.linalg.eigh(block.T @ damping @ block)
-            vectors[:, start:end] = block @ turn
-        start = end
-    return vectors
-
-
 def _still() -> ModalModel:
     none = np.zeros(0)
     return ModalModel(none, none, {"cavity": none}, none, none, none)
 
 
-class Fixed(Part):
+class Fixed(StructurePart):
     """A cavity that does not move. Its only point is called "cavity"."""
 
-    held_as: ClassVar[tuple[str, ...]] = ("structure",)
     kind: Literal["fixed"] = "fixed"
 
     def modes(self) -> ModalModel:
@@ -425,7 +298,7 @@ class Fixed(Part):
         return _still()
 
 
-class Shaker(Part):
+class Shaker(StructurePart):
     """A cavity that moves as prescribed. Its only point is called "cavity"; it is the base.
 
     Parameters
@@ -434,7 +307,6 @@ class Shaker(Part):
         One signal or several: a Harmonic displacement [m], or accelerations [m/s^2].
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("structure",)
     kind: Literal["shaker"] = "shaker"
     motion: Annotated[tuple[AnySignal, ...], signals_in("m", "m/s^2"), AlsoTakes()]
 
@@ -451,7 +323,3 @@ class Shaker(Part):
     def modes(self) -> ModalModel:
         """Return no modes at all."""
         return _still()
-
-
-Structure = SDOF | Modal | Matrices | Fixed | Shaker
-AnyStructure = Annotated[Structure, Field(discriminator="kind")]

@@ -95,6 +95,10 @@ _COMMON: dict[str, dict[str, tuple[float, float]]] = {
     "rad": {"rad": (1, 1)},
     "rad/s": {"rad/s": (1, 1)},
     "kg^-0.5": {"kg^-0.5": (1, 1)},
+    "N m^2": {"N m^2": (1, 1), "N*m^2": (1, 1), "Nm^2": (1, 1), "kN m^2": (1e3, 1), "N mm^2": (1, 1e6)},
+    "N m": {"N m": (1, 1), "N*m": (1, 1), "Nm": (1, 1), "kN m": (1e3, 1), "N mm": (1, 1e3)},
+    "kg/m": {"kg/m": (1, 1), "g/m": (1, 1e3), "t/m": (1e3, 1), "kg/mm": (1e3, 1)},
+    "kg/m^2": {"kg/m^2": (1, 1), "g/m^2": (1, 1e3), "t/m^2": (1e3, 1)},
 }
 
 _DENSITIES = {"m/s^2": ("m^2/s^3", "m^2/s^4/Hz", "(m/s^2)^2/Hz"), "N": ("N^2/Hz",), "m": ("m^2/Hz",)}
@@ -106,11 +110,13 @@ _NAMES = {
     "m": "length", "s": "time", "kg": "mass", "N": "force", "N/m": "stiffness", "N s/m": "damping coefficient",
     "m/s": "velocity", "m/s^2": "acceleration", "Hz": "frequency", "Pa": "pressure or modulus", "kg/m^3": "density",
     "rad": "angle", "kg^-0.5": "mass-normalised mode shape", "rad/s": "angular velocity",
+    "N m^2": "bending stiffness", "N m": "bending stiffness per width", "kg/m": "mass per length", "kg/m^2": "mass per area",
 }  # fmt: skip
 
 _EXAMPLES = {
     "m": "0.4 mm", "s": "1 ms", "kg": "20 kg", "N": "5 kN", "N/m": "80 kN/m", "N s/m": "25.3 N s/m", "m/s": "0.1 m/s",
     "m/s^2": "9.81 m/s^2", "Hz": "10 Hz", "Pa": "200 GPa", "kg/m^3": "7850 kg/m^3", "rad": "90 deg", "rad/s": "10 rad/s",
+    "N m^2": "350 N m^2", "N m": "1.2 kN m", "kg/m": "7.8 kg/m", "kg/m^2": "5 kg/m^2",
 }  # fmt: skip
 
 
@@ -123,7 +129,7 @@ def registry() -> pint.UnitRegistry[Any]:
 
 
 def _pint_unit(unit: str) -> str:
-    return unit.replace("N s/m", "N*s/m").replace("kg^-0.5", "kg**-0.5")
+    return unit.replace("N s/m", "N*s/m").replace("kg^-0.5", "kg**-0.5").replace("N m", "N*m").replace("^", "**")
 
 
 def _article(name: str) -> str:
@@ -551,7 +557,12 @@ Length = Annotated[float, *_make("m")]
 PositiveLength = Annotated[float, *_make("m", _positive)]
 NotNegativeLength = Annotated[float, *_make("m", _not_negative)]
 PositiveMass = Annotated[float, *_make("kg", _positive)]
+NotNegativeMass = Annotated[float, *_make("kg", _not_negative)]
 Stiffness = Annotated[float, *_make("N/m", _not_negative)]
+BendingStiffness = Annotated[float, *_make("N m^2", _positive)]
+PlateStiffness = Annotated[float, *_make("N m", _positive)]
+MassPerLength = Annotated[float, *_make("kg/m", _positive)]
+MassPerArea = Annotated[float, *_make("kg/m^2", _positive)]
 PositiveStiffness = Annotated[float, *_make("N/m", _positive)]
 Damping = Annotated[float, *_make("N s/m", _not_negative)]
 Force = Annotated[float, *_make("N")]

@@ -1,0 +1,301 @@
+"""Uniform beams, by the exact modes of Euler and Bernoulli."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from .elementwise import Vector
+from .errors import Hint, one_of
+from .materials import AnyMaterial
+from .modes import ModalModel
+from .structures import DampedModes
+from .units import BendingStiffness, Length, MassPerLength, NotNegativeMass, PositiveLength, Whole
+
+if TYPE_CHECKING:
+    from typing import Self
+
+Ends = Literal["clamped-free", "clamped-clamped", "clamped-pinned", "pinned-pinned", "pinned-free", "free-free"]
+ModeCount = Annotated[Whole, Field(ge=1, le=200)]
+
+HEAVIEST = 1e9
+"""Largest tip mass, in masses of the beam, for which the modes are accurate."""
+
+ROUNDING = 1e-9
+"""Of the length: what places may lie beyond the end."""
+
+NEGLECTED = 0.05
+"""Largest change of a natural frequency by shear and rotary inertia, which the theory neglects, without a warning."""
+
+
+class Beam(DampedModes):
+    """A uniform beam in bending, after Euler and Bernoulli, of which the lowest modes are kept.
+
+    Its points move along one line, across the beam. "tip" is a free second end (x = length), "middle" is at half the length.
+
+    Parameters
+    ----------
+    length
+        Length L [m].
+    ends
+        First end (x = 0) and second end (x = L): "clamped-free", "clamped-clamped", "clamped-pinned", "pinned-pinned",
+        "pinned-free" or "free-free".
+    material
+        Of the cross-section that the next fields give.
+    diameter, inner_diameter
+        Of a round bar or tube [m].
+    width, height
+        Of a rectangular cross-section [m]; the height is in the direction of the motion.
+    bending_stiffness, mass_per_length
+        E I [N m^2] and rho A [kg/m], instead of material and cross-section.
+    tip_mass
+        Mass of a point at the free second end [kg].
+    mode_count
+        Number of modes, with those of a rigid body, of which "pinned-free" has one and "free-free" two.
+    points
+        Named points by their distance x from the first end [m].
+
+    Notes
+    -----
+    The modes w(x) sin(omega t) satisfy E I w'''' = omega^2 rho A w, with E I w''' = -omega^2 m w at the end with a tip mass
+    m. With z = beta L, omega^2 = E I beta^4 / (rho A) and mu = m / (rho A L), z is a root of
+
+    ===============  ===================================================
+    clamped-clamped  cos z - sech z = 0
+    clamped-pinned   sin z - cos z tanh z = 0
+    pinned-pinned    sin z = 0
+    clamped-free     cos z + sech z + mu z (cos z tanh z - sin z) = 0
+    pinned-free      sin z - cos z tanh z + 2 mu z sin z tanh z = 0
+    free-free        cos z - sech z + mu z (cos z tanh z - sin z) = 0
+    ===============  ===================================================
+
+    Shear and rotary inertia lower the frequencies by about (beta r)^2 (1 + E / (kappa G)) / 2, with the radius of gyration r
+    and the shear coefficient kappa; a run warns where this is more than 5 % and the cross-section is known.
+
+    References
+    ----------
+    S. S. Rao (2007): Vibration of Continuous Systems, Wiley, chapter 11, doi:10.1002/9780470117866.
+
+    G. R. Cowper (1966): The shear coefficient in Timoshenko's beam theory. Journal of Applied Mechanics 33, 335-340,
+    doi:10.1115/1.3625046.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> bar = rb.Beam(length="200 mm", material="steel", diameter="20 mm", tip_mass="50 g", damping_ratio=0.01)
+    >>> bar.frequencies.round(1)
+    array([  297.4,  1941.5,  5570.9, 11111.5])
+    """
+
+    elementwise: ClassVar[bool] = False
+    kind: Literal["beam"] = "beam"
+    length: PositiveLength
+    ends: Ends = "clamped-free"
+    material: AnyMaterial | None = None
+    diameter: PositiveLength | None = None
+    inner_diameter: PositiveLength | None = None
+    width: PositiveLength | None = None
+    height: PositiveLength | None = None
+    bending_stiffness: BendingStiffness | None = None
+    mass_per_length: MassPerLength | None = None
+    tip_mass: NotNegativeMass = 0.0
+    mode_count: ModeCount = 4
+    points: dict[str, Length] = Field(default_factory=dict, examples=[{"cavity": "0.15 m"}])
+
+    @model_validator(mode="after")
+    def _sound(self) -> Self:
+        if self.material is not None:
+            if self.bending_stiffness is not None or self.mass_per_length is not None:
+                raise Hint("a material, and bending_stiffness or mass_per_length besides", "one or the other")
+            one_of('diameter = "20 mm", or width and height', diameter=self.diameter, height=self.height)
+            if self.height is not None and self.width is None:
+                raise Hint("a rectangular cross-section needs a width", 'width = "30 mm"', ["width"])
+            if self.inner_diameter is not None and not self.inner_diameter < (self.diameter or 0.0):
+                raise Hint("must be less than the diameter", place=["inner_diameter"])
+        else:
+            if self.bending_stiffness is None or self.mass_per_length is None:
+                raise Hint(
+                    "a beam needs a material and a cross-section, or bending_stiffness and mass_per_length",
+                    'material = "steel", diameter = "20 mm"',
+                )
+            for name in ("diameter", "inner_diameter", "width", "height"):
+                if getattr(self, name) is not None:
+                    raise Hint("a cross-section needs a material", 'material = "steel"', [name])
+        if self.tip_mass > HEAVIEST * self.section[1] * self.length:
+            raise Hint(
+                f"is more than {HEAVIEST:g} times the mass of the beam",
+                "SDOF, with the stiffness of the beam",
+                ["tip_mass"],
+            )
+        if self.tip_mass and not self.ends.endswith("free"):
+            raise Hint(f"a {self.ends} beam has no free second end", 'ends = "clamped-free"', ["tip_mass"])
+        for name, x in self.points.items():
+            if not 0 <= x <= self.length * (1 + ROUNDING):
+                raise Hint(
+                    f"{x:g} m is outside the beam, which is {self.length:g} m long", "0 to its length", ["points", name]
+                )
+        self.modes()
+        return self
+
+    @property
+    def section(self) -> tuple[float, float]:
+        """Bending stiffness E I [N m^2] and mass per length rho A [kg/m]."""
+        if self.material is None:
+            assert self.bending_stiffness is not None and self.mass_per_length is not None
+            return self.bending_stiffness, self.mass_per_length
+        area, inertia = self._area_and_inertia()
+        return self.material.young * inertia, self.material.density * area
+
+    def _area_and_inertia(self) -> tuple[float, float]:
+        if self.diameter is not None:
+            inner = self.inner_diameter or 0.0
+            return math.pi / 4 * (self.diameter**2 - inner**2), math.pi / 64 * (self.diameter**4 - inner**4)
+        assert self.width is not None and self.height is not None
+        return self.width * self.height, self.width * self.height**3 / 12
+
+    @property
+    def frequencies(self) -> Vector:
+        """Natural frequencies of the modes, (m,) [Hz]."""
+        return np.sqrt(self.modes().stiffness) / (2 * math.pi)
+
+    def modes(self) -> ModalModel:
+        """Compute the modes."""
+        stiffness, per_length = self.section
+        own = per_length * self.length
+        mu = self.tip_mass / own
+        shapes = _rigid_shapes(self.ends, mu)[: self.mode_count]
+        roots = np.zeros(len(shapes))
+        if len(shapes) < self.mode_count:
+            elastic = wave_numbers(self.ends, self.mode_count - len(shapes), mu)
+            roots = np.concatenate([roots, elastic])
+            shapes = [*shapes, *(_shape(self.ends, z) for z in elastic)]
+        places = {"tip": self.length} if self.ends.endswith("free") else {}
+        places |= {"middle": self.length / 2} | self.points
+        x, weight = np.polynomial.legendre.leggauss(40 + 2 * int(roots[-1]))
+        x, weight = (1 + x) / 2, weight / 2
+        rows = np.array(
+            [shape(np.array([*x, 1.0, *(place / self.length for place in places.values())])) for shape in shapes]
+        )
+        inside, tip, at_points = rows[:, : x.size], rows[:, x.size], rows[:, x.size + 1 :]
+        norm = np.sqrt(own * (inside**2 @ weight + mu * tip**2))
+        squared = roots**4 * stiffness / (per_length * self.length**4)
+        zero = np.zeros(roots.size)
+        return ModalModel(
+            decay=self.decay_rates(squared),
+            stiffness=squared,
+            shapes={name: at_points[:, k] / norm for k, name in enumerate(places)},
+            participation=own * (inside @ weight + mu * tip) / norm,
+            q0=zero,
+            p0=zero,
+        )
+
+    def warnings(self) -> Iterator[str]:
+        """Return modes whose frequencies shear and rotary inertia would change."""
+        if self.material is None:
+            return
+        area, inertia = self._area_and_inertia()
+        nu = self.material.poisson
+        if self.diameter is None:
+            kappa = 10 * (1 + nu) / (12 + 11 * nu)
+        else:
+            m = ((self.inner_diameter or 0.0) / self.diameter) ** 2
+            kappa = 6 * (1 + nu) * (1 + m) ** 2 / ((7 + 6 * nu) * (1 + m) ** 2 + (20 + 12 * nu) * m)
+        stiffness, per_length = self.section
+        squared = np.sqrt(self.modes().stiffness * per_length / stiffness)  # beta^2
+        change = squared * inertia / area * (1 + 2 * (1 + nu) / kappa) / 2
+        if (change > NEGLECTED).any():
+            first = int(np.argmax(change > NEGLECTED))
+            advice = f"mode_count = {first}" if first else "a finite element model"
+            yield (
+                f"shear and rotary inertia, which the beam neglects, would lower the frequency of its mode {first + 1}, at"
+                f" {self.frequencies[first]:.4g} Hz, by about {100 * change[first]:.2g} %; up to {100 * NEGLECTED:g} % is"
+                f" allowed; try: {advice}"
+            )
+
+
+def wave_numbers(ends: Ends, count: int, mu: float = 0.0) -> Vector:
+    """Compute beta L of the lowest elastic modes of a beam.
+
+    Parameters
+    ----------
+    ends
+        The two ends, as for `Beam`.
+    count
+        Number of modes.
+    mu
+        Mass at the free second end over the mass of the beam.
+
+    Returns
+    -------
+    (count,) float
+        Roots of the characteristic equation (see `Beam`), rising, to rounding.
+    """
+    free = np.array([_root(ends, 0.0, *_bracket(ends, n)) for n in range(1, count + 1)])
+    if mu == 0:
+        return free
+    # A mass at an end lowers each frequency, at most to that of a beam which is pinned there.
+    if ends == "clamped-free":
+        pinned = [0.0, *wave_numbers("clamped-pinned", count, 0.0)]
+    else:
+        pinned = list(wave_numbers("pinned-pinned" if ends == "pinned-free" else "pinned-free", count, 0.0))
+    margin = 1e-12  # for the rounding of the ends of the intervals
+    return np.array(
+        [_root(ends, mu, low * (1 - margin), high * (1 + margin)) for low, high in zip(pinned, free, strict=False)]
+    )
+
+
+def _bracket(ends: str, n: int) -> tuple[float, float]:
+    """Interval with the elastic root number n, from 1, without tip mass."""
+    if ends == "pinned-pinned":
+        return (n - 0.5) * math.pi, (n + 0.5) * math.pi
+    if ends == "clamped-free":
+        return (n - 1) * math.pi, n * math.pi
+    return n * math.pi, (n + 1) * math.pi if ends in ("clamped-clamped", "free-free") else (n + 0.5) * math.pi
+
+
+def _root(ends: str, mu: float, low: float, high: float) -> float:
+    from scipy.optimize import brentq
+
+    def characteristic(z: float) -> float:
+        cos, sin, tanh, sech = math.cos(z), math.sin(z), math.tanh(z), 1 / math.cosh(min(z, 700.0))
+        if ends == "pinned-pinned":
+            return sin
+        if ends in ("clamped-pinned", "pinned-free"):
+            return sin - cos * tanh + 2 * mu * z * sin * tanh
+        sign = 1.0 if ends == "clamped-free" else -1.0
+        return cos + sign * sech + mu * z * (cos * tanh - sin)
+
+    return float(brentq(characteristic, low, high, xtol=1e-15, rtol=4 * np.finfo(float).eps, maxiter=200))
+
+
+def _rigid_shapes(ends: Ends, mu: float) -> list[Callable[[Vector], Vector]]:
+    """Motions of the beam as a rigid body over x / L, orthogonal to each other."""
+    if ends == "pinned-free":
+        return [np.array]
+    if ends == "free-free":
+        centre = (0.5 + mu) / (1 + mu)
+        return [np.ones_like, lambda x: np.asarray(x - centre)]
+    return []
+
+
+def _shape(ends: Ends, z: float) -> Callable[[Vector], Vector]:
+    """Shape of an elastic mode over x / L, of any scale, without differences of large numbers."""
+    if ends == "pinned-pinned":
+        return lambda x: np.sin(z * x)
+    decayed, sin, cos = math.exp(-z), math.sin(z), math.cos(z)
+    if ends == "pinned-free":  # sin(z x) + sin(z) sinh(z x) / sinh(z)
+        return lambda x: np.sin(z * x) + sin * (np.exp(z * (x - 1)) - np.exp(-z * (x + 1))) / (1 - decayed**2)
+    # cosh(z x) + s cos(z x) - sigma (sinh(z x) + s sin(z x)), s = -1 of a clamped and 1 of a free first end, and
+    # sigma = (cosh z + g cos z) / (sinh z + g sin z)
+    s = 1.0 if ends == "free-free" else -1.0
+    g = 1.0 if ends == "clamped-free" else -1.0
+    below = 1 - decayed**2 + 2 * g * decayed * sin
+    sigma = (1 + decayed**2 + 2 * g * decayed * cos) / below
+    growing = (g * (sin - cos) - decayed) / below
+    return lambda x: np.asarray(
+        growing * np.exp(z * (x - 1)) + (1 + sigma) / 2 * np.exp(-z * x) + s * (np.cos(z * x) - sigma * np.sin(z * x))
+    )
