@@ -32,6 +32,8 @@ def main() -> int:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+    import rattlebox as rb
+
     from .report import choose, cores, write_report
 
     console = Console(highlight=False, markup=False, emoji=False)
@@ -48,6 +50,8 @@ def main() -> int:
                 bar.update(task, completed=done, description=f"{last} done")
 
             page = write_report(given.out, given.only, workers=given.workers or cores(), progress=progress)
+    except rb.RattleboxError as error:
+        parser.error(str(error))
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         parser.error(f"{where}{error.strerror or error}")

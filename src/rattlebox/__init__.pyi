@@ -2,6 +2,12 @@
 
 from rattlebox import analysis as analysis
 from rattlebox import plots as plots
+from rattlebox._util.exceptions import CaseError as CaseError
+from rattlebox._util.exceptions import DataError as DataError
+from rattlebox._util.exceptions import MissingDependency as MissingDependency
+from rattlebox._util.exceptions import RattleboxError as RattleboxError
+from rattlebox._util.exceptions import ResourceError as ResourceError
+from rattlebox._util.exceptions import StoreError as StoreError
 from rattlebox.engines.laws import alpha_of_restitution as alpha_of_restitution
 from rattlebox.engines.laws import restitution_curve as restitution_curve
 from rattlebox.engines.laws import restitution_of_alpha as restitution_of_alpha
@@ -20,7 +26,6 @@ from rattlebox.model.contacts import Thornton as Thornton
 from rattlebox.model.contacts import Tsuji as Tsuji
 from rattlebox.model.dampers import ImpactDamper as ImpactDamper
 from rattlebox.model.dampers import Sphere as Sphere
-from rattlebox.model.errors import CaseError as CaseError
 from rattlebox.model.friction import LinearSpring as LinearSpring
 from rattlebox.model.friction import Mindlin as Mindlin
 from rattlebox.model.friction import Rolling as Rolling

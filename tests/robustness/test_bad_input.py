@@ -216,7 +216,7 @@ def test_csv_with_something_else_than_numbers(tmp_path: Path, rows: str, line: i
     """Text, NaN or a third column in a CSV is refused with file and line."""
     file = tmp_path / "push.csv"
     file.write_text(rows, encoding="utf-8")
-    with pytest.raises(rb.CaseError, match=rf"push\.csv, line {line}:"):
+    with pytest.raises(rb.DataError, match=rf"push\.csv, line {line}:"):
         rb.Record.from_file(file, unit="N")
 
 
@@ -226,14 +226,14 @@ def test_csv_named_in_a_case_file(tmp_path: Path) -> None:
     load = 'kind = "record"\nunit = "N"\nfile = "push.csv"\n'
     case = tmp_path / "case.toml"
     case.write_text(changed('kind = "half_sine"\namplitude = "5 kN"\nduration = "1 ms"\n', load), encoding="utf-8")
-    with pytest.raises(rb.CaseError, match=r"(?s)case\.toml: .*push\.csv, line 2:"):
+    with pytest.raises(rb.DataError, match=r"(?s)case\.toml: .*push\.csv, line 2:"):
         rb.Case.from_file(case)
 
 
 @pytest.mark.parametrize("name", ["none.csv", "none.npy", "none.mat"])
 def test_record_file_that_is_not_there(tmp_path: Path, name: str) -> None:
     """A record file that does not exist is refused by its name."""
-    with pytest.raises(rb.CaseError, match=name):
+    with pytest.raises(rb.DataError, match=name):
         rb.Record.from_file(tmp_path / name, unit="N")
 
 
@@ -241,7 +241,7 @@ def test_record_file_that_is_not_there(tmp_path: Path, name: str) -> None:
 def test_record_file_of_rubbish(tmp_path: Path, name: str) -> None:
     """Bytes that are no NPY or MAT file are refused by name."""
     (tmp_path / name).write_bytes(bytes(range(256)))
-    with pytest.raises(rb.CaseError, match=name):
+    with pytest.raises(rb.DataError, match=name):
         rb.Record.from_file(tmp_path / name, unit="N")
 
 

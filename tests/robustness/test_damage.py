@@ -135,7 +135,7 @@ def test_a_checkpoint_with_changed_numbers_is_refused(whole: Path, tmp_path: Pat
         changed[name].ravel()[-1] += 1
         with file.open("wb") as content:
             np.savez(content, **changed)
-        with pytest.raises(rb.CaseError, match="is not a whole checkpoint\n  try: another file"):
+        with pytest.raises(rb.DataError, match="is not a whole checkpoint\n  try: another file"):
             rb.simulate(rb.Case.from_toml(BEADS), checkpoint=file, snapshots=tmp_path / "a.vtkhdf")
 
 
@@ -198,7 +198,7 @@ for number in range(400):
     file.write_bytes(changed[: len(content) - (number % 5 == 0) * int(generator.integers(len(content)))])
     try:
         rb.Record(file=file, unit="N")
-    except rb.CaseError:
+    except rb.RattleboxError:
         refused += 1
 print(refused)
 """
@@ -234,7 +234,7 @@ def test_sparse_matrices_with_indices_out_of_bounds_are_refused(tmp_path: Path) 
     assert content.count(rows) >= 1
     for wrong in ([0, 1, 2, 3, 5], [0, 1, -2, 3, 4], [0, 1, 2, 3, 10**8]):
         file.write_bytes(content.replace(rows, np.array(wrong, "<i4").tobytes()))
-        with pytest.raises(rb.CaseError, match="cannot be read as MAT: a sparse matrix has wrong"):
+        with pytest.raises(rb.DataError, match="cannot be read as MAT: a sparse matrix has wrong"):
             read_arrays(file)
 
 

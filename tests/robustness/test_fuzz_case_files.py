@@ -1,4 +1,4 @@
-"""Case files with anything at all in them: a case, or a CaseError, and nothing else."""
+"""Case files with anything at all in them: a case, or an error of the package, and nothing else."""
 
 from __future__ import annotations
 
@@ -139,10 +139,10 @@ def mutated(draw: st.DrawFn) -> str:
 
 
 def case_or_case_error(text: str) -> rb.Case | None:
-    """Read a case file; anything but a case or a CaseError that fits a screen is a failure."""
+    """Read a case file; anything but a case or an error of the package that fits a screen is a failure."""
     try:
         return rb.Case.from_toml(text, source="case.toml")
-    except rb.CaseError as error:
+    except (rb.CaseError, rb.DataError, rb.ResourceError) as error:
         message = str(error)
         assert "case.toml" in message
         assert len(message.splitlines()) <= 24
@@ -152,14 +152,14 @@ def case_or_case_error(text: str) -> rb.Case | None:
 @patient
 @given(mutated())
 def test_a_mutated_case_file_is_a_case_or_a_case_error(text: str) -> None:
-    """No value of any type in any place of a case file raises anything but CaseError."""
+    """No value of any type in any place of a case file raises anything but an error of the package."""
     case_or_case_error(text)
 
 
 @patient
 @given(st.sampled_from(TEXTS), st.data())
 def test_a_case_file_with_damaged_text_is_a_case_or_a_case_error(text: str, data: st.DataObject) -> None:
-    """No cut, no inserted and no overwritten text raises anything but CaseError."""
+    """No cut, no inserted and no overwritten text raises anything but an error of the package."""
     start = data.draw(st.integers(0, len(text)))
     stop = data.draw(st.integers(start, min(len(text), start + 40)))
     case_or_case_error(text[:start] + data.draw(st.text(max_size=12)) + text[stop:])

@@ -14,6 +14,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from .exceptions import DataError, RattleboxError, ResourceError
+
 HDF5_ERRORS = (OSError, AttributeError, LookupError, RuntimeError, TypeError, ValueError, OverflowError)
 """Exceptions that HDF5 libraries raise for a damaged file, or for one with other content."""
 
@@ -41,16 +43,14 @@ def check_suffix(path: Path, own: str) -> None:
 
     Raises
     ------
-    ValueError
+    DataError
         If it does; the message names the function that writes the other kind.
     """
     suffix = path.suffix.lower()
     if suffix != own and suffix in _WRITERS:
         what = f"a {own} file" if own else "a folder"
         name, other = path.with_suffix(own).name, _WRITERS[suffix]
-        raise ValueError(
-            f"{path}: {what} is written, not a {suffix} file\n  try: {name}; the other is written by {other}"
-        )
+        raise DataError(f"{path}: {what} is written, not a {suffix} file", f"{name}; the other is written by {other}")
 
 
 def require_folder(path: Path) -> None:
@@ -63,11 +63,36 @@ def require_folder(path: Path) -> None:
 
     Raises
     ------
-    FileNotFoundError
+    DataError
         If there is no such folder.
     """
     if not path.parent.is_dir():
-        raise FileNotFoundError(f"cannot write {path}: there is no folder {path.parent}")
+        raise DataError(
+            f"{path} cannot be written: there is no folder {path.parent}", "another folder, or make it first"
+        )
+
+
+def require_readable(path: Path) -> None:
+    """Raise if a file cannot be read. HDF5 and other libraries do not say why.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Raises
+    ------
+    DataError
+        If there is no such file, if it is a folder, or if the system refuses to open it.
+    """
+    if path.is_dir():
+        raise DataError(f"{path} is a folder, not a file")
+    try:
+        path.open("rb").close()
+    except FileNotFoundError:
+        raise DataError(f"there is no file {path}") from None
+    except OSError as error:
+        raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
 
 
 @contextmanager
@@ -87,8 +112,10 @@ def atomic_write(path: str | os.PathLike[str], advice: str = WRITE_AGAIN) -> Ite
 
     Raises
     ------
-    OSError
+    DataError
         If the file cannot be written; an earlier file is then unchanged, and nothing else is left behind.
+    ResourceError
+        If no space is left on the disk; likewise.
     """
     path = Path(path)
     with disk_errors(path, advice):
@@ -160,7 +187,7 @@ def sync(path: Path) -> None:
 
 @contextmanager
 def disk_errors(path: Path, advice: str = WRITE_AGAIN) -> Iterator[None]:
-    """Add the file and an advice to the errors of a disk that is full or cannot be written.
+    """Turn the errors of a disk that is full or cannot be written into those of the package.
 
     Parameters
     ----------
@@ -168,16 +195,25 @@ def disk_errors(path: Path, advice: str = WRITE_AGAIN) -> Iterator[None]:
         The file that is written.
     advice
         Advice in the message about a full disk.
+
+    Raises
+    ------
+    ResourceError
+        If no space is left.
+    DataError
+        If the file cannot be written for another reason.
     """
     try:
         yield
+    except RattleboxError:
+        raise
     except OSError as error:
         if error.errno in (errno.ENOSPC, errno.EDQUOT):
-            said = f"no space is left on the disk\n  try: {advice}"
+            raised: DataError | ResourceError = ResourceError(f"{path}: no space is left on the disk", advice)
         else:
-            why = error.strerror or str(error).removeprefix(f"cannot write {path}: ")
-            said = f"it cannot be written: {why}\n  try: another folder"
-        raise OSError(error.errno or errno.EIO, said, str(path)) from error
+            raised = DataError(f"{path} cannot be written: {error.strerror or error}", "another folder")
+        raised.errno, raised.filename = error.errno or errno.EIO, str(path)
+        raise raised from error
 
 
 def reserve_space(path: Path, size: int) -> None:

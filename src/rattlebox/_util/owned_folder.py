@@ -17,13 +17,18 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from .atomic_io import atomic_write, disk_errors, sync, temporaries
+from .exceptions import DataError
 
 MARKER = "rattlebox.json"
 """Name of the marker in an owned folder."""
 
 
-class DamagedError(ValueError):
+class DamagedError(DataError):
     """An owned folder has lost a file, or a file in it has changed."""
+
+
+class ForeignFile(DataError):
+    """A file that Rattlebox did not write is in the place of one to be written."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +154,7 @@ def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
 
     Raises
     ------
-    FileExistsError
+    ForeignFile
         If one of the files exists and is foreign. Nothing is changed then.
     OSError
         If a file cannot be written.
@@ -158,7 +163,7 @@ def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
     own = earlier.files if earlier else {}
     foreign = [name for name in files if name not in own and os.path.lexists(folder / name)]
     if foreign:
-        raise FileExistsError(f"{folder / foreign[0]} was not written by Rattlebox\n  try: move it out of this folder")
+        raise ForeignFile(f"{folder / foreign[0]} was not written by Rattlebox", "move it out of this folder")
     folder.mkdir(parents=True, exist_ok=True)
     if not (earlier and earlier.complete and own.keys() == files.keys()):
         write_marker(folder, replace(marker, complete=False, files=dict.fromkeys((*own, *files), "")))

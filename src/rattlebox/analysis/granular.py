@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.exceptions import DataError
+
 from .signals import FloatArray, first_harmonic, positive, steps_inside, trapezoid_weights
 
 if TYPE_CHECKING:
@@ -23,7 +25,7 @@ LEAST_SAMPLES = 8
 _LEAST_SHARE = 0.02  # of the mean square speed
 
 
-class StillCavity(ValueError):
+class StillCavity(DataError):
     """A cavity has hardly any motion at the frequency that is looked at."""
 
 

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
+from rattlebox._util.exceptions import DataError, RattleboxError
 from rattlebox._util.text import printable
 from rattlebox.cli.main import STOPPED
-from rattlebox.model.errors import CaseError
 
 app = typer.Typer(
     help="Simulate and design particle and impact dampers.",
@@ -75,11 +75,11 @@ def sweep(
 
 
 def _check_results(path: Path, wanted: str) -> None:
-    """Refuse what is not there, or says what to run, where what came of it is needed."""
+    """Raise if a result does not exist, or is a case file or a study file."""
     if not path.exists():
-        raise CaseError(f"{path} is not there\n  try: {wanted}")
+        raise DataError(f"{path} is not there", wanted)
     if path.suffix == ".toml" and path.is_file():
-        raise CaseError(f"{path} says what to run, not what came of it\n  try: {wanted}")
+        raise DataError(f"{path} is a case file or a study file, not a result", wanted)
 
 
 @app.command()
@@ -186,13 +186,17 @@ def doctor() -> None:
 
 
 def carry_out() -> None:
-    """Do what the arguments of this process ask for; bad input is told on one screen, with exit code 2."""
+    """Run the command that the arguments of this process name.
+
+    This is the only place where errors end the program: those of the package, and those of the system that reach it, are
+    printed without a traceback, with exit code 2.
+    """
     try:
         code = app(standalone_mode=False)
         if code == STOPPED:
             raise typer.Abort
         sys.exit(code)
-    except CaseError as error:
+    except RattleboxError as error:
         typer.echo(printable(f"error: {error}"), err=True)
         sys.exit(2)
     except OSError as error:

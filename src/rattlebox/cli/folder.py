@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rattlebox._util.atomic_io import remove_temporaries, sync
+from rattlebox._util.exceptions import DataError, RattleboxError
 from rattlebox._util.owned_folder import (
     MARKER,
     DamagedError,
@@ -23,7 +24,6 @@ from rattlebox._util.owned_folder import (
 from rattlebox.engines.checkpoint import Checkpoint, bare, is_checkpoint
 from rattlebox.model.case import Case
 from rattlebox.model.differences import differences
-from rattlebox.model.errors import CaseError
 from rattlebox.results.netcdf import read_case
 from rattlebox.results.snapshots import is_snapshots
 
@@ -53,15 +53,15 @@ def make_folder(out: Path) -> None:
 
     Raises
     ------
-    CaseError
+    DataError
         When it cannot be made.
     """
     try:
         out.mkdir(parents=True, exist_ok=True)
     except FileExistsError:
-        raise CaseError(f"{out} is a file; results need a folder\n  try: --out results") from None
+        raise DataError(f"{out} is a file; results need a folder\n  try: --out results") from None
     except OSError as error:
-        raise CaseError(f"the folder {out} cannot be made: {error.strerror}\n  try: --out results") from None
+        raise DataError(f"the folder {out} cannot be made: {error.strerror}\n  try: --out results") from None
 
 
 @dataclass(frozen=True)
@@ -136,13 +136,13 @@ def check_own(out: Path, names: Iterable[str]) -> None:
 
     Raises
     ------
-    CaseError
+    DataError
         If there is one.
     """
     marker = _marker(out)
     for name in names:
         if not _is_own(out, name, marker):
-            raise CaseError(_NOT_OURS.format(out / name))
+            raise DataError(_NOT_OURS.format(out / name))
 
 
 def note_begun(out: Path, names: Iterable[str]) -> None:
@@ -194,14 +194,14 @@ def taken(out: Path, case: Case, *, checkpoint: Path | None, replace: bool) -> I
 
     Raises
     ------
-    CaseError
+    DataError
         When the folder cannot be made, holds a study, a run of another case, with what differs, or what is no run; when
         another process uses it, or the case reads a file that results would be written over.
     """
     make_folder(out)
     marker = _marker(out)
     if (out / "zarr.json").exists() or (marker and marker.name not in (KIND, "")):
-        raise CaseError(f"{out} holds a study\n  try: another -o folder")
+        raise DataError(f"{out} holds a study\n  try: another -o folder")
     _check_inputs(out, case)
     own = Checkpoint(out / CHECKPOINT, case)
     goes_on = bool(case.particle_dampers) and checkpoint is None
@@ -215,12 +215,12 @@ def taken(out: Path, case: Case, *, checkpoint: Path | None, replace: bool) -> I
             there = tuple(name for name in files_in(out) if _is_own(out, name, _marker(out)))
             lines = differences({"case": _bare(earlier)}, {"case": bare(case)}) if earlier is not None else []
             if lines and not replace:
-                raise CaseError("\n".join([f"{out / RUN} holds another run", *lines, _ADVICE]))
+                raise DataError("\n".join([f"{out / RUN} holds another run", *lines, _ADVICE]))
             foreign = own.path.is_file() and not (goes_on and (not replace or _is_of(own)))
             if foreign and not replace:
-                raise CaseError(f"{own.path} is of a run that is not over\n{_ADVICE}")
+                raise DataError(f"{own.path} is of a run that is not over\n{_ADVICE}")
             if foreign and not is_checkpoint(own.path):
-                raise CaseError(_NOT_OURS.format(own.path))
+                raise DataError(_NOT_OURS.format(own.path))
         notes = [f"{folder} {_UNFINISHED}" for folder in replacements(out)]
         here = goes_on and own.path.is_file() and not foreign  # the run continues from the checkpoint in the folder
         if not goes_on or (not here and (lines or foreign)):  # else the run holds it
@@ -266,7 +266,7 @@ def _replacement(out: Path, case: Case) -> Iterator[Path]:
     """Yield a folder for the files of a run that replaces another one; it stays if the run can continue from it."""
     folder = out / f"replacement-{hashlib.sha256(bare(case).encode()).hexdigest()[:8]}"
     if folder.exists() and folder not in replacements(out) and not (folder.is_dir() and is_free(folder)):
-        raise CaseError(f"{folder} was not written by Rattlebox\n  try: another -o folder, or move it")
+        raise DataError(f"{folder} was not written by Rattlebox\n  try: another -o folder, or move it")
     folder.mkdir(exist_ok=True)
     write_marker(folder, _new(_REPLACEMENT, dict.fromkeys(WRITTEN, "")))
     try:
@@ -310,7 +310,7 @@ def _marker(out: Path) -> Marker | None:
     try:
         return read_marker(out)
     except DamagedError as error:
-        raise CaseError(f"{out / MARKER}: {error}\n  try: another -o folder, or remove this file") from None
+        raise DataError(f"{out / MARKER}: {error}", "another -o folder, or remove this file") from None
 
 
 _BY_CONTENT = (RUN, SNAPSHOTS, CHECKPOINT)
@@ -344,14 +344,14 @@ _ADVICE = "  try: another -o folder, or --replace"
 def _case_in(file: Path) -> str | None:
     try:
         return read_case(file) if file.is_file() else None
-    except ValueError as error:
-        raise CaseError(f"{error}\n  try: another -o folder, or remove this file") from None
+    except DataError as error:
+        raise DataError(error.complaint, "another -o folder, or remove this file") from None
 
 
 def _is_of(checkpoint: Checkpoint) -> bool:
     try:
         return checkpoint.read() is not None
-    except CaseError:
+    except DataError:
         return False
 
 
@@ -362,7 +362,7 @@ def _check_inputs(out: Path, case: Case) -> None:
     for part in (case.structure, *signals, *packings):
         file = getattr(part, "file", None)
         if file and Path(file).name in WRITTEN and Path(file).resolve().parent == out.resolve():
-            raise CaseError(
+            raise DataError(
                 f"{out / Path(file).name} is read by the case, and results go there\n  try: another -o folder"
             )
 
@@ -371,7 +371,7 @@ def _bare(text: str) -> str:
     """The text of a case without what its results do not depend on, or as it is where a file that it names is gone."""
     try:
         return bare(Case.from_toml(text))
-    except CaseError:
+    except RattleboxError:
         return text
 
 

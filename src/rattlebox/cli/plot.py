@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import rattlebox
+from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.terminal import terminal
-from rattlebox.model.errors import CaseError, nearest
+from rattlebox.model.errors import nearest
 from rattlebox.plots.maps import plot_map, select, taken_instead
 from rattlebox.plots.style import WIDTHS
 from rattlebox.studies.store import open_study
@@ -92,7 +93,9 @@ def target(out: Path | None, usual: str, size: str | None, formats: Sequence[str
     Raises
     ------
     CaseError
-        When it cannot be written.
+        When the ending or the size is not one of those that are possible.
+    DataError
+        When its folder does not exist.
     """
     over = out is None and Path(usual).exists()
     out = out or Path(usual)
@@ -104,7 +107,7 @@ def target(out: Path | None, usual: str, size: str | None, formats: Sequence[str
     if size is not None and size not in WIDTHS:
         raise CaseError(f"--size {size}: there is no such size\n  try: {', '.join(WIDTHS)}")
     if not out.parent.is_dir():
-        raise CaseError(f"-o {out}: there is no folder {out.parent}")
+        raise DataError(f"-o {out}: there is no folder {out.parent}", "another folder, or make it first")
     return out, told
 
 

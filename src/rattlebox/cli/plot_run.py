@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import typer
 from rich.progress import Progress
 
+from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS
 from rattlebox.cli.main import STOPPED
 from rattlebox.cli.plot import FORMATS, target
 from rattlebox.cli.terminal import terminal
-from rattlebox.model.errors import CaseError, nearest
+from rattlebox.model.errors import nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
 from rattlebox.plots.spheres import usual_renderer
 from rattlebox.results import GranularRun, load
@@ -54,7 +55,9 @@ def plot_run(
     Raises
     ------
     CaseError
-        When an argument does not fit, or there is no such file.
+        When an argument does not fit.
+    DataError
+        When there is no such file.
     """
     out, told = target(out, "run.png", size, (*FORMATS, *FILMS))
     if path.is_dir():
@@ -64,12 +67,9 @@ def plot_run(
             what = "--number" if path.suffix == ".vtkhdf" else "--kind"
             raise CaseError(f"{option} {value}: this applies to a study, and {path} is a run\n  try: {what}")
     options: dict[str, Any] = {} if size is None else {"size": size}
-    try:
-        run = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
-    except FileNotFoundError as error:
-        raise CaseError(f"{error}{_instead(path)}") from None
-    except ValueError as error:
-        raise CaseError(str(error)) from None
+    if not path.exists():
+        raise DataError(f"there is no file {path}{_instead(path)}")
+    run = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
     if number is not None and not isinstance(run, Snapshots):
         raise CaseError(
             "--number: a run has no snapshots\n  try: run.vtkhdf beside it, with output.snapshots in the case"
@@ -126,10 +126,6 @@ def _film(of: Any, out: Path, options: dict[str, Any]) -> None:
         except KeyboardInterrupt:
             typer.echo(f"stopped; {out} is not written", err=True)
             sys.exit(STOPPED)
-        except ModuleNotFoundError:
-            raise CaseError(
-                "MP4 needs imageio-ffmpeg\n  try: python -m pip install 'rattlebox[3d]', or -o film.gif"
-            ) from None
 
 
 def _figure(of: Any, kind: str | None, number: int, options: dict[str, Any]) -> Figure:

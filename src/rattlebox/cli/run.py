@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
+from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox._util.text import printable
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, Place, check_own, note_begun, taken
 from rattlebox.cli.main import STOPPED
@@ -20,7 +21,7 @@ from rattlebox.cli.terminal import terminal
 from rattlebox.engines.checkpoint import AnotherRun
 from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.errors import Hint
 from rattlebox.results import GranularRun, Run
 
 _RESULTS = (".nc", ".vtkhdf", ".mat", ".csv", ".png")
@@ -106,7 +107,7 @@ def run_case(
             "--checkpoint: there are no particles in space, and other runs take no time\n  try: leave it out"
         )
     if checkpoint is not None and checkpoint.suffix in _RESULTS and checkpoint.parent.resolve() == out.resolve():
-        raise CaseError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / CHECKPOINT}")
+        raise DataError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / CHECKPOINT}")
     with taken(out, case, checkpoint=checkpoint, replace=replace) as place:
         for note in place.notes:
             typer.echo(note, err=True)
@@ -139,7 +140,7 @@ def _run_in(path: Path, case: Case, place: Place, *, csv: bool, mat: bool, figur
         in_place = True
     except AnotherRun as refused:
         replacing = "--replace, " if checkpoint == out / CHECKPOINT else ""
-        raise CaseError(f"{refused.complaint}\n  try: another -o folder, {replacing}{refused.suggestion}") from None
+        raise DataError(refused.complaint, f"another -o folder, {replacing}{refused.suggestion}") from None
     except Hint as hint:
         raise CaseError(f"{path}: {hint}") from None
     except KeyboardInterrupt:

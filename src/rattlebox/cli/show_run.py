@@ -6,9 +6,9 @@ from pathlib import Path
 
 from rich.text import Text
 
+from rattlebox._util.exceptions import DataError
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, files_in, replacements
 from rattlebox.cli.terminal import terminal
-from rattlebox.model.errors import CaseError
 from rattlebox.results import load
 
 
@@ -22,7 +22,7 @@ def show_run(path: Path) -> None:
 
     Raises
     ------
-    CaseError
+    DataError
         When there is no such file, or it holds something else.
     """
     console, file = terminal(), path / RUN if path.is_dir() else path
@@ -35,12 +35,9 @@ def show_run(path: Path) -> None:
         console.print(f"{files}\n  {told}" if goes_on or (path / SNAPSHOTS).is_file() else files, soft_wrap=True)
         _show_replacements(path)
         return
-    try:
-        run = load(file)
-    except FileNotFoundError as error:
-        raise CaseError(f"{error}\n  try: the folder that 'rattlebox run -o' wrote") from None
-    except ValueError as error:
-        raise CaseError(str(error)) from None
+    if not file.exists():
+        raise DataError(f"there is no file {file}", "the folder that 'rattlebox run -o' wrote")
+    run = load(file)
     came = run.provenance
     made = f"run of {came.created[:16].replace('T', ' ')} UTC, Rattlebox {came.version}, {came.platform}"
     console.print(Text.assemble((str(path), "bold"), f": {made}"), soft_wrap=True)

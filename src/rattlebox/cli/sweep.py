@@ -11,11 +11,12 @@ from typing import Any
 import typer
 from rich.text import Text
 
+from rattlebox._util.exceptions import RattleboxError, ResourceError
+from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.text import printable
 from rattlebox.cli.show import statuses, warned
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.doubts import doubts
-from rattlebox.model.errors import CaseError
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.study_file import read_study
 
@@ -61,10 +62,10 @@ def _naming(study: Path, out: Path) -> Iterator[None]:
     """Add to what is wrong with a study its file, unless it is about the folder of results."""
     try:
         yield
-    except CaseError as error:
+    except RattleboxError as error:
         if str(error).startswith((str(study), str(out))):
             raise
-        raise CaseError(f"{study}: {error}") from None
+        raise type(error)(f"{study}: {error}") from None
 
 
 @contextmanager
@@ -72,15 +73,12 @@ def _cluster(address: str | None) -> Iterator[Any]:
     if not address:
         yield None
         return
-    try:
-        from distributed import Client
-    except ImportError:
-        raise CaseError("Dask is not installed\n  try: python -m pip install 'rattlebox[cluster]'") from None
+    distributed = optional_import("distributed", "cluster")
     where = {"scheduler_file": address} if Path(address).is_file() else {"address": address}
     try:
-        client: Any = Client(**where, timeout=10)  # type: ignore[no-untyped-call]
+        client: Any = distributed.Client(**where, timeout=10)
     except (OSError, ValueError, TypeError) as error:
-        raise CaseError(
+        raise ResourceError(
             f"no Dask scheduler answers at {address}: {error}\n  try: the address that 'dask scheduler' printed, "
             "as tcp://10.0.0.1:8786"
         ) from None

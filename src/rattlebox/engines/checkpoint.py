@@ -16,10 +16,10 @@ import numpy as np
 from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
-from rattlebox._util.atomic_io import atomic_write, disk_errors, remove_temporaries, require_folder
+from rattlebox._util.atomic_io import atomic_write, disk_errors, remove_temporaries, require_folder, require_readable
+from rattlebox._util.exceptions import DataError
 from rattlebox.engines.core import instructions
 from rattlebox.model.differences import differences
-from rattlebox.model.errors import CaseError, Hint
 from rattlebox.results.provenance import Provenance
 
 if TYPE_CHECKING:
@@ -34,8 +34,8 @@ _FREE: dict[str, set[str]] = {"method": {"threads", "checkpoint", "checkpoint_ev
 _LOST = "make room and give the same command again, which goes on from the last checkpoint"
 
 
-class AnotherRun(Hint):
-    """What is said of a checkpoint that belongs to something else than what is run."""
+class AnotherRun(DataError):
+    """A checkpoint belongs to another run."""
 
 
 @dataclass(frozen=True)
@@ -104,10 +104,9 @@ class Checkpoint:
 
         Raises
         ------
-        CaseError
-            When another run does. Its hold ends with its process, however that ends.
-        OSError
-            When the folder is missing or cannot be written.
+        DataError
+            When another run does (its hold ends with its process, however that ends), or when the folder is missing or
+            cannot be written.
         """
         with disk_errors(self.path, _LOST):
             require_folder(self.path)
@@ -117,7 +116,7 @@ class Checkpoint:
                 lock.acquire(blocking=False)
             except Timeout:
                 holder = name.read_text() or "another process"
-                raise CaseError(
+                raise DataError(
                     f"{self.path} is in use by {holder}\n  try: another file, or wait until that run is over"
                 ) from None
         try:
@@ -133,16 +132,17 @@ class Checkpoint:
 
         Raises
         ------
-        CaseError
+        DataError
             When the file is something else, or of another case, version or core; with what differs.
         """
         if not self.path.exists():
             return None
+        require_readable(self.path)
         try:
             with self.path.open("rb") as content, np.load(content, allow_pickle=False) as file:
                 about = json.loads(file["about"].tobytes())
                 if about["format"] > FORMAT:
-                    raise CaseError(f"{self.path} was written by a later Rattlebox\n  try: update Rattlebox")
+                    raise DataError(f"{self.path} was written by a later Rattlebox\n  try: update Rattlebox")
                 self._compare(about)
                 arrays = {name: file[name] for name in file.files if name != "about"}
             if about["digest"] != fingerprint(arrays):
@@ -156,10 +156,10 @@ class Checkpoint:
             kept = Kept(
                 about["numbers"], about["time"], about["seconds"], positions, groups["records"], arrays["state"]
             )
-        except (CaseError, OSError, MemoryError):
+        except (OSError, MemoryError):
             raise
         except Exception:
-            raise CaseError(f"{self.path} is not a whole checkpoint\n  try: another file, or remove this one") from None
+            raise DataError(f"{self.path} is not a whole checkpoint\n  try: another file, or remove this one") from None
         self.time = kept.time
         return kept
 
@@ -177,8 +177,10 @@ class Checkpoint:
 
         Raises
         ------
-        OSError
-            When that cannot be done; the file is then as it was.
+        DataError
+            If that cannot be done; the file is then as it was.
+        ResourceError
+            If no space is left on the disk; likewise.
         """
         time = dem.step * packed["dt"]
         told = {"format": FORMAT, "time": time, "seconds": seconds, "numbers": self._fingerprint(packed), **self._about}

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from rattlebox.model.errors import CaseError
+from rattlebox._util.exceptions import MissingDependency, ResourceError
 
 # What each x86-64 level needs beyond the one below, in the names of Linux.
 _FLAGS = {
@@ -48,16 +48,21 @@ def choice() -> tuple[str, str]:
 
     Raises
     ------
-    CaseError
+    MissingDependency
+        When there is no compiled core.
+    ResourceError
         When RATTLEBOX_SIMD asks for a level that is not there or that the processor cannot run.
     """
     possible = supported()
     if not possible:
-        raise CaseError("no compiled core was found\n  try: python -m pip install --force-reinstall rattlebox")
+        raise MissingDependency("no compiled core was found", "python -m pip install --force-reinstall rattlebox")
     asked = os.environ.get("RATTLEBOX_SIMD", "")
     if asked:
         if asked not in possible:
-            raise CaseError(f"RATTLEBOX_SIMD = {asked!r}\n  this processor and build offer: {', '.join(possible)}")
+            raise ResourceError(
+                f"RATTLEBOX_SIMD = {asked!r}: this processor and build offer {', '.join(possible)}",
+                f"RATTLEBOX_SIMD={possible[0]}, or unset it",
+            )
         return asked, "RATTLEBOX_SIMD asks for it"
     best = possible[0]
     if best == "native":

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.atomic_io import check_suffix
+from rattlebox._util.exceptions import DataError, RattleboxError
 from rattlebox.engines.base_motion import base_motion
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.core import core
@@ -32,7 +33,7 @@ from rattlebox.engines.run_notes import extrapolated, particle_notes, table_note
 from rattlebox.engines.softening import ENDURING, choose_softening, effects, shaking
 from rattlebox.engines.status import FINISHED, INTERRUPTED, describe, end_of
 from rattlebox.model.doubts import doubts
-from rattlebox.model.errors import CaseError, at
+from rattlebox.model.errors import at
 from rattlebox.model.in_space import direction_of_base, inertia_along
 from rattlebox.model.methods import Dem, EventDriven, Output
 from rattlebox.model.packing import Settled
@@ -103,16 +104,13 @@ def simulate_dem(
 def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
     """Refuse files that cannot be written side by side."""
     if checkpoint is not None and checkpoint.is_dir():
-        raise CaseError(f"{checkpoint} is a folder; a run is kept in a file\n  try: {checkpoint / 'run.checkpoint'}")
+        raise DataError(f"{checkpoint} is a folder; a run is kept in a file\n  try: {checkpoint / 'run.checkpoint'}")
     if snapshots is not None and snapshots.is_dir():
-        raise CaseError(f"{snapshots} is a folder; snapshots are written to a file\n  try: another name or place")
+        raise DataError(f"{snapshots} is a folder; snapshots are written to a file\n  try: another name or place")
     if snapshots is not None:
-        try:
-            check_suffix(snapshots, ".vtkhdf")
-        except ValueError as error:
-            raise CaseError(str(error)) from None
+        check_suffix(snapshots, ".vtkhdf")
     if checkpoint is not None and snapshots is not None and checkpoint.resolve() == snapshots.resolve():
-        raise CaseError(f"{checkpoint} cannot hold both a run and its snapshots\n  try: run.checkpoint and run.vtkhdf")
+        raise DataError(f"{checkpoint} cannot hold both a run and its snapshots\n  try: run.checkpoint and run.vtkhdf")
 
 
 def _simulated(
@@ -172,7 +170,7 @@ def objection(case: Case) -> str:
     try:
         settled(case, lambda: True)
         pack_dem(case)
-    except CaseError as error:
+    except RattleboxError as error:
         return str(error)
     return ""
 

@@ -9,9 +9,9 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import DataError
 from rattlebox.engines.checkpoint import Checkpoint, Kept, joined
 from rattlebox.engines.status import INTERRUPTED
-from rattlebox.model.errors import CaseError
 from rattlebox.model.methods import Dem
 from rattlebox.results.snapshots import SnapshotFile
 
@@ -53,14 +53,14 @@ class Journey:
 
         Raises
         ------
-        CaseError
+        DataError
             When its state cannot be one of this case.
         """
         try:
             self._dem.restore(kept.state)
         except ValueError as error:
             path = self.checkpoint.path if self.checkpoint else "the checkpoint"
-            raise CaseError(
+            raise DataError(
                 f"{path} is damaged: {error}; the state of the core must be one that it has written\n"
                 "  try: a copy of it, or remove it and run from the start"
             ) from None
@@ -72,7 +72,7 @@ class Journey:
 
         Raises
         ------
-        CaseError
+        DataError
             When they are not, or the file is something else.
         """
         self._snapshots, self._shots = snapshots, list(shots)
@@ -84,9 +84,9 @@ class Journey:
         try:
             if snapshots.taken >= before:
                 return
-        except ValueError as error:
+        except DataError as error:
             wrong = str(error)
-        raise CaseError(
+        raise DataError(
             f"{wrong}\n  try: put the file back and leave output.snapshots as it was, or remove the checkpoint to begin anew"
         )
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.exceptions import CaseError
 from rattlebox.engines.laws import restitution_of_alpha
 from rattlebox.engines.variants import (
     Columns,
@@ -32,7 +33,7 @@ from rattlebox.engines.variants import (
 )
 from rattlebox.model.base import Part
 from rattlebox.model.contacts import FixedDamping
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.errors import Hint
 from rattlebox.model.methods import EventDriven, Newton, TwoStep
 from rattlebox.model.pairs import Pair, contact_pairs
 from rattlebox.model.paths import Place, part_at, place_of, replaced

@@ -58,10 +58,12 @@ def simulate(
     Raises
     ------
     CaseError
-        When the checkpoint is of another case, version or core, with what differs, or in use by another process; when a
-        file is a folder, both are one, or the run has no use for them.
-    OSError
-        When a file cannot be written.
+        When the run has no use for a checkpoint or snapshots, or lacks a file for them.
+    DataError
+        When the checkpoint is of another case, version or core, with what differs, is damaged, or is in use by another
+        process; when a file is a folder, both are one, or a file cannot be written.
+    ResourceError
+        When no space is left on the disk, or the environment asks for instructions that the processor lacks.
     """
     _check_is_case(case)
     if case.particle_dampers:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.exceptions import CaseError, RattleboxError
 from rattlebox.model.base import Part
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.errors import Hint
 from rattlebox.model.paths import Place, get, part_at, place_of, replaced
 
 if TYPE_CHECKING:
@@ -200,7 +201,7 @@ def variant(case: Case, columns: Columns, index: Index) -> Case:
     plain = {path: value.item() if isinstance(value, np.generic) else value for path, value in values.items()}
     try:
         return replaced(case, plain)
-    except CaseError as error:
+    except RattleboxError as error:
         told = ", ".join(f"{path} = {value!r:.60}" for path, value in plain.items())
         raise CaseError(f"the variant with {told} does not fit\n{error}") from None
 

@@ -13,12 +13,13 @@ import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, field_validator, model_validator
 
 from rattlebox._util.atomic_io import atomic_write
+from rattlebox._util.exceptions import CaseError, DataError, ResourceError
 
 from .any_structure import AnyStructure
 from .base import AlsoTakes, Part, vocabulary
 from .dampers import ImpactDamper
 from .elementwise import Vector
-from .errors import CaseError, Hint, at, translate
+from .errors import Hint, at, translate
 from .files import existing, read_toml
 from .granular import ParticleDamper
 from .in_space import check_in_space
@@ -196,7 +197,7 @@ class Case(Part):
         columns = 20 + 6 * self.modes.decay.size + 10 * sum(len(damper.balls) for damper in self.impact_dampers)
         columns += 50 * len(self.particle_dampers)
         if 8 * samples * columns > _MEMORY:
-            raise Hint(
+            raise ResourceError(
                 f"{samples:.3g} samples would take {8e-9 * samples * columns:.0f} GB",
                 f'rate = "{_MEMORY / (80 * columns * self.duration):.1g} Hz", or times',
                 ["output", "rate"],
@@ -334,8 +335,8 @@ class Case(Part):
         try:
             existing(file)
             content = file.read_text(encoding="utf-8-sig")
-        except Hint as hint:
-            raise CaseError(str(hint)) from None
+        except DataError as error:
+            raise CaseError(str(error)) from None
         except OSError as error:
             raise CaseError(f"{file}: cannot be read: {error.strerror}") from None
         except UnicodeDecodeError:

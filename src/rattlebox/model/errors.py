@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from rattlebox._util.exceptions import CaseError, DataError, RattleboxError, ResourceError, message
+
 from .synonyms import MEANT
 
 if TYPE_CHECKING:
@@ -21,34 +23,8 @@ _SPELLINGS = {"loads": "load", "dampers": "damper", "balls": "ball", "radius": "
 _NOTHING = object()
 
 
-class CaseError(ValueError):
-    """A case that cannot be run, with a message that fits one screen."""
-
-
 class Hint(CaseError):
-    """A complaint from a validator with a suggestion on its own line.
-
-    Parameters
-    ----------
-    complaint
-        What is wrong and what is allowed.
-    suggestion
-        What to try.
-    place
-        Where, as seen from the part that complains: names of fields, numbers in lists.
-    """
-
-    def __init__(self, complaint: str, suggestion: str = "", place: Sequence[str | int] = ()) -> None:
-        where = named(place)
-        super().__init__(_lines(where, complaint, suggestion) if where else _lines(complaint, suggestion))
-        self.complaint = complaint
-        self.suggestion = suggestion
-        self.place = tuple(place)
-
-
-def named(place: Sequence[str | int]) -> str:
-    """Return "pairs[0].friction" of names of fields and numbers in lists."""
-    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).removeprefix(".")
+    """A CaseError of a validator, which lacks the file and the place in the case until `at` and `translate` add them."""
 
 
 @contextmanager
@@ -56,8 +32,8 @@ def at(*place: str | int) -> Iterator[None]:
     """Add to a complaint raised inside where it belongs."""
     try:
         yield
-    except Hint as hint:
-        raise Hint(hint.complaint, hint.suggestion, (*place, *hint.place)) from None
+    except (Hint, DataError, ResourceError) as error:
+        raise type(error)(error.complaint, error.suggestion, (*place, *error.place)) from None
 
 
 def one_of(advice: str, **alternatives: Any) -> None:
@@ -105,8 +81,8 @@ def _close(name: str, known: Sequence[str]) -> list[str]:
 
 def translate(
     error: ValidationError, source: str | os.PathLike[str], vocabulary: Vocabulary, given: Any = None
-) -> CaseError:
-    """Turn pydantic's findings into one message.
+) -> RattleboxError:
+    """Turn pydantic's findings into one error: a DataError or ResourceError if all findings are one, else a CaseError.
 
     Parameters
     ----------
@@ -130,18 +106,14 @@ def translate(
         head = f"{source}: {place}" if place else f"{source}:"
         if not missing and value is not _NOTHING and not _holds_tables(value):
             head += f" = {_shown(value)}"
-        block = _lines(head, *_said(finding, value, str(source), vocabulary, place))
+        block = message(head, *_said(finding, value, str(source), vocabulary, place))
         if block not in blocks:
             blocks.append(block)
     if len(blocks) > _LIMIT:
         blocks[_LIMIT:] = [f"and {len(blocks) - _LIMIT} more"]
-    return CaseError("\n".join(blocks))
-
-
-def _lines(head: str, *rest: str) -> str:
-    """The head, a complaint below it unless the head says it, and a suggestion."""
-    *complaint, suggestion = rest
-    return "\n".join([head, *(f"  {line}" for line in complaint), *([f"  try: {suggestion}"] if suggestion else [])])
+    kinds = {type(_raised(finding)) for finding in findings}
+    kind = kinds.pop() if len(kinds) == 1 else CaseError
+    return (kind if kind in (DataError, ResourceError) else CaseError)("\n".join(blocks))
 
 
 def _raised(finding: Any) -> Any:
@@ -277,7 +249,7 @@ def _example_of(location: Sequence[Any], source: str, vocabulary: Vocabulary) ->
 def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: str) -> tuple[str, str]:
     """Complaint and suggestion."""
     raised, what, context = _raised(finding), finding["type"], finding.get("ctx") or {}
-    if isinstance(raised, Hint):
+    if isinstance(raised, RattleboxError):
         return raised.complaint, raised.suggestion
     if isinstance(raised, ValueError):
         return str(raised), ""

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox._util.mat_check import check_mat
 
-from .errors import CaseError, Hint
+from .errors import Hint
 from .units import LARGEST
 
 Array = NDArray[np.float64]
@@ -43,19 +44,19 @@ def existing(path: str | os.PathLike[str]) -> Path:
 
     Raises
     ------
-    Hint
+    DataError
         When there is none, with files of similar name.
     """
     file = Path(path)
     if file.is_file():
         return file
     if file.is_dir():
-        raise Hint(f"{file} is a folder, not a file")
+        raise DataError(f"{file} is a folder, not a file")
     folder = file.parent
     if not folder.is_dir():
-        raise Hint(f"there is no file {file}: there is no folder {folder}")
+        raise DataError(f"there is no file {file}: there is no folder {folder}")
     like = get_close_matches(file.name, [other.name for other in folder.iterdir() if other.is_file()], n=2)
-    raise Hint(f"there is no file {file}", " or ".join(str(folder / name) for name in like))
+    raise DataError(f"there is no file {file}", " or ".join(str(folder / name) for name in like))
 
 
 def read_toml(content: str, source: str) -> dict[str, Any]:
@@ -110,18 +111,18 @@ def read_arrays(file: Path) -> dict[str, Array]:
 
     Raises
     ------
-    Hint
+    DataError
         When the file cannot be read.
     """
     try:
         file.open("rb").close()  # SciPy does not say why it cannot
         content = dict(_flat(_from_mat(file) if file.suffix.lower() == ".mat" else _from_numpy(file)))
     except NotImplementedError:
-        raise Hint(f"{file} is a MAT file of version 7.3", "save('...', '-v7') in MATLAB") from None
+        raise DataError(f"{file} is a MAT file of version 7.3", "save('...', '-v7') in MATLAB") from None
     except OSError as error:
-        raise Hint(f"{file} cannot be read: {error.strerror or error}") from None
+        raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
     except Exception as error:
-        raise Hint(f"{file} cannot be read as {file.suffix[1:].upper()}: {error}") from None
+        raise DataError(f"{file} cannot be read as {file.suffix[1:].upper()}: {error}") from None
     return {name: np.asarray(value, dtype=float) for name, value in content.items() if _is_real(value)}
 
 
@@ -169,11 +170,11 @@ def check_finite(array: Array, where: str) -> Array:
 
     Raises
     ------
-    Hint
+    DataError
         When a number in it is not finite, or beyond all use; `where` says what is read.
     """
     bad = np.argwhere(~(np.abs(array) <= LARGEST))
     if len(bad):
         place = ", ".join(f"{word} {i + 1}" for word, i in zip(("row", "column"), bad[0], strict=False))
-        raise Hint(f"{where} holds {array[tuple(bad[0])]} in {place or 'it'}")
+        raise DataError(f"{where} holds {array[tuple(bad[0])]} in {place or 'it'}")
     return array

@@ -12,11 +12,13 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_validator
 
+from rattlebox._util.exceptions import ResourceError, named
+
 from .base import AlsoTakes, Part
 from .cavities import AnyCavity
 from .contacts import AnyContact, Linear
 from .elementwise import Vector
-from .errors import Hint, at, named, several
+from .errors import Hint, at, several
 from .friction import AnyFriction, AnyRolling, Friction, LinearSpring, Mindlin, Rolling
 from .materials import AnyWall, Material
 from .mixing import Mixing, mixed
@@ -347,7 +349,7 @@ class ParticleDamper(Part):
         ):
             raise self._too_many(whole)
         if count * _BYTES > memory():
-            raise Hint(
+            raise ResourceError(
                 f"{count:.3g} particles take {1e-9 * count * _BYTES:.3g} GB, and this machine has {1e-9 * memory():.3g} GB",
                 f"at most {memory() / _BYTES:.2g} of them, or larger ones",
                 ["particles"],

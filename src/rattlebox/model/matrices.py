@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_serializer, model_validator
 
+from rattlebox._util.exceptions import DataError
+
 from .elementwise import Vector
 from .errors import Hint, at, nearest
 from .files import absolute, check_finite, existing, read_arrays
@@ -202,13 +204,13 @@ def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
     """Matrices and points in a file, by name."""
     file = existing(path)
     if file.suffix.lower() not in (".npz", ".mat"):
-        raise Hint(f"{path} is neither NPZ nor MAT", "numpy.savez('beam.npz', M=M, C=C, K=K, point_tip=weights)")
+        raise DataError(f"{path} is neither NPZ nor MAT", "numpy.savez('beam.npz', M=M, C=C, K=K, point_tip=weights)")
     arrays = read_arrays(file)
     if not arrays:
-        raise Hint(f"{path} holds no numbers", "arrays M, C and K")
+        raise DataError(f"{path} holds no numbers", "arrays M, C and K")
     for name in ("M", "K"):
         if name not in arrays:
-            raise Hint(f"{path} holds no {name}, but {', '.join(arrays)}", nearest(name, arrays))
+            raise DataError(f"{path} holds no {name}, but {', '.join(arrays)}", nearest(name, arrays))
     matrices: dict[str, Vector] = {name: np.atleast_2d(arrays[name]) for name in ("M", "C", "K") if name in arrays}
     points: dict[str, Vector] = {}
     for name, array in arrays.items():
@@ -216,7 +218,7 @@ def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
         if mark is not None:
             n = len(matrices["M"])
             if array.size != n and array.shape != (3, n):
-                raise Hint(
+                raise DataError(
                     f"{path}: {name} has {array.size} numbers, but there are {n} degrees of freedom",
                     f"a vector of weights, or points = {{ {name.removeprefix(mark)} = 0 }} beside the file",
                 )

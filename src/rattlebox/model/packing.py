@@ -13,6 +13,8 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, model_validator
 
+from rattlebox._util.exceptions import DataError
+
 from .base import Part
 from .cavities import AnyCavity, Box
 from .elementwise import Vector
@@ -200,14 +202,14 @@ def _read_positions(path: str) -> dict[str, Any]:
     if not set("xyz") <= set(columns):
         if not all(name.isdecimal() for name in columns) or len(columns) not in (3, 4, 7, 10):
             there = ", ".join(columns) or "nothing"
-            raise Hint(f"{file} has columns {there}; x, y and z are needed", "a first line x,y,z,radius")
+            raise DataError(f"{file} has columns {there}; x, y and z are needed", "a first line x,y,z,radius")
         columns = dict(zip(_COLUMNS, columns.values(), strict=False))
     unknown = sorted(set(columns) - set(_COLUMNS))
     if unknown:
-        raise Hint(f"{file} has a column {unknown[0]!r}", f"columns of {', '.join(_COLUMNS)}")
+        raise DataError(f"{file} has a column {unknown[0]!r}", f"columns of {', '.join(_COLUMNS)}")
     if len({column.size for column in columns.values()}) > 1:
         told = ", ".join(f"{name} {column.size}" for name, column in columns.items())
-        raise Hint(f"{file} has arrays of different lengths: {told}", "a number for each particle in each of them")
+        raise DataError(f"{file} has arrays of different lengths: {told}", "a number for each particle in each of them")
     values: dict[str, Any] = {"positions": np.column_stack([columns[name] for name in "xyz"])}
     if "radius" in columns:
         values["radii"] = columns["radius"]

@@ -9,6 +9,8 @@ from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
+from rattlebox._util.exceptions import DataError
+
 from .errors import Hint, nearest, several
 from .files import BINARY, Array, check_finite, existing, read_arrays
 
@@ -39,7 +41,7 @@ def read_columns(path: str, columns: Sequence[Column] | None = None) -> Columns:
 
     Raises
     ------
-    Hint
+    DataError
         When the file cannot be read, naming the line that is wrong, or the columns that there are.
     """
     file = existing(path)
@@ -67,7 +69,7 @@ def as_columns(value: Any) -> tuple[Column, Column] | None:
 def _pick(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> tuple[Array, Array]:
     """Two of the variables, or two columns of the only one."""
     if not arrays:
-        raise Hint(f"{file} holds no numbers")
+        raise DataError(f"{file} holds no numbers")
     if columns is None and {"time", "value"} <= set(arrays):
         columns = ("time", "value")
     if len(arrays) == 1 and (columns is None or all(isinstance(column, int) for column in columns)):
@@ -82,11 +84,11 @@ def _pick(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None
     pair = [list(arrays.items())[k] for k in _numbers(file, columns, list(arrays), there)]
     for name, array in pair:
         if array.size != max(array.shape, default=1):
-            raise Hint(f"{file}: one row of numbers is needed, but {name} has shape {array.shape}")
+            raise DataError(f"{file}: one row of numbers is needed, but {name} has shape {array.shape}")
         check_finite(array.ravel(), f"{file}: {name}")
     (time, times), (value, values) = pair
     if times.size != values.size:
-        raise Hint(f"{file}: {time} holds {times.size} numbers, {value} {values.size}")
+        raise DataError(f"{file}: {time} holds {times.size} numbers, {value} {values.size}")
     return times.ravel(), values.ravel()
 
 
@@ -98,7 +100,7 @@ def _numbers(
     available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in enumerate(there or names, start=1))
     if columns is None:
         if len(names) != 2:
-            raise Hint(
+            raise DataError(
                 f"{file} has {several(len(names), what)} ({available}), two are needed",
                 "columns = [1, 2]" if len(names) > 2 else "",
             )
@@ -107,16 +109,18 @@ def _numbers(
     for column in columns:
         if isinstance(column, str) and names.count(column) > 1:
             same = " or ".join(str(k) for k, name in enumerate(names, start=1) if name == column)
-            raise Hint(f"{file} has {names.count(column)} {what}s {column!r}", f"its number, {same}")
+            raise DataError(f"{file} has {names.count(column)} {what}s {column!r}", f"its number, {same}")
         if isinstance(column, str) and column in names:
             places.append(names.index(column))
         elif isinstance(column, int) and 1 <= column <= len(names):
             places.append(column - 1)
         else:
             suggestion = nearest(column, names) if isinstance(column, str) else f"{what}s count from 1"
-            raise Hint(f"{file} has no {what} {column!r}; it has {available}", suggestion)
+            raise DataError(f"{file} has no {what} {column!r}; it has {available}", suggestion)
     if places[0] == places[1]:
-        raise Hint(f"{file}: times and values are both {what} {columns[0]!r}; it has {available}", "two that differ")
+        raise DataError(
+            f"{file}: times and values are both {what} {columns[0]!r}; it has {available}", "two that differ"
+        )
     return places
 
 
@@ -137,13 +141,13 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
 
     Raises
     ------
-    Hint
+    DataError
         When the file cannot be read, naming the line that is wrong.
     """
     lines, names, _ = _data(file, known)
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
-        raise Hint(f"{file} has two columns {twice!r}")
+        raise DataError(f"{file} has two columns {twice!r}")
     return dict(zip(names, _rows(file, lines, list(range(len(names)))).T, strict=True))
 
 
@@ -165,11 +169,11 @@ def _data(
     lines = _lines(file)
     start = _begin(lines)
     if start is None:
-        raise Hint(f"{file} holds no numbers")
+        raise DataError(f"{file} holds no numbers")
     width = len(lines[start][1])
     for number, cells, _ in lines[:start]:
         if len(cells) != width and set(cells) <= set(known):
-            raise Hint(f"{file}, line {lines[start][0]}: {width} columns, but {len(cells)} in line {number}")
+            raise DataError(f"{file}, line {lines[start][0]}: {width} columns, but {len(cells)} in line {number}")
     heads = [cells for _, cells, _ in lines[:start] if len(cells) == width and not any(map(_is_number, cells))]
     sought = {*known, *asked}
     names = max(reversed(heads), key=lambda cells: len(sought & set(cells)), default=None)
@@ -199,7 +203,7 @@ def _rows(file: Path, lines: list[tuple[int, list[str]]], places: list[int]) -> 
     for number, cells in lines:
         if len(cells) != width:
             cut = "the whole file: its last line is cut short" if number == lines[-1][0] and len(cells) < width else ""
-            raise Hint(
+            raise DataError(
                 f"{file}, line {number}: {several(len(cells), 'column')}, but {width} in line {lines[0][0]}", cut
             )
         try:
@@ -207,7 +211,7 @@ def _rows(file: Path, lines: list[tuple[int, list[str]]], places: list[int]) -> 
         except ValueError:
             _complain(file, number, [cells[k] for k in places])
         if not np.isfinite(rows[-1]).all():
-            raise Hint(f"{file}, line {number}: {', '.join(cells[k] for k in places)} is not finite")
+            raise DataError(f"{file}, line {number}: {', '.join(cells[k] for k in places)} is not finite")
     return np.array(rows)
 
 
@@ -216,9 +220,9 @@ def _lines(file: Path) -> list[tuple[int, list[str], bool]]:
     try:
         text = file.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise Hint(f"{file} is not text", "CSV, or a file that ends in .npy, .npz or .mat") from None
+        raise DataError(f"{file} is not text", "CSV, or a file that ends in .npy, .npz or .mat") from None
     except OSError as error:
-        raise Hint(f"{file} cannot be read: {error.strerror or error}") from None
+        raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
     data = [line for line in text if line.strip() and line.lstrip()[0] not in "#%"][-3:]
     # The very last line may be cut short.
     delimiter = next((mark for mark in ";\t," if 2 * sum(mark in line for line in data) >= max(1, len(data))), None)
@@ -229,7 +233,7 @@ def _lines(file: Path) -> list[tuple[int, list[str], bool]]:
         try:
             cells = bare.split() if delimiter is None else next(csv.reader([bare], delimiter=delimiter), [])
         except csv.Error as error:
-            raise Hint(f"{file}, line {number}: {error}") from None
+            raise DataError(f"{file}, line {number}: {error}") from None
         cells = [cell.strip() for cell in cells]
         while cells and not cells[-1]:
             cells.pop()
@@ -254,4 +258,4 @@ def _pointed(cell: str) -> str:
 def _complain(file: Path, number: int, cells: list[str]) -> NoReturn:
     bad = next(cell for cell in cells if not _is_number(cell))
     comma = _is_number(_pointed(bad))
-    raise Hint(f"{file}, line {number}: {bad!r} is not a number", "a decimal point, not a comma" if comma else "")
+    raise DataError(f"{file}, line {number}: {bad!r} is not a number", "a decimal point, not a comma" if comma else "")

@@ -20,6 +20,8 @@ from pydantic import (
     model_validator,
 )
 
+from rattlebox._util.exceptions import DataError
+
 from .base import Part
 from .elementwise import power
 from .errors import Hint, at, nearest
@@ -247,14 +249,16 @@ def _in_si(found: Columns, given: Mapping[str, Any]) -> dict[str, Any]:
 
     Raises
     ------
+    DataError
+        If the file states a unit that is unknown.
     Hint
-        If the file states a unit that is unknown, or of another kind than the one given.
+        If the unit is of another kind than the one given.
     """
     times, values, (above_times, above_values) = found
     try:
         slower, _ = unit_above(above_times, ("s",)) or (1.0, "s")
     except Hint as hint:
-        raise Hint(hint.complaint, 'times in seconds below the heading "time (s)"', ["file"]) from None
+        raise DataError(hint.complaint, 'times in seconds below the heading "time (s)"', ["file"]) from None
     read = {"times": times * slower if slower != 1 else times, "values": values}
     if given.get("scale") is not None:
         return read
@@ -265,7 +269,7 @@ def _in_si(found: Columns, given: Mapping[str, Any]) -> dict[str, Any]:
         if wanted in _UNITS:
             return read  # the numbers are in the unit that is given
         advice = 'unit = "m/s^2", and scale = ..., the factor from the numbers to that unit'
-        raise Hint(hint.complaint, advice, ["file"]) from None
+        raise DataError(hint.complaint, advice, ["file"]) from None
     if written is None:
         return read
     scale, unit = written

@@ -12,7 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ..model.errors import CaseError, Hint, nearest
+from rattlebox._util.exceptions import CaseError
+
+from ..model.errors import Hint, nearest
 from ..model.units import parse
 from ..results.schema import HOW_ENDED
 from .shown import Shown, Vector, log_ticks, name_of, unit_of, value_of

@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter
 
 from rattlebox._util.atomic_io import atomic_write
+from rattlebox._util.exceptions import DataError
+from rattlebox._util.optional_imports import optional_import
 
 from ..model.cavities import AnyCavity, Box, Cavity, Cylinder
 from ..results import GranularRun
@@ -67,12 +69,14 @@ def plot_particles(
     TypeError
         When something else is given, as a run without particles in space.
     ValueError
-        When there is no snapshot, or the size is unknown.
+        When the size is unknown.
+    DataError
+        When there is no snapshot.
     """
     if not isinstance(of, (GranularRun, Snapshots)):
         raise TypeError(f"a run with particles in space or its snapshots are needed, not {of!r:.60}")
     if isinstance(of, Snapshots) and not len(of):
-        raise ValueError(f"{of.path} holds no snapshot yet")
+        raise DataError(f"{of.path} holds no snapshot yet", "again when the run has taken one")
     frame = of[number] if isinstance(of, Snapshots) else _end(of)
     with figure_style(size):
         return _Scene([frame], of.case_toml, size, renderer).figure
@@ -114,11 +118,11 @@ def film_particles(
     TypeError
         When something else than snapshots is given, as a run, which knows its particles at the end only.
     ValueError
-        When there is no snapshot, or the ending is another one.
-    ModuleNotFoundError
+        When the ending is another one.
+    DataError
+        When there is no snapshot, or the file cannot be written; an earlier one is then as it was.
+    MissingDependency
         When .mp4 is asked for and imageio-ffmpeg is not installed.
-    OSError
-        When the file cannot be written; an earlier one is then as it was.
     """
     if not isinstance(snapshots, Snapshots):
         raise TypeError(f'snapshots are needed, as rb.Snapshots("run.vtkhdf"), not {snapshots!r:.60}')
@@ -126,16 +130,15 @@ def film_particles(
     if path.suffix not in FILMS:
         raise ValueError(f"{path}: a film is {' or '.join(FILMS)}")
     if not len(snapshots):
-        raise ValueError(f"{snapshots.path} holds no snapshot yet")
+        raise DataError(f"{snapshots.path} holds no snapshot yet", "again when the run has taken one")
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
     with figure_style(size):
         import matplotlib as mpl
 
         if path.suffix == ".mp4":
-            from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-untyped]
-
-            mpl.rcParams["animation.ffmpeg_path"] = get_ffmpeg_exe()
+            ffmpeg = optional_import("imageio_ffmpeg", "3d", "write a .gif")
+            mpl.rcParams["animation.ffmpeg_path"] = ffmpeg.get_ffmpeg_exe()
         dpi = _FILM_DPI[size]
         scene = _Scene(snapshots, snapshots.case_toml, size, renderer, dpi)
         scene.figure.savefig(io.BytesIO(), dpi=dpi)

@@ -8,6 +8,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.optional_imports import optional_import
+
 Array = NDArray[np.float64]
 Renderer = Literal["pyvista", "plain"]
 
@@ -56,7 +58,7 @@ def draw_spheres(
 
     Raises
     ------
-    ModuleNotFoundError
+    MissingDependency
         When PyVista is asked for and not installed.
     """
     height = max(1, round(width * (extent[3] - extent[2]) / (extent[1] - extent[0])))
@@ -99,7 +101,7 @@ def _plain(
 def _pyvista(
     places: Array, radii: Array, colours: Array, extent: tuple[float, ...], width: int, height: int
 ) -> NDArray[np.uint8]:
-    import pyvista
+    pyvista = optional_import("pyvista", "3d", 'renderer="plain"')
     from vtkmodules.vtkCommonCore import vtkLogger
 
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # without a screen it warns before it goes on without

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rattlebox._util.atomic_io import atomic_write, check_suffix, require_folder
+from rattlebox._util.atomic_io import atomic_write, check_suffix, disk_errors, require_folder
+from rattlebox._util.exceptions import DataError
 
 from .datasets import columns, labels
 
@@ -53,10 +54,10 @@ def to_mat(run: Run, path: Path) -> Path:
 
     Raises
     ------
-    OSError
-        When the file cannot be written.
-    ValueError
-        When the name is that of another kind of file.
+    DataError
+        When the file cannot be written, or its name is that of another kind of file.
+    ResourceError
+        When no space is left on the disk.
     """
     from scipy.io import savemat
 
@@ -140,17 +141,18 @@ def to_csv(run: Run, folder: Path) -> tuple[Path, ...]:
 
     Raises
     ------
-    OSError
-        When a file cannot be written.
-    ValueError
-        When the name is that of a file.
+    DataError
+        When a file cannot be written, or its name is that of a file.
+    ResourceError
+        When no space is left on the disk.
     """
     import csv
 
     check_suffix(folder, "")
     if folder.is_file():
-        raise FileExistsError(f"{folder} is a file; CSV files need a folder")
-    folder.mkdir(parents=True, exist_ok=True)
+        raise DataError(f"{folder} is a file; CSV files need a folder", "another name")
+    with disk_errors(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     written = []
     for group in run.arrays.form.titles:
         path = folder / f"{group}.csv"

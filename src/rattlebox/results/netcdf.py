@@ -17,7 +17,8 @@ from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder
+from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder, require_readable
+from rattlebox._util.exceptions import DataError
 
 from .arrays import ImpactArrays, RunArrays
 from .datasets import columns, labels
@@ -157,10 +158,10 @@ def save(run: Run, path: Path) -> Path:
 
     Raises
     ------
-    OSError
-        When the file cannot be written.
-    ValueError
-        When the name is that of another kind of file.
+    DataError
+        When the file cannot be written, or its name is that of another kind of file.
+    ResourceError
+        When no space is left on the disk.
     """
     check_suffix(path, ".nc")
     require_folder(path)
@@ -192,12 +193,8 @@ def load(path: str | os.PathLike[str]) -> Run:
 
     Raises
     ------
-    FileNotFoundError
-        When there is no such file.
-    OSError
-        When the file must not be read.
-    ValueError
-        When the file is not a run of Rattlebox, is not whole, or is one of a later version.
+    DataError
+        When there is no such file, or it cannot be read, is not a run of Rattlebox, is damaged, or has another format.
     """
     return _from(Path(path), _read_run)
 
@@ -217,7 +214,7 @@ def read_case(path: str | os.PathLike[str]) -> str:
 
     Raises
     ------
-    FileNotFoundError, OSError, ValueError
+    DataError
         As `load` does.
     """
     return _from(Path(path), lambda file: _read_text(file, "case"))
@@ -227,20 +224,15 @@ def _from(path: Path, read: Callable[[Any], Read]) -> Read:
     """What is read from the file of a run; anything else is refused."""
     import h5netcdf
 
-    if path.is_dir():
-        raise ValueError(f"{path} is a folder, not a file")
-    if not path.is_file():
-        raise FileNotFoundError(f"there is no file {path}")
-    with path.open("rb"):  # which says why it cannot be read, as HDF5 does not
-        pass
+    require_readable(path)
     try:
         with h5netcdf.File(path, "r") as file:
             refused = _refused(file, path)
             if not refused:
                 return read(file)
     except HDF5_ERRORS as error:
-        raise ValueError(f"{path} is not a netCDF-4 file that is whole") from error
-    raise ValueError(refused)
+        raise DataError(f"{path} is not a netCDF-4 file that is whole") from error
+    raise DataError(refused)
 
 
 def _refused(file: Any, path: Path) -> str:

@@ -139,10 +139,10 @@ class Run:
 
         Raises
         ------
-        OSError
-            When the file cannot be written.
-        ValueError
-            When the name is that of another kind of file.
+        DataError
+            When the file cannot be written, or its name is that of another kind of file.
+        ResourceError
+            When no space is left on the disk.
         """
         from .netcdf import save
 
@@ -158,10 +158,10 @@ class Run:
 
         Raises
         ------
-        OSError
-            When the file cannot be written.
-        ValueError
-            When the name is that of another kind of file.
+        DataError
+            When the file cannot be written, or its name is that of another kind of file.
+        ResourceError
+            When no space is left on the disk.
         """
         from .export import to_mat
 
@@ -182,8 +182,10 @@ class Run:
 
         Raises
         ------
-        OSError
+        DataError
             When a file cannot be written.
+        ResourceError
+            When no space is left on the disk.
         """
         from .export import to_csv
 

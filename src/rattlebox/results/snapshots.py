@@ -18,7 +18,15 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, disk_errors, reserve_space, sync
+from rattlebox._util.atomic_io import (
+    HDF5_ERRORS,
+    atomic_write,
+    disk_errors,
+    require_readable,
+    reserve_space,
+    sync,
+)
+from rattlebox._util.exceptions import DataError
 
 from .arrays import FloatArray, IntArray
 
@@ -130,15 +138,15 @@ class SnapshotFile:
 
         Raises
         ------
-        FileExistsError
-            When something else than snapshots is in its place.
-        OSError
-            When it cannot be written.
+        DataError
+            When something else than snapshots is in its place, or the file cannot be written.
+        ResourceError
+            When no space is left on the disk.
         """
         import h5py
 
         if self.path.is_file() and not is_snapshots(self.path):
-            raise FileExistsError(f"{self.path} holds no snapshots, and is kept\n  try: another file for the snapshots")
+            raise DataError(f"{self.path} holds no snapshots, and is kept", "another file for the snapshots")
         with atomic_write(self.path, _LOST) as name:
             reserve_space(name, self._room())
             with h5py.File(name, "w") as file:
@@ -200,8 +208,10 @@ class SnapshotFile:
 
         Raises
         ------
-        OSError
+        DataError
             If they cannot be written.
+        ResourceError
+            If no space is left on the disk.
         """
         if self.path.exists():
             with disk_errors(self.path, _LOST):
@@ -213,7 +223,7 @@ class SnapshotFile:
 
         Raises
         ------
-        ValueError
+        DataError
             When the file is something else, or torn.
         """
         if not self.path.exists():
@@ -234,8 +244,10 @@ class SnapshotFile:
 
         Raises
         ------
-        OSError
-            When it cannot be written.
+        DataError
+            If it cannot be written.
+        ResourceError
+            If no space is left on the disk.
         """
         import h5py
 
@@ -275,20 +287,12 @@ class Snapshots:
 
     Raises
     ------
-    FileNotFoundError
-        When there is no such file.
-    OSError
-        When it must not be read.
-    ValueError
-        When it holds no snapshots of particles, is not whole, or is one of a later version.
+    DataError
+        When there is no such file, or it cannot be read, holds no snapshots of particles, is damaged, or has another format.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
-        if self.path.is_dir():
-            raise ValueError(f"{self.path} is a folder, not a file")
-        if not self.path.is_file():
-            raise FileNotFoundError(f"there is no file {self.path}")
         with self._opened() as file:
             refused = self._refused(file)
             if not refused:
@@ -299,20 +303,19 @@ class Snapshots:
                 self._fixed = {field: root[f"PointData/{field}"][...] for field in _FIXED}
                 self._places: FloatArray = root["FieldData/place"][...]
         if refused:
-            raise ValueError(refused)
+            raise DataError(refused)
 
     @contextmanager
     def _opened(self) -> Iterator[Any]:
         """The file, open to be read; what fails meanwhile is told as damage."""
         import h5py
 
-        with self.path.open("rb"):  # which says why it cannot be read, as HDF5 does not
-            pass
+        require_readable(self.path)
         try:
             with h5py.File(self.path, "r", locking=False) as file:
                 yield file
         except HDF5_ERRORS as error:
-            raise ValueError(f"{self.path} is not an HDF5 file that is whole") from error
+            raise DataError(f"{self.path} is not an HDF5 file that is whole") from error
 
     def _refused(self, file: Any) -> str:
         """Why a file of HDF5 holds no snapshots that can be read; "" where it does."""

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from rattlebox._util.exceptions import CaseError, RattleboxError
 from rattlebox.model.base import Part
 from rattlebox.model.case import Case
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.errors import Hint
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, all_paths, get, replaced, unit_of
 from rattlebox.model.restitutions import Constant
@@ -302,7 +303,7 @@ class _Reader:
         for index in dict.fromkeys(tried):
             try:
                 design.case_at(self.case, index)
-            except CaseError as error:
+            except RattleboxError as error:
                 said = str(error).removeprefix("case: ").replace("\n", "\n  ")
                 told = design.told(self.case, index)
                 raise CaseError(f"{self.source}: variant {index} does not fit: {told}\n  {said}") from None

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import CaseError
 from rattlebox.engines.batch import Look, run_block
 from rattlebox.engines.pack import Packed
 from rattlebox.engines.status import STATUSES
-from rattlebox.model.errors import CaseError, Hint, nearest
+from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import place_of
 
 from .axes import Axes, Design

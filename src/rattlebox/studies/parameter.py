@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
+from rattlebox._util.exceptions import CaseError
 from rattlebox.model.base import Part, vocabulary
 from rattlebox.model.case import Case
 from rattlebox.model.dampers import ImpactDamper
-from rattlebox.model.errors import CaseError, Hint, translate
+from rattlebox.model.errors import Hint, translate
 from rattlebox.model.materials import Material
 from rattlebox.model.paths import Place, get_field, place_of, unit_of
 from rattlebox.model.restitutions import Constant

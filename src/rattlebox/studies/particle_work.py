@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
+from rattlebox._util.exceptions import RattleboxError
 from rattlebox.analysis import settling_time, shaken_cavity
 from rattlebox.analysis.granular import LEAST_SAMPLES, StillCavity
 from rattlebox.engines.batch import Look
 from rattlebox.engines.dem import objection, settled, simulate_dem
 from rattlebox.engines.dem_step import WARNINGS, warnings_of
 from rattlebox.engines.status import REFUSED, STATUSES
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.errors import Hint
 from rattlebox.model.methods import Output
 from rattlebox.model.signals import Harmonic
 from rattlebox.model.space import unit_vector
@@ -242,7 +243,7 @@ class ParticleWork(ImpactWork):
             try:
                 case = self.variant(index)
                 run = simulate_dem(case, threads=threads, progress=go_on) if settled(case, go_on) else None
-            except CaseError:  # one corner of many; run alone it says why
+            except RattleboxError:  # one corner of many; run alone it says why
                 continue
             if run is None or run.status == "interrupted":
                 return None
@@ -278,7 +279,7 @@ class ParticleWork(ImpactWork):
         """Return why a variant is refused; nothing where it is not."""
         try:
             return objection(self.variant(index))
-        except CaseError as error:
+        except RattleboxError as error:
             return str(error)
 
     def variant(self, index: int) -> Case:
@@ -300,7 +301,7 @@ class ParticleWork(ImpactWork):
             try:
                 self.variant(index)
                 return
-            except CaseError as error:
+            except RattleboxError as error:
                 refused = error
         raise refused
 

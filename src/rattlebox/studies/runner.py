@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import ResourceError
 from rattlebox._util.progress import progress_bar
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox.model.errors import Hint
 
 from .blocks import Blocks
 from .store import IN_STORE, Memory, Output, Plan, Store
@@ -386,12 +387,12 @@ def _on_cluster(client: Any, task: Task, chains: Sequence[_Chain], threads: int)
             values = future.result()
             yield blocks.pop(future), _whole(values)
     except dask.KilledWorker as error:
-        raise CaseError(
+        raise ResourceError(
             f"the cluster gave up: {error.allowed_failures + 1} workers in turn died of one block\n"
             "  try: workers with more memory, or smaller blocks"
         ) from None
     except (dask.CancelledError, broken) as error:
-        raise CaseError(f"the cluster is lost: {error}\n  try: whether its scheduler is running") from None
+        raise ResourceError(f"the cluster is lost: {error}\n  try: whether its scheduler is running") from None
     finally:
         with suppress(broken):
             client.cancel([shared, *blocks], force=True)
@@ -403,7 +404,7 @@ def _block(
     """Run a block on a worker, from what was found of an earlier block or before all of them."""
     worker: Any = import_module("distributed").get_worker()
     if _bits() != bits:
-        raise CaseError(
+        raise ResourceError(
             f"the worker {worker.address} computes with {_bits()}, the study with {bits}: results would differ\n"
             "  try: the same version, and the same RATTLEBOX_SIMD in the environment of all"
         )

@@ -20,9 +20,11 @@ from typing import TYPE_CHECKING, Any, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import DataError, RattleboxError, ResourceError, StoreError
 from rattlebox._util.owned_folder import (
     MARKER,
     DamagedError,
+    ForeignFile,
     Marker,
     damaged_files,
     fill,
@@ -31,7 +33,6 @@ from rattlebox._util.owned_folder import (
     write_marker,
 )
 from rattlebox.model.differences import differences
-from rattlebox.model.errors import CaseError
 
 from .blocks import Blocks
 
@@ -58,6 +59,7 @@ IN_STORE = _PROGRESS, _MAP, MARKER
 """Names in a store beside the outputs."""
 
 _PARTIAL = re.compile(r"(\d+|c|zarr)\.[0-9a-f]{32}\.partial")  # names that Zarr gives to files while it writes them
+_REPAIR = "a copy of it, or remove it and give its command again"
 _FOREIGN = "{} was not written by Rattlebox\n  try: move it out of this folder"
 
 
@@ -168,11 +170,11 @@ class Store:
 
     Raises
     ------
-    CaseError
-        When the folder holds another study, with the differences, or something else; or when another process
-        writes to it.
-    OSError
-        When the folder cannot be written.
+    StoreError
+        When the folder holds another study, with the differences, or something else; when another process
+        writes to it; or when it cannot be written.
+    ResourceError
+        When no space is left on the disk.
     """
 
     def __init__(self, path: str | os.PathLike[str], plan: Plan, cut: Callable[[], Blocks]) -> None:
@@ -195,13 +197,15 @@ class Store:
 
         Raises
         ------
-        OSError
-            When the disk is full or the folder cannot be written any more.
+        ResourceError
+            When the disk is full.
+        StoreError
+            When the folder cannot be written any more.
         """
         region, sides = self.blocks.region(block), self.blocks.sides(block)
         with _telling(self.path):
             if not (self.path / MARKER).is_file():
-                raise OSError(errno.ENOENT, "it was removed while the study ran")
+                raise StoreError(f"{self.path} was removed while the study ran", "the same command again")
             for name, array in self._arrays.items():
                 (self.path / self._chunks.key(name, block)).unlink(missing_ok=True)  # it may be damaged
                 array[region] = values[name].reshape((*sides, *values[name].shape[1:]))
@@ -218,7 +222,7 @@ class Store:
 
     def _open(self, cut: Callable[[], Blocks]) -> None:
         if (self.path / _PROGRESS / JOURNAL).exists():
-            raise CaseError(f"{self.path} holds a design\n  try: another folder, or remove this one")
+            raise StoreError(f"{self.path} holds a design\n  try: another folder, or remove this one")
         marker = read_marker(self.path)
         if marker and marker.complete:
             self._compare(marker)
@@ -243,12 +247,12 @@ class Store:
         about = {"format": FORMAT, "shape": blocks.shape, "box": blocks.box, "manifest": self._plan.manifest}
         for name in self._plan.outputs:
             if os.path.lexists(self.path / name) and not any(file.startswith(f"{name}/") for file in earlier.files):
-                raise CaseError(_FOREIGN.format(self.path / name))
+                raise StoreError(_FOREIGN.format(self.path / name))
         begun = Marker(KIND, __version__, earlier.identifier, about=about)
         try:
             return fill(self.path, begun, self._files(blocks))
-        except FileExistsError as error:
-            raise CaseError(str(error)) from None
+        except ForeignFile as error:
+            raise StoreError(str(error)) from None
 
     def _files(self, blocks: Blocks) -> dict[str, bytes]:
         """The files of a study before its first block."""
@@ -286,7 +290,7 @@ class Store:
         hint = "another folder, or remove this one"
         if len(lines) == 1 and there["core"] != here["core"]:
             hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another folder"
-        raise CaseError("\n".join([f"{self.path} holds another study", *lines, f"  try: {hint}"]))
+        raise StoreError("\n".join([f"{self.path} holds another study", *lines, f"  try: {hint}"]))
 
 
 class _InMemory:
@@ -387,10 +391,11 @@ def taken(path: Path) -> Iterator[Path]:
 
     Raises
     ------
-    CaseError
-        When there is something else, or another process writes to it. The lock ends with its process, however that ends.
-    OSError
-        When the folder cannot be written.
+    StoreError
+        When there is something else, when another process writes to it (the lock ends with its process, however that ends),
+        or when the folder cannot be written.
+    ResourceError
+        When no space is left on the disk.
     """
     from filelock import FileLock, Timeout
 
@@ -398,12 +403,12 @@ def taken(path: Path) -> Iterator[Path]:
 
     progress = path / _PROGRESS
     if path.exists() and not path.is_dir():
-        raise CaseError(f"{path} is a file; a study needs a folder\n  try: another name, as study.zarr")
+        raise StoreError(f"{path} is a file; a study needs a folder\n  try: another name, as study.zarr")
     with _telling(path), readable(path):
         path.mkdir(parents=True, exist_ok=True)
         if read_marker(path) is None:
             if not is_free(path):
-                raise CaseError(
+                raise StoreError(
                     f"{path} holds other files, or a study of an earlier version\n"
                     "  try: a folder that does not exist yet, as study.zarr"
                 )
@@ -415,7 +420,7 @@ def taken(path: Path) -> Iterator[Path]:
             lock.acquire(blocking=False)
         except Timeout:
             writer = name.read_text() if name.exists() else "another process"
-            raise CaseError(
+            raise StoreError(
                 f"{path} is being written by {writer}\n"
                 "  try: another folder, or wait; 'rattlebox show' tells how far it is"
             ) from None
@@ -432,12 +437,17 @@ def _telling(path: Path) -> Iterator[None]:
     """Say of a disk that takes no more what that means for the study."""
     try:
         yield
+    except StoreError:
+        raise
     except OSError as error:
-        if error.errno in (errno.ENOSPC, errno.EDQUOT):
-            said = "no space is left on the disk\n  try: make room and give the same command again, which goes on"
+        if isinstance(error, ResourceError) or error.errno in (errno.ENOSPC, errno.EDQUOT):
+            advice = "make room and give the same command again, which goes on"
+            raised: ResourceError | StoreError = ResourceError(f"{path}: no space is left on the disk", advice)
         else:
-            said = f"the study cannot be written: {error.strerror or error}\n  try: another folder"
-        raise OSError(error.errno, said, str(path)) from error
+            why = error.complaint if isinstance(error, DataError) else error.strerror or error
+            raised = StoreError(f"{path}: the study cannot be written: {why}", "another folder")
+        raised.errno, raised.filename = error.errno, str(path)
+        raise raised from error
 
 
 @contextmanager
@@ -451,18 +461,20 @@ def readable(path: str | os.PathLike[str]) -> Iterator[None]:
 
     Raises
     ------
-    CaseError
+    StoreError
         When they are.
     """
     try:
         yield
-    except CaseError:
+    except RattleboxError as error:
+        if isinstance(error, DamagedError):
+            raise StoreError(f"{path} is damaged: {error}", _REPAIR) from error
         raise
+    except PermissionError as error:
+        raise StoreError(f"{path} cannot be opened: {error.strerror}", "another folder") from error
     except (ValueError, KeyError, RuntimeError, FileNotFoundError) as error:
         what = str(error).partition("\n")[0] or type(error).__name__
-        raise CaseError(
-            f"{path} is damaged: {what}\n  try: a copy of it, or remove it and give its command again"
-        ) from error
+        raise StoreError(f"{path} is damaged: {what}", _REPAIR) from error
 
 
 def _with_texts(data: xr.Dataset) -> xr.Dataset:
@@ -489,8 +501,10 @@ def keep_map(found: xr.Dataset, kind: str, path: str | os.PathLike[str] | None) 
 
     Raises
     ------
-    OSError
+    StoreError
         When the folder cannot be written.
+    ResourceError
+        When no space is left on the disk.
     """
     from rattlebox import __version__
 
@@ -502,8 +516,8 @@ def keep_map(found: xr.Dataset, kind: str, path: str | os.PathLike[str] | None) 
         with taken(Path(path)), _telling(Path(path)):
             try:
                 fill(Path(path) / _MAP, Marker(_MAP_KIND, __version__), files.content())
-            except FileExistsError as error:
-                raise CaseError(str(error)) from None
+            except ForeignFile as error:
+                raise StoreError(str(error)) from None
     return found
 
 
@@ -519,8 +533,10 @@ def add_attributes(path: str | os.PathLike[str], attributes: Mapping[str, str]) 
 
     Raises
     ------
-    OSError
+    StoreError
         When the folder cannot be written.
+    ResourceError
+        When no space is left on the disk.
     """
     if attributes:
         with taken(Path(path)), _telling(Path(path)):
@@ -567,14 +583,14 @@ def has_map(path: str | os.PathLike[str]) -> bool:
 
     Raises
     ------
-    CaseError
+    StoreError
         If the list of the files of the map is damaged.
     """
     folder = Path(path) / _MAP
     try:
         marker = read_marker(folder)
     except DamagedError as error:
-        raise CaseError(f"{folder} is damaged: {error}\n  try: remove {folder}, and give its command again") from None
+        raise StoreError(f"{folder} is damaged: {error}\n  try: remove {folder}, and give its command again") from None
     return marker is not None and marker.complete
 
 
@@ -595,7 +611,7 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
 
     Raises
     ------
-    CaseError
+    StoreError
         When there is no study.
     """
     if has_map(path):
@@ -611,7 +627,7 @@ def _open_map(folder: Path) -> xr.Dataset:
     with readable(folder):
         marker = read_marker(folder)
         if marker and (damaged := damaged_files(folder, marker)):
-            raise CaseError(
+            raise StoreError(
                 f"{folder} is damaged: {damaged[0]} is lost or has changed\n"
                 "  try: its command again, which makes the map anew from the runs"
             )
@@ -626,7 +642,7 @@ def _open_runs(path: Path, marker: Marker) -> xr.Dataset:
     from zarr.storage import LocalStore
 
     if damaged := damaged_files(path, marker):
-        raise CaseError(
+        raise StoreError(
             f"{path} is damaged: {damaged[0]} is lost or has changed\n"
             "  try: the command that began it, which repairs it and computes only what is missing"
         )
@@ -646,7 +662,7 @@ def progress_of(path: str | os.PathLike[str]) -> Progress:
 
     Raises
     ------
-    CaseError
+    StoreError
         When there is no study.
     """
     with readable(path):
@@ -669,9 +685,9 @@ def _check(path: str | os.PathLike[str]) -> Marker | None:
     """Return the marker of a study, which may not be complete; raise if it belongs to something else."""
     marker = read_marker(Path(path))
     if marker and marker.name not in (KIND, ""):
-        raise CaseError(f"{path} is no study, but a {marker.name}\n  try: another folder")
+        raise StoreError(f"{path} is no study, but a {marker.name}\n  try: another folder")
     if marker and marker.about.get("format", 0) > FORMAT:
-        raise CaseError(f"{path} was written by a later Rattlebox\n  try: update Rattlebox")
+        raise StoreError(f"{path} was written by a later Rattlebox\n  try: update Rattlebox")
     return marker
 
 
@@ -681,7 +697,7 @@ def _marker(path: str | os.PathLike[str]) -> Marker:
     if marker and marker.complete:
         return marker
     what = "is not a study" if Path(path).exists() else "is not there"
-    raise CaseError(f"{path} {what}\n  try: the folder that 'rattlebox sweep -o' wrote")
+    raise StoreError(f"{path} {what}\n  try: the folder that 'rattlebox sweep -o' wrote")
 
 
 def _blocks(marker: Marker) -> Blocks:

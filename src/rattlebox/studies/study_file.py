@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pydantic import ValidationError
 
+from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.model.base import examples
 from rattlebox.model.case import Case
-from rattlebox.model.errors import CaseError, Hint, nearest, translate
+from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.files import existing, read_toml
 from rattlebox.model.materials import Material
 
@@ -234,8 +235,8 @@ def _case(given: Any, source: str, folder: Path) -> tuple[Case, dict[str, Materi
             raise CaseError(f"{source}: case\n  {hint}")
         try:
             file = existing(folder / name)
-        except Hint as hint:
-            raise CaseError(f"{source}: case.file = {name!r}\n  {hint}") from None
+        except DataError as error:
+            raise CaseError(f"{source}: case.file = {name!r}\n  {error}") from None
         case = Case.from_file(file)
         content = read_toml(_text(file), str(file))
     else:
@@ -249,8 +250,8 @@ def _case(given: Any, source: str, folder: Path) -> tuple[Case, dict[str, Materi
 def _text(file: Path) -> str:
     try:
         return existing(file).read_text(encoding="utf-8-sig")
-    except Hint as hint:
-        raise CaseError(str(hint)) from None
+    except DataError as error:
+        raise CaseError(str(error)) from None
     except OSError as error:
         raise CaseError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

@@ -8,8 +8,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationError
 
+from rattlebox._util.exceptions import CaseError
 from rattlebox.model.base import examples
-from rattlebox.model.errors import CaseError, Hint, nearest, translate
+from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, Whole
 
 from .measures import MEASURES, check_names

@@ -198,7 +198,7 @@ def test_two_processes_cannot_share_a_checkpoint(tmp_path: Path) -> None:
             assert process.poll() is None
             time.sleep(0.005)
         here = rf"run.checkpoint is in use by process {process.pid} on .*\n  try: another file"
-        with pytest.raises(rb.CaseError, match=here):
+        with pytest.raises(rb.DataError, match=here):
             rb.simulate(case(duration="50 s"), **files)
         process.kill()
     stopped = rb.simulate(case(duration="50 s"), **files, progress=lambda done, total: False)
@@ -227,7 +227,7 @@ def test_other_runs_are_refused_with_the_differences(tmp_path: Path, monkeypatch
     before = file.read_bytes()
 
     def refused(other: rb.Case) -> str:
-        with pytest.raises(rb.CaseError) as told:
+        with pytest.raises(rb.DataError) as told:
             rb.simulate(other, checkpoint=file)
         assert file.read_bytes() == before
         return str(told.value)
@@ -263,7 +263,7 @@ def test_files_that_have_changed_are_noticed(tmp_path: Path) -> None:
     again()
     again()
     places.write_text("x, y, z\n0, 0, 0.001\n")
-    with pytest.raises(rb.CaseError, match="reads the same but has other numbers"):
+    with pytest.raises(rb.DataError, match="reads the same but has other numbers"):
         again()
 
 
@@ -272,7 +272,7 @@ def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
     """A file that is no checkpoint is left alone."""
     file = tmp_path / "notes.txt"
     file.write_bytes(content)
-    with pytest.raises(rb.CaseError, match="is not a whole checkpoint\n  try: another file"):
+    with pytest.raises(rb.DataError, match="is not a whole checkpoint\n  try: another file"):
         rb.simulate(case(output=rb.Output(rate="2 kHz")), checkpoint=file)
     assert file.read_bytes() == content
 
@@ -291,7 +291,7 @@ def test_a_torn_checkpoint_is_refused(tmp_path: Path) -> None:
         file.write_bytes(torn)
         try:
             again = rb.simulate(short, checkpoint=file)
-        except rb.CaseError:
+        except rb.DataError:
             refused += 1
         else:
             assert bits(again) == bits(run)  # where the file says nothing
@@ -316,7 +316,7 @@ def test_snapshots_that_are_gone_are_missed(tmp_path: Path, monkeypatch: pytest.
     rb.simulate(case(), **files)
     monkeypatch.undo()
     files["snapshots"].unlink()
-    with pytest.raises(rb.CaseError, match="does not hold the 3 snapshots before the checkpoint\n  try: put"):
+    with pytest.raises(rb.DataError, match="does not hold the 3 snapshots before the checkpoint\n  try: put"):
         rb.simulate(case(), **files)
 
 
@@ -329,7 +329,7 @@ def test_snapshots_that_are_something_else_are_told(tmp_path: Path, monkeypatch:
     whole = files["snapshots"].read_bytes()
 
     def refused() -> str:
-        with pytest.raises(rb.CaseError) as told:
+        with pytest.raises(rb.DataError) as told:
             rb.simulate(case(), **files)
         return str(told.value)
 
@@ -383,8 +383,8 @@ def test_real_disks_that_take_no_more(mount: str, name: str, said: str, tmp_path
     assert "Exception ignored" not in done.stderr
     happened, advice = done.stderr.splitlines()[-2:]
     assert said in happened
+    assert str(tmp_path / name) in happened
     assert advice.startswith("  try: ")
-    assert advice.endswith(f"{tmp_path / name}'")
 
 
 @needs_mounts
@@ -397,7 +397,7 @@ def test_runs_that_find_no_room(tmp_path: Path) -> None:
     full = f'mount -t tmpfs -o size=8k none {disk}; {sys.executable} -c "{code}" || echo ended $?; ls -A {disk}'
     done = with_own_mounts(full)
     assert done.stdout == "ended 1\n"
-    assert f"no space is left on the disk\n  try: make room and write the run again: '{disk}/run.nc'" in done.stderr
+    assert f"{disk}/run.nc: no space is left on the disk\n  try: make room and write the run again\n" in done.stderr
     assert "Exception ignored" not in done.stderr
 
 
@@ -560,7 +560,9 @@ def test_folders_that_are_not_there_are_told(tmp_path: Path) -> None:
     """A checkpoint or snapshots in a folder that does not exist are refused before anything is computed."""
     for name in ("checkpoint", "snapshots"):
         files = {"snapshots": tmp_path / "run.vtkhdf", name: tmp_path / "nowhere" / "file"}
-        with pytest.raises(OSError, match=r"cannot be written: there is no folder .*nowhere\n  try: another folder"):
+        with pytest.raises(
+            rb.DataError, match=r"cannot be written: there is no folder .*nowhere\n  try: another folder"
+        ):
             rb.simulate(case(), **files)
 
 
@@ -572,6 +574,6 @@ def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
         ({"checkpoint": file, "snapshots": tmp_path}, f"{tmp_path} is a folder; snapshots are written to a file"),
         ({"checkpoint": tmp_path / "." / "file", "snapshots": file}, "both a run and its snapshots"),
     ):
-        with pytest.raises(rb.CaseError, match=re.escape(said)):
+        with pytest.raises(rb.DataError, match=re.escape(said)):
             rb.simulate(case(), **files)
     assert not any(tmp_path.iterdir())

@@ -204,7 +204,7 @@ def test_a_worker_with_other_instructions_is_refused(scheduler: Path) -> None:
     other = next(level for level in supported() if level != choice()[0])
     with worker(scheduler, RATTLEBOX_SIMD=other), Client(scheduler_file=str(scheduler)) as client:
         client.wait_for_workers(1, timeout=30)
-        with pytest.raises(rb.CaseError, match=rf" and {other} instructions, the study with .* {choice()[0]} "):
+        with pytest.raises(rb.ResourceError, match=rf" and {other} instructions, the study with .* {choice()[0]} "):
             run_work(Logistic(), design=Grid(), on=client, block=20)
 
 
@@ -217,7 +217,7 @@ def test_a_block_that_kills_its_worker(tmp_path: Path) -> None:
         Client(scheduler_file=str(file)) as client,
     ):
         client.wait_for_workers(2, timeout=30)
-        with pytest.raises(rb.CaseError, match="2 workers in turn died of one block"):
+        with pytest.raises(rb.ResourceError, match="2 workers in turn died of one block"):
             run_work(Logistic(deadly=True), design=Grid(), on=client, block=60)
 
 
@@ -235,7 +235,7 @@ def test_the_scheduler_dies(tmp_path: Path) -> None:
             if done >= 20:
                 process.kill()
 
-        with pytest.raises(rb.CaseError, match="the cluster is lost"):
+        with pytest.raises(rb.ResourceError, match="the cluster is lost"):
             run_work(Logistic(pause=0.02), design=Grid(), on=client, store=store, block=3, progress=kill)
     assert 20 <= progress_of(store).done < 60
     assert bits(run_work(Logistic(), design=Grid(), store=store)) == bits(run_work(Logistic(), design=Grid()))

@@ -77,7 +77,7 @@ def test_a_folder_of_a_user_is_no_store(tmp_path: Path, mine: Any) -> None:
     ):
         folder = tmp_path / str(number)
         mine(folder, names)
-        with pytest.raises(rb.CaseError, match=r"\n  try: "):
+        with pytest.raises(rb.StoreError, match=r"\n  try: "):
             run_work(Logistic(), design=Grid(), store=folder, progress=False)
         assert {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} == {*names}
 
@@ -103,7 +103,7 @@ def test_every_study_refuses_a_folder_of_a_user(kind: str, tmp_path: Path, mine:
         "frequency_response": lambda: rb.frequency_response(case, [8, 9], cycles=(1, 2), **options),
         "design": lambda: rb.design(case, {"damper.gap": (1e-4, 1e-3)}, trials=2, **options),
     }
-    with pytest.raises(rb.CaseError, match="holds other files"):
+    with pytest.raises(rb.StoreError, match="holds other files"):
         calls[kind]()
 
 
@@ -150,7 +150,7 @@ def test_files_in_the_way_are_not_written_over(name: str, tmp_path: Path, mine: 
     store.mkdir()
     write_marker(store, Marker("Rattlebox study", rb.__version__))
     mine(store, (name,))
-    with pytest.raises(rb.CaseError, match="was not written by Rattlebox\n  try: move it"):
+    with pytest.raises(rb.StoreError, match="was not written by Rattlebox\n  try: move it"):
         run_work(Logistic(), design=Grid(), store=store, progress=False)
 
 
@@ -164,7 +164,7 @@ def test_a_map_beside_files_of_a_user(tmp_path: Path, mine: Any) -> None:
     first = made()
     mine(store / "map", ("notes.txt", "c/notes.txt"))
     (store / "map" / "zarr.json").write_text("{")
-    with pytest.raises(rb.CaseError, match=r"is damaged: zarr\.json is lost or has changed\n  try: its command again"):
+    with pytest.raises(rb.StoreError, match=r"is damaged: zarr\.json is lost or has changed\n  try: its command again"):
         open_study(store)
     made()
     assert open_study(store).load().equals(first)
@@ -195,7 +195,6 @@ def test_a_store_that_is_removed_while_it_runs(tmp_path: Path) -> None:
         if store.exists() and done >= 20:
             store.rename(tmp_path / "elsewhere")
 
-    with pytest.raises(OSError, match="removed while the study ran") as error:
+    with pytest.raises(rb.StoreError, match=rf"{store} was removed while the study ran"):
         run_work(Logistic(), design=Grid(), store=store, block=5, progress=clear)
-    assert error.value.filename == str(store)
     assert not store.exists()

@@ -124,7 +124,7 @@ def test_two_processes_on_one_store(tmp_path: Path) -> None:
     store = tmp_path / "study.zarr"
     process = start(store, pause=0.06)
     wait_for(has_begun(store, 5))
-    with pytest.raises(rb.CaseError, match=rf"is being written by process {process.pid} on "):
+    with pytest.raises(rb.StoreError, match=rf"is being written by process {process.pid} on "):
         run_work(Logistic(), design=Grid(), store=store)
     assert open_study(store).sizes["gap"] == 6
     process.kill()

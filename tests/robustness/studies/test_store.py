@@ -94,7 +94,7 @@ def test_another_study_is_refused_with_the_differences(tmp_path: Path, monkeypat
     store = tmp_path / "study.zarr"
     before = bits(study(store))
     other = Logistic(case="[damper]\ngap = 0.2\n[load]\namplitude = 5.0\nkind = 'harmonic'\n")
-    with pytest.raises(rb.CaseError) as told:
+    with pytest.raises(rb.StoreError) as told:
         study(store, other)
     assert str(told.value) == (
         f"{store} holds another study\n"
@@ -102,16 +102,16 @@ def test_another_study_is_refused_with_the_differences(tmp_path: Path, monkeypat
         '  case.load.kind: nothing there, "harmonic" here\n'
         "  try: another folder, or remove this one"
     )
-    with pytest.raises(rb.CaseError, match=r"design\.first: 3\.6 there, 3\.5 here"):
+    with pytest.raises(rb.StoreError, match=r"design\.first: 3\.6 there, 3\.5 here"):
         study(store, Logistic(Grid(first=3.5)))
-    with pytest.raises(rb.CaseError, match=r"design\.shape\[1\]: 10 there, 11 here\n  try"):
+    with pytest.raises(rb.StoreError, match=r"design\.shape\[1\]: 10 there, 11 here\n  try"):
         study(store, Logistic(Grid(shape=(6, 11))))
     monkeypatch.setattr(rb, "__version__", "9.9")
-    with pytest.raises(rb.CaseError, match=r'version: "[0-9.]+" there, "9\.9" here'):
+    with pytest.raises(rb.StoreError, match=r'version: "[0-9.]+" there, "9\.9" here'):
         study(store)
     monkeypatch.undo()
     monkeypatch.setattr("rattlebox.studies.runner._core", lambda: "v9")
-    with pytest.raises(rb.CaseError, match="try: RATTLEBOX_SIMD="):
+    with pytest.raises(rb.StoreError, match="try: RATTLEBOX_SIMD="):
         study(store)
     assert bits(open_study(store)) == before
 
@@ -120,22 +120,22 @@ def test_many_differences_fit_one_screen(tmp_path: Path) -> None:
     """Of many differences the first are told and the others counted."""
     store = tmp_path / "study.zarr"
     study(store)
-    with pytest.raises(rb.CaseError, match="and 12 more\n"):
+    with pytest.raises(rb.StoreError, match="and 12 more\n"):
         study(store, Logistic(case="\n".join(f"a{i:02} = {i}" for i in range(18))))
 
 
 def test_folders_of_other_things_are_refused(tmp_path: Path) -> None:
     """A file, or a folder that holds something else, is left alone."""
     (tmp_path / "notes.txt").write_text("mine")
-    with pytest.raises(rb.CaseError, match="is a file; a study needs a folder"):
+    with pytest.raises(rb.StoreError, match="is a file; a study needs a folder"):
         study(tmp_path / "notes.txt")
-    with pytest.raises(rb.CaseError, match="holds other files"):
+    with pytest.raises(rb.StoreError, match="holds other files"):
         study(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
     for reader in (open_study, progress_of):
-        with pytest.raises(rb.CaseError, match="is not a study"):
+        with pytest.raises(rb.StoreError, match="is not a study"):
             reader(tmp_path)
-        with pytest.raises(rb.CaseError, match="is not there"):
+        with pytest.raises(rb.StoreError, match="is not there"):
             reader(tmp_path / "nowhere")
 
 
@@ -147,7 +147,7 @@ def test_a_later_format_is_refused(tmp_path: Path) -> None:
     assert marker
     write_marker(store, replace(marker, about={**marker.about, "format": 3}))
     for use in (study, open_study, progress_of):
-        with pytest.raises(rb.CaseError, match="later Rattlebox"):
+        with pytest.raises(rb.StoreError, match="later Rattlebox"):
             use(store)
 
 
@@ -218,7 +218,7 @@ def test_damage_of_the_fixed_part_is_reported_and_repaired(name: str, how: str, 
     before = bits(study(store))
     damage(store / name, how)
     for use in (open_study, show_study):
-        with pytest.raises(rb.CaseError, match=f"{name} is lost or has changed\n  try: the command that began it"):
+        with pytest.raises(rb.StoreError, match=f"{name} is lost or has changed\n  try: the command that began it"):
             use(store)
     again = run_work(Logistic(broken=True), design=Grid(), store=store, progress=False)  # which computes nothing
     assert bits(again) == before
@@ -233,7 +233,7 @@ def test_a_damaged_marker_is_reported(how: str, tmp_path: Path) -> None:
     damage(store / MARKER, how)
     before = {path: path.read_bytes() for path in store.rglob("*") if path.is_file()}
     for use in (study, open_study, show_study):
-        with pytest.raises(rb.CaseError, match=r"study.zarr is damaged: .*\n  try: a copy of it"):
+        with pytest.raises(rb.StoreError, match=r"study.zarr is damaged: .*\n  try: a copy of it"):
             use(store)
     assert {path: path.read_bytes() for path in store.rglob("*") if path.is_file()} == before
 

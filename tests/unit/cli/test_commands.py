@@ -109,7 +109,7 @@ def test_schema_that_cannot_be_written_is_told(tmp_path: Path) -> None:
     """The message names the file, the reason and what to try."""
     done = rattlebox("schema", "-o", tmp_path)
     assert done.returncode == 2
-    assert done.stderr == f"error: {tmp_path}: it cannot be written: Is a directory\n  try: another folder\n"
+    assert done.stderr == f"error: {tmp_path} cannot be written: Is a directory\n  try: another folder\n"
 
 
 def test_doctor_and_materials_say_what_they_have(monkeypatch: pytest.MonkeyPatch) -> None:

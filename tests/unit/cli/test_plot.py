@@ -104,7 +104,7 @@ def test_the_usual_file_is_told(study: Path, answer: Answer) -> None:
 def test_figure_that_cannot_be_written(study: Path, answer: Answer) -> None:
     """The message names the file, the reason and what to try."""
     Path("a.png").mkdir()
-    said = "error: a.png: it cannot be written: Is a directory\n  try: another folder\n"
+    said = "error: a.png cannot be written: Is a directory\n  try: another folder\n"
     assert answer(study, "--at", "damper.start=0", "-o", "a.png") == (2, "", said)
 
 

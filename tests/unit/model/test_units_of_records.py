@@ -43,7 +43,7 @@ def test_usual_units_above_a_column(tmp_path: Path, unit: str, factor: float, si
 def test_other_units_above_a_column_are_refused(tmp_path: Path, unit: str) -> None:
     """A unit that is unknown or of another dimension is refused; the arguments that are advised take its place."""
     path = written(tmp_path, f"time (s),x ({unit})")
-    with pytest.raises(rb.CaseError, match=r"file = .*\n  .* is not a unit of .*known: .*\n  try: unit = \"m/s\^2\""):
+    with pytest.raises(rb.DataError, match=r"file = .*\n  .* is not a unit of .*known: .*\n  try: unit = \"m/s\^2\""):
         rb.Record(file=path)
     advised = rb.Record(file=path, unit="m/s^2", scale=2.0)
     assert (advised.unit, advised.scale) == ("m/s^2", 2.0)
@@ -58,7 +58,7 @@ def test_units_of_time(tmp_path: Path, unit: str, factor: float) -> None:
 
 def test_unknown_units_of_time_are_refused(tmp_path: Path) -> None:
     """Times in an unknown unit are refused with what to write."""
-    with pytest.raises(rb.CaseError, match=r'fortnight.* is not a unit of time.*\n  try: .*"time \(s\)"'):
+    with pytest.raises(rb.DataError, match=r'fortnight.* is not a unit of time.*\n  try: .*"time \(s\)"'):
         rb.Record(file=written(tmp_path, "t (fortnight),x (N)"))
 
 

@@ -152,7 +152,7 @@ def test_save_is_all_or_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_saving_into_no_folder(run: Run, tmp_path: Path) -> None:
     """A missing folder is named."""
-    with pytest.raises(FileNotFoundError, match="no folder"):
+    with pytest.raises(rb.DataError, match="no folder"):
         run.save(tmp_path / "missing" / "run.nc")
 
 
@@ -189,29 +189,29 @@ def test_checksums_tell_numbers_that_were_changed(run: Run, tmp_path: Path) -> N
         numbers = bytearray(unpacking.decompress(block))
         numbers[len(numbers) // 2] ^= 1
         stored.id.write_direct_chunk(start, zlib.compress(bytes(numbers), 4) + unpacking.unused_data, mask)
-    with pytest.raises(ValueError, match=r"run\.nc"):
+    with pytest.raises(rb.DataError, match=r"run\.nc"):
         load(path)
 
 
 def test_loading_something_else(tmp_path: Path) -> None:
     """A missing file, a folder, a text, a foreign netCDF file and one of a later version are each refused by name."""
-    with pytest.raises(ValueError, match="is a folder, not a file"):
+    with pytest.raises(rb.DataError, match="is a folder, not a file"):
         load(tmp_path)
-    with pytest.raises(FileNotFoundError, match=r"there is no file .*none\.nc"):
+    with pytest.raises(rb.DataError, match=r"there is no file .*none\.nc"):
         load(tmp_path / "none.nc")
     text = tmp_path / "text.nc"
     text.write_text("not a netCDF file")
-    with pytest.raises(ValueError, match=r"text\.nc is not a netCDF-4 file"):
+    with pytest.raises(rb.DataError, match=r"text\.nc is not a netCDF-4 file"):
         load(text)
     foreign = tmp_path / "foreign.nc"
     with h5netcdf.File(foreign, "w") as file:
         file.dimensions["x"] = 1
-    with pytest.raises(ValueError, match="not a run written by Rattlebox"):
+    with pytest.raises(rb.DataError, match="not a run written by Rattlebox"):
         load(foreign)
     later = Run(RunArrays(time=np.zeros(1)), "", Provenance("99.0")).save(tmp_path / "later.nc")
     with h5py.File(later, "a") as file:
         file.attrs["rattlebox_format"] = np.int32(1000)
-    with pytest.raises(ValueError, match=r"later Rattlebox \(99\.0\)"):
+    with pytest.raises(rb.DataError, match=r"later Rattlebox \(99\.0\)"):
         load(later)
 
 
@@ -222,14 +222,14 @@ def test_damaged_files_are_named(run: Run, tmp_path: Path) -> None:
     said = r"damaged\.nc is not a netCDF-4 file that is whole"
     for size in (0, 100, 5000, len(whole) - 1000):
         damaged.write_bytes(whole[:size])
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(rb.DataError, match=said):
             load(damaged)
     for lost in ("motion", "impacts/time", "case"):
         damaged.write_bytes(whole)
         with h5py.File(damaged, "a") as file:
             del file[lost]
             del file.attrs["seed"]
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(rb.DataError, match=said):
             load(damaged)
 
 
@@ -241,9 +241,9 @@ def test_a_file_that_must_not_be_read(run: Run, tmp_path: Path, monkeypatch: pyt
         raise PermissionError(13, "Permission denied", str(self))
 
     monkeypatch.setattr(Path, "open", forbidden)
-    with pytest.raises(PermissionError, match=r"Permission denied: .*run\.nc"):
+    with pytest.raises(rb.DataError, match=r"run\.nc cannot be read: Permission denied"):
         load(path)
-    with pytest.raises(PermissionError, match=r"Permission denied: .*run\.nc"):
+    with pytest.raises(rb.DataError, match=r"run\.nc cannot be read: Permission denied"):
         Snapshots(path)
 
 
@@ -251,9 +251,9 @@ def test_matlab_file_that_cannot_be_written(run: Run, tmp_path: Path) -> None:
     """A missing folder and a folder in the place of the file are told as when a run is saved."""
     (tmp_path / "folder").mkdir()
     for write, name in ((run.save, "run.nc"), (run.to_mat, "run.mat")):
-        with pytest.raises(FileNotFoundError, match=rf"cannot write .*{name}: there is no folder .*missing"):
+        with pytest.raises(rb.DataError, match=rf"{name} cannot be written: there is no folder .*missing"):
             write(tmp_path / "missing" / name)
-        with pytest.raises(OSError, match=r"it cannot be written: .*\n  try: another folder.*folder"):
+        with pytest.raises(rb.DataError, match=r"folder cannot be written: .*\n  try: another folder"):
             write(tmp_path / "folder")
     assert [path.name for path in tmp_path.iterdir()] == ["folder"]
 
@@ -270,7 +270,7 @@ def test_names_of_other_kinds_of_files_are_refused(
     run: Run, tmp_path: Path, writer: str, name: str, other: str
 ) -> None:
     """A file whose name says that it holds another format is not written, and the right name is told."""
-    with pytest.raises(ValueError, match=rf"{name}: a .* is written, not a {name[3:].lower()} file\n  try: {other}"):
+    with pytest.raises(rb.DataError, match=rf"{name}: a .* is written, not a {name[3:].lower()} file\n  try: {other}"):
         getattr(run, writer)(tmp_path / name)
     assert not any(tmp_path.iterdir())
 
@@ -336,6 +336,6 @@ def test_csv_of_names_with_commas(run: Run, tmp_path: Path) -> None:
 def test_csv_needs_a_folder(run: Run, tmp_path: Path) -> None:
     """A file in the place of the folder is named, and kept."""
     (tmp_path / "notes").write_text("mine")
-    with pytest.raises(FileExistsError, match="notes is a file; CSV files need a folder"):
+    with pytest.raises(rb.DataError, match="notes is a file; CSV files need a folder"):
         run.to_csv(tmp_path / "notes")
     assert (tmp_path / "notes").read_text() == "mine"

@@ -225,15 +225,15 @@ def test_another_study_is_refused(tmp_path: Path) -> None:
         searched(trials=1, objective=told_otherwise, store=tmp_path / "own")
     other = tmp_path / "notes.txt"
     other.write_text("buy milk\n")
-    with pytest.raises(rb.CaseError, match="a study needs a folder"):
+    with pytest.raises(rb.StoreError, match="a study needs a folder"):
         searched(trials=2, store=other)
     assert other.read_text() == "buy milk\n"
-    with pytest.raises(rb.CaseError, match="holds other files"):
+    with pytest.raises(rb.StoreError, match="holds other files"):
         searched(trials=2, store=tmp_path)
-    with pytest.raises(rb.CaseError, match="holds a design"):
+    with pytest.raises(rb.StoreError, match="holds a design"):
         rb.sweep(struck(), {GAP: [1e-3]}, store=store)
     rb.sweep(struck(), {GAP: [1e-3]}, store=tmp_path / "sweep", progress=False)
-    with pytest.raises(rb.CaseError, match="holds another study"):
+    with pytest.raises(rb.StoreError, match="holds another study"):
         searched(trials=2, store=tmp_path / "sweep")
     assert trials_in(store) == 2 and trials_in(tmp_path / "sweep") is None
 

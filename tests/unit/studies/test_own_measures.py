@@ -101,7 +101,7 @@ def test_a_store_is_not_taken_for_that_of_another_function(tmp_path: Path) -> No
     first = rb.sweep(case(), AXES, above(1e-3), store=tmp_path / "a.zarr", threads=1)
     again = rb.sweep(case(), AXES, above(1e-3), store=tmp_path / "a.zarr", threads=1)
     np.testing.assert_array_equal(first.share, again.share)
-    with pytest.raises(rb.CaseError, match="holds another study"):
+    with pytest.raises(rb.StoreError, match="holds another study"):
         rb.sweep(case(), AXES, above(1e-4), store=tmp_path / "a.zarr", threads=1)
 
 

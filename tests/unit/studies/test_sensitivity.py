@@ -75,7 +75,7 @@ def test_goes_on_from_a_store(tmp_path: Path) -> None:
     again = rb.sensitivity(struck(), BOUNDS, n=8, store=store, progress=lambda done, total: told.append(done))
     assert first.equals(again)
     assert told == [32]
-    with pytest.raises(rb.CaseError, match="another study"):
+    with pytest.raises(rb.StoreError, match="another study"):
         rb.sensitivity(struck(), BOUNDS, n=8, seed=1, store=store)
 
 

@@ -292,5 +292,5 @@ def test_a_file_that_has_changed_is_another_study(tmp_path: Path, monkeypatch: p
         for _ in range(2):
             rb.sweep(record(1.0), varies, "peak", store=name, progress=False)
     for name, varies in axes.items():
-        with pytest.raises(rb.CaseError, match=r"another study\n  files\."):
+        with pytest.raises(rb.StoreError, match=r"another study\n  files\."):
             rb.sweep(record(100.0), varies, "peak", store=name, progress=False)

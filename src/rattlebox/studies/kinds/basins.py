@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rattlebox.model.errors import CaseError
+from rattlebox._util.exceptions import CaseError
 from rattlebox.studies.axes import Axes, Design
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.kinds.sweep import beside, sweep

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox._util.exceptions import CaseError
+from rattlebox.model.errors import Hint
 from rattlebox.studies.axes import Design
 from rattlebox.studies.continuation import follow
 from rattlebox.studies.impact_work import ImpactWork

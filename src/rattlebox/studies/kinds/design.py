@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox._util.exceptions import CaseError, StoreError
+from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.owned_folder import read_marker
 from rattlebox._util.progress import progress_bar
-from rattlebox.model.errors import CaseError, Hint, nearest
+from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import replaced
 from rattlebox.studies.axes import Design, labels, materials_in
 from rattlebox.studies.case_digest import describe_case
-from rattlebox.studies.extras import extra
 from rattlebox.studies.fingerprint import fingerprint
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.kinds.sweep import known, sweep
@@ -122,7 +123,7 @@ def design(
     >>> found = rb.design(case, {"damper.gap": ("0.1 mm", "2 mm")}, starts=3, trials=5)
     >>> best = rb.Case.from_toml(found.case.item(0))
     """
-    optuna = extra("optuna", "design")
+    optuna = optional_import("optuna", "design")
     trials, seed, robust, limit = checked(
         "design", trials=trials, seed=seed, robust=robust, max_added_mass=max_added_mass
     ).values()
@@ -427,7 +428,7 @@ def _storage(optuna: Any, store: str | os.PathLike[str] | None) -> Iterator[Any]
         return
     with taken(Path(store)) as progress:
         if (marker := read_marker(Path(store))) and marker.complete:
-            raise CaseError(f"{store} holds another study\n  try: another folder, or remove this one")
+            raise StoreError(f"{store} holds another study\n  try: another folder, or remove this one")
         path = progress / JOURNAL
         if path.exists():
             with path.open("r+b") as file:  # cut off a line that was not written to its end
@@ -466,7 +467,7 @@ def _study(optuna: Any, storage: Any, search: _Search, seed: int, store: Any) ->
         study.set_user_attr("about", about)
     elif there != about:
         names = ", ".join(name for name in {**there, **about} if there.get(name) != about.get(name))
-        raise CaseError(f"{store} holds the trials of another study; different: {names}\n  try: another folder")
+        raise StoreError(f"{store} holds the trials of another study; different: {names}\n  try: another folder")
     for trial in study.get_trials(
         deepcopy=False, states=(optuna.trial.TrialState.RUNNING,)
     ):  # of a process that was stopped

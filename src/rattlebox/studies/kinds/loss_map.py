@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox._util.exceptions import CaseError
+from rattlebox.model.errors import Hint
 from rattlebox.model.signals import Harmonic
 from rattlebox.model.structures import Shaker
 from rattlebox.studies.axes import Design

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.model.errors import CaseError
+from rattlebox._util.exceptions import CaseError
 from rattlebox.studies.axes import Axes, Design
 from rattlebox.studies.case_digest import describe_case
 from rattlebox.studies.impact_work import Extra, ImpactWork

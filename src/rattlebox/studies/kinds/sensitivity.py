@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.model.errors import CaseError, Hint
+from rattlebox._util.exceptions import CaseError
+from rattlebox._util.optional_imports import optional_import
+from rattlebox.model.errors import Hint
 from rattlebox.results.schema import HOW_ENDED
 from rattlebox.studies.axes import Design
-from rattlebox.studies.extras import extra
 from rattlebox.studies.kinds.sweep import sweep
 from rattlebox.studies.robust import robust_axes
 from rattlebox.studies.sampling import RandomDesign, random_design
@@ -37,7 +38,7 @@ class _Crossed(RandomDesign):
     def points(self) -> NDArray[np.float64]:
         """Return the points in the unit cube, (count, parameters)."""
         width = len(self.ranges)
-        sample: NDArray[np.float64] = extra("SALib.sample.sobol", "design").sample(
+        sample: NDArray[np.float64] = optional_import("SALib.sample.sobol", "design").sample(
             _problem(width), self.count // (width + 2), calc_second_order=False, seed=self.seed
         )
         return sample
@@ -173,7 +174,7 @@ def _of_measure(runs: xr.Dataset, name: str, width: int, n: int, confidence: flo
     output = by_base[kept].ravel()
     if np.ptp(output) == 0:
         raise CaseError(f"{name} is {output[0]:.6g} at every point: nothing depends on anything\n  try: wider bounds")
-    analyze = extra("SALib.analyze.sobol", "design").analyze
+    analyze = optional_import("SALib.analyze.sobol", "design").analyze
     # SALib takes a seed of 0 for none.
     indices = analyze(_problem(width), output, calc_second_order=False, conf_level=confidence, seed=seed + 1)
     return {

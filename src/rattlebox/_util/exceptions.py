@@ -1,0 +1,72 @@
+"""Exceptions of the package: every error that a user can meet is a `RattleboxError`.
+
+Wrong arguments of a function (a type that does not fit, arrays of different lengths) raise TypeError, ValueError or
+IndexError, as in NumPy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+class RattleboxError(Exception):
+    """Base class of all errors of the package.
+
+    Parameters
+    ----------
+    complaint
+        What is wrong with the value, and what is allowed.
+    suggestion
+        What to try; shown on a line of its own.
+    place
+        Location of the value in the part that raises: names of fields, numbers in lists.
+    """
+
+    def __init__(self, complaint: str, suggestion: str = "", place: Sequence[str | int] = ()) -> None:
+        where = named(place)
+        super().__init__(message(where, complaint, suggestion) if where else message(complaint, suggestion))
+        self.complaint = complaint
+        self.suggestion = suggestion
+        self.place = tuple(place)
+
+    def __str__(self) -> str:
+        return str(self.args[0])  # OSError would add its number and file name
+
+
+class CaseError(RattleboxError, ValueError):
+    """The description of a case or a study, or what is asked of its result, is wrong."""
+
+
+class DataError(RattleboxError, OSError, ValueError):
+    """A file of the user (a record, a result, a checkpoint) is missing, damaged, foreign, or cannot be read or written."""
+
+
+class StoreError(RattleboxError, OSError):
+    """The folder of a study is damaged, is in use, or holds something else."""
+
+
+class ResourceError(RattleboxError, OSError, ValueError):
+    """The machine has too little of something: memory, disk space, threads, instructions, workers of a cluster."""
+
+
+class MissingDependency(RattleboxError, ImportError):
+    """An optional library is not installed."""
+
+
+def named(place: Sequence[str | int]) -> str:
+    """Return the path of names of fields and numbers in lists, as "pairs[0].friction"."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).removeprefix(".")
+
+
+def message(head: str, *rest: str) -> str:
+    """Return the head, further lines below it, and the last argument as a suggestion.
+
+    Parameters
+    ----------
+    head
+        First line.
+    rest
+        Further lines, indented; the last is what to try, or "".
+    """
+    *complaint, suggestion = rest
+    return "\n".join([head, *(f"  {line}" for line in complaint), *([f"  try: {suggestion}"] if suggestion else [])])

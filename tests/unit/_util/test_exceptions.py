@@ -1,0 +1,105 @@
+"""Errors of the package: their classes, their messages, and how the command line ends with them."""
+
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import rattlebox as rb
+from rattlebox.cli.commands import carry_out
+
+CASE = """
+duration = "1 s"
+structure = {{ kind = "sdof", mass = "1 kg", frequency = "10 Hz" }}
+load = {{ kind = "record", file = "{file}", unit = "N" }}
+{more}
+"""
+
+
+def _far_too_many_samples() -> Any:
+    structure = rb.SDOF(mass=1.0, stiffness=1e4)
+    return rb.Case(structure=structure, duration=1.0, output=rb.Output(rate=1e15))
+
+
+@pytest.mark.parametrize(
+    ("cause", "kind", "builtin"),
+    [
+        (lambda: rb.Box(size=(-1.0, 1.0, 1.0)), rb.CaseError, ValueError),
+        (lambda: rb.load("nothing.nc"), rb.DataError, OSError),
+        (lambda: rb.Snapshots("nothing.vtkhdf"), rb.DataError, ValueError),
+        (lambda: rb.Record(file="nothing.csv", unit="N"), rb.DataError, ValueError),
+        (lambda: rb.Matrices.from_file("nothing.npz"), rb.DataError, OSError),
+        (lambda: rb.open_study("nothing.zarr"), rb.StoreError, OSError),
+        (_far_too_many_samples, rb.ResourceError, ValueError),
+    ],
+)
+def test_each_error_is_of_its_class(cause: Callable[[], Any], kind: type[Exception], builtin: type[Exception]) -> None:
+    """An error is of one class of the package, and of the built-in class that programs expect; it survives pickling."""
+    with pytest.raises(rb.RattleboxError) as caught:
+        cause()
+    assert type(caught.value) is kind
+    assert isinstance(caught.value, builtin)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (type(again), str(again)) == (kind, str(caught.value))
+
+
+def test_a_library_that_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The message names the library and the command that installs it."""
+    from rattlebox._util.optional_imports import optional_import
+
+    monkeypatch.setitem(sys.modules, "optuna", None)
+    with pytest.raises(
+        rb.MissingDependency, match=r"optuna.*\n  try: python -m pip install 'rattlebox\[design\]'"
+    ) as caught:
+        optional_import("optuna", "design")
+    assert isinstance(caught.value, ImportError)
+
+
+def test_a_message_has_its_parts() -> None:
+    """The place comes first, what is wrong below it, then what to try."""
+    error = rb.DataError("the file is empty", "another file", ["loads", 1, "file"])
+    assert str(error) == "loads[1].file\n  the file is empty\n  try: another file"
+    assert (error.complaint, error.suggestion, error.place) == (
+        "the file is empty",
+        "another file",
+        ("loads", 1, "file"),
+    )
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["run", "case.toml"], ["run", "nothing.toml"], ["show", "nothing"], ["show", "text.nc"], ["plot", "study.zarr"]],
+)
+def test_the_command_line_prints_errors_without_a_traceback(tmp_path: Path, arguments: list[str]) -> None:
+    """Errors of every class end the program with exit code 2, a message, and nothing else."""
+    (tmp_path / "case.toml").write_text(CASE.format(file="nothing.csv", more=""))
+    (tmp_path / "text.nc").write_text("text")
+    (tmp_path / "study.zarr").mkdir()
+    done = subprocess.run(
+        [sys.executable, "-m", "rattlebox.cli", *arguments], capture_output=True, text=True, cwd=tmp_path, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: ")
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+
+
+@pytest.mark.parametrize("kind", [rb.CaseError, rb.DataError, rb.StoreError, rb.ResourceError, rb.MissingDependency])
+def test_every_class_ends_the_command_alike(
+    kind: type[rb.RattleboxError], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Whatever the class, the command prints the message and ends with exit code 2."""
+
+    def fails() -> None:
+        raise kind("it is wrong", "something else")
+
+    monkeypatch.setattr("rattlebox.cli.materials.show_materials", fails)
+    monkeypatch.setattr(sys, "argv", ["rattlebox", "materials"])
+    with pytest.raises(SystemExit) as end:
+        carry_out()
+    assert end.value.code == 2
+    assert capsys.readouterr().err == "error: it is wrong\n  try: something else\n"
