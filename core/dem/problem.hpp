@@ -32,6 +32,7 @@ struct Problem {
     real enduring = infinity;  // age beyond which a contact counts as enduring
     Row gravity{};
     std::vector<Mode> modes;
+    std::vector<real> coupling; // of the modes by damping (structure/coupled_modes.hpp); empty: none
     std::vector<ModeState> start;
     std::vector<Load> loads;
     std::vector<Row> load_direction;

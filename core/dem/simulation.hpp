@@ -42,6 +42,8 @@ class Simulation {
     std::vector<ModeState> modes_,
         modes_shown_; // at the next step, and at the last one whose forces are known
     std::vector<Turn> turns_;
+    std::vector<real> transition_;
+    std::vector<ModeState> moved_;
     std::vector<real> modal_force_, load_value_;
     std::vector<real> load_work_, base_work_, viscous_;
     std::vector<Signal> signals_;
@@ -110,6 +112,8 @@ class Simulation {
                 problem_.gravity,
                 problem_.modes.data(),
                 turns_.data(),
+                transition_.empty() ? nullptr : transition_.data(),
+                moved_.data(),
                 modes_.data(),
                 modes_shown_.data(),
                 modal_force_.data(),
@@ -126,6 +130,9 @@ class Simulation {
     void prepare_structure() {
         modes_ = modes_shown_ = problem_.start;
         for (const Mode& mode : problem_.modes) turns_.push_back(turn(mode, problem_.dt));
+        if (!problem_.coupling.empty())
+            transition_ = transition(problem_.modes, problem_.coupling, problem_.dt);
+        moved_.resize(modes_.size());
         for (const Load& load : problem_.loads) {
             signals_.push_back(load.signal);
             load_shape_.insert(load_shape_.end(), load.shape.begin(), load.shape.end());

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/rows.hpp"
-#include "structure/mode.hpp"
+#include "structure/coupled_modes.hpp"
 #include "structure/signal.hpp"
 
 namespace rattlebox::dem {
@@ -32,8 +32,10 @@ struct Structure {
     // of the modes
     const Mode* mode = nullptr;
     const Turn* turns = nullptr;
-    ModeState* state = nullptr; // at the step to come
-    ModeState* shown = nullptr; // at the last step whose forces are known
+    const real* transition = nullptr; // of modes coupled by damping, all at once; else null
+    ModeState* moved = nullptr;       // scratch
+    ModeState* state = nullptr;       // at the step to come
+    ModeState* shown = nullptr;       // at the last step whose forces are known
     real* force = nullptr;
     real* viscous = nullptr;
     // of the loads
@@ -93,12 +95,33 @@ struct Structure {
     }
 
     void drift() {
+        if (transition) return drift_coupled();
         for (int m = 0; m < modes; ++m) {
             const ModeState from = state[m];
             const auto& [of_q, of_p] = turns[m];
             state[m] = {of_q.q * from.q + of_p.q * from.p, of_q.p * from.q + of_p.p * from.p};
             if (mode[m].decay > 0) viscous[m] += from.energy(mode[m]) - state[m].energy(mode[m]);
         }
+    }
+
+    // The energy that all modes lose together is booked on the first.
+    void drift_coupled() {
+        real energy = 0;
+        for (int m = 0; m < modes; ++m) energy += state[m].energy(mode[m]);
+        const int n = 2 * modes;
+        for (int m = 0; m < modes; ++m) {
+            moved[m] = {};
+            const real *q = transition + 2 * m * n, *p = q + n;
+            for (int j = 0; j < modes; ++j) {
+                moved[m].q += q[2 * j] * state[j].q + q[2 * j + 1] * state[j].p;
+                moved[m].p += p[2 * j] * state[j].q + p[2 * j + 1] * state[j].p;
+            }
+        }
+        for (int m = 0; m < modes; ++m) {
+            state[m] = moved[m];
+            energy -= state[m].energy(mode[m]);
+        }
+        viscous[0] += energy;
     }
 
     // Half of the work of the base on the particles in this step: before its instant, or after it.

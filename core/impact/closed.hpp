@@ -79,8 +79,7 @@ protected:
     // First step in transformed time: a tenth of the way through the contact that is soonest over.
     real first_step(real remaining) const {
         if (system_.active.empty()) {
-            real rate = loads_.frequency();
-            for (const Mode& mode : problem_.modes) rate = std::max(rate, mode.rate());
+            const real rate = std::max(loads_.frequency(), fastest_rate(problem_.modes, problem_.coupling));
             real h = std::min(remaining, rate > 0 ? 0.1 / rate : remaining);
             for (const Released& r : released_) {
                 const Gap g = gap(problem_, contact(r.contact), state_.y.data());

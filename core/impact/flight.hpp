@@ -1,10 +1,10 @@
 // Motion with no contact: modes and balls propagated exactly, the first touch found so that none is missed.
 //
 // Without load each mode is in closed form and each ball a parabola, to any horizon. Under a load the flight
-// is a cell of bounded length with Taylor series (structure/cell.hpp). Either way every gap has a lower bound
-// L on g'', so that no touch can come before the first root of g + g' s + L s^2 / 2: stepping from one such
-// root to the next closes in on the first touch and cannot jump over one. A bound on g''' makes L as good as
-// g'' itself near the touch.
+// or with modes coupled by damping is a cell of bounded length with Taylor series (structure/cell.hpp).
+// Either way every gap has a lower bound L on g'', so that no touch can come before the first root of g + g'
+// s + L s^2 / 2: stepping from one such root to the next closes in on the first touch and cannot jump over
+// one. A bound on g''' makes L as good as g'' itself near the touch.
 #pragma once
 
 #include <vector>
@@ -33,7 +33,7 @@ class Flight {
     bool series_ = false;
     real horizon_ = 0;
     std::vector<FreeMode> free_;
-    std::vector<Series> mode_series_, ball_series_, load_series_;
+    std::vector<Series> mode_series_, ball_series_, load_series_, force_series_;
     std::vector<real> curvature_, jerk_; // bounds on each gap's second derivative from below, on its third
     mutable std::vector<real> safe_;     // no touch before
 
@@ -115,11 +115,10 @@ public:
     void begin(const State& start, const Loads& loads, real length, bool series) {
         start_ = &start;
         loads_ = &loads;
-        series_ = series || loads.active();
+        series_ = series || loads.active() || !problem_.coupling.empty();
         horizon_ = length;
         if (series_) {
-            real rate = loads.frequency();
-            for (const Mode& mode : problem_.modes) rate = std::max(rate, mode.rate());
+            const real rate = std::max(loads.frequency(), fastest_rate(problem_.modes, problem_.coupling));
             // To an end that the clock can tell: else it would drift from the motion, cell by cell.
             if (rate * horizon_ > 1) horizon_ = start.t + 1 / rate - start.t;
             Series base;
@@ -129,13 +128,18 @@ public:
                 if (loads.load(l).base) base.add(-1, load_series_[l]);
             }
             mode_series_.clear();
+            force_series_.assign(problem_.modes.size(), Series{});
             for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
-                Series force;
+                Series& force = force_series_[k];
                 for (std::size_t l = 0; l < loads.size(); ++l)
                     force.add(loads.load(l).shape[k], load_series_[l]);
-                mode_series_.push_back(
-                    forced_mode(problem_.modes[k], {start.y[2 * k], start.y[2 * k + 1]}, force));
+                if (problem_.coupling.empty())
+                    mode_series_.push_back(
+                        forced_mode(problem_.modes[k], {start.y[2 * k], start.y[2 * k + 1]}, force));
             }
+            if (!problem_.coupling.empty())
+                coupled_series(problem_.modes, problem_.coupling, start.y.data(), force_series_,
+                               mode_series_);
             ball_series_.clear();
             for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) {
                 Series pull = base;
@@ -189,6 +193,11 @@ public:
             if (problem_.modes[k].decay != 0)
                 ledger.viscous += 2 * problem_.modes[k].decay *
                                   integrate(s, [&](real r) { return square(mode_series_[k].slope(r)); });
+        if (!problem_.coupling.empty())
+            ledger.viscous += integrate(s, [&](real r) {
+                return coupled_power(problem_.coupling, problem_.modes.size(),
+                                     [&](std::size_t k) { return mode_series_[k].slope(r); });
+            });
         for (std::size_t l = 0; l < loads_->size(); ++l) {
             if (loads_->piece(l).silent()) continue;
             const Load& load = loads_->load(l);

@@ -276,7 +276,7 @@ public:
     // tool.
     bool prepare(const Contact& c, const HertzTsuji& law, const Loads& loads, const State& start, real speed,
                  real zeta, real available, real psi_end = 0) {
-        if (!(speed > 0) || zeta > 0.4) return false;
+        if (!(speed > 0) || zeta > 0.4 || !problem_.coupling.empty()) return false;
         law_ = law;
         contact_ = &c;
         loads_ = &loads;

@@ -10,8 +10,8 @@
 
 #include "base/real.hpp"
 #include "contact/laws.hpp"
+#include "structure/coupled_modes.hpp"
 #include "structure/loads.hpp"
-#include "structure/mode.hpp"
 
 namespace rattlebox {
 
@@ -64,6 +64,7 @@ struct Settings {
 
 struct Problem {
     std::vector<Mode> modes;
+    std::vector<real> coupling; // of the modes by damping (structure/coupled_modes.hpp); empty: none
     std::vector<ModeState> start;
     std::vector<Load> loads;
     std::vector<Damper> dampers;

@@ -76,6 +76,9 @@ class System {
                 a += problem_.dampers[d].shape[k] * cavity_push_[d];
             dy[2 * k + 1] = a;
         }
+        couple(
+            problem_.coupling, m, [&](std::size_t k) { return y[2 * k + 1]; },
+            [&](std::size_t k, real force) { dy[2 * k + 1] += force; });
         for (std::size_t i = 0; i < b; ++i)
             dv[i] = ball_push_[i] / problem_.ball_mass[i] +
                     problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
@@ -213,6 +216,7 @@ public:
 
         real viscous = 0, work[2] = {0, 0};
         for (std::size_t k = 0; k < m; ++k) viscous += 2 * problem_.modes[k].decay * square(y[2 * k + 1]);
+        viscous += coupled_power(problem_.coupling, m, [&](std::size_t k) { return y[2 * k + 1]; });
         if (loads_->active()) {
             for (std::size_t l = 0; l < loads_->size(); ++l) {
                 if (loads_->piece(l).silent()) continue;

@@ -84,6 +84,9 @@ class TwoStep {
                 dy[2 * k + 1] += problem_.dampers[d].shape[k] * push_cavity_[d];
             more[2] += 2 * mode.decay * square(y[2 * k + 1]);
         }
+        const auto speed = [&](std::size_t k) { return y[2 * k + 1]; };
+        couple(problem_.coupling, m, speed, [&](std::size_t k, real force) { dy[2 * k + 1] += force; });
+        more[2] += coupled_power(problem_.coupling, m, speed);
         for (std::size_t i = 0; i < b; ++i) {
             ds[i] = v[i];
             dv[i] = push_ball_[i] / problem_.ball_mass[i] +

@@ -70,6 +70,7 @@ inline dem::Problem read_dem(rattlebox::Problem& storage, const nb::dict& d) {
         p.modes.push_back({decay[m], stiffness.at(m)});
         p.start.push_back({q.at(m), v.at(m)});
     }
+    if (d.contains("mode_coupling")) p.coupling = reals(d["mode_coupling"]);
     const auto loads = nb::cast<nb::list>(d["loads"]), contacts = nb::cast<nb::list>(d["contacts"]);
     storage.tables.reserve(2 * loads.size() + 8 * contacts.size());
     for (nb::handle item : loads) {

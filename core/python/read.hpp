@@ -152,6 +152,7 @@ public:
     void problem(const nb::dict& d) {
         const std::size_t modes = length(d["mode_decay"]);
         problem_.modes.resize(modes);
+        if (d.contains("mode_coupling")) vector(problem_.coupling, d["mode_coupling"]);
         problem_.start.resize(modes);
         for (std::size_t k = 0; k < modes; ++k) {
             component(problem_.modes[k].decay, d["mode_decay"], k);

@@ -66,6 +66,7 @@ from rattlebox.model.structures import SDOF as SDOF
 from rattlebox.model.structures import Fixed as Fixed
 from rattlebox.model.structures import Modal as Modal
 from rattlebox.model.structures import Shaker as Shaker
+from rattlebox.model.tuned_mass import TunedMass as TunedMass
 from rattlebox.plots.basins import plot_basins as plot_basins
 from rattlebox.plots.bifurcation import plot_bifurcation as plot_bifurcation
 from rattlebox.plots.design import plot_design as plot_design

@@ -267,19 +267,13 @@ def test_elasto_plastic_law_of_what_does_not_yield(law: Any) -> None:
         )
 
 
-def test_damping_that_is_not_proportional() -> None:
-    """Damping that couples two modes is refused with the size of the coupling."""
-    with pytest.raises(rb.CaseError, match=r"not proportional: between modes 1 and 2 .* = 1\b"):
-        rb.Matrices(M=np.eye(2), C=[[1.0, 0.0], [0.0, 0.0]], K=[[2.0, -1.0], [-1.0, 2.0]], points={"end": 1})
-
-
 @pytest.mark.parametrize(
     ("change", "said"),
     [
         ({"M": [[1.0, 0.0], [0.0, 0.0]]}, "M is not positive definite"),
         ({"K": [[1.0, 0.0], [0.0, -1.0]]}, "K is not positive semidefinite"),
         ({"K": [[1.0, 1.0], [0.0, 1.0]]}, "K is not symmetric"),
-        ({"C": [[-0.2, 0.1], [0.1, -0.2]]}, "C is not positive semidefinite: mode 2 would gain energy"),
+        ({"C": [[-0.2, 0.1], [0.1, -0.2]]}, "C is not positive semidefinite: .* would gain energy"),
         ({"points": {"end": 2}}, "no such degree of freedom"),
         ({"C": [[0.0]]}, "C has shape"),
     ],

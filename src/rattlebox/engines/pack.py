@@ -240,6 +240,7 @@ def _numbers(case: Case, axes: int = 0) -> Packed:
         "settings": {"duration": case.duration, **_method(case)},
         "mode_decay": _vector(modes.decay, axes),
         "mode_stiffness": _vector(modes.stiffness, axes),
+        **_coupling(modes),
         "mode_displacement": _vector(modes.q0, axes),
         "mode_velocity": _vector(modes.p0, axes),
         "loads": _loads(case, modes, axes),
@@ -260,6 +261,12 @@ def _numbers(case: Case, axes: int = 0) -> Packed:
             for place, pair in enumerate(contact_pairs(case, index))
         ],
     }
+
+
+def _coupling(modes: ModalModel) -> Packed:
+    """Return the damping between modes, row by row; empty for proportional damping."""
+    matrix = modes.coupling
+    return {} if matrix is None else {"mode_coupling": _array(matrix.reshape(-1, *matrix.shape[2:]))}
 
 
 def _array(values: Any) -> NDArray[np.float64]:

@@ -30,6 +30,7 @@ from .modes import ModalModel
 from .pairs import contact_pairs
 from .signals import AnySignal, HalfSine, Harmonic, Record, Signal, Unit, as_several, signals_in
 from .structures import Shaker
+from .tuned_mass import TunedMass, with_tuned_masses
 from .units import PositiveTime, Whole
 
 _MEMORY = 16e9  # bytes
@@ -59,6 +60,8 @@ class Case(Part):
         SDOF, Modal, Matrices, Beam, Plate, ShearBuilding, Fixed or Shaker.
     damper, dampers
         One ImpactDamper or ParticleDamper, several of one kind, or none.
+    tuned_mass, tuned_masses
+        One TunedMass, several, or none; beside the dampers or in their place.
     load, loads
         Forces on the structure: one signal, several (they add), or none.
     base
@@ -77,10 +80,11 @@ class Case(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("",)
-    spellings: ClassVar[dict[str, str]] = {"damper": "dampers", "load": "loads"}
+    spellings: ClassVar[dict[str, str]] = {"damper": "dampers", "tuned_mass": "tuned_masses", "load": "loads"}
     name: str = ""
     structure: AnyStructure
     dampers: Annotated[tuple[AnyDamper, ...], BeforeValidator(as_several), AlsoTakes()] = ()
+    tuned_masses: Annotated[tuple[TunedMass, ...], BeforeValidator(as_several), AlsoTakes()] = ()
     loads: Annotated[tuple[AnySignal, ...], signals_in("N"), AlsoTakes()] = ()
     base: Annotated[tuple[AnySignal, ...], signals_in("m/s^2"), AlsoTakes()] = ()
     duration: PositiveTime
@@ -280,9 +284,9 @@ class Case(Part):
 
     @cached_property
     def modes(self) -> ModalModel:
-        """The structure in modal form."""
-        with np.errstate(all="ignore"):  # numbers beyond all bounds are told when the case is checked
-            return self.structure.modes()
+        """The structure in modal form, with its tuned masses."""
+        with np.errstate(all="ignore"):  # non-finite numbers are refused when the case is checked
+            return with_tuned_masses(self.structure.modes(), self.tuned_masses)
 
     def base_acceleration(self) -> tuple[Signal, ...]:
         """Return the signals that accelerate the base [m/s^2]."""

@@ -67,7 +67,7 @@ def _assumed_units(case: Case) -> Iterator[str]:
 
 
 def _of_structure(case: Case) -> Iterator[str]:
-    modes = case.modes
+    modes = case.structure.modes()  # a tuned mass may be damped as it likes
     swings = modes.stiffness > 0
     ratio = float(np.max(modes.decay[swings] / np.sqrt(modes.stiffness[swings]), initial=0.0))
     if ratio >= _OVERDAMPED * (1 - 1e-9):

@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 class Matrices(DampedModes):
     """A structure given by its matrices, M z'' + C z' + K z = F, reduced to modes.
 
-    A matrix C must be proportional (diagonal in the modes); otherwise the size of what is not is reported. `damping_ratio`
-    and `rayleigh` stand in its place.
+    C is any symmetric, positive semidefinite matrix. Where it is not diagonal in the modes of the undamped structure, it
+    couples them: flights are then computed as Taylor series, step by step, which takes longer. `damping_ratio` and
+    `rayleigh` stand in its place.
 
     Parameters
     ----------
@@ -158,7 +159,7 @@ class Matrices(DampedModes):
         return mass, np.zeros_like(mass) if self.C is None else np.array(self.C), stiffness
 
     def modes(self) -> ModalModel:
-        """Reduce to modes; raises when damping is not proportional."""
+        """Reduce to the modes of the undamped structure."""
         from scipy.linalg import eigh
 
         mass, damping, stiffness = self.matrices()
@@ -170,20 +171,16 @@ class Matrices(DampedModes):
         vectors = _align(vectors, values, damping, 1e-9 * largest)
         modal = vectors.T @ damping @ vectors
         diagonal = np.diag(modal)
-        size = np.sqrt(np.abs(np.outer(diagonal, diagonal)))
-        off = np.abs(modal - np.diag(diagonal)) / np.where(size > 0, size, max(np.abs(modal).max(), 1e-300))
-        if off.size and off.max() > 1e-8:
-            i, j = np.unravel_index(off.argmax(), off.shape)
+        if len(modal) and (least := np.linalg.eigvalsh(modal).min()) < -1e-9 * np.abs(modal).max():
             raise Hint(
-                f"damping is not proportional: between modes {i + 1} and {j + 1} |C_ij|/sqrt(C_ii C_jj) = {off[i, j]:.3g}",
-                "Rayleigh damping C = a M + b K, or Modal with damping ratios",
+                f"C is not positive semidefinite: a motion would gain energy (smallest eigenvalue {least:.3g} 1/s)",
+                "a matrix whose eigenvalues are not negative",
                 self._where("C"),
             )
-        if diagonal.size and diagonal.min() < -1e-9 * np.abs(diagonal).max():
-            raise Hint(
-                f"C is not positive semidefinite: mode {diagonal.argmin() + 1} would gain energy",
-                place=self._where("C"),
-            )
+        # Below this, damping between modes is rounding of the eigenvectors.
+        coupling = modal - np.diag(diagonal)
+        size = np.sqrt(np.abs(np.outer(diagonal, diagonal)))
+        proportional = bool((np.abs(coupling) <= 1e-8 * np.where(size > 0, size, np.abs(modal).max(initial=0.0))).all())
         n = len(values)
         weights = {name: np.eye(n)[p] if isinstance(p, int) else np.array(p) for name, p in self.points.items()}
         projection = vectors.T @ mass
@@ -197,6 +194,7 @@ class Matrices(DampedModes):
             q0=zero if self.displacement is None else projection @ np.array(self.displacement),
             p0=zero if self.velocity is None else projection @ np.array(self.velocity),
             spatial=spatial,
+            coupling=None if proportional else 0.5 * (coupling + coupling.T),
         )
 
 

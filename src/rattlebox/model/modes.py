@@ -13,7 +13,7 @@ from .space import AXES, Triple, unit_vector
 
 @dataclass(frozen=True, eq=False)
 class ModalModel:
-    """Modes of a linear structure, q'' + 2 decay q' + stiffness q = shape . F, with unit modal mass.
+    """Modes of a linear structure, q'' + 2 decay q' + coupling q' + stiffness q = shape . F, with unit modal mass.
 
     Attributes
     ----------
@@ -21,6 +21,9 @@ class ModalModel:
         Decay rate a [1/s] and squared natural frequency k [1/s^2].
     shapes : dict of str to (m,) or (m, 3) float
         Mass-normalised mode shapes at the named points [kg^-1/2]; with three components where the point moves in space.
+    coupling : (m, m) float or None
+        Modal damping matrix D [1/s] without its diagonal, which is 2 decay; None where damping is proportional. The
+        modes are those of the undamped structure: q'' + D q' + stiffness q = shape . F.
     participation : (m,) or (m, 3) float or None
         Inertia of each mode per unit of base acceleration [kg^1/2], for each direction where points move in space.
     q0, p0 : (m,) float
@@ -35,6 +38,9 @@ class ModalModel:
     p0: Vector
     spatial: frozenset[str] = frozenset()
     """Points that move in space."""
+    coupling: Vector | None = None
+    attached: frozenset[str] = frozenset()
+    """Points of tuned masses; the others are those of the structure itself."""
 
     def point(self, name: str | None) -> str:
         """Return the name of a point; None stands for the only one.
@@ -45,9 +51,10 @@ class ModalModel:
             When there is no such point, or None and more than one.
         """
         if name is None:
-            if len(self.shapes) != 1:
-                raise Hint("a point must be named", " or ".join(f'point = "{known}"' for known in self.shapes))
-            return next(iter(self.shapes))
+            own = [known for known in self.shapes if known not in self.attached]
+            if len(own) != 1:
+                raise Hint("a point must be named", " or ".join(f'point = "{known}"' for known in own))
+            return own[0]
         if name not in self.shapes:
             raise Hint(f"the structure has no point {name!r}", nearest(name, self.shapes))
         return name

@@ -163,7 +163,15 @@ def _bare(task: ImpactWork) -> NDArray[np.float64]:
     load = next(load for load in packed["loads"] if load["kind"] == "harmonic")
     omega = load["frequency"]
     dynamic = packed["mode_stiffness"] - omega**2 + 2j * packed["mode_decay"] * omega
-    response = np.sum(task.look.shape * load["shape"] / dynamic, axis=0)
+    coupling = task.case.modes.coupling
+    if coupling is None:
+        motion = load["shape"] / dynamic
+    else:
+        matrix = np.moveaxis(1j * omega * coupling[..., None, None], (0, 1), (-2, -1))
+        matrix = matrix + np.moveaxis(dynamic, 0, -1)[..., None] * np.eye(len(coupling))
+        force = np.broadcast_to(np.moveaxis(load["shape"], 0, -1), matrix.shape[:-1])
+        motion = np.moveaxis(np.linalg.solve(matrix, force[..., None])[..., 0], -1, 0)
+    response = np.sum(task.look.shape * motion, axis=0)
     return np.asarray(np.broadcast_to(np.abs(load["amplitude"] * response), task.design.shape))
 
 

@@ -1,0 +1,283 @@
+"""Tuned masses: a mass on a spring and a dashpot at a point of the structure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from .base import Part
+from .elementwise import Vector, power
+from .errors import Hint, at
+from .modes import ModalModel
+from .space import Direction, unit_vector
+from .structures import Ratio
+from .units import Length, PositiveFrequency, PositiveMass, Velocity
+
+if TYPE_CHECKING:
+    from .any_structure import Structure
+
+_NO_COUPLING = 1e-12
+"""Damping between modes, over their largest damping, that is rounding."""
+
+
+class TunedMass(Part):
+    """A tuned mass damper: a mass that a spring and a dashpot hold at a point of the structure.
+
+    It moves along the line of the point, or along `direction` where the point moves in space; its inertia across that
+    direction is left out. The run records its motion as that of a point called by its name.
+
+    Parameters
+    ----------
+    mass
+        Mass [kg].
+    frequency
+        Natural frequency of the mass on its spring, with the structure held [Hz].
+    damping_ratio
+        Damping ratio, relative to that frequency.
+    point
+        Point of the structure; needed if there are several.
+    direction
+        Direction of the motion, where the point moves in space.
+    displacement, velocity
+        At the start, relative to the base [m], [m/s]. By default the spring is not stretched and the mass is at rest.
+    name
+        Name of its point in the results; default "tuned mass".
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> structure = rb.SDOF(mass="20 kg", stiffness="80 kN/m")
+    >>> tuned = rb.TunedMass.den_hartog(structure, mass="1 kg")
+    >>> round(tuned.frequency, 4), round(tuned.damping_ratio, 4)
+    (9.586, 0.1336)
+    """
+
+    held_as: ClassVar[tuple[str, ...]] = ("tuned_mass", "tuned_masses")
+    kind: Literal["tuned_mass"] = "tuned_mass"
+    mass: PositiveMass
+    frequency: PositiveFrequency
+    damping_ratio: Ratio = 0.0
+    point: str | None = None
+    direction: Direction | None = None
+    displacement: Length | None = None
+    velocity: Velocity = 0.0
+    name: Annotated[str | None, Field(min_length=1)] = None
+
+    def label(self, index: int, count: int) -> str:
+        """Return the name of its point."""
+        return self.name or ("tuned mass" if count == 1 else f"tuned mass {index + 1}")
+
+    @classmethod
+    def den_hartog(cls, structure: Structure, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
+        """Return the tuned mass that makes the highest response to a harmonic force on the structure smallest.
+
+        Parameters
+        ----------
+        structure
+            The structure.
+        mass
+            Mass of the damper [kg].
+        mode
+            Number of the mode to be damped, counted from 1.
+        **options
+            Other arguments of the class: point, direction, name.
+
+        Raises
+        ------
+        CaseError
+            If there is no such point or mode, or the mode does not move the point.
+
+        Notes
+        -----
+        f / f_s = 1 / (1 + mu) and zeta = sqrt(3 mu / (8 (1 + mu))), relative to the own frequency f of the damper, with mu
+        the ratio of its mass to the modal mass 1 / shape^2 at the point. Optimal for an undamped structure with one mode,
+        whose largest displacement is then sqrt(1 + 2 / mu) times the static one.
+
+        References
+        ----------
+        J. P. Den Hartog (1956), Mechanical Vibrations, 4th ed., McGraw-Hill, section 3.3.
+        """
+        ratio, frequency = cls._of_mode(structure, mass, mode, options)
+        damping = math.sqrt(3 * ratio / (8 * (1 + ratio)))
+        return cls(mass=mass, frequency=frequency / (1 + ratio), damping_ratio=damping, **options)
+
+    @classmethod
+    def warburton(cls, structure: Structure, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
+        """Return the tuned mass that makes the highest displacement from a harmonically accelerated base smallest.
+
+        Parameters
+        ----------
+        structure, mass, mode, **options
+            As of `den_hartog`.
+
+        Raises
+        ------
+        CaseError
+            If there is no such point or mode, or the mode does not move the point.
+
+        Notes
+        -----
+        f / f_s = sqrt(1 - mu / 2) / (1 + mu) and zeta = sqrt(3 mu / (8 (1 + mu) (1 - mu / 2))), for an undamped structure
+        with one mode and mu < 2.
+
+        References
+        ----------
+        G. B. Warburton (1982), Earthquake Eng. Struct. Dyn. 10, 381-401, doi:10.1002/eqe.4290100304.
+        """
+        ratio, frequency = cls._of_mode(structure, mass, mode, options)
+        if ratio >= 2:
+            raise Hint(
+                f"mass is {ratio:.3g} times the modal mass at the point, but the optimum holds below twice",
+                "a smaller mass",
+                ["mass"],
+            )
+        tuning = math.sqrt(1 - ratio / 2) / (1 + ratio)
+        damping = math.sqrt(3 * ratio / (8 * (1 + ratio) * (1 - ratio / 2)))
+        return cls(mass=mass, frequency=frequency * tuning, damping_ratio=damping, **options)
+
+    @classmethod
+    def _of_mode(cls, structure: Structure, mass: Any, mode: int, options: dict[str, Any]) -> tuple[float, float]:
+        """Return mass over modal mass, and the natural frequency [Hz]."""
+        trial = cls(mass=mass, frequency=1.0, **options)
+        modes = structure.modes()
+        swinging = np.flatnonzero(modes.stiffness > 0)
+        if not (isinstance(mode, int) and 1 <= mode <= modes.stiffness.size and mode - 1 in swinging):
+            known = ", ".join(str(k + 1) for k in swinging) or "none"
+            raise Hint(f"mode is {mode!r}, which is no mode with a frequency", f"one of these: {known}", ["mode"])
+        shape = float(modes.shape(trial.point, trial.direction)[mode - 1])
+        if shape == 0:
+            raise Hint(f"mode {mode} does not move the point", "another point or direction", ["point"])
+        return trial.mass * shape**2, math.sqrt(modes.stiffness[mode - 1]) / (2 * math.pi)
+
+
+def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalModel:
+    """Return the modes of a structure with tuned masses.
+
+    The equations of the structure's modes and of the tuned masses, scaled to unit masses, are x'' + D x' + K x = f. The
+    eigenvectors of K are the new, undamped modes; the damping matrix turned into them is not diagonal.
+
+    Parameters
+    ----------
+    modes
+        Modes of the structure alone, m of them; numbers may be arrays over a grid.
+    tuned
+        T tuned masses.
+
+    Returns
+    -------
+    ModalModel
+        m + T modes, with the tuned masses as further points.
+
+    Raises
+    ------
+    CaseError
+        If a point is missing, or a name is taken.
+    """
+    if not tuned:
+        return modes
+    count, total = modes.stiffness.shape[0], modes.stiffness.shape[0] + len(tuned)
+    if not count:
+        raise Hint("a tuned mass needs a structure that moves", "SDOF, Modal or Matrices", ["tuned_masses", 0])
+
+    # Numbers may be arrays over a grid, which has its axes after those of vectors and matrices.
+    numbers = [number for part in tuned for number in (part.mass, part.frequency, part.damping_ratio, part.velocity)]
+    numbers += [part.displacement for part in tuned if part.displacement is not None]
+    own = (modes.decay, modes.stiffness, modes.q0, modes.p0)
+    axes = max(*(np.ndim(number) for number in numbers), *(vector.ndim - 1 for vector in own))
+
+    def lifted(value: Any, components: int) -> Vector:
+        array = np.asarray(value, dtype=float)
+        return array.reshape((*array.shape, *(1,) * (components + axes - array.ndim)))
+
+    def joined(first: Any, more: Sequence[Any], components: int = 1) -> Vector:
+        """Return a vector over the structure's modes and the tuned masses."""
+        parts = [*lifted(first, components), *(lifted(one, components - 1) for one in more)]
+        return np.stack(np.broadcast_arrays(*parts))
+
+    def diagonal(vector: Vector) -> Vector:
+        matrix = np.zeros((len(vector), *vector.shape))
+        for k, value in enumerate(vector):
+            matrix[k, k] = value
+        return matrix
+
+    nothing = (0.0,) * len(tuned)
+    names: list[str] = []
+    springs, roots, inertia = [], [], []
+    for index, part in enumerate(tuned):
+        with at("tuned_masses", index):
+            try:
+                shape = modes.shape(part.point, part.direction)
+            except Hint as hint:
+                raise Hint(hint.complaint, hint.suggestion, hint.place or ["point"]) from None
+            name = part.label(index, len(tuned))
+            if name in modes.shapes or name in names:
+                raise Hint(f"there is a point {name!r} already", 'name = "another name"', ["name"])
+        names.append(name)
+        root = power(part.mass, 0.5)
+        roots.append(root)
+        springs.append(joined(shape, [-1 / root if k == index else 0.0 for k in range(len(tuned))]))
+        inertia.append(root if part.direction is None else np.multiply.outer(unit_vector(part.direction), root))
+
+    stiffness = diagonal(joined(modes.stiffness, nothing))
+    damping = diagonal(joined(2 * modes.decay, nothing))
+    if modes.coupling is not None:
+        damping[:count, :count] += lifted(modes.coupling, 2)
+    for part, spring in zip(tuned, springs, strict=True):
+        rate = 2 * math.pi * part.frequency
+        outer = spring[:, None] * spring[None, :]
+        stiffness = stiffness + part.mass * rate * rate * outer
+        damping = damping + 2 * part.damping_ratio * part.mass * rate * outer
+    values, vectors = np.linalg.eigh(_last(stiffness))
+    largest = np.abs(values).max(axis=-1, keepdims=True)
+    values = np.moveaxis(np.where(np.abs(values) < 1e-12 * largest, 0.0, values), -1, 0)
+    in_modes = np.moveaxis(np.swapaxes(vectors, -1, -2) @ _last(damping) @ vectors, (-2, -1), (0, 1))
+    turned = np.moveaxis(vectors, (-2, -1), (0, 1))  # (coordinate, mode, ...)
+
+    def into_modes(first: Any, more: Sequence[Any], spatial: bool = False) -> Vector:
+        vector = joined(first, more, 2 if spatial else 1)
+        return np.asarray(np.einsum("cm...,cd...->md..." if spatial else "cm...,c...->m...", turned, vector))
+
+    shapes = {
+        name: into_modes(shape, [np.zeros(3)] * len(tuned) if name in modes.spatial else nothing, name in modes.spatial)
+        for name, shape in modes.shapes.items()
+    }
+    for index, name in enumerate(names):
+        own_place = [1 / root if k == index else 0.0 for k, root in enumerate(roots)]
+        shapes[name] = into_modes(np.zeros(count), own_place)
+    places = [
+        root * (_moved(modes, part) if part.displacement is None else part.displacement)
+        for part, root in zip(tuned, roots, strict=True)
+    ]
+    speeds = [root * part.velocity for part, root in zip(tuned, roots, strict=True)]
+    main = np.stack([in_modes[k, k] for k in range(total)])
+    coupling = in_modes - diagonal(main)
+    coupled = bool(np.any(np.abs(coupling) > _NO_COUPLING * np.abs(main).max(initial=0.0)))
+    inertia_of_modes = modes.participation
+    if inertia_of_modes is not None:
+        inertia_of_modes = into_modes(inertia_of_modes, inertia, bool(modes.spatial))
+    return ModalModel(
+        decay=np.maximum(main, 0.0) / 2,
+        stiffness=values,
+        shapes=shapes,
+        participation=inertia_of_modes,
+        q0=into_modes(modes.q0, places),
+        p0=into_modes(modes.p0, speeds),
+        spatial=modes.spatial,
+        coupling=coupling if coupled else None,
+        attached=modes.attached | frozenset(names),
+    )
+
+
+def _moved(modes: ModalModel, part: TunedMass) -> Any:
+    """Return the displacement of its point at the start."""
+    shape = modes.shape(part.point, part.direction)
+    return sum(one * q for one, q in zip(shape, modes.q0, strict=True))
+
+
+def _last(matrix: Vector) -> Vector:
+    """Return a matrix (n, n, ...) as (..., n, n)."""
+    return np.moveaxis(matrix, (0, 1), (-2, -1))
