@@ -13,6 +13,7 @@ import numpy as np
 
 from rattlebox._util.atomic_io import check_suffix
 from rattlebox._util.exceptions import DataError, RattleboxError
+from rattlebox._util.narrow import instance
 from rattlebox.engines.base_motion import base_motion
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.core import core
@@ -120,12 +121,12 @@ def _simulated(
     file: Checkpoint | None,
     snapshots: Path | None,
 ) -> GranularRun:
-    assert isinstance(case.method, Dem)
+    method = instance(case.method, Dem)
     kept = None if file is None else file.read()
     packed, step, tables = pack_dem(case, None if kept is None else kept.positions)
     dem = core().Dem(packed)
-    dem.threads = threads or case.method.threads or useful_threads(packed)
-    journey = Journey(dem, packed, file, case.method)
+    dem.threads = threads or method.threads or useful_threads(packed)
+    journey = Journey(dem, packed, file, method)
     if file is not None and kept is not None:
         file.check(kept, packed)
         journey.resume(kept)
@@ -133,9 +134,9 @@ def _simulated(
         journey.watch(*snapshots_of(case, packed, snapshots))
     status = journey.go(progress)
     arrays = _arrays(case, packed, journey.records(), dem, status, step, tables, journey)
-    run = GranularRun(arrays, case.to_toml, Provenance.now(method=case.method.kind, seed=case.seed))
+    run = GranularRun(arrays, case.to_toml, Provenance.now(method=method.kind, seed=case.seed))
     if run.ok and (end := end_of(run.ledger, core().worst_closure, arrays.particle_mass.sum())) != FINISHED:
-        name, message = describe(end, case.duration, "", run.closure, case.method.kind)
+        name, message = describe(end, case.duration, "", run.closure, method.kind)
         run = GranularRun(replace(arrays, status=name, message=message), case.to_toml, run.provenance)
     return run
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from rattlebox._util.narrow import instance
 from rattlebox.engines.core import core
 from rattlebox.model.errors import Hint
 from rattlebox.model.packing import TOUCHING, Crowd, Settled, check_packing, fewer_at_random, overlapping
@@ -58,8 +59,7 @@ def settle(damper: ParticleDamper, go_on: Callable[[], bool] = lambda: True) -> 
     Hint
         When particles cannot be inserted, or do not come to rest.
     """
-    packing = damper.packing
-    assert isinstance(packing, Settled)
+    packing = instance(damper.packing, Settled)
     about = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
     if about in _beds:
         return _beds[about].copy()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.narrow import instance
 from rattlebox.engines.base_motion import base_motion
 from rattlebox.engines.core import core
 from rattlebox.engines.run_notes import MOST_OVERLAP
@@ -264,8 +265,7 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
     speeds
         Largest approach speed to expect in each damper [m/s].
     """
-    assert isinstance(case.method, Dem)
-    fraction = case.method.fraction
+    fraction = instance(case.method, Dem).fraction
     found: list[Limit] = []
     for damper, table, speed in zip(case.particle_dampers, tables, speeds, strict=True):
         found += contact_limits(case, damper, table, speed, fraction)
@@ -311,14 +311,14 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
     Hint
         When the step that is given is too long to be stable or to follow a load, or its steps are too many to be counted.
     """
-    assert isinstance(case.method, Dem)
+    method = instance(case.method, Dem)
     found = limits(case, tables, speeds)
     tightest = min(found, key=lambda limit: limit.step)
     samples = case.even_samples()
-    if case.method.dt == "auto":
+    if method.dt == "auto":
         longest = tightest.step
     else:
-        longest = float(case.method.dt)
+        longest = float(method.dt)
         refusing = min(found, key=lambda limit: limit.bound)
         if longest > refusing.bound:
             raise Hint(
@@ -328,7 +328,7 @@ def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...
     interval = case.duration / samples
     every = math.ceil(min(interval / longest * (1 - 1e-12), 2.0 * MOST_STEPS))
     if every * samples > MOST_STEPS:
-        raise _uncountable(case, longest, given=case.method.dt != "auto")
+        raise _uncountable(case, longest, given=method.dt != "auto")
     shortest = min((limit for limit in found if limit.is_contact), key=lambda limit: limit.duration)
     return Step(interval / every, every, every * samples, tightest, shortest, speeds)
 
@@ -472,13 +472,13 @@ def largest_softening(case: Case, damper: ParticleDamper, speed: float) -> float
 
 def _limited(case: Case, step: Step) -> str:
     """What the step is, and what limits it: steps are no longer than samples are apart."""
-    assert isinstance(case.method, Dem)
+    method = instance(case.method, Dem)
     told = f"step {_time(step.dt)}, "
-    if case.method.dt == "auto":
+    if method.dt == "auto":
         longest, why = step.limit.step, f"the {step.limit.what}"
         limited, else_ = f"limited by {why}", f"for {why}"
     else:
-        longest = float(case.method.dt)
+        longest = float(method.dt)
         limited = else_ = f"as given; an automatic one would be limited by the {step.limit.what}"
     if step.every == 1 and step.dt < (1 - 1e-9) * longest:
         return f"{told}limited by the samples; without them {_time(longest)}, {else_}"

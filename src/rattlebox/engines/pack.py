@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.exceptions import CaseError
+from rattlebox._util.narrow import instance
 from rattlebox.engines.laws import restitution_of_alpha
 from rattlebox.engines.variants import (
     Columns,
@@ -339,7 +340,7 @@ def _method(case: Case) -> Packed:
         }
     if isinstance(method, Newton):
         return {"method": "newton", "stick": method.stick, "max_events": method.max_events}
-    assert isinstance(method, EventDriven)
+    method = instance(method, EventDriven)
     return {
         "method": "event_driven",
         "tolerance": method.tolerance,

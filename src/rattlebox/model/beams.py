@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from rattlebox._util.narrow import present
+
 from .elementwise import Vector
 from .errors import Hint, one_of
 from .materials import AnyMaterial
@@ -145,8 +147,7 @@ class Beam(DampedModes):
     def section(self) -> tuple[float, float]:
         """Bending stiffness E I [N m^2] and mass per length rho A [kg/m]."""
         if self.material is None:
-            assert self.bending_stiffness is not None and self.mass_per_length is not None
-            return self.bending_stiffness, self.mass_per_length
+            return present(self.bending_stiffness), present(self.mass_per_length)
         area, inertia = self._area_and_inertia()
         return self.material.young * inertia, self.material.density * area
 
@@ -154,8 +155,8 @@ class Beam(DampedModes):
         if self.diameter is not None:
             inner = self.inner_diameter or 0.0
             return math.pi / 4 * (self.diameter**2 - inner**2), math.pi / 64 * (self.diameter**4 - inner**4)
-        assert self.width is not None and self.height is not None
-        return self.width * self.height, self.width * self.height**3 / 12
+        width, height = present(self.width), present(self.height)
+        return width * height, width * height**3 / 12
 
     @property
     def frequencies(self) -> Vector:

@@ -10,6 +10,8 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 import numpy as np
 from pydantic import Field, model_validator
 
+from rattlebox._util.narrow import present
+
 from .base import Part
 from .elementwise import mapped, power, powers, sqrt
 from .errors import Hint, at, one_of
@@ -128,8 +130,7 @@ class Tsuji(Contact):
         """Return the law itself, or the damping that alpha amounts to."""
         if self.restitution is not None:
             return self.restitution
-        assert self.alpha is not None
-        return FixedDamping(self.alpha / math.sqrt(5), self.ending)
+        return FixedDamping(present(self.alpha) / math.sqrt(5), self.ending)
 
 
 class Linear(Contact):
@@ -172,8 +173,7 @@ class Linear(Contact):
         if self.stiffness is not None:
             stiffness = self.stiffness
         else:
-            assert self.contact_time is not None
-            stiffness = pair.mass * power(math.pi / self.contact_time, 2)
+            stiffness = pair.mass * power(math.pi / present(self.contact_time), 2)
         values: dict[str, Any] = {
             "stiffness": stiffness,
             "mass": pair.mass,

@@ -11,6 +11,8 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from rattlebox._util.narrow import present
+
 from .base import AlsoTakes, Part
 from .contacts import AnyContact
 from .elementwise import Vector, power, stacked
@@ -55,8 +57,7 @@ class Sphere(Part):
     @property
     def half(self) -> float:
         """Radius [m], whichever way the size was given."""
-        assert self.radius is not None
-        return self.radius
+        return present(self.radius)
 
     @property
     def weight(self) -> float:
@@ -215,8 +216,7 @@ class ImpactDamper(Part):
     @property
     def clearance(self) -> float:
         """Total clearance of the row, twice the gap [m]."""
-        assert self.gap is not None
-        return 2 * self.gap
+        return 2 * present(self.gap)
 
     @property
     def masses(self) -> Vector:

@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_validator
 
 from rattlebox._util.exceptions import ResourceError, named
+from rattlebox._util.narrow import instance
 
 from .base import AlsoTakes, Part
 from .cavities import AnyCavity
@@ -423,8 +424,7 @@ class ParticleDamper(Part):
     def _number(self, index: int) -> int:
         species = self.particles[index]
         if not species.has_amount:
-            assert isinstance(self.packing, Positions)
-            return len(self.packing.positions)
+            return len(instance(self.packing, Positions).positions)
         with at(*self._place(index)):
             return species.number(self.cavity.volume)
 

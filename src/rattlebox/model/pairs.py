@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox._util.narrow import present
+
 from .elementwise import exp, less, power, sqrt
 from .errors import Hint
 from .materials import Material
@@ -59,15 +61,15 @@ class Body:
 
     def or_weaker(self, other: Body) -> Body:
         """Return the body that yields first, of two that can; for arrays one of the material that does in each place."""
-        assert self.material is not None and other.material is not None
-        weaker = less(other.hardness, self.hardness, other.material.young, self.material.young)
+        own, others = present(self.material), present(other.material)
+        weaker = less(other.hardness, self.hardness, others.young, own.young)
         if not isinstance(weaker, np.ndarray):
             return other if weaker else self
         chosen = {
-            name: np.where(weaker, getattr(other.material, name), getattr(self.material, name))
+            name: np.where(weaker, getattr(others, name), getattr(own, name))
             for name in ("young", "poisson", "yield_stress")
         }
-        return Body(self.material.model_copy(update=chosen))
+        return Body(own.model_copy(update=chosen))
 
 
 @dataclass(frozen=True)

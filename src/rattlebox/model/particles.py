@@ -10,6 +10,8 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
+from rattlebox._util.narrow import present
+
 from .base import Part
 from .elementwise import Vector
 from .errors import Hint, at
@@ -229,8 +231,7 @@ class Particles(Part):
     def diameters(self, count: int) -> Vector:
         """Return the diameters of so many particles, (n,) [m], rising: the middles of n equal shares of the distribution."""
         if self.distribution is None:
-            assert self.radius is not None
-            return np.full(count, 2 * self.radius)
+            return np.full(count, 2 * present(self.radius))
         return self.distribution.diameters((np.arange(count) + 0.5) / count)
 
     def number(self, volume: float) -> int:

@@ -9,6 +9,8 @@ from typing import Any, get_args
 
 from pydantic import ValidationError
 
+from rattlebox._util.narrow import instance
+
 from .base import Part, vocabulary
 from .case import Case
 from .dampers import ImpactDamper
@@ -136,7 +138,7 @@ def unit_of(case: Case, path: str) -> str | None:
     unit: str | None = None
     for step in place:
         if isinstance(node, Part):
-            assert isinstance(step, str)
+            step = instance(step, str)
             if isinstance(node, Signal) and step in ("amplitude", "values"):
                 unit = node.unit
             else:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from rattlebox._util.narrow import present
+
 from .beams import NEGLECTED, ROUNDING, ModeCount
 from .elementwise import Vector
 from .errors import Hint
@@ -98,8 +100,7 @@ class Plate(DampedModes):
     def section(self) -> tuple[float, float]:
         """Bending stiffness D [N m] and mass per area rho h [kg/m^2]."""
         if self.material is None or self.thickness is None:
-            assert self.bending_stiffness is not None and self.mass_per_area is not None
-            return self.bending_stiffness, self.mass_per_area
+            return present(self.bending_stiffness), present(self.mass_per_area)
         return (
             self.material.young * self.thickness**3 / (12 * (1 - self.material.poisson**2)),
             self.material.density * self.thickness,

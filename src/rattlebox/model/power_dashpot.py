@@ -7,6 +7,8 @@ from functools import cache
 
 import numpy as np
 
+from rattlebox._util.narrow import present
+
 from .errors import Hint
 
 SMALLEST = 1e-3
@@ -82,6 +84,5 @@ def rebound(damping: float, exponent: float, damping_exponent: float, zero_overl
         rtol=1e-12,
         atol=1e-14,
     )
-    assert motion.y_events is not None  # events were asked for
-    found = motion.y_events[0]
+    found = present(motion.y_events)[0]
     return max(0.0, -float(found[-1][1])) if len(found) else 0.0

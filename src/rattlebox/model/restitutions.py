@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from rattlebox._util.narrow import present
+
 from .base import AlsoTakes, Part
 from .elementwise import less, pick, power, sqrt
 from .errors import Hint
@@ -139,8 +141,8 @@ class JacksonGreen(Restitution):
                 young, poisson = pick(softer, other.young, young), pick(softer, other.poisson, poisson)
             return hardness(poisson, self.yield_stress), self.yield_stress / young
         body = pair.first_to_yield("the Jackson-Green law")
-        assert body.material is not None and body.material.yield_stress is not None
-        return body.hardness, body.material.yield_stress / body.material.young
+        material = present(body.material)
+        return body.hardness, present(material.yield_stress) / material.young
 
     def coefficients(self, pair: Pair) -> Coefficients:
         """Return critical speed and yield strain."""
@@ -157,9 +159,8 @@ def yield_pressure(pair: Pair, given: float | None, need: str) -> float:
     """Return the limiting contact pressure p_y [Pa]: as given, or 1.6 yield stress of the body that yields first."""
     if given is not None:
         return given
-    body = pair.first_to_yield(need)
-    assert body.material is not None and body.material.yield_stress is not None
-    return 1.6 * body.material.yield_stress
+    material = present(pair.first_to_yield(need).material)
+    return 1.6 * present(material.yield_stress)
 
 
 class ThorntonRestitution(Restitution):

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
+from rattlebox._util.narrow import present
+
 from .base import AlsoTakes, Part
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of, several
@@ -137,11 +139,10 @@ class SDOF(StructurePart):
 
     def modes(self) -> ModalModel:
         """Reduce to one mode."""
-        if self.stiffness is None:
-            assert self.frequency is not None
-            stiffness = power(2 * math.pi * self.frequency, 2)
-        else:
-            stiffness = self.stiffness / self.mass
+        by_frequency = self.stiffness is None
+        stiffness = (
+            power(2 * math.pi * present(self.frequency), 2) if by_frequency else present(self.stiffness) / self.mass
+        )
         if self.damping_ratio is not None:
             decay = self.damping_ratio * power(stiffness, 0.5)
         else:

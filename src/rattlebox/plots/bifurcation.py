@@ -9,6 +9,8 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from rattlebox._util.narrow import present
+
 from ..model.errors import Hint, nearest
 from .style import FAINT, INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above, pen, scaled
 
@@ -141,8 +143,7 @@ def _strip(axes: Axes, x: Any, maps: xr.Dataset) -> None:
     ]
     if np.isnan(kinds).any():
         marks.append(Patch(facecolor="white", edgecolor=FAINT, linewidth=pen(0.5), label="did not finish"))
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+    figure = present(axes.get_figure(root=True))
     figure.legend(
         handles=marks,
         title="Cycles until the motion repeats",

@@ -137,7 +137,7 @@ def film_particles(
         import matplotlib as mpl
 
         if path.suffix == ".mp4":
-            ffmpeg = optional_import("imageio_ffmpeg", "3d", "write a .gif")
+            ffmpeg = optional_import("imageio_ffmpeg", "3d", "a name that ends in .gif")
             mpl.rcParams["animation.ffmpeg_path"] = ffmpeg.get_ffmpeg_exe()
         dpi = _FILM_DPI[size]
         scene = _Scene(snapshots, snapshots.case_toml, size, renderer, dpi)

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from rattlebox._util.atomic_io import atomic_write
+from rattlebox._util.narrow import present
 
 from ..results.quantities import in_unit
 
@@ -292,8 +293,7 @@ def letters(axes: Axes) -> int:
     axes
         Axes of a figure with its final width.
     """
-    figure, grid = axes.get_figure(root=True), axes.get_gridspec()
-    assert figure is not None
+    figure, grid = present(axes.get_figure(root=True)), axes.get_gridspec()
     width = 72.0 * figure.get_figwidth() / (grid.ncols if grid is not None else 1)
     return int(0.8 * width / (0.58 * 0.9 * float(mpl.rcParams["font.size"])))
 

@@ -237,6 +237,26 @@ class ImpactWork:
                 whole[numbers[first:last] - start] = array
         return found
 
+    def validate(self) -> None:
+        """Raise, before anything runs, if a variant does not fit.
+
+        Raises
+        ------
+        CaseError
+            If one does not.
+        """
+        _ = self._prepared
+
+    def require_alike(self) -> None:
+        """Raise, before anything runs, if the variants differ in more than numbers.
+
+        Raises
+        ------
+        CaseError
+            If they do, or if one does not fit.
+        """
+        _ = self.packed
+
     # ---- what the core needs
 
     @property

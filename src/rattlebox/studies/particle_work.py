@@ -158,12 +158,16 @@ class ParticleWork(ImpactWork):
 
     @property
     def look(self) -> Look:
-        """Nothing for the core.
+        """Settings of the samples that the 1-D core takes; the defaults, since it does not run."""
+        return Look()
+
+    def validate(self) -> None:
+        """Raise, before anything runs, if the arguments do not fit the case.
 
         Raises
         ------
         CaseError
-            When what is asked for does not fit the case.
+            If they do not.
         """
         for name in self.named:
             if name not in _FOUND:
@@ -188,7 +192,6 @@ class ParticleWork(ImpactWork):
         points = self.case.modes.lines()
         if self.point is not None and self.point not in points:
             raise Hint(f"there is no point {self.point!r}", " or ".join(points) or "leave it out", ["point"])
-        return Look()
 
     def coords(self) -> dict[str, Any]:
         """Return the coordinates of the further dimensions, of which there are none."""

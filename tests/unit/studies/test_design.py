@@ -208,9 +208,9 @@ def test_another_study_is_refused(tmp_path: Path) -> None:
     """A store of another case, seed or parameters is refused with what differs; so is one of something else."""
     store = tmp_path / "design"
     searched(trials=2, store=store)
-    with pytest.raises(rb.CaseError, match="different: seed"):
+    with pytest.raises(rb.StoreError, match="different: seed"):
         searched(trials=2, store=store, seed=1)
-    with pytest.raises(rb.CaseError, match="different: parameters\n"):
+    with pytest.raises(rb.StoreError, match="different: parameters\n"):
         searched(trials=2, store=store, log=[])
 
     def measured(run: rb.Run) -> float:
@@ -221,7 +221,7 @@ def test_another_study_is_refused(tmp_path: Path) -> None:
 
     told_otherwise.__name__ = measured.__name__
     searched(trials=1, objective=measured, store=tmp_path / "own")
-    with pytest.raises(rb.CaseError, match="different: functions\n"):
+    with pytest.raises(rb.StoreError, match="different: functions\n"):
         searched(trials=1, objective=told_otherwise, store=tmp_path / "own")
     other = tmp_path / "notes.txt"
     other.write_text("buy milk\n")
@@ -287,7 +287,7 @@ def test_clear_refusals(parameters: Any, options: dict[str, Any], said: str) -> 
 def test_without_optuna(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where Optuna is missing, the answer is the command that installs it."""
     monkeypatch.setitem(sys.modules, "optuna", None)
-    with pytest.raises(rb.CaseError, match=r"pip install 'rattlebox\[design\]'"):
+    with pytest.raises(rb.MissingDependency, match=r"pip install 'rattlebox\[design\]'"):
         rb.design(struck(), BOUNDS)
 
 

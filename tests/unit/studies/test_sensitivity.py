@@ -127,7 +127,7 @@ def test_without_salib(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [name for name in sys.modules if name.startswith("SALib")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "SALib", None)
-    with pytest.raises(rb.CaseError, match=r"needs SALib.*\n.*pip install 'rattlebox\[design\]'"):
+    with pytest.raises(rb.MissingDependency, match=r"needs SALib.*\n.*pip install 'rattlebox\[design\]'"):
         rb.sensitivity(struck(), BOUNDS, n=8)
 
 

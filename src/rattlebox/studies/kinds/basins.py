@@ -101,7 +101,7 @@ def basins(
     look = cycles[1]
     design = Design.of(case, starts, source="basins")
     task = ImpactWork(case, design, cycles=cycles, point=point)
-    assert task.packed  # what differs in more than numbers is told before anything runs
+    task.require_alike()
     basic = ("impacts", "impacts_per_cycle")
     maps = sweep(
         case,

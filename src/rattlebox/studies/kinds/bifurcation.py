@@ -112,7 +112,7 @@ def bifurcation(
     path = tuple(map(str, path)) if isinstance(path, (list, tuple)) else str(path)
     design = Design.of(case, {path: values}, source="bifurcation")
     task = ImpactWork(case, design, cycles=cycles, point=point)
-    assert task.packed  # what differs in more than numbers is told before anything runs
+    task.require_alike()
     _check_order(design, direction)
     basic = ("impacts", "impacts_per_cycle")
     options: dict[str, Any] = {

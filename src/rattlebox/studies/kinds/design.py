@@ -266,8 +266,7 @@ class _Search:
             together.append(new)
         check_names(goal.measure for goal in self.goals)
         measures = known([goal.measure for goal in self.measured])
-        task = ImpactWork(self.case, self.members, measures=measures, **self.options)
-        assert task.look
+        ImpactWork(self.case, self.members, measures=measures, **self.options).validate()
 
     @cached_property
     def members(self) -> Design:

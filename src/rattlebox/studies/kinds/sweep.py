@@ -115,7 +115,7 @@ def sweep(
         motion=motion,
         **given,
     )
-    assert task.look  # what does not fit is told before anything runs
+    task.validate()
     found = run_work(
         task,
         design=design,

@@ -1,0 +1,45 @@
+"""Narrow the type of a value that an earlier check guarantees."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+Value = TypeVar("Value")
+
+
+def present(value: Value | None) -> Value:
+    """Return an optional value that is there.
+
+    Parameters
+    ----------
+    value
+        The value.
+
+    Raises
+    ------
+    TypeError
+        If it is None, which an earlier check of the caller should have excluded.
+    """
+    if value is None:
+        raise TypeError("a value is None, which an earlier check should have excluded")
+    return value
+
+
+def instance(value: object, kind: type[Value]) -> Value:
+    """Return a value of a known class.
+
+    Parameters
+    ----------
+    value
+        The value.
+    kind
+        Its class.
+
+    Raises
+    ------
+    TypeError
+        If it is of another class, which an earlier check of the caller should have excluded.
+    """
+    if not isinstance(value, kind):
+        raise TypeError(f"{value!r:.60} is no {kind.__name__}, which an earlier check should have excluded")
+    return value
