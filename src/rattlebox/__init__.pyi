@@ -31,6 +31,8 @@ from rattlebox.model.friction import Mindlin as Mindlin
 from rattlebox.model.friction import Rolling as Rolling
 from rattlebox.model.granular import PairLaws as PairLaws
 from rattlebox.model.granular import ParticleDamper as ParticleDamper
+from rattlebox.model.harmonics import Harmonic as Harmonic
+from rattlebox.model.harmonics import SineSweep as SineSweep
 from rattlebox.model.materials import Material as Material
 from rattlebox.model.materials import materials as materials
 from rattlebox.model.matrices import Matrices as Matrices
@@ -50,6 +52,8 @@ from rattlebox.model.particles import Normal as Normal
 from rattlebox.model.particles import Particles as Particles
 from rattlebox.model.particles import Sieve as Sieve
 from rattlebox.model.plates import Plate as Plate
+from rattlebox.model.random_vibration import Random as Random
+from rattlebox.model.recorded import Record as Record
 from rattlebox.model.reference import reference_case as reference_case
 from rattlebox.model.restitutions import Constant as Constant
 from rattlebox.model.restitutions import JacksonGreen as JacksonGreen
@@ -57,11 +61,9 @@ from rattlebox.model.restitutions import Johnson as Johnson
 from rattlebox.model.restitutions import Tabulated as Tabulated
 from rattlebox.model.restitutions import ThorntonRestitution as ThorntonRestitution
 from rattlebox.model.shear_buildings import ShearBuilding as ShearBuilding
-from rattlebox.model.signals import HalfSine as HalfSine
-from rattlebox.model.signals import Harmonic as Harmonic
-from rattlebox.model.signals import Record as Record
-from rattlebox.model.signals import chirp as chirp
-from rattlebox.model.signals import random_record as random_record
+from rattlebox.model.shocks import HalfSine as HalfSine
+from rattlebox.model.shocks import Sawtooth as Sawtooth
+from rattlebox.model.shocks import Trapezoid as Trapezoid
 from rattlebox.model.structures import SDOF as SDOF
 from rattlebox.model.structures import Fixed as Fixed
 from rattlebox.model.structures import Modal as Modal

@@ -340,6 +340,11 @@ def test_numbers_beyond_all_use() -> None:
         rb.Case(structure=rb.SDOF(mass=1.0, stiffness=1.0), damper=damper, duration=1.0)
 
 
+def sweep(**changed: Any) -> rb.SineSweep:
+    """Make a sweep from 5 Hz to 100 Hz, or what is given."""
+    return rb.SineSweep(**{"amplitude": "1 m/s^2", "first_frequency": 5.0, "last_frequency": 100.0} | changed)
+
+
 @pytest.mark.parametrize(
     ("make", "said"),
     [
@@ -349,24 +354,28 @@ def test_numbers_beyond_all_use() -> None:
         (lambda: rb.Case(structure=rb.Thornton(), duration=1.0), "there is no such kind here"),
         (lambda: rb.Case(structure=rb.SDOF(mass=1e-320, stiffness=1.0), duration=1.0), "no less than 1e-30"),
         (lambda: rb.Modal(frequencies=[], damping_ratios=[], shapes={"tip": []}), "at least one mode"),
-        (lambda: rb.chirp("1 N", -1.0, 2.0, 1.0), "positive frequencies"),
-        (lambda: rb.random_record([(1.0, 2.0), (300.0, 1.0)], 1.0, -10.0), "positive duration and rate"),
-        (lambda: rb.random_record([(0.1, 1.0), (0.2, 1.0)], 1.0, 10.0), "a longer record"),
-        (lambda: rb.random_record([(1.0, 2.0), (3.0, -1.0)], 1.0, 10.0), "positive .* pairs"),
-        (lambda: rb.random_record([(1.0, "high")], 1.0, 10.0), r"psd\[0\]\[1\]\n  a finite number is needed"),
-        (lambda: rb.random_record(np.zeros((0, 2)), 1.0, 10.0), "positive .* pairs"),
-        (lambda: rb.random_record([(1.0, 2.0), (3.0, 1.0)], "2 m", 10.0), "duration\n  a time .* is needed"),
-        (lambda: rb.random_record([(1.0, 2.0), (3.0, 1.0)], 2.0, "fast"), "rate\n  a frequency .* is needed"),
-        (lambda: rb.random_record([(1.0, 2.0), (3.0, 1.0)], 2.0, 10.0, seed=-1), "seed\n  -1 is no seed"),
-        (lambda: rb.random_record([(1.0, 2.0), (3.0, 1.0)], 2.0, 10.0, seed="a"), "seed\n  'a' is no seed"),
-        (lambda: rb.chirp("1 N", 1.0, 2.0, 1.0, method="lin"), "method\n  .* 'lin'\n  try: did you mean 'linear'"),
-        (
-            lambda: rb.chirp("1 N", 1.0, 2.0, 1.0, rate=-5),
-            "rate\n  .* at least twice the highest .*\n  try: rate = 400",
-        ),
-        (lambda: rb.chirp("1 N", 1.0, 2.0, 1.0, rate=0.1), "at least twice the highest frequency"),
-        (lambda: rb.chirp("1 N", "1 m", 2.0, 1.0), "f0\n  a frequency .* is needed"),
-        (lambda: rb.chirp("1 N", 1.0, 2.0, None), "duration\n  a time .* is needed"),
+        (lambda: rb.Random([(1.0, 2.0), (300.0, 1.0)], 1.0, -10.0), "rate = -10.0\n  must be greater than zero"),
+        (lambda: rb.Random([(0.1, 1.0), (0.2, 1.0)], 1.0, 10.0), "a longer duration"),
+        (lambda: rb.Random([(1.0, 2.0), (3.0, -1.0)], 1.0, 10.0), "positive .* pairs"),
+        (lambda: rb.Random([(1.0, "high")], 1.0, 10.0), r"psd\[0\]\[1\] = 'high'\n  a finite number is needed"),
+        (lambda: rb.Random(np.zeros((0, 2)), 1.0, 10.0), "positive .* pairs"),
+        (lambda: rb.Random([(1.0, 2.0), (3.0, 1.0)], "2 m", 10.0), "duration = '2 m'\n  a time .* is needed"),
+        (lambda: rb.Random([(1.0, 2.0), (3.0, 1.0)], 2.0, "fast"), "rate = 'fast'\n  a frequency .* is needed"),
+        (lambda: rb.Random([(1.0, 2.0), (3.0, 1.0)], 2.0, 10.0, seed=-1), "seed = -1\n  must be at least 0"),
+        (lambda: rb.Random([(1.0, 2.0), (3.0, 1.0)], 2.0, 10.0, seed="a"), "seed = 'a'\n  an integer is needed"),
+        (lambda: rb.Random("gevs", 2.0), "no density has this name\n  try: known: gevs_acceptance"),
+        (lambda: rb.Random("gevs_acceptance", 2.0, unit="N"), "is an acceleration"),
+        (lambda: sweep(first_frequency=-1.0, sweep_rate="2 oct/min"), "must be greater than zero"),
+        (lambda: sweep(first_frequency="1 m", sweep_rate="2 oct/min"), "a frequency .* is needed"),
+        (lambda: sweep(last_frequency=5.0, sweep_rate="2 oct/min"), "two frequencies that differ"),
+        (lambda: sweep(sweep_rate="2 octaves"), "oct/min, oct/s, dec/min, Hz/s or Hz/min"),
+        (lambda: sweep(sweep_rate="-2 oct/min"), "must be greater than zero; a sweep goes down where"),
+        (lambda: sweep(sweep_rate="1e-9 Hz/s"), "cycles; at most"),
+        (lambda: sweep(sweep_rate="1 Hz/s", duration=1.0), "a rate or a duration"),
+        (lambda: sweep(), "a rate or a duration"),
+        (lambda: rb.Trapezoid(amplitude="1 N", duration=1.0, rise=0.6), "rise and fall last 1.2 s"),
+        (lambda: rb.Sawtooth(amplitude="1 N", duration=0.0), "must be greater than zero"),
+        (lambda: rb.Sawtooth(amplitude="1 N", duration=1.0, peak="late"), "'terminal' or 'initial'"),
         (lambda: rb.simulate("case.toml"), "a Case is needed, not 'case.toml'\n  try: rb.Case.from_file"),
         (lambda: rb.simulate_many(rb.Case(structure=rb.Fixed(), duration=1.0)), "a list of cases is needed"),
         (lambda: rb.simulate_many([], threads="2"), "threads = '2': a whole number of at least 1"),  # type: ignore[arg-type]

@@ -28,7 +28,7 @@ def coefficients(record: rb.Record, fine: int = 8) -> tuple[np.ndarray, np.ndarr
 
 def test_the_density_is_the_one_asked_for() -> None:
     """The mean density of each third of the band is the one asked for."""
-    frequency, coefficient, _ = coefficients(rb.random_record(PSD, 40.0, 4000.0, seed=1), fine=4)
+    frequency, coefficient, _ = coefficients(rb.Random(PSD, 40.0, 4000.0, seed=1), fine=4)
     power = 2 * np.abs(coefficient) ** 2
     for band in range(3):
         begin, end = (LOW + (band + end) * (HIGH - LOW) / 3 for end in (0, 1))
@@ -41,17 +41,17 @@ def test_the_density_is_the_one_asked_for() -> None:
 @pytest.mark.parametrize("rate", RATES)
 def test_nothing_lies_above_the_highest_frequency(rate: float | None) -> None:
     """Less than 0.5 % of the power of the straight lines lies above the highest frequency, at any rate."""
-    frequency, coefficient, _ = coefficients(rb.random_record([(1900.0, 1.0), (HIGH, 1.0)], 0.5, rate), fine=32)
+    frequency, coefficient, _ = coefficients(rb.Random([(1900.0, 1.0), (HIGH, 1.0)], 0.5, rate), fine=32)
     power = np.abs(coefficient) ** 2
     assert power[frequency > HIGH + 0.1].sum() < 0.0005 * power.sum()
 
 
 def test_the_signal_does_not_depend_on_the_rate() -> None:
     """Below its highest frequency a record has the same spectrum at any rate, within a part in a thousand."""
-    frequency, exact, _ = coefficients(rb.random_record(PSD, 0.5, 512 * HIGH), fine=4)
+    frequency, exact, _ = coefficients(rb.Random(PSD, 0.5, 512 * HIGH), fine=4)
     inside = np.flatnonzero((frequency >= LOW) & (frequency <= HIGH))
     for rate in (None, 4000.0, 50000.0):
-        _, coefficient, _ = coefficients(rb.random_record(PSD, 0.5, rate))
+        _, coefficient, _ = coefficients(rb.Random(PSD, 0.5, rate))
         np.testing.assert_allclose(coefficient[inside], exact[inside], rtol=1e-3)
 
 
@@ -67,7 +67,7 @@ def test_rms_of_an_oscillator_near_the_highest_frequency() -> None:
     theory = np.trapezoid(DENSITY * np.abs(response(grid)) ** 2, grid)
     squares = []
     for seed in range(80):
-        frequency, coefficient, _ = coefficients(rb.random_record(PSD, 2.0, 4000.0, seed=seed), fine=4)
+        frequency, coefficient, _ = coefficients(rb.Random(PSD, 2.0, 4000.0, seed=seed), fine=4)
         squares.append(2 * np.sum(np.abs(coefficient * response(frequency)) ** 2))
     error = np.std(squares) / math.sqrt(len(squares))
     assert error < 0.015 * theory
@@ -90,7 +90,7 @@ def floating(**changes: Any) -> rb.ParticleDamper:
 @pytest.mark.parametrize(("parts", "allowed"), [({}, 1e-3), ({"damper": floating()}, 5e-3)], ids=["impact", "particle"])
 def test_both_engines_move_as_the_signal_says(rate: float | None, parts: dict[str, Any], allowed: float) -> None:
     """The displacement of an oscillator is the sum of its responses to the harmonics of the signal."""
-    record = rb.random_record(PSD, 0.25, rate, seed=3, unit="m/s^2")
+    record = rb.Random(PSD, 0.25, rate, seed=3, unit="m/s^2")
     run = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass=1.0, stiffness=(2 * math.pi * FREQUENCY) ** 2, damping_ratio=DAMPING),
@@ -148,7 +148,7 @@ def test_the_loss_stated_for_a_record_is_what_a_run_loses(rate: float) -> None:
 @pytest.mark.parametrize(("fraction", "warned"), [(0.025, False), (0.1, False), (0.2, True)])
 def test_means_over_steps_take_what_is_stated(fraction: float, warned: bool) -> None:
     """A 3-D run takes sinc(f step) of a record at the frequency f of a mode, and warns where this is more than 2 %."""
-    record = rb.random_record([(1500.0, DENSITY), (HIGH, DENSITY)], 0.25, 512e3, seed=3, unit="m/s^2")
+    record = rb.Random([(1500.0, DENSITY), (HIGH, DENSITY)], 0.25, 512e3, seed=3, unit="m/s^2")
     run = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass=1.0, stiffness=(2 * math.pi * FREQUENCY) ** 2, damping_ratio=DAMPING),

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rattlebox.model.signals import HalfSine, Harmonic, Signal
+from rattlebox.model.harmonics import Harmonic
+from rattlebox.model.shocks import HalfSine
+from rattlebox.model.signals import Signal
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -17,10 +17,12 @@ from rattlebox.engines.run_notes import MOST_OVERLAP
 from rattlebox.engines.softening import MOST_CHANGE, MOST_ENDURING, Effect, Shaking, exponent_of_force
 from rattlebox.model.contacts import Linear
 from rattlebox.model.errors import Hint
+from rattlebox.model.harmonics import Harmonic, SineSweep
 from rattlebox.model.in_space import direction_of_base
 from rattlebox.model.methods import Dem
 from rattlebox.model.restitutions import Constant
-from rattlebox.model.signals import HalfSine, Harmonic, Record
+from rattlebox.model.shocks import Shock
+from rattlebox.model.signals import Sampled
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -283,10 +285,13 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
         if stiffness > 0:
             found.append(_of_motion(2 * math.pi / math.sqrt(stiffness), fraction, f"period of mode {k + 1}"))
     for signal in (*case.loads, *case.base_acceleration()):
-        if isinstance(signal, HalfSine):
+        if isinstance(signal, Shock):
             found.append(_of_motion(signal.duration, fraction, "pulse"))
         elif isinstance(signal, Harmonic):
             found.append(_of_motion(1 / signal.frequency, fraction, "period of a harmonic"))
+        elif isinstance(signal, SineSweep):
+            highest = max(signal.first_frequency, signal.last_frequency)
+            found.append(_of_motion(1 / highest, fraction, "shortest period of a sweep"))
     return found
 
 
@@ -424,7 +429,7 @@ def _averaged(case: Case, step: Step) -> Iterator[str]:
     """State what the fastest mode loses of records, which act with their means over steps."""
     fastest = math.sqrt(max(case.modes.stiffness, default=0.0)) / (2 * math.pi)
     lost = 1 - float(np.sinc(fastest * step.dt))
-    if lost > MOST_AVERAGED and any(isinstance(signal, Record) for signal in (*case.loads, *case.base_acceleration())):
+    if lost > MOST_AVERAGED and any(isinstance(signal, Sampled) for signal in (*case.loads, *case.base_acceleration())):
         shorter = 0.9 * math.sqrt(6 * MOST_AVERAGED) / (math.pi * fastest)  # also when it is rounded
         yield (
             f"warning: a record acts with its mean over each step, which takes {100 * lost:.2g} % of the amplitude"

@@ -16,7 +16,9 @@ import numpy as np
 
 from rattlebox.engines.base_motion import base_motion
 from rattlebox.model.contacts import Contact, Linear, PowerLaw, TabulatedNormal
-from rattlebox.model.signals import HalfSine, Harmonic, Signal
+from rattlebox.model.harmonics import Harmonic
+from rattlebox.model.shocks import Shock
+from rattlebox.model.signals import Signal
 from rattlebox.results.quantities import quantity
 
 if TYPE_CHECKING:
@@ -109,7 +111,7 @@ def _harmonic(signal: Signal, duration: float) -> tuple[float, float]:
     """Frequency [Hz] and amplitude of an acceleration, or of the harmonic with its mean rate and mean square."""
     if isinstance(signal, Harmonic):
         return signal.frequency, abs(signal.amplitude)
-    if isinstance(signal, HalfSine):
+    if isinstance(signal, Shock):
         return 0.5 / signal.duration, abs(signal.amplitude)
     _, velocity, acceleration = base_motion(signal, np.linspace(0.0, duration, _INSTANTS))
     size, speed = float(acceleration.std()), float(velocity.std())

@@ -15,6 +15,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import CaseError, DataError, ResourceError
 
+from .any_signal import AnySignal
 from .any_structure import AnyStructure
 from .base import AlsoTakes, Part, vocabulary
 from .dampers import ImpactDamper
@@ -22,13 +23,15 @@ from .elementwise import Vector
 from .errors import Hint, at, translate
 from .files import existing, read_toml
 from .granular import ParticleDamper
+from .harmonics import Harmonic, SineSweep
 from .in_space import check_in_space
 from .materials import Material, materials
 from .matrices import Matrices
 from .methods import AnyMethod, Dem, EventDriven, Newton, Output
 from .modes import ModalModel
 from .pairs import contact_pairs
-from .signals import AnySignal, HalfSine, Harmonic, Record, Signal, Unit, as_several, signals_in
+from .shocks import Shock
+from .signals import Sampled, Signal, Unit, as_several, signals_in
 from .structures import Shaker
 from .tuned_mass import TunedMass, with_tuned_masses
 from .units import PositiveTime, Whole
@@ -137,7 +140,7 @@ class Case(Part):
         for field, signals in (("loads", self.loads), ("base", self.base), ("motion", self.shaker_motion)):
             for index, signal in enumerate(signals):
                 with at(*(("structure",) if field == "motion" else ()), field, index):
-                    if isinstance(signal, Record):
+                    if isinstance(signal, Sampled):
                         self._check_record(signal)
                     if field != "loads" and signal.point is not None:
                         raise Hint("the base moves as a whole and has no point", "leave point out", ["point"])
@@ -207,9 +210,10 @@ class Case(Part):
                 ["output", "rate"],
             )
 
-    def _check_record(self, record: Record) -> None:
+    def _check_record(self, record: Sampled) -> None:
         if not record.covers(self.duration):
-            first, last = record.times[0], record.times[-1]
+            times, _ = record.polyline()
+            first, last = times[0], times[-1]
             enough = f'duration = "{last:.10g} s", or a longer record' if last > 0 else "a longer record"
             raise Hint(
                 f"the record covers {first:.10g} s to {last:.10g} s, the run 0 to {self.duration:.10g} s",
@@ -301,7 +305,7 @@ class Case(Part):
             return self.output.sample_times(self.duration)
         signals = (*self.loads, *self.base_acceleration())
         even = self.output.sample_times(self.duration, self._fastest())
-        pulses = [s.start + np.linspace(0, s.duration, 21) for s in signals if isinstance(s, HalfSine)]
+        pulses = [s.start + np.linspace(0, s.duration, 21) for s in signals if isinstance(s, Shock)]
         times = np.unique(np.concatenate([even, *pulses]))
         return times[times <= self.duration]
 
@@ -313,9 +317,11 @@ class Case(Part):
         return self.output.sample_times(self.duration, self._fastest()).size - 1
 
     def _fastest(self) -> float:
-        """Highest frequency of modes and harmonics [Hz]."""
+        """Highest frequency of modes, harmonics and sweeps [Hz]."""
         signals = (*self.loads, *self.base_acceleration())
         frequencies = [signal.frequency for signal in signals if isinstance(signal, Harmonic)]
+        sweeps = [signal for signal in signals if isinstance(signal, SineSweep)]
+        frequencies += [max(sweep.first_frequency, sweep.last_frequency) for sweep in sweeps]
         frequencies += list(np.sqrt(self.modes.stiffness) / (2 * np.pi))
         return max(frequencies, default=0.0)
 

@@ -10,8 +10,11 @@ import numpy as np
 
 from .dampers import ImpactDamper
 from .elementwise import Vector
+from .harmonics import Harmonic, SineSweep
 from .materials import Material
-from .signals import HalfSine, Harmonic, Record, Signal
+from .recorded import Record
+from .shocks import Shock
+from .signals import Sampled, Signal
 from .space import Direction, unit_vector
 
 if TYPE_CHECKING:
@@ -81,13 +84,19 @@ def _of_structure(case: Case) -> Iterator[str]:
 def _of_signals(case: Case) -> Iterator[str]:
     signals = _named_signals(case)
     for name, signal in signals:
-        if isinstance(signal, (HalfSine, Harmonic)) and signal.start >= case.duration:
+        if isinstance(signal, (Shock, Harmonic, SineSweep)) and signal.start >= case.duration:
             yield f"{name} begins at {signal.start:.4g} s, when the run of {case.duration:.4g} s is over"
     for name, signal in signals:
         if isinstance(signal, Record) and signal.times[-1] - signal.times[0] > _LONG * case.duration:
             yield (
                 f"{name} is a record of {signal.times[-1] - signal.times[0]:.4g} s, of which the run takes"
                 f" {case.duration:.4g} s; its times are in seconds"
+            )
+    for name, signal in signals:
+        if isinstance(signal, SineSweep) and signal.start < case.duration < (signal.start + signal.length) * (1 - 1e-6):
+            yield (
+                f"{name} is a sweep of {signal.length:.4g} s from {signal.first_frequency:.4g} Hz to"
+                f" {signal.last_frequency:.4g} Hz, which the run ends at {float(signal.frequency_at(case.duration)):.4g} Hz"
             )
     yield from _of_interpolation(case)
     yield from _of_directions(case)
@@ -111,7 +120,7 @@ def _of_interpolation(case: Case) -> Iterator[str]:
     modes = case.modes
     swings = np.flatnonzero(modes.stiffness > 0)
     for name, signal in _named_signals(case):
-        spectrum = _spectrum(signal) if isinstance(signal, Record) and swings.size else None
+        spectrum = _spectrum(signal) if isinstance(signal, Sampled) and swings.size else None
         if spectrum is None:
             continue
         if name.startswith("load"):
@@ -134,14 +143,14 @@ def _of_interpolation(case: Case) -> Iterator[str]:
             )
 
 
-def _spectrum(record: Record) -> tuple[float, Vector, Vector] | None:
+def _spectrum(record: Sampled) -> tuple[float, Vector, Vector] | None:
     """Return the sampling rate of a record [Hz], bands [Hz] and their power; None of one that is not evenly sampled."""
-    times, values = np.array(record.times), np.array(record.values)
+    times, values = record.polyline()
     step = (times[-1] - times[0]) / (times.size - 1)
     if times.size < _SAMPLED or np.max(np.abs(np.diff(times) - step)) > 1e-3 * step:
         return None
     # Without its end points on one level a record would have a step, which no harmonic of it means.
-    values -= np.linspace(values[0], values[-1], values.size)
+    values = values - np.linspace(values[0], values[-1], values.size)
     power = np.abs(np.fft.rfft(values[:-1]))[1:] ** 2
     if not power.any():
         return None

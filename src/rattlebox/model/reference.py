@@ -6,7 +6,7 @@ from .case import Case
 from .contacts import Contact, Tsuji
 from .dampers import ImpactDamper, Sphere
 from .methods import EventDriven, Newton, Output, TwoStep
-from .signals import HalfSine
+from .shocks import HalfSine
 from .structures import SDOF
 
 

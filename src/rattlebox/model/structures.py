@@ -12,11 +12,12 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, mo
 
 from rattlebox._util.narrow import present
 
+from .any_signal import AnySignal
 from .base import AlsoTakes, Part
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of, several
 from .modes import ModalModel
-from .signals import AnySignal, Signal, Unit, signals_in
+from .signals import Signal, Unit, signals_in
 from .units import (
     LARGEST,
     SI,

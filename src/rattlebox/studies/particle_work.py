@@ -20,8 +20,8 @@ from rattlebox.engines.dem import objection, settled, simulate_dem
 from rattlebox.engines.dem_step import WARNINGS, warnings_of
 from rattlebox.engines.status import REFUSED, STATUSES
 from rattlebox.model.errors import Hint
+from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
-from rattlebox.model.signals import Harmonic
 from rattlebox.model.space import unit_vector
 from rattlebox.results import GranularRun
 from rattlebox.results.schema import GRANULAR_CHANNELS

@@ -22,7 +22,10 @@ CASES = {
     ),
     "two loads": rb.Case(
         structure=rb.SDOF(mass=1.0, stiffness=3.0, damping_ratio=1.5),
-        load=[rb.chirp("1 N", 1.0, 5.0, 1.0, rate=50), rb.Harmonic(amplitude=1 / 3, frequency="2 rad/s", stop=0.5)],
+        load=[
+            rb.SineSweep(amplitude="1 N", first_frequency=1.0, last_frequency=5.0, duration=1.0),
+            rb.Harmonic(amplitude=1 / 3, frequency="2 rad/s", stop=0.5),
+        ],
         duration=1.0,
         output=rb.Output(rate="1 kHz"),
     ),

@@ -230,24 +230,12 @@ def test_values_of_signals() -> None:
     )
 
 
-@pytest.mark.parametrize("method", ["linear", "logarithmic"])
-def test_chirp_sweeps_its_frequencies(method: str) -> None:
-    """The periods at both ends of a chirp are those of its first and last frequency."""
-    record = rb.chirp("2 N", 2.0, 10.0, 20.0, method=method)
-    t, x = np.array(record.times), np.array(record.values)
-    rises = t[1:][(x[:-1] < 0) & (x[1:] >= 0)]
-    assert record.unit == "N"
-    assert np.abs(x).max() == pytest.approx(2.0, rel=1e-3)
-    assert rises[0] == pytest.approx(0.5, rel=0.05)
-    assert 1 / (rises[-1] - rises[-2]) == pytest.approx(10.0, rel=0.02)
-
-
 def test_random_record_has_its_density() -> None:
     """The mean square of a random record is the integral of its density, it covers the run, and its seed fixes it."""
-    make = [rb.random_record([(10.0, 2e-3), (100.0, 2e-3)], 100.0, 500.0, seed=s) for s in (1, 1, 2)]
+    make = [rb.Random([(10.0, 2e-3), (100.0, 2e-3)], 100.0, 500.0, seed=s) for s in (1, 1, 2)]
     values = np.array(make[0].values)
     assert make[0] == make[1]
-    assert make[0].values != make[2].values
+    assert (make[0].values != make[2].values).any()
     assert make[0].times[-1] == 100.0
     assert np.mean(values**2) == pytest.approx(2e-3 * 90.0, rel=0.05)
 
@@ -255,16 +243,15 @@ def test_random_record_has_its_density() -> None:
 @pytest.mark.parametrize(("duration", "rate"), [(0.333, 1000), (0.3, 1000), (0.07, 1000), (0.29, 1000), (1 / 3, 3000)])
 def test_random_record_covers_its_duration(duration: float, rate: float) -> None:
     """A random record lasts to its duration or to the first point after it, whatever rounding makes of their number."""
-    record = rb.random_record([(10.0, 1.0), (50.0, 1.0)], duration, rate)
+    record = rb.Random([(10.0, 1.0), (50.0, 1.0)], duration, rate)
     assert len(record.times) == 1 + math.ceil(round(duration * rate, 9))
     rb.Case(structure=rb.SDOF(mass=1.0, stiffness=1.0), load=record, duration=duration)
 
 
-def test_helpers_that_make_records_take_units() -> None:
-    """Chirps and random records are the same from quantities with units and from numbers in SI."""
-    assert rb.chirp("1 N", "1 Hz", "5 Hz", "200 ms", rate="1 kHz") == rb.chirp("1 N", 1.0, 5.0, 0.2, rate=1000)
+def test_random_vibration_takes_units() -> None:
+    """Random vibration is the same from quantities with units and from numbers in SI."""
     psd = [(10.0, 1.0), (50.0, 1.0)]
-    assert rb.random_record(psd, "500 ms", "1 kHz") == rb.random_record(psd, 0.5, 1000.0)
+    assert rb.Random(psd, "500 ms", "1 kHz") == rb.Random(psd, 0.5, 1000.0)
 
 
 BOX = rb.ParticleDamper(

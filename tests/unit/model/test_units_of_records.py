@@ -111,9 +111,9 @@ PSD_UNITS: list[tuple[dict[str, Any], float, str | None]] = [
 @pytest.mark.parametrize(("given", "factor", "unit"), PSD_UNITS)
 def test_units_of_densities(given: dict[str, Any], factor: float, unit: str | None) -> None:
     """A random record takes densities in squares of units per Hz, and is in SI."""
-    plain = rb.random_record([(10, 0.04), (20, 0.04)], 1.0)
+    plain = rb.Random([(10, 0.04), (20, 0.04)], 1.0)
     density = given.pop("density")
-    record = rb.random_record([("10 Hz", density), ("0.02 kHz", density)], "1 s", direction="x", **given)
+    record = rb.Random([("10 Hz", density), ("0.02 kHz", density)], "1 s", direction="x", **given)
     assert (record.unit, record.direction) == (unit, "x")
     np.testing.assert_allclose(record.values, factor * np.array(plain.values), rtol=1e-12)
 
@@ -121,22 +121,34 @@ def test_units_of_densities(given: dict[str, Any], factor: float, unit: str | No
 @pytest.mark.parametrize(
     ("psd", "options", "said"),
     [
-        ([(10, 1), (20, 1)], {"unit": "furlong"}, r"unit\n  'furlong' is not a unit"),
-        ([(10, "1 g/Hz"), (20, 1)], {}, r"psd\[0\]\[1\]\n  'g/Hz' is not the unit of a power spectral density"),
-        ([(10, "1 g^2/Hz"), (20, "1 N^2/Hz")], {}, r"psd\[1\]\[1\]\n  the density of a force, but others"),
-        ([(10, "1 g^2/Hz"), (20, "1 g^2/Hz")], {"unit": "N"}, r"psd\[0\]\[1\]\n  the density of an acceleration"),
+        ([(10, 1), (20, 1)], {"unit": "furlong"}, r"unit = 'furlong'\n  'furlong' is not a unit"),
+        (
+            [(10, "1 g/Hz"), (20, 1)],
+            {},
+            r"psd\[0\]\[1\] = '1 g/Hz'\n  'g/Hz' is not the unit of a power spectral density",
+        ),
+        (
+            [(10, "1 g^2/Hz"), (20, "1 N^2/Hz")],
+            {},
+            r"psd\[1\]\[1\] = '1 N\^2/Hz'\n  the density of a force, but others",
+        ),
+        (
+            [(10, "1 g^2/Hz"), (20, "1 g^2/Hz")],
+            {"unit": "N"},
+            r"psd\[0\]\[1\] = '1 g\^2/Hz'\n  the density of an acceleration",
+        ),
         ([(10, "1 furlong^2/Hz"), (20, 1)], {}, "not the unit of a power spectral density"),
-        ("psd.csv", {}, "positive .* pairs"),
+        ("psd.csv", {}, "no density has this name"),
     ],
 )
 def test_wrong_units_of_densities(psd: Any, options: dict[str, Any], said: str) -> None:
     """Units that are none of a density, or contradict each other, are refused with what to write."""
     with pytest.raises(rb.CaseError, match=said):
-        rb.random_record(psd, 1.0, **options)
+        rb.Random(psd, 1.0, **options)
 
 
 def test_a_rate_that_is_too_low_is_raised() -> None:
     """A random record has sixteen points in the shortest period at least, and more where they are asked for."""
     psd = [(10, 1.0), (50, 1.0)]
-    assert len(rb.random_record(psd, 1.0, 100).times) == len(rb.random_record(psd, 1.0).times) == 801
-    assert len(rb.random_record(psd, 1.0, 2000).times) == 2001
+    assert len(rb.Random(psd, 1.0, 100).times) == len(rb.Random(psd, 1.0).times) == 801
+    assert len(rb.Random(psd, 1.0, 2000).times) == 2001

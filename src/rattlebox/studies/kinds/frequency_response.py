@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint
-from rattlebox.model.signals import Harmonic
+from rattlebox.model.harmonics import Harmonic
 from rattlebox.studies.axes import Design
 from rattlebox.studies.continuation import follow
 from rattlebox.studies.impact_work import ImpactWork

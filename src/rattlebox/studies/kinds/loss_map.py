@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox.model.errors import Hint
-from rattlebox.model.signals import Harmonic
+from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.structures import Shaker
 from rattlebox.studies.axes import Design
 from rattlebox.studies.kinds.sweep import sweep

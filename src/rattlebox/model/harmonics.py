@@ -1,0 +1,213 @@
+"""Harmonics and sine sweeps."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, WithJsonSchema, model_validator
+
+from rattlebox._util.narrow import present
+
+from .elementwise import Vector, power
+from .errors import Hint
+from .signals import Amplitude, Points, Polyline, Signal
+from .units import Angle, NotNegativeTime, PositiveFrequency, PositiveTime
+
+if TYPE_CHECKING:
+    from typing import Self
+
+
+class Harmonic(Signal):
+    """A harmonic, amplitude sin(2 pi frequency t + phase) for start <= t < stop.
+
+    Parameters
+    ----------
+    amplitude
+        Peak value, with its unit.
+    frequency
+        In Hz; text in "rad/s" is an angular frequency.
+    phase
+        In rad, or text in "deg".
+    start, stop
+        When it acts [s]; stop is left out for good.
+    """
+
+    kind: Literal["harmonic"] = "harmonic"
+    amplitude: Amplitude
+    frequency: PositiveFrequency
+    phase: Angle = 0.0
+    start: NotNegativeTime = 0.0
+    stop: PositiveTime | None = None
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Harmonic:
+        if self.stop is not None and self.stop <= self.start:
+            raise Hint(f"must be later than start, {self.start:g} s", place=["stop"])
+        return self
+
+    def evaluate(self, time: Any) -> NDArray[np.float64]:
+        """Return the values at the given times [s]."""
+        t = np.asarray(time, dtype=float)
+        inside = (t >= self.start) & (t < (math.inf if self.stop is None else self.stop))
+        return np.where(inside, self.amplitude * np.sin(2 * math.pi * self.frequency * t + self.phase), 0.0)
+
+    def coefficients(self) -> dict[str, Any]:
+        """Return what the core reads."""
+        return {
+            "kind": "harmonic",
+            "amplitude": +self.amplitude,  # a plain number
+            "frequency": 2 * math.pi * self.frequency,
+            "phase": self.phase,
+            "start": self.start,
+            "stop": math.inf if self.stop is None else self.stop,
+        }
+
+    def acceleration(self) -> Harmonic:
+        """Return the acceleration that belongs to a harmonic displacement."""
+        factor = -power(2 * math.pi * self.frequency, 2)
+        return self.model_copy(update={"amplitude": self.amplitude * factor, "unit": "m/s^2"})
+
+
+POINTS_PER_CYCLE = 32
+"""Points of a sine sweep in each cycle."""
+
+MOST_POINTS = 20_000_000
+"""Most points of a sine sweep."""
+
+_RATE = re.compile(r"^\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(oct(?:ave)?s?|dec(?:ade)?s?|Hz)\s*/\s*(s|sec|min)\s*$")
+
+
+def _sweep_rate(value: Any) -> str:
+    match = _RATE.match(value) if isinstance(value, str) else None
+    if match is None:
+        raise Hint("a sweep rate is text with a unit: oct/min, oct/s, dec/min, Hz/s or Hz/min", '"2 oct/min"')
+    if not 0 < float(match[1]) < 1e30:
+        raise Hint(
+            "must be greater than zero; a sweep goes down where it begins at its highest frequency", '"2 oct/min"'
+        )
+    return match[0].strip()
+
+
+SweepRate = Annotated[
+    str,
+    BeforeValidator(_sweep_rate),
+    WithJsonSchema(
+        {"type": "string", "description": "oct/min, oct/s, dec/min, Hz/s or Hz/min", "examples": ["2 oct/min"]}
+    ),
+]
+
+
+class SineSweep(Polyline):
+    """A sine sweep of constant level, up or down, of which the frequency grows or falls by a constant rate.
+
+    Parameters
+    ----------
+    amplitude
+        Peak value at all frequencies, with its unit.
+    first_frequency, last_frequency
+        Frequencies at the begin and at the end [Hz]; a sweep goes down where the last is lower.
+    sweep_rate
+        "2 oct/min", "1 oct/s", "1 dec/min" (logarithmic), "5 Hz/s" or "100 Hz/min" (linear).
+    duration
+        Length [s] of a logarithmic sweep, instead of a rate.
+    start
+        Begin [s]; before it and after its end the sweep is zero.
+
+    Notes
+    -----
+    With f = f_1 2^(r t) the phase is 2 pi f_1 (2^(r t) - 1) / (r ln 2), with f = f_1 + r t it is 2 pi (f_1 t + r t^2 / 2);
+    r is negative on the way down. The sweep ends with the half cycle in which it reaches the last frequency.
+
+    The sweep is drawn by straight lines between 32 points a cycle, at equal steps of phase. Their values are divided by
+    sinc^2(1/32), so that the amplitude of the sine is the one given at all frequencies; what remains are harmonics 31 and
+    33, of 0.1 % each, and a peak that is 0.3 % too high.
+    """
+
+    kind: Literal["sine_sweep"] = "sine_sweep"
+    amplitude: Amplitude
+    first_frequency: PositiveFrequency
+    last_frequency: PositiveFrequency
+    sweep_rate: SweepRate | None = None
+    duration: PositiveTime | None = None
+    start: NotNegativeTime = 0.0
+
+    @model_validator(mode="after")
+    def _sound(self) -> Self:
+        if (self.sweep_rate is None) == (self.duration is None):
+            raise Hint("a sweep needs a rate or a duration, one of them", 'sweep_rate = "2 oct/min"', ["sweep_rate"])
+        if self.first_frequency == self.last_frequency:
+            raise Hint(
+                "a sweep needs two frequencies that differ", 'kind = "harmonic" for one frequency', ["last_frequency"]
+            )
+        cycles = self._cycles()
+        if cycles * POINTS_PER_CYCLE > MOST_POINTS:
+            raise Hint(
+                f"the sweep has {cycles:.3g} cycles; at most {MOST_POINTS // POINTS_PER_CYCLE} are allowed",
+                "a faster sweep, or parts of it one after the other",
+                ["sweep_rate" if self.duration is None else "duration"],
+            )
+        return self
+
+    @property
+    def _rate(self) -> tuple[float, bool]:
+        """Rate with its sign [oct/s or Hz/s], and whether it is linear."""
+        if self.duration is not None:
+            return math.log2(self.last_frequency / self.first_frequency) / self.duration, False
+        match = present(_RATE.match(self.sweep_rate or ""))
+        number = (
+            float(match[1])
+            / (60 if match[3] == "min" else 1)
+            * (1 if self.last_frequency > self.first_frequency else -1)
+        )
+        return number * (math.log2(10) if match[2].startswith("dec") else 1), match[2] == "Hz"
+
+    @property
+    def length(self) -> float:
+        """Time from the first to the last frequency [s]."""
+        rate, linear = self._rate
+        if linear:
+            return (self.last_frequency - self.first_frequency) / rate
+        return math.log2(self.last_frequency / self.first_frequency) / rate
+
+    def _cycles(self) -> float:
+        """Number of cycles from the first to the last frequency."""
+        rate, linear = self._rate
+        if linear:
+            return (self.first_frequency + self.last_frequency) / 2 * self.length
+        return (self.last_frequency - self.first_frequency) / (rate * math.log(2))
+
+    def frequency_at(self, time: Any) -> NDArray[np.float64]:
+        """Return the frequency at the given times [Hz], which stays at its ends before and after the sweep."""
+        rate, linear = self._rate
+        t = np.clip(np.asarray(time, dtype=float) - self.start, 0.0, self.length)
+        if linear:
+            return np.asarray(self.first_frequency + rate * t)
+        return np.asarray(self.first_frequency * np.exp2(rate * t))
+
+    def polyline(self) -> tuple[Vector, Vector]:
+        """Return times [s] and values of its points."""
+        return self._points.times, self._points.values
+
+    @cached_property
+    def _points(self) -> Points:
+        rate, linear = self._rate
+        first = self.first_frequency
+        halves = math.ceil(2 * self._cycles() * (1 - 1e-12))
+        cycle = np.arange(halves * POINTS_PER_CYCLE // 2 + 1) / POINTS_PER_CYCLE
+        if linear:  # the root that is right for small rates
+            inside = first * first + 2 * rate * cycle
+            times = 2 * cycle / (first + np.sqrt(np.maximum(inside, 0.0)))
+        else:
+            times = np.log1p(np.maximum(cycle * rate * math.log(2) / first, -1 + 1e-15)) / (rate * math.log(2))
+        values = +self.amplitude * np.sin(2 * math.pi * cycle) / np.sinc(1 / POINTS_PER_CYCLE) ** 2
+        values[[0, -1]] = 0.0
+        lead = 1 / first
+        times = self.start + times
+        return Points(
+            np.concatenate([[times[0] - lead], times, [times[-1] + lead]]), np.concatenate([[0.0], values, [0.0]])
+        )

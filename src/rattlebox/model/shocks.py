@@ -1,0 +1,131 @@
+"""Shocks: half sine, sawtooth, trapezoid."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import model_validator
+
+from .elementwise import Vector
+from .errors import Hint
+from .signals import Amplitude, Polyline, Signal
+from .units import NotNegativeTime, PositiveTime
+
+if TYPE_CHECKING:
+    from typing import Self
+
+
+class Shock(Signal):
+    """What all shocks share."""
+
+    amplitude: Amplitude
+    duration: PositiveTime
+    start: NotNegativeTime = 0.0
+
+
+class HalfSine(Shock):
+    """A half-sine pulse, amplitude sin(pi (t - start) / duration) for start <= t < start + duration.
+
+    Parameters
+    ----------
+    amplitude
+        Peak value, with its unit.
+    duration, start
+        Length and begin of the pulse [s].
+    """
+
+    kind: Literal["half_sine"] = "half_sine"
+
+    def evaluate(self, time: Any) -> NDArray[np.float64]:
+        """Return the values at the given times [s]."""
+        t = np.asarray(time, dtype=float)
+        inside = (t >= self.start) & (t < self.start + self.duration)
+        return np.where(inside, self.amplitude * np.sin(math.pi * (t - self.start) / self.duration), 0.0)
+
+    def coefficients(self) -> dict[str, Any]:
+        """Return what the core reads."""
+        return {
+            "kind": "half_sine",
+            "amplitude": +self.amplitude,  # a plain number
+            "frequency": math.pi / self.duration,
+            "phase": 0.0,
+            "start": self.start,
+            "stop": self.start + self.duration,
+        }
+
+
+class Sawtooth(Shock, Polyline):
+    """A sawtooth pulse: a straight rise to the peak at the end, or a straight fall from the peak at the begin.
+
+    Parameters
+    ----------
+    amplitude
+        Peak value, with its unit.
+    duration, start
+        Length D and begin of the pulse [s].
+    peak
+        "terminal", at the end, or "initial", at the begin; there the pulse jumps.
+
+    Notes
+    -----
+    The velocity changes by amplitude D / 2. IEC 60068-2-27 and MIL-STD-810 use the pulse with a terminal peak.
+    """
+
+    kind: Literal["sawtooth"] = "sawtooth"
+    peak: Literal["terminal", "initial"] = "terminal"
+
+    def polyline(self) -> tuple[Vector, Vector]:
+        """Return times [s] and values of its corners."""
+        stop = self.start + self.duration
+        jump = self.start if self.peak == "initial" else stop
+        times = sorted([self.start - self.duration, self.start, stop, jump, stop + self.duration])
+        values = [0.0, 0.0, self.amplitude, 0.0, 0.0]
+        return np.array(times), np.array(values)
+
+
+class Trapezoid(Shock, Polyline):
+    """A trapezoidal pulse: a straight rise, a constant value, and a straight fall.
+
+    Parameters
+    ----------
+    amplitude
+        Constant value, with its unit.
+    duration, start
+        Length D of the whole pulse and its begin [s].
+    rise, fall
+        Length of the rise and of the fall [s]; without `fall` it is as long as the rise. Left out, each is a tenth of the
+        duration; 0 is a jump.
+
+    Notes
+    -----
+    The velocity changes by amplitude (D - (rise + fall) / 2). IEC 60068-2-27 has a trapezoid with tenths.
+    """
+
+    kind: Literal["trapezoid"] = "trapezoid"
+    rise: NotNegativeTime | None = None
+    fall: NotNegativeTime | None = None
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        if sum(self._ramps()) > self.duration * (1 + 1e-12):
+            raise Hint(
+                f"rise and fall last {sum(self._ramps()):.6g} s, longer than the pulse of {self.duration:.6g} s",
+                "a longer duration, or a shorter rise",
+                ["rise"],
+            )
+        return self
+
+    def _ramps(self) -> tuple[float, float]:
+        rise = 0.1 * self.duration if self.rise is None else self.rise
+        return rise, rise if self.fall is None else self.fall
+
+    def polyline(self) -> tuple[Vector, Vector]:
+        """Return times [s] and values of its corners."""
+        rise, fall = self._ramps()
+        stop = self.start + self.duration
+        full = self.start + rise
+        times = [self.start - self.duration, self.start, full, max(stop - fall, full), stop, stop + self.duration]
+        return np.array(times), np.array([0.0, 0.0, self.amplitude, self.amplitude, 0.0, 0.0])
