@@ -1,6 +1,7 @@
 """Functions of runs and of sampled signals: spectra, portraits, decay, measures, energy, chaos."""
 
 from .chaos import lyapunov_exponent
+from .damping_curve import damping_over_amplitude
 from .decay import damping_ratio, decay_envelope
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
 from .granular import shaken_cavity
@@ -22,6 +23,7 @@ __all__ = [
     "amplitude_spectrum",
     "band_levels",
     "complex_power",
+    "damping_over_amplitude",
     "damping_ratio",
     "decay_envelope",
     "energy_shares",

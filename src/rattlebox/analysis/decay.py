@@ -43,7 +43,7 @@ def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
     ValueError
         When times are not evenly spaced, a sample is not finite, or the record is too short or too coarse.
     """
-    t, signal, _ = _analytic(time, values)
+    t, signal, _ = analytic_signal(time, values)
     return labelled("amplitude", np.abs(signal), units_of(values), "amplitude", time=t)
 
 
@@ -94,7 +94,7 @@ def damping_ratio(
 def _by_hilbert(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
     from scipy.signal import oaconvolve, savgol_coeffs
 
-    t, signal, cycle = _analytic(time, values)
+    t, signal, cycle = analytic_signal(time, values)
     dead = np.abs(signal) < 1e-15 * np.max(np.abs(signal))
     if dead.any():
         raise ValueError(f"values have died out by {t[dead][0]:.4g} s; cut the record before")
@@ -109,7 +109,7 @@ def _by_hilbert(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatAr
 def _by_decrement(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
     from scipy.signal import find_peaks
 
-    t, x, cycle = _oscillation(time, values)
+    t, x, cycle = oscillation(time, values)
     size = np.abs(x)
     k = find_peaks(size, distance=max(1.0, 0.35 * cycle))[0]
     # The vertex of the sinusoid through three samples.
@@ -124,11 +124,11 @@ def _by_decrement(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, Float
     return times[1:-1], peaks[1:-1] / np.sqrt(1 - ratio**2), ratio
 
 
-def _analytic(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, np.ndarray, float]:
+def analytic_signal(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, np.ndarray, float]:
     """Return times, analytic signal and samples a cycle."""
     from scipy.signal import oaconvolve
 
-    t, x, cycle = _oscillation(time, values)
+    t, x, cycle = oscillation(time, values)
     half = round(_CYCLES * cycle / 2)
     n = np.arange(-half, half + 1)
     odd = n % 2 == 1
@@ -140,7 +140,7 @@ def _analytic(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, np.ndarra
     return t[inner], x[inner] + 1j * quadrature, cycle
 
 
-def _oscillation(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatArray, float]:
+def oscillation(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatArray, float]:
     """Return a signal and the samples in a cycle of its dominant frequency."""
     from scipy.signal import periodogram
 

@@ -207,6 +207,23 @@ class DampedModes(StructurePart):
         return np.asarray(np.array(self.damping_ratio or 0.0) * np.sqrt(stiffness))
 
 
+def check_damping(matrix: Vector, count: int) -> None:
+    """Raise if a modal damping matrix does not fit.
+
+    Raises
+    ------
+    Hint
+        If it has another size than (count, count), is not symmetric, or would give energy to a motion.
+    """
+    place = ["damping_matrix"]
+    if matrix.shape != (count, count):
+        raise Hint(f"the matrix has shape {matrix.shape}, but there are {several(count, 'mode')}", place=place)
+    if not np.allclose(matrix, matrix.T, rtol=1e-12, atol=1e-12 * np.abs(matrix).max()):
+        raise Hint("the matrix is not symmetric", "D = (D + D^T) / 2, if the difference is rounding", place)
+    if np.linalg.eigvalsh(matrix).min() < -1e-9 * np.abs(matrix).max():
+        raise Hint("the matrix is not positive semidefinite: a motion would gain energy", place=place)
+
+
 def _one_each(value: Any) -> Any:
     if isinstance(value, (int, float, str)) and not isinstance(value, bool):
         one = f'"{value}"' if isinstance(value, str) else f"{value}"
@@ -221,8 +238,9 @@ class Modal(StructurePart):
     ----------
     frequencies
         Undamped natural frequencies [Hz]; 0 is a rigid-body mode.
-    damping_ratios
-        One for each mode.
+    damping_ratios, damping_matrix
+        One ratio for each mode, or the modal damping matrix D of q'' + D q' + w^2 q = f [1/s], whose diagonal is 2 w times
+        the ratios; one of them.
     shapes
         Mass-normalised mode shapes at named points, one number for each mode [kg^-1/2]; or three, along x, y and z, for a
         point that moves in space.
@@ -235,11 +253,49 @@ class Modal(StructurePart):
 
     kind: Literal["modal"] = "modal"
     frequencies: list[Frequency] = Field(examples=[["10 Hz", "62 Hz"]])
-    damping_ratios: Annotated[list[Ratio], BeforeValidator(_one_each)] = Field(examples=[[0.01, 0.01]])
+    damping_ratios: Annotated[list[Ratio] | None, BeforeValidator(_one_each)] = Field(
+        default=None, examples=[[0.01, 0.01]]
+    )
+    damping_matrix: Annotated[Matrix | None, SI("1/s")] = None
     shapes: Annotated[dict[str, Shape], SI("kg^-0.5")] = Field(examples=[{"tip": [0.7, -0.7]}])
     participation: Annotated[Shape | None, SI("kg^0.5")] = None
     displacement: Annotated[Numbers | None, SI("kg^0.5 m")] = None
     velocity: Annotated[Numbers | None, SI("kg^0.5 m/s")] = None
+
+    @classmethod
+    def of(cls, model: ModalModel, **options: Any) -> Modal:
+        """Return the structure with the modes of another one.
+
+        Parameters
+        ----------
+        model
+            What `modes()` of a structure returns.
+        **options
+            displacement and velocity in the place of those of the model.
+
+        Raises
+        ------
+        CaseError
+            If the modes do not fit.
+        """
+        rigid = model.stiffness <= 0
+        matrix = np.diag(2 * model.decay) + (0.0 if model.coupling is None else model.coupling)
+        plain = model.coupling is None and not np.any(model.decay[rigid])
+        omega = np.sqrt(model.stiffness)
+        own: dict[str, Any] = {"damping_matrix": matrix.tolist()}
+        if plain:
+            own = {"damping_ratios": np.divide(model.decay, omega, out=np.zeros_like(omega), where=~rigid).tolist()}
+        return cls(
+            **{
+                "frequencies": (omega / (2 * math.pi)).tolist(),
+                **own,
+                "shapes": {name: shape.tolist() for name, shape in model.shapes.items()},
+                "participation": None if model.participation is None else model.participation.tolist(),
+                "displacement": model.q0.tolist(),
+                "velocity": model.p0.tolist(),
+                **{name: np.asarray(value).tolist() for name, value in options.items()},
+            }
+        )
 
     @model_validator(mode="after")
     def _same_lengths(self) -> Self:
@@ -257,6 +313,15 @@ class Modal(StructurePart):
                     "one number for each mode",
                     name.split(".", 1),
                 )
+        if (self.damping_ratios is None) == (self.damping_matrix is None):
+            both = (
+                "damping_ratios and damping_matrix say the same thing twice"
+                if self.damping_ratios
+                else "damping is needed"
+            )
+            raise Hint(both, "damping_ratios = [0.01, 0.01], 0 for no damping", ["damping_ratios"])
+        if self.damping_matrix is not None:
+            check_damping(np.array(self.damping_matrix), count)
         if not self.shapes:
             raise Hint("at least one named point is needed", "shapes = { tip = [...] }", ["shapes"])
         if self.participation is not None and isinstance(self.participation[0], list) != bool(self._spatial()):
@@ -265,6 +330,18 @@ class Modal(StructurePart):
                 place=["participation"],
             )
         return self
+
+    def _decay(self, omega: list[Any]) -> Vector:
+        if self.damping_ratios is None:
+            return np.diag(np.array(self.damping_matrix)) / 2
+        return stacked([ratio * w for ratio, w in zip(self.damping_ratios, omega, strict=True)])
+
+    def _coupling(self) -> Vector | None:
+        if self.damping_matrix is None:
+            return None
+        matrix = np.array(self.damping_matrix)
+        coupling = matrix - np.diag(np.diag(matrix))
+        return coupling if coupling.any() else None
 
     def _spatial(self) -> frozenset[str]:
         """Points that move in space."""
@@ -275,7 +352,8 @@ class Modal(StructurePart):
         omega = [2 * math.pi * frequency for frequency in self.frequencies]
         zero = [0.0] * len(omega)
         return ModalModel(
-            decay=stacked([ratio * w for ratio, w in zip(self.damping_ratios, omega, strict=True)]),
+            decay=self._decay(omega),
+            coupling=self._coupling(),
             stiffness=stacked([w * w for w in omega]),
             shapes={name: stacked(row) for name, row in self.shapes.items()},
             participation=None if self.participation is None else stacked(self.participation),

@@ -3,6 +3,7 @@
 from .basins import plot_basins
 from .bifurcation import plot_bifurcation
 from .compare import plot_comparison
+from .damping_curve import plot_damping_curve
 from .energy import plot_energy
 from .granular import plot_granular_motion
 from .impacts import plot_impacts
@@ -42,6 +43,7 @@ __all__ = [
     "plot_basins",
     "plot_bifurcation",
     "plot_comparison",
+    "plot_damping_curve",
     "plot_energy",
     "plot_frequency_response",
     "plot_granular_motion",

@@ -1,0 +1,85 @@
+"""Damping ratio over the amplitude of vibration."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import xarray
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from .style import (
+    FAINT,
+    SERIES_COLOURS,
+    SERIES_MARKERS,
+    SERIES_STYLES,
+    Size,
+    StyledFigure,
+    figure_style,
+    label,
+    pen,
+    scaled,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *, size: Size = "column") -> Figure:
+    """Draw the damping ratio over the amplitude, with its 95 % interval, and that of the structure alone.
+
+    Parameters
+    ----------
+    curves
+        From `rattlebox.damping_curve`, or several of them by name.
+    size
+        Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+    """
+    named = {"": curves} if isinstance(curves, xarray.Dataset) else dict(curves)
+    with figure_style(size):
+        figure = StyledFigure(size, 0.62)
+        axes = figure.subplots()
+        amplitudes = xarray.concat([curve.amplitude.reset_coords(drop=True) for curve in named.values()], "amplitude")
+        divisor, unit = scaled(amplitudes.assign_attrs(units="m"), "m")
+        for number, (name, curve) in enumerate(named.items()):
+            _draw(axes, curve, name, number, divisor)
+        first = next(iter(named.values()))
+        for curve in named.values():
+            axes.plot(
+                curve.amplitude / divisor,
+                100 * curve.bare,
+                color=FAINT,
+                lw=pen(0.8),
+                zorder=0,
+                label="structure alone" if curve is first else None,
+            )
+        axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.set_ylim(bottom=0)
+        label(axes, "x", "Amplitude", unit)
+        label(axes, "y", "Damping ratio", "%")
+        axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
+    return figure
+
+
+def _draw(axes: Axes, curve: xarray.Dataset, name: str, number: int, divisor: float) -> None:
+    colour = SERIES_COLOURS[number % len(SERIES_COLOURS)]
+    x = curve.amplitude / divisor
+    axes.fill_between(x, 100 * curve.lower, 100 * curve.upper, color=colour, alpha=0.25, lw=0)
+    axes.plot(
+        x,
+        100 * curve.damping_ratio,
+        color=colour,
+        ls=SERIES_STYLES[number % len(SERIES_STYLES)],
+        marker=SERIES_MARKERS[number % len(SERIES_MARKERS)],
+        ms=pen(3),
+        label=name or "with damper",
+    )

@@ -1,0 +1,130 @@
+"""The three ways to a damping curve agree, with each other and with what is known."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+LEVELS = [2e-4, 4e-4, 8e-4]
+
+
+@pytest.mark.parametrize("way", ["decay", "energy", "shaking"])
+@pytest.mark.parametrize(
+    "structure",
+    [
+        rb.SDOF(mass=3, frequency=50, damping_ratio=0.02),
+        rb.Beam(length="0.4 m", width="30 mm", height="20 mm", material="steel", damping_ratio=0.02),
+    ],
+    ids=["sdof", "beam"],
+)
+def test_a_linear_damper(way: Any, structure: Any) -> None:
+    """A tuned mass far below the mode adds its closed-form damping, by each of the three ways to 1 %."""
+    point = "mass" if structure.kind == "sdof" else "tip"
+    modes = structure.modes()
+    frequency = math.sqrt(modes.stiffness[0]) / (2 * math.pi)
+    tuned = rb.TunedMass(
+        mass=0.01 / modes.shape(point)[0] ** 2, frequency=0.3 * frequency, damping_ratio=1.0, point=point
+    )
+    case = rb.Case(structure=structure, tuned_mass=tuned, duration=40 / frequency)
+    found = rb.damping_curve(case, LEVELS, way=way, packings=1, point=point)
+    impedance = 0.09 + 0.6j  # stiffness of the tuned mass over m w^2
+    added = -0.01 / 2 * (impedance / (impedance - 1)).imag
+    np.testing.assert_allclose(found.damping_ratio, 0.02 + added, rtol=0.01)
+    np.testing.assert_allclose(found.bare, 0.02)
+
+
+def ball_case(**options: Any) -> rb.Case:
+    """Return a ball on a lightly damped structure."""
+    return rb.Case(
+        structure=rb.SDOF(mass="3 kg", frequency="50 Hz", damping_ratio=0.005),
+        damper=rb.ImpactDamper(
+            ball=rb.Sphere(radius="11 mm", material="steel"), gap="0.5 mm", contact=rb.Tsuji(restitution=0.5)
+        ),
+        duration="2 s",
+        **options,
+    )
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.8])
+def test_one_ball_by_three_ways(restitution: float) -> None:
+    """For a ball that moves steadily at each amplitude of a slow decay, the ways agree to their intervals and 1 %."""
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="11 mm", material="steel"), gap="0.5 mm", contact=rb.Tsuji(restitution=restitution)
+    )
+    case = rb.Case(structure=rb.SDOF(mass=30, frequency=50, damping_ratio=0.001), damper=damper, duration="6 s")
+    levels = [2.5e-4, 3.2e-4, 4e-4]
+    found = {way: rb.damping_curve(case, levels, way=way, packings=4) for way in ("decay", "energy", "shaking")}
+    decay = found["decay"]
+    assert np.all(decay.damping_ratio > 0.0012)
+    for other in (found["energy"], found["shaking"]):
+        allowed = (decay.upper - decay.lower + other.upper - other.lower) / 2 + 0.01 * decay.damping_ratio
+        np.testing.assert_array_less(abs(other.damping_ratio - decay.damping_ratio), allowed)
+
+
+def test_too_small_a_motion_is_only_the_structures() -> None:
+    """Where the ball does not reach its walls, the damping is that of the structure."""
+    found = rb.damping_curve(ball_case(), [1e-5, 2e-5, 4e-5], packings=3)
+    np.testing.assert_allclose(found.damping_ratio[:1], 0.005, rtol=0.05)
+
+
+def test_particles() -> None:
+    """A bed under gravity adds damping; the interval covers the scatter of its packings."""
+    case = rb.Case(
+        structure=rb.SDOF(mass="0.5 kg", frequency="40 Hz", damping_ratio=0.005),
+        damper=rb.ParticleDamper(
+            particles=rb.Particles(material="steel", diameter="5 mm", count=30),
+            cavity=rb.Box(size=("20 mm", "20 mm", "20 mm")),
+            contact=rb.Tsuji(restitution=0.6),
+            friction=0.2,
+            packing=rb.Settled(seed=1),
+            softening=1000,
+        ),
+        duration="1 s",
+    )
+    levels = [4e-4, 6e-4, 8e-4]
+    found = rb.damping_curve(case, levels, packings=2)
+    assert float(found.damping_ratio.max()) > 0.01
+    assert found.damping_ratios.sizes == {"packing": 2, "amplitude": 3}
+    assert np.all(found.lower <= found.damping_ratio)
+    assert found.damping_ratio.attrs["units"] == "1" and found.amplitude.attrs["units"] == "m"
+
+
+def test_a_start_that_is_not_random_has_no_scatter() -> None:
+    """Amplitudes that the decay does not pass are NaN; one packing has no interval."""
+    case = rb.Case(structure=rb.SDOF(mass=3, frequency=50, damping_ratio=0.02), duration="0.3 s")
+    found = rb.damping_curve(case, [1e-5, 5e-4, 1e-3], packings=1)
+    assert np.isnan(found.damping_ratio[0]) and np.isfinite(found.damping_ratio[2])
+    assert np.isnan(found.lower).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        ({"amplitudes": [1e-4]}, "amplitudes"),
+        ({"amplitudes": "1 mm"}, "amplitudes"),
+        ({"amplitudes": [2e-4, 1e-4]}, "amplitudes"),
+        ({"way": "guess"}, "way"),
+        ({"mode": 2}, "mode"),
+        ({"point": "tip"}, "tip"),
+        ({"packings": 0}, "packings"),
+    ],
+)
+def test_bad_arguments(change: dict[str, Any], word: str) -> None:
+    """The message names the argument."""
+    with pytest.raises(rb.CaseError, match=word):
+        rb.damping_curve(ball_case(), **{"amplitudes": LEVELS, **change})
+
+
+def test_modal_takes_any_structure() -> None:
+    """Modal.of gives the same motion as the structure whose modes it takes, coupled damping included."""
+    own = rb.Matrices(
+        M=[[2, 0], [0, 1]], C=[[0, 0], [0, 9]], K=[[3e4, -1e4], [-1e4, 1e4]], points={"tip": 1}, velocity=[0, 1]
+    )
+    runs = [
+        rb.simulate(rb.Case(structure=s, duration=0.5, output=rb.Output(rate=100)))
+        for s in (own, rb.Modal.of(own.modes()))
+    ]
+    np.testing.assert_allclose(runs[0].motion.displacement, runs[1].motion.displacement, atol=1e-15)
