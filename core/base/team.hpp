@@ -19,7 +19,6 @@ struct Alone {
     static constexpr int size() { return 1; }
     static void sync() {}
     template <class Last> static void sync(Last&& last) { last(); }
-    template <class Last, class Other> static void sync(Last&& last, Other&&) { last(); }
     static void report() {}
     template <class Other> static void await_lower(Other&&) {}
     static bool is_held_up() { return false; }
@@ -75,7 +74,7 @@ class Meetingpoint {
 public:
     explicit Meetingpoint(int size) : reports_(static_cast<std::size_t>(size)), waits_(size) {}
 
-    template <class Last, class Other> void sync(int rank, Last&& last, Other&& other) {
+    template <class Last> void sync(int rank, Last&& last) {
         const unsigned round = round_.load(std::memory_order_relaxed);
         if (waiting_.fetch_add(1, std::memory_order_acq_rel) + 1 == static_cast<int>(reports_.size())) {
             last();
@@ -85,8 +84,6 @@ public:
             return;
         }
         const auto is_over = [&] { return round_.load(std::memory_order_acquire) != round; };
-        while (!is_over() && other()) {
-        }
         wait(rank, is_over, [&] { round_.wait(round, std::memory_order_acquire); });
     }
 
@@ -127,17 +124,11 @@ public:
     Member(Meetingpoint& point, int rank, int size) : point_(&point), rank_(rank), size_(size) {}
     int rank() const { return rank_; }
     int size() const { return size_; }
-    // All have come so far; the last to come does what is to be done before any goes on, and the others
-    // something other until then, while there is some.
+    // All have come so far; the last to come does what is to be done before any goes on.
     void sync() const {
         sync([] {});
     }
-    template <class Last> void sync(Last&& last) const {
-        sync(last, [] { return false; });
-    }
-    template <class Last, class Other> void sync(Last&& last, Other&& other) const {
-        point_->sync(rank_, last, other);
-    }
+    template <class Last> void sync(Last&& last) const { point_->sync(rank_, last); }
     // Tells those of higher rank, in each round, that they may use what this member has done.
     void report() const { point_->report(rank_); }
     template <class Other> void await_lower(Other&& other) const { point_->await_lower(rank_, other); }

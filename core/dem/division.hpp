@@ -40,9 +40,9 @@ public:
 struct alignas(64) Part {
     int begin = 0, end = 0;      // among the chunks of all beds
     real reckoned = 0, busy = 0; // cost, and time that it took since
-    // Of each of them: has neighbours in higher parts, or particles that lower parts reach; whether its
-    // forces are known in this step; and whether those of pairs were known before it began.
-    std::vector<char> early, known, ahead;
+    // Of each of them: has neighbours in higher parts, or particles that lower parts reach; and whether its
+    // forces are known in this step.
+    std::vector<char> early, known;
     std::vector<Place> incoming;   // chunks of lower parts that reach here
     std::vector<int> first, until; // particles of each bed
     std::vector<Sums> sums;        // of each bed
@@ -136,7 +136,7 @@ public:
             at(ahead, p.bed) = std::max({at(ahead, p.bed), std::min(c.highest, until - 1), c.end - 1});
             at(span, p.bed) = std::max(at(span, p.bed), at(ahead, p.bed) - c.begin + 1);
         });
-        part.known.assign(part.early.size(), false), part.ahead.assign(part.early.size(), false);
+        part.known.assign(part.early.size(), false);
         for (std::size_t b = 0; b < beds; ++b) part.sums[b].make_room(span[b], (*beds_)[b].rolls);
     }
 };

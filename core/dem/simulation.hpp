@@ -58,7 +58,6 @@ class Simulation {
         bool halt = false, pause = false;
     } asked_, taken_;
     bool must_build_ = true, builds_soon_ = false; // before the next step, and before the one after it
-    bool goes_ahead_ = false;                      // who waits at the end of the step
     long told_ = -1;                               // the step whose single contacts are still known
     long builds_ = 0, late_builds_ = 0;
     Rest rest_;
@@ -240,8 +239,7 @@ class Simulation {
         known.assign(part.early.begin(), part.early.end());
         const auto forces = [&](int k, const Ahead& ahead = {}) {
             const Place p = division_.place(k);
-            if (!at(part.ahead, k - part.begin))
-                at(steps_, p.bed).pair_forces(at(neighbours_, p.bed), chunk(p), sample, ahead);
+            at(steps_, p.bed).pair_forces(at(neighbours_, p.bed), chunk(p), sample, ahead);
             at(steps_, p.bed).wall_forces(at(neighbours_, p.bed), chunk(p), sample);
         };
         {
@@ -268,11 +266,11 @@ class Simulation {
             Chunk& own = chunk(p);
             Sums& sums = at(part.sums, p.bed);
             BedStep& step = at(steps_, p.bed);
-            const bool is_known = at(known, k - part.begin), is_ahead = at(part.ahead, k - part.begin);
+            const bool is_known = at(known, k - part.begin);
             const auto lend = [&] {
                 if (is_known || last) return;
                 own.walls.actions.swap(part.at_walls);
-                if (!is_ahead) own.pairs.actions.swap(part.at_pairs);
+                own.pairs.actions.swap(part.at_pairs);
             };
             lend();
             if (!is_known) forces(k, ahead(part, k));
@@ -281,22 +279,6 @@ class Simulation {
             lend();
             step.advance(sums, own, until, all, body_before_, first, sample);
         }
-        std::ranges::fill(part.ahead, false);
-    }
-
-    // Forces of pairs in the step to come, of one more chunk, whose particles and neighbours have all moved
-    // on; false if there is none left. These forces need nothing that all are waiting for.
-    bool go_ahead(Part& part) {
-        for (int k = part.begin; k < part.end; ++k) {
-            const auto own = k - part.begin;
-            if (at(part.early, own) || at(part.ahead, own)) continue;
-            const Timed timed(&part.busy);
-            const Place p = division_.place(k);
-            at(part.ahead, own) = true;
-            at(steps_, p.bed).pair_forces(at(neighbours_, p.bed), chunk(p), false, {});
-            return true;
-        }
-        return false;
     }
 
     void check() {
@@ -379,18 +361,14 @@ class Simulation {
     void go_on(Team& team, long until, const std::atomic<bool>& stop, Pause&& pause) {
         while (step_ <= until && status_ == Status::finished && !taken_.halt && !taken_.pause) {
             if (must_build_) build(team);
-            const bool first = step_ == 0, sample = sampled(step_), goes_ahead = goes_ahead_;
+            const bool first = step_ == 0, sample = sampled(step_);
             advance(team, first, sample, step_ == until);
-            team.sync(
-                [&] {
-                    if (step_ == until) told_ = step_;
-                    conclude(first, sample);
-                    prepare();
-                    taken_ = std::exchange(asked_, {stop, pause()});
-                    goes_ahead_ = step_ < until && !builds_soon_ && !sampled(step_) && !sampled(step_ + 1) &&
-                                  !asked_.halt && !asked_.pause;
-                },
-                [&] { return goes_ahead && go_ahead(division_.part(team.rank())); });
+            team.sync([&] {
+                if (step_ == until) told_ = step_;
+                conclude(first, sample);
+                prepare();
+                taken_ = std::exchange(asked_, {stop, pause()});
+            });
         }
     }
 
@@ -418,7 +396,6 @@ class Simulation {
 
     void begin_with(Break taken) {
         taken_ = taken, asked_ = {};
-        goes_ahead_ = false;
     }
 
     // For the others, who wait.
