@@ -53,13 +53,13 @@ class Simulation {
     Status status_ = Status::finished;
     int stopped_cavity_ = 0;
     Stopped stopped_;
-    // What is asked for in one step is done after the next: members may be ahead of the step they wait in.
+    // After a step: end the run, or leave the team.
     struct Break {
         bool halt = false, pause = false;
-    } asked_, taken_;
-    bool must_build_ = true, builds_soon_ = false; // before the next step, and before the one after it
-    long told_ = -1;                               // the step whose single contacts are still known
-    long builds_ = 0, late_builds_ = 0;
+    } taken_;
+    bool must_build_ = true; // before the next step
+    long told_ = -1;         // the step whose single contacts are still known
+    long builds_ = 0;
     Rest rest_;
     long lone_steps_ = 0; // by one for a team that was held up
     Row body_before_{};
@@ -169,7 +169,7 @@ class Simulation {
 
     void choose_reach(Bed& bed) {
         constexpr real steps = 80; // a build costs as much as some ten scans: measured, and flat about this
-        const real smallest = bed.smallest, since = closing(bed).since;
+        const real smallest = bed.smallest, since = closing(bed);
         bed.reach =
             steps_since_ > 0 && since < infinity
                 ? std::clamp(since / static_cast<real>(steps_since_) * steps, 0.02 * smallest, 0.6 * smallest)
@@ -295,38 +295,30 @@ class Simulation {
             }
     }
 
-    // How much nearer to each other any two may have come since the build, and in the last step.
-    struct Closing {
-        real since, pace;
-        // Twice the pace and a little more to begin with.
-        bool may_reach(real reach) const { return !(since + 2 * pace + 0.02 * reach < reach); }
-    };
-    static Closing closing(const Bed& bed) {
+    // How much nearer to each other any two particles may have come since the build.
+    static real closing(const Bed& bed) {
         real since = 0, moved = 0;
         for (const Brief& brief : bed.briefs)
             moved = larger(moved, brief.moved), since = larger(since, brief.closed + brief.moved);
-        return {since + moved, 2 * moved};
+        return since + moved;
     }
 
     // On to the next step.
     void move_on() {
         structure().kick();
         structure().drift();
-        must_build_ = std::exchange(builds_soon_, false);
-        bool is_late = false;
+        must_build_ = false;
         for (Bed& bed : beds_) {
             const Row before = bed.motion.displacement, momentum = momentum_of(bed);
             place(bed);
             const Row apart = bed.motion.displacement - before - bed.reference * problem_.dt;
             bed.apart = std::sqrt(dot(apart, apart)) * (1 + 1e-9);
             bed.reference = row(momentum[0], momentum[1], momentum[2]) / bed.mass;
-            const Closing close = closing(bed);
-            builds_soon_ |= !must_build_ && close.may_reach(bed.reach);
-            is_late |= !must_build_ && !(close.since < bed.reach);
-            if (status_ == Status::finished && !(close.since + bed.apart < infinity))
+            const real since = closing(bed);
+            must_build_ |= !(since < bed.reach);
+            if (status_ == Status::finished && !(since + bed.apart < infinity))
                 status_ = Status::not_finite;
         }
-        late_builds_ += is_late && status_ == Status::finished; // who stopped has moved by infinity
         __atomic_store_n(&step_, step_ + 1, __ATOMIC_RELAXED);
         ++steps_since_;
     }
@@ -367,7 +359,7 @@ class Simulation {
                 if (step_ == until) told_ = step_;
                 conclude(first, sample);
                 prepare();
-                taken_ = std::exchange(asked_, {stop, pause()});
+                taken_ = {stop, pause()};
             });
         }
     }
@@ -376,7 +368,7 @@ class Simulation {
         division_.look_around(team.rank());
         team.sync([&] {
             prepare();
-            begin_with({.pause = team.size() > 1 && !rest_.is_over()});
+            taken_ = {.pause = team.size() > 1 && !rest_.is_over()};
         });
         const auto all_go_on = [&] {
             go_on(team, until, stop, [&] {
@@ -394,20 +386,16 @@ class Simulation {
         }
     }
 
-    void begin_with(Break taken) {
-        taken_ = taken, asked_ = {};
-    }
-
     // For the others, who wait.
     void one_goes_on(long until, const std::atomic<bool>& stop, int members) {
         Alone alone;
         division_.divide(1);
         division_.look_around(0);
-        begin_with({.halt = taken_.halt});
+        taken_.pause = false;
         lone_steps_ -= step_;
         go_on(alone, until, stop, [&] { return rest_.is_over(); });
         lone_steps_ += step_;
-        begin_with({.halt = taken_.halt});
+        taken_.pause = false;
         division_.divide(members);
     }
 
@@ -453,8 +441,7 @@ public:
 
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
-        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, late_builds_, must_build_,
-                builds_soon_, told_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_,
+        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, must_build_, told_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_,
                 viscous_);
         for (Bed& bed : beds_) bed.keep(archive);
     }
@@ -495,7 +482,6 @@ public:
     long step() const { return __atomic_load_n(&step_, __ATOMIC_RELAXED); } // while it runs, too
     long lone_steps() const { return lone_steps_; }
     long builds() const { return builds_; }
-    long late_builds() const { return late_builds_; } // once a pair may have come within reach unseen
     long scans() const {                              // of a chunk, on average
         long sum = 0;
         for (const Bed& bed : beds_)

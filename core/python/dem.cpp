@@ -96,7 +96,7 @@ public:
         }
         nb::dict d = counts.write(simulation_->beds().size(), simulation_->step(), simulation_->builds(),
                                   simulation_->scans(), simulation_->memory(), seconds_);
-        d["candidates"] = candidates, d["late_builds"] = simulation_->late_builds();
+        d["candidates"] = candidates;
         d["enduring_loss"] = array(std::move(enduring));
         return d;
     }

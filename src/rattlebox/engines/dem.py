@@ -365,7 +365,7 @@ def _arrays(
     lost = sum(raw[f"{channel}_loss"][-1].sum(axis=1) for channel in ("normal", "plastic", "sliding", "rolling"))
     moves = base[1][:, None] + cavity_velocity
     softened = effects(case, step.motions, moves, lost, counters["enduring_loss"])
-    figures, notes = outcome(case, tables, step, overlaps, speeds, counters["late_builds"], softened)
+    figures, notes = outcome(case, tables, step, overlaps, speeds, softened)
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     name, message = _told(case, names, dem, status, step, journey.checkpoint)
     ends = dem.state()["cavities"]
@@ -417,7 +417,6 @@ def _arrays(
             "steps": counters["steps"],
             "rebuilds": counters["rebuilds"],
             "refreshes": counters["refreshes"],
-            "late_builds": counters["late_builds"],
             "first_touches_particle": int(touches[:, 0].sum()),
             "first_touches_wall": int(touches[:, 1].sum()),
             "extrapolated": counters["extrapolated"],

@@ -44,7 +44,6 @@ FEWEST_STEPS = 20.0
 WARNINGS = {
     "few_steps": f"fewer than {FEWEST_STEPS:g} steps in the shortest contact",
     "deep_overlap": f"overlaps above {100 * MOST_OVERLAP:g} % of the radius",
-    "late_contact": "contacts that may have begun a step late",
     "soft_bed": "softening that lowers the resonance of the bed too close to the excitation",
     "enduring_contacts": f"more than {100 * MOST_ENDURING:g} % of the loss in enduring contacts, which grows with softening",
 }
@@ -354,7 +353,6 @@ def outcome(
     step: Step,
     overlaps: Sequence[float],
     speeds: Sequence[float],
-    late: int = 0,
     effects: Sequence[Effect] = (),
 ) -> tuple[dict[str, float], list[str]]:
     """Return figures and notes on a step, after the run.
@@ -367,8 +365,6 @@ def outcome(
         Largest overlap over the smaller radius, in each damper.
     speeds
         Largest approach speed at a first touch, in each damper [m/s].
-    late
-        Steps after which neighbours should have been known already.
     effects
         Effect of softening on each damper.
     """
@@ -399,17 +395,11 @@ def outcome(
             "softened_enduring_share": max(effect.share if effect.softening > 1 else 0.0 for effect in effects),
         }
     notes = [_limited(case, step), *_softened(case)]
-    warned = warnings_of(figures, late)
+    warned = warnings_of(figures)
     if "few_steps" in warned:
         notes.append(
             f"warning: only {steps:.3g} steps in the shortest contact, that of {shortest.what.removeprefix('contact of ')}; "
             f"at least {FEWEST_STEPS:g} are good"
-        )
-    if "late_contact" in warned:
-        often = "once" if late == 1 else f"{late} times"
-        notes.append(
-            f"warning: particles sped up within a step beyond what neighbours allow for, {often}; contacts may have "
-            "begun a step late: shorten the step"
         )
     notes.extend(_averaged(case, step))
     for index, effect in enumerate(effects):
@@ -438,21 +428,18 @@ def _averaged(case: Case, step: Step) -> Iterator[str]:
         )
 
 
-def warnings_of(figures: Mapping[str, float], late: int) -> list[str]:
+def warnings_of(figures: Mapping[str, float]) -> list[str]:
     """Return in what a run left its bounds, names of `WARNINGS`.
 
     Parameters
     ----------
     figures
         From `outcome`.
-    late
-        Steps after which neighbours should have been known already.
     """
     steps = figures["steps_per_contact"]
     found = (
         math.isfinite(steps) and steps < FEWEST_STEPS,
         figures["largest_overlap"] > MOST_OVERLAP,
-        late > 0,
         figures.get("softening_change", 0.0) > MOST_CHANGE,
         figures.get("softened_enduring_share", 0.0) > MOST_ENDURING,
     )

@@ -275,7 +275,6 @@ COUNTS: dict[str, str] = {
     "steps": "time steps",
     "rebuilds": "neighbour lists made anew",
     "refreshes": "neighbour lists looked through for pairs that may touch soon",
-    "late_builds": "neighbour lists made anew when contacts may have begun a step before",
     "first_touches_particle": "first touches among particles",
     "first_touches_wall": "first touches of walls",
     "memory_bytes": "memory of particles, neighbours and contacts",

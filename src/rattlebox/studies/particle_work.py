@@ -256,7 +256,7 @@ class ParticleWork(ImpactWork):
     def row(self, case: Case, run: GranularRun, index: int) -> dict[str, float]:
         """Return what is kept of a run, and of what was run, by name."""
         arrays = run.arrays
-        warned = warnings_of(arrays.figures, arrays.counts["late_builds"])
+        warned = warnings_of(arrays.figures)
         row: dict[str, float] = {
             "status": _NUMBERS[run.status],
             "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in warned),

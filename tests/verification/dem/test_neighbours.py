@@ -171,10 +171,10 @@ def test_nothing_is_missed_in_a_moving_cavity() -> None:
     assert seen["pairs"] > 150 and seen["walls"] > 100
 
 
-@pytest.mark.parametrize(("blow", "told"), [(1e8, False), (1e9, True)])
-def test_a_blow_that_neighbours_do_not_allow_for_is_told(blow: float, told: bool) -> None:
-    """Spheres at rest that get to 1 km/s in a microsecond may be seen a step late, and a note says so."""
-    run = rb.simulate(
+@pytest.mark.parametrize("blow", [1e8, 1e9])
+def test_nothing_is_missed_after_a_blow_within_one_step(blow: float) -> None:
+    """Spheres at rest that get to 1 km/s in a microsecond touch just those that overlap."""
+    seen = follow(
         rb.Case(
             structure=rb.Shaker(
                 motion=rb.Record(times=[0, 1e-3, 1.001e-3, 1.002e-3, 2e-3], values=[0, 0, blow, 0, 0], unit="m/s^2")
@@ -185,12 +185,12 @@ def test_a_blow_that_neighbours_do_not_allow_for_is_told(blow: float, told: bool
                 contact=rb.Tsuji(restitution=0.5),
                 packing=rb.Lattice(noise=0.5, seed=1),
             ),
-            duration="1.1 ms",
-            output=rb.Output(rate="100 kHz"),
-        )
+            duration="1.01 ms",
+            output=rb.Output(rate="1 MHz"),
+        ),
+        checks=1010,
     )
-    assert run.ok, run.message
-    assert any("a step late" in note for note in run.arrays.notes) == told
+    assert seen["walls"] > 10
 
 
 @pytest.mark.slow
