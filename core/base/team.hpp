@@ -25,23 +25,6 @@ struct Alone {
     static void forget_waits() {}
 };
 
-// Adds the time from its making to its end to a sum, if there is one [s].
-class Timed {
-    using Clock = std::chrono::steady_clock;
-    double* sum_;
-    Clock::time_point begun_;
-
-public:
-    explicit Timed(double* sum) : sum_(sum) {
-        if (sum_) begun_ = Clock::now();
-    }
-    Timed(const Timed&) = delete;
-    Timed& operator=(const Timed&) = delete;
-    ~Timed() {
-        if (sum_) *sum_ += std::chrono::duration<double>(Clock::now() - begun_).count();
-    }
-};
-
 // Where the members of a team wait for each other.
 class Meetingpoint {
     struct alignas(64) Reports {

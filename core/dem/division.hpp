@@ -1,5 +1,5 @@
-// Which chunks each member of a team works on: parts of about the same cost, of all beds together, which is
-// reckoned and then corrected by the time that the members took. Results do not depend on it.
+// Which chunks each member of a team works on: parts of about the same cost, of all beds together. Results do
+// not depend on it.
 //
 // Contacts belong to the chunk of their first partner, and act on particles of their own part or a higher
 // one. Where they reach into another part, forces of both sides come early: before any of these particles
@@ -38,8 +38,7 @@ public:
 
 // What one member works on; in lines of memory of its own, since it writes there in each step.
 struct alignas(64) Part {
-    int begin = 0, end = 0;      // among the chunks of all beds
-    real reckoned = 0, busy = 0; // cost, and time that it took since
+    int begin = 0, end = 0; // among the chunks of all beds
     // Of each of them: has neighbours in higher parts, or particles that lower parts reach; and whether its
     // forces are known in this step.
     std::vector<char> early, known;
@@ -81,15 +80,6 @@ public:
     void divide(int members) {
         std::vector<real> costs;
         for (const Place p : all_) costs.push_back(cost(chunk(p)));
-        real busy = 0, reckoned = 0;
-        bool timed = static_cast<int>(parts_.size()) == members;
-        for (const Part& part : parts_) busy += part.busy, reckoned += part.reckoned, timed &= part.busy > 0;
-        if (timed)
-            for (const Part& part : parts_) {
-                // Within bounds: a member may have been kept waiting for a core.
-                const real took = std::clamp(part.busy / busy * reckoned / part.reckoned, 0.5, 2.0);
-                for (int k = part.begin; k < part.end; ++k) at(costs, k) *= took;
-            }
         const real share = std::accumulate(costs.begin(), costs.end(), real{}) / members;
         parts_.resize(static_cast<std::size_t>(members));
         real sum = 0;
@@ -97,13 +87,10 @@ public:
         for (int rank = 0; rank < members; ++rank) {
             Part& part = at(parts_, rank);
             part.begin = k;
-            part.reckoned = part.busy = 0;
             // A chunk belongs where its middle lies.
             for (; k < chunks() && (rank == members - 1 || sum + at(costs, k) / 2 < share * (rank + 1));
-                 ++k) {
+                 ++k)
                 sum += at(costs, k);
-                part.reckoned += cost(chunk(at(all_, k)));
-            }
             part.end = k;
         }
     }

@@ -233,7 +233,6 @@ class Simulation {
     // In the last step forces of single contacts are kept; else only what others need.
     template <class Team> void advance(Team& team, bool first, bool sample, bool last) {
         Part& part = division_.part(team.rank());
-        real* const busy = team.size() > 1 ? &part.busy : nullptr;
         const Row all = structure().body();
         std::vector<char>& known = part.known;
         known.assign(part.early.begin(), part.early.end());
@@ -242,21 +241,16 @@ class Simulation {
             at(steps_, p.bed).pair_forces(at(neighbours_, p.bed), chunk(p), sample, ahead);
             at(steps_, p.bed).wall_forces(at(neighbours_, p.bed), chunk(p), sample);
         };
-        {
-            const Timed timed(busy);
-            for (int k = part.begin; k < part.end; ++k)
-                if (at(known, k - part.begin)) forces(k);
-        }
+        for (int k = part.begin; k < part.end; ++k)
+            if (at(known, k - part.begin)) forces(k);
         team.report();
         team.await_lower([&, k = part.begin]() mutable {
             while (k < part.end && at(known, k - part.begin)) ++k;
             if (k == part.end) return false;
             at(known, k - part.begin) = true;
-            const Timed timed(busy);
             forces(k);
             return true;
         });
-        const Timed timed(busy);
         for (const Place in : part.incoming)
             at(steps_, in.bed)
                 .add_incoming(at(part.sums, in.bed), chunk(in), at(part.first, in.bed),
