@@ -15,17 +15,16 @@ namespace rattlebox::dem {
 // Some hundred particles that follow each other, and the contacts whose first partners they are.
 struct Chunk {
     int begin, end;
-    int highest = 0;                // particle that the chunk's particles have as a neighbour
-    real closed = infinity;         // how much nearer to each other any two may have come since the build
-    Paged<std::uint8_t> near_first; // neighbours within reach: which of the chunk's particles,
-    Paged<int> near_second;         // and the number of the other
+    int highest = 0;        // particle that the chunk's particles have as a neighbour
+    real closed = infinity; // how much nearer to each other any two may have come since the build
+    std::vector<std::uint8_t> near_first; // neighbours within reach: which of the chunk's particles,
+    std::vector<int> near_second;         // and the number of the other
     Contacts pairs, walls;
     Tally tally;
     Stopped stopped;
     std::vector<std::pair<int, Late>> late; // of contacts that begin in this step, by candidate
 
-    Chunk(int begin, int end, Pages* pages)
-        : begin(begin), end(end), near_first(pages), near_second(pages), pairs(pages), walls(pages) {}
+    Chunk(int begin, int end) : begin(begin), end(end) {}
 
     std::size_t memory() const {
         return pairs.bytes() + walls.bytes() + sizeof(Chunk) + near_first.capacity() +
@@ -57,15 +56,15 @@ struct Bed {
     static constexpr int cached = 20'000;  // of more particles caches hold only a part
 
     const Cavity* cavity = nullptr;
-    Paged<Row> position; // and radius
-    Paged<Row> velocity; // predicted for the end of the step, and 1 / mass
-    Paged<Row> spin;     // predicted, and radius / inertia
+    std::vector<Row> position; // and radius
+    std::vector<Row> velocity; // predicted for the end of the step, and 1 / mass
+    std::vector<Row> spin;     // predicted, and radius / inertia
     // Of those that touched something in the step before: others were accelerated as all are, and turned
     // evenly.
-    Paged<Rates> rates;
-    Paged<char> touched;   // something in the step before
-    Paged<int> name, kind; // number in the case, material
-    Paged<Chunk> chunks;
+    std::vector<Rates> rates;
+    std::vector<char> touched;   // something in the step before
+    std::vector<int> name, kind; // number in the case, material
+    std::vector<Chunk> chunks;
     std::vector<Brief> briefs; // of the chunks
 
     real smallest = infinity; // radius
@@ -76,11 +75,6 @@ struct Bed {
     real apart = 0;  // how far the cavity has moved beyond the reference in the last step
     CavityMotion motion;
     Row shown{}; // displacement of the cavity at the last step whose forces are known
-
-    // A large one takes its memory from `pages`.
-    explicit Bed(Pages* pages)
-        : position(pages), velocity(pages), spin(pages), rates(pages), touched(pages), name(pages),
-          kind(pages), chunks(pages) {}
 
     int particles() const { return static_cast<int>(position.size()); }
     int chunk_count() const { return static_cast<int>(chunks.size()); }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/pages.hpp"
 #include "dem/touch.hpp"
 
 namespace rattlebox::dem {
@@ -18,16 +17,13 @@ template <class T, class A> const T& at(const std::vector<T, A>& v, int i) {
 
 // What contacts remember, by slot.
 struct Memory {
-    Paged<Kept> kept;
-    Paged<KeptRolling> rolling; // with rolling resistance only
-    Paged<Row> dent;            // of a plastic law: deepest overlap, stiffness and origin of the curve that
-                                // unloads, and the deepest overlap that this curve is for
-    Paged<real> since;          // the step in which the contact began
-    Paged<int> free;
+    std::vector<Kept> kept;
+    std::vector<KeptRolling> rolling; // with rolling resistance only
+    std::vector<Row> dent;   // of a plastic law: deepest overlap, stiffness and origin of the curve that
+                             // unloads, and the deepest overlap that this curve is for
+    std::vector<real> since; // the step in which the contact began
+    std::vector<int> free;
     bool rolls = false, dents = false;
-
-    explicit Memory(Pages* pages = nullptr)
-        : kept(pages), rolling(pages), dent(pages), since(pages), free(pages) {}
 
     int used() const { return static_cast<int>(kept.size() - free.size()); }
 
@@ -97,18 +93,15 @@ struct Contacts {
     std::int64_t steps = 0; // since the start of the run
 
     // Candidates, tier by tier; lanes may read a few past the end.
-    Paged<int> first, second; // numbers of particles; of a wall for the second at a wall
-    Paged<int> origin;        // which of the neighbours it is
-    Paged<int> slot;          // where its memory is, or none
+    std::vector<int> first, second; // numbers of particles; of a wall for the second at a wall
+    std::vector<int> origin;        // which of the neighbours it is
+    std::vector<int> slot;          // where its memory is, or none
     int tier_end[tiers] = {};
-    Paged<int> active; // candidates that touch
+    std::vector<int> active; // candidates that touch
     int actives = 0;
     Actions actions;
 
     Memory memory;
-
-    explicit Contacts(Pages* pages)
-        : first(pages), second(pages), origin(pages), slot(pages), active(pages), memory(pages) {}
 
     int size() const { return tier_end[tiers - 1]; }
     bool is_stale() const { return !(since < skin); }
@@ -146,7 +139,7 @@ struct Contacts {
     void leave(Memory& leaving) {
         const bool rolls = memory.rolls, dents = memory.dents;
         leaving = std::move(memory);
-        memory = Memory(first.get_allocator().pages);
+        memory = Memory();
         memory.rolls = rolls, memory.dents = dents;
         memory.reserve(static_cast<std::size_t>(leaving.used()));
         actives = 0, since = infinity;

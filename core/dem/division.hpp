@@ -88,8 +88,7 @@ public:
             Part& part = at(parts_, rank);
             part.begin = k;
             // A chunk belongs where its middle lies.
-            for (; k < chunks() && (rank == members - 1 || sum + at(costs, k) / 2 < share * (rank + 1));
-                 ++k)
+            for (; k < chunks() && (rank == members - 1 || sum + at(costs, k) / 2 < share * (rank + 1)); ++k)
                 sum += at(costs, k);
             part.end = k;
         }

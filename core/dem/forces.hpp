@@ -29,7 +29,7 @@ struct PairView {
 
     // Rows are combined before they are turned into lanes, which costs more.
     template <class Combine>
-    RATTLEBOX_INLINE Columns both(const Paged<Row>& rows, const int* k, Combine&& combine) const {
+    RATTLEBOX_INLINE Columns both(const std::vector<Row>& rows, const int* k, Combine&& combine) const {
         return columns_of([&](int l) __attribute__((always_inline)) {
             const int i = at(list.first, k[l]), j = at(list.second, k[l]);
             return combine(at(rows, i), at(rows, j), i, j);
@@ -82,7 +82,7 @@ struct WallView {
         });
     }
 
-    RATTLEBOX_INLINE Columns first(const Paged<Row>& rows, const int* k) const {
+    RATTLEBOX_INLINE Columns first(const std::vector<Row>& rows, const int* k) const {
         return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
     }
     const Wall& wall(int k) const { return at(bed.cavity->walls, at(list.second, k)); }

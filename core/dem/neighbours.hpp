@@ -34,12 +34,12 @@ class Neighbours {
     };
 
     // Where the lists of a bed are sorted, one at a time.
-    Paged<Row> rows_;
-    Paged<int> numbers_;
-    Paged<char> flags_;
+    std::vector<Row> rows_;
+    std::vector<int> numbers_;
+    std::vector<char> flags_;
 
     Cells cells_;
-    Paged<real> along_[4];         // places and radii once more, axis by axis: searched in lanes
+    std::vector<real> along_[4];   // places and radii once more, axis by axis: searched in lanes
     std::vector<Leaving> leaving_; // by chunk before the sort
 
     // For some steps, if they go on as since the last scan.
@@ -55,9 +55,8 @@ public:
         cells_.start(bed);
         leaving_.resize(bed.chunks.size());
         const auto n = static_cast<std::size_t>(bed.particles());
-        const auto pages = bed.position.get_allocator();
-        rows_ = Paged<Row>(n, pages), numbers_ = Paged<int>(n, pages), flags_ = Paged<char>(n, pages);
-        for (auto& values : along_) values = Paged<real>(n + lane_count, pages);
+        rows_.resize(n), numbers_.resize(n), flags_.resize(n);
+        for (auto& values : along_) values.resize(n + lane_count);
     }
 
     std::size_t memory() const {

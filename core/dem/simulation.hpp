@@ -34,7 +34,6 @@ public:
 };
 
 class Simulation {
-    Pages pages_; // of large beds
     Problem problem_;
     std::vector<Bed> beds_;
     std::vector<Neighbours> neighbours_;
@@ -71,7 +70,7 @@ class Simulation {
     bool sampled(long step) const { return step % problem_.every == 0 || step == problem_.steps; }
 
     // Takes the particles over from the cavity.
-    void fill_bed(Bed& bed, Cavity& cavity, bool rolls, Pages* pages) {
+    void fill_bed(Bed& bed, Cavity& cavity, bool rolls) {
         bed.cavity = &cavity;
         const int n = cavity.particles();
         const auto size = static_cast<std::size_t>(n);
@@ -97,7 +96,7 @@ class Simulation {
         bed.rolls = rolls;
         bed.chunks.reserve((size + Bed::chunk_size - 1) / Bed::chunk_size);
         for (int from = 0; from < n; from += Bed::chunk_size)
-            bed.chunks.emplace_back(from, std::min(from + Bed::chunk_size, n), pages);
+            bed.chunks.emplace_back(from, std::min(from + Bed::chunk_size, n));
         bed.briefs.assign(bed.chunks.size(), Brief{.closed = infinity});
     }
 
@@ -310,8 +309,7 @@ class Simulation {
             bed.reference = row(momentum[0], momentum[1], momentum[2]) / bed.mass;
             const real since = closing(bed);
             must_build_ |= !(since < bed.reach);
-            if (status_ == Status::finished && !(since + bed.apart < infinity))
-                status_ = Status::not_finite;
+            if (status_ == Status::finished && !(since + bed.apart < infinity)) status_ = Status::not_finite;
         }
         __atomic_store_n(&step_, step_ + 1, __ATOMIC_RELAXED);
         ++steps_since_;
@@ -403,9 +401,8 @@ public:
             Cavity& cavity = problem_.cavities[b];
             const Kind pair = kind_of(problem_, cavity.particle_entry),
                        wall = kind_of(problem_, cavity.wall_entry);
-            Pages* const pages = cavity.particles() > Bed::cached ? &pages_ : nullptr;
-            Bed& bed = beds_.emplace_back(pages);
-            fill_bed(bed, cavity, pair.rolls || wall.rolls, pages);
+            Bed& bed = beds_.emplace_back();
+            fill_bed(bed, cavity, pair.rolls || wall.rolls);
             const auto prepare = [](Contacts& list, const Kind& kind) {
                 list.memory.rolls = kind.rolls, list.memory.dents = kind.hysteretic;
                 list.resize(0);
@@ -435,8 +432,8 @@ public:
 
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
-        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, must_build_, told_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_,
-                viscous_);
+        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, must_build_, told_,
+                steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_, viscous_);
         for (Bed& bed : beds_) bed.keep(archive);
     }
 
@@ -469,14 +466,14 @@ public:
     Row body_shown() const { return body_before_; }
     int stopped_cavity() const { return stopped_cavity_; }
     std::size_t memory() const {
-        std::size_t bytes = pages_.idle();
+        std::size_t bytes = 0;
         for (std::size_t b = 0; b < beds_.size(); ++b) bytes += beds_[b].memory() + neighbours_[b].memory();
         return bytes;
     }
     long step() const { return __atomic_load_n(&step_, __ATOMIC_RELAXED); } // while it runs, too
     long lone_steps() const { return lone_steps_; }
     long builds() const { return builds_; }
-    long scans() const {                              // of a chunk, on average
+    long scans() const { // of a chunk, on average
         long sum = 0;
         for (const Bed& bed : beds_)
             for (const Chunk& c : bed.chunks) sum += c.tally.scans;
