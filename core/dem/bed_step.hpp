@@ -53,8 +53,8 @@ class BedStep {
     }
 
     template <class View>
-    void visit(Contacts& list, const View& view, int candidates, const Kind& kind, Partner partner,
-               bool sampled, Chunk& chunk, const Ahead& ahead) {
+    void visit(Contacts& list, const View& view, const Kind& kind, Partner partner, bool sampled,
+               Chunk& chunk, const Ahead& ahead) {
         Tally& tally = chunk.tally;
         const auto begun = [&](int k) {
             const Touch t = touch(list, k, partner);
@@ -81,8 +81,8 @@ class BedStep {
             at(list.slot, k) = Contacts::none;
         };
         chunk.late.clear();
-        find_touching(list, view, candidates, begun, ended, ahead);
-        ahead.rest(candidates, list.actives);
+        find_touching(list, view, begun, ended, ahead);
+        ahead.rest(list.size(), list.actives);
         if (list.actives == 0) return list.actions.all.clear();
         kind.normal.visit([&](const auto& law) {
             const auto settled = [&](int k) { settle(list, k, kind, partner, tally); };
@@ -137,11 +137,7 @@ public:
         pairs.since += moved, ++pairs.age, ++pairs.steps;
         chunk.closed += moved;
         if (pairs.is_stale()) neighbours.scan_pairs(bed_, chunk), ++chunk.tally.scans;
-        // Those of tier t were at least t / tiers of the skin apart.
-        const real tiers = pairs.since / pairs.skin * Contacts::tiers;
-        const int tier = std::min(static_cast<int>(tiers), Contacts::tiers - 1);
-        visit(pairs, PairView{bed_, pairs, pair_mu_}, pairs.tier_end[tier], pair_, particle, sampled, chunk,
-              ahead);
+        visit(pairs, PairView{bed_, pairs, pair_mu_}, pair_, particle, sampled, chunk, ahead);
     }
 
     // Forces on the chunk's particles at the walls.
@@ -149,8 +145,8 @@ public:
         chunk.walls.since += at(bed_.briefs, chunk.begin / Bed::chunk_size).moved + bed_.apart;
         ++chunk.walls.age, ++chunk.walls.steps;
         if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
-        visit(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, chunk.walls.size(), wall_, wall,
-              sampled, chunk, Ahead());
+        visit(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, wall_, wall, sampled, chunk,
+              Ahead());
         Row total{}, moment{};
         const Contacts& list = chunk.walls;
         for (int a = 0; a < list.actives; ++a) {

@@ -83,7 +83,6 @@ struct Actions {
 };
 
 struct Contacts {
-    static constexpr int tiers = 4; // candidates by distance at the last scan
     static constexpr int none = -1;
 
     real skin = 0;          // candidates were closer than that at the scan,
@@ -92,21 +91,22 @@ struct Contacts {
     real rate = 0;          // nearer in a step, between the last two scans
     std::int64_t steps = 0; // since the start of the run
 
-    // Candidates, tier by tier; lanes may read a few past the end.
+    // Candidates; lanes may read a few past the end.
     std::vector<int> first, second; // numbers of particles; of a wall for the second at a wall
     std::vector<int> origin;        // which of the neighbours it is
     std::vector<int> slot;          // where its memory is, or none
-    int tier_end[tiers] = {};
-    std::vector<int> active; // candidates that touch
+    int listed = 0;                 // candidates
+    std::vector<int> active;        // candidates that touch
     int actives = 0;
     Actions actions;
 
     Memory memory;
 
-    int size() const { return tier_end[tiers - 1]; }
+    int size() const { return listed; }
     bool is_stale() const { return !(since < skin); }
 
     void resize(int candidates) {
+        listed = candidates;
         const auto n = static_cast<std::size_t>(candidates);
         if (n > origin.capacity())
             for (auto* numbers : {&first, &second, &slot, &origin, &active})
@@ -132,7 +132,6 @@ struct Contacts {
         resize(actives);
         put(k, one, other, from, memory);
         at(active, k) = k;
-        for (int& end : tier_end) end = actives;
     }
 
     // Nobody is a candidate any more; what they remember goes to `leaving`.
@@ -145,7 +144,6 @@ struct Contacts {
         actives = 0, since = infinity;
         actions.all.clear(), actions.torque.clear();
         resize(0);
-        for (int& end : tier_end) end = 0;
     }
 
     std::size_t bytes() const {
@@ -156,7 +154,7 @@ struct Contacts {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(skin, since, age, rate, steps, first, second, origin, slot, tier_end, active, actives, actions.all,
+        a(skin, since, age, rate, steps, first, second, origin, slot, listed, active, actives, actions.all,
           actions.torque);
         memory.keep(a);
     }

@@ -129,11 +129,11 @@ struct WallView {
 
 RATTLEBOX_INLINE Columns lay(const Four<Group>& f) { return {f.x, f.y, f.z, f.w}; }
 
-// Lists the candidates up to `to` that touch; calls begun(k) and ended(k) for those that have just begun or
+// Lists the candidates that touch; calls begun(k) and ended(k) for those that have just begun or
 // ended to.
 template <class View, class Begun, class Ended>
-void find_touching(Contacts& list, const View& view, int to, Begun&& begun, Ended&& ended,
-                   const Ahead& ahead) {
+void find_touching(Contacts& list, const View& view, Begun&& begun, Ended&& ended, const Ahead& ahead) {
+    const int to = list.size();
     int* active = list.active.data();
     const int* slot = list.slot.data();
     int count = 0;

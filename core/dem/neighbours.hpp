@@ -5,8 +5,7 @@
 // and likewise for the candidates of a chunk and their `skin`: chunk by chunk both bounds are kept by adding
 // up, in each step, how far its fastest particle has moved and the fastest of those chunks where it has
 // neighbours. Motions are counted beyond the mean one, which brings no two nearer to each other.
-// Candidates lie in tiers by how far apart they were at the scan, and a step looks at the tiers that may have
-// closed by then. Particles are sorted by cell at each build, so that neighbours are near in memory too, and
+// Particles are sorted by cell at each build, so that neighbours are near in memory too, and
 // a row of three cells is one range.
 #pragma once
 
@@ -248,12 +247,9 @@ public:
         choose_skin(chunk.pairs, bed.smallest, 0.4 * bed.reach);
         const real skin = chunk.pairs.skin;
         thread_local std::vector<int> found_pairs;
-        thread_local std::vector<real> tiers;
         const int count = static_cast<int>(chunk.near_second.size());
         found_pairs.resize(static_cast<std::size_t>(count) + lane_count);
-        tiers.resize(found_pairs.size());
         int* const found_pair = found_pairs.data();
-        real* const tier_of = tiers.data();
         int found = 0;
         for (int p = 0; p < count; p += group) {
             const auto apart = columns_of([&](int l) __attribute__((always_inline)) {
@@ -261,27 +257,15 @@ public:
                 const Row a = at(bed.position, chunk.begin + at(chunk.near_first, q));
                 return at(bed.position, at(chunk.near_second, q)) + row(-1, -1, -1, 1) * a;
             });
-            const Group near = apart.w, distance = dot(apart.vector(), apart.vector());
-            Group tier = Group::all(0);
-            for (int t = 1; t <= Contacts::tiers; ++t) {
-                const Group limit = near + Group::all(skin * t / Contacts::tiers);
-                tier += choose(limit * limit - distance, Group::all(0), Group::all(1));
-            }
-            put(tier, tier_of + p);
-            const unsigned within = positive(Group::all(Contacts::tiers) - tier);
+            const Group limit = apart.w + Group::all(skin);
+            const unsigned within = positive(limit * limit - dot(apart.vector(), apart.vector()));
             found += list_lanes(within & first_lanes(std::min(group, count - p)), p, found_pair + found);
         }
         Contacts& pairs = chunk.pairs;
-        int numbers[Contacts::tiers] = {}, next[Contacts::tiers], sum = 0;
-        for (int n = 0; n < found; ++n) ++numbers[static_cast<int>(tier_of[found_pair[n]])];
-        for (int t = 0; t < Contacts::tiers; ++t) {
-            next[t] = sum;
-            pairs.tier_end[t] = sum += numbers[t];
-        }
         const std::vector<int>& slot = slots(pairs, count);
-        pairs.resize(sum);
-        for (int n = 0; n < found; ++n) {
-            const int p = found_pair[n], k = next[static_cast<int>(tier_of[p])]++;
+        pairs.resize(found);
+        for (int k = 0; k < found; ++k) {
+            const int p = found_pair[k];
             pairs.put(k, chunk.begin + at(chunk.near_first, p), at(chunk.near_second, p), p, at(slot, p));
         }
         pairs.pad(chunk.begin, chunk.begin);
@@ -313,7 +297,6 @@ public:
         Contacts& list = chunk.walls;
         const std::vector<int>& slot = slots(list, (chunk.end - chunk.begin) * walls);
         list.resize(count);
-        for (int& end : list.tier_end) end = count;
         for (int i = chunk.begin, k = 0; i < chunk.end; ++i)
             for (std::uint32_t rest = at(masks, i - chunk.begin); rest != 0; rest &= rest - 1, ++k) {
                 const int w = __builtin_ctz(rest), own = i - chunk.begin, origin = own * walls + w;

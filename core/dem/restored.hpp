@@ -40,10 +40,7 @@ class Fixed {
     template <class Origin>
     static void check(const Contacts& list, const Chunk& chunk, int partners, int origins, bool told,
                       Origin&& agrees) {
-        // Written or infinite: `since` divides the candidates into tiers.
-        require(!(list.since < 0) && !(list.skin < 0));
-        int before = 0;
-        for (const int end : list.tier_end) require(end >= before), before = end;
+        require(!(list.since < 0) && !(list.skin < 0) && list.listed >= 0);
         const auto listed = static_cast<std::size_t>(list.size()), padded = listed + lane_count;
         for (const auto* numbers : {&list.first, &list.second, &list.slot, &list.active})
             require(numbers->size() == padded);
