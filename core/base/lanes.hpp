@@ -33,8 +33,21 @@ template <int n> struct __attribute__((may_alias)) Pack {
     friend real largest(const Pack& a) { return largest(larger(a.low, a.high)); }
 };
 
-template <> struct __attribute__((may_alias)) Pack<register_width> {
-    typedef real Register __attribute__((vector_size(register_width * sizeof(real)), may_alias));
+template <int n> struct RegisterOf;
+template <> struct RegisterOf<2> {
+    typedef real type __attribute__((vector_size(2 * sizeof(real)), may_alias));
+};
+template <> struct RegisterOf<4> {
+    typedef real type __attribute__((vector_size(4 * sizeof(real)), may_alias));
+};
+template <> struct RegisterOf<8> {
+    typedef real type __attribute__((vector_size(8 * sizeof(real)), may_alias));
+};
+
+template <int n>
+    requires(n <= register_width)
+struct __attribute__((may_alias)) Pack<n> {
+    using Register = typename RegisterOf<n>::type;
     Register v;
 
     // A difference from zero can be left out, a sum cannot: -0 + 0 is 0.
@@ -46,15 +59,15 @@ template <> struct __attribute__((may_alias)) Pack<register_width> {
     friend Pack absolute(const Pack& a) { return {a.v < 0 ? -a.v : a.v}; }
     friend Pack larger(const Pack& a, const Pack& b) { return {a.v > b.v ? a.v : b.v}; }
     friend real total(const Pack& a) {
-        real part[register_width];
-        for (int i = 0; i < register_width; ++i) part[i] = a.v[i];
-        for (int half = register_width / 2; half > 0; half /= 2)
+        real part[n];
+        for (int i = 0; i < n; ++i) part[i] = a.v[i];
+        for (int half = n / 2; half > 0; half /= 2)
             for (int i = 0; i < half; ++i) part[i] += part[i + half];
         return part[0];
     }
     friend real largest(const Pack& a) {
         real most = a.v[0];
-        for (int i = 1; i < register_width; ++i) most = a.v[i] > most ? a.v[i] : most;
+        for (int i = 1; i < n; ++i) most = a.v[i] > most ? a.v[i] : most;
         return most;
     }
 };
@@ -69,13 +82,14 @@ template <int n> const Pack<n>& pack(const real* p) { return *reinterpret_cast<c
 template <int n> Pack<n>& pack(real* p) { return *reinterpret_cast<Pack<n>*>(p); }
 // Their value, read by registers: compilers copy a struct in smaller pieces, which then wait for each other.
 template <int n> Pack<n> read(const real* p) {
-    if constexpr (n == register_width)
+    if constexpr (n <= register_width)
         return pack<n>(p);
     else
         return {read<n / 2>(p), read<n / 2>(p + n / 2)};
 }
-// What a register holds of eight: laws that take many numbers do not fit the registers otherwise.
-inline constexpr int group = register_width;
+// What a register holds of eight, four at most: laws that take many numbers do not fit the registers
+// otherwise, and eight at once are no faster.
+inline constexpr int group = register_width < 4 ? register_width : 4;
 using Group = Pack<group>;
 
 // At any address.
@@ -84,7 +98,6 @@ inline Group unaligned(const real* p) {
     __builtin_memcpy(&value, p, sizeof(value));
     return value;
 }
-inline void put(const Group& value, real* p) { __builtin_memcpy(p, &value, sizeof(value)); }
 
 inline Group& group_of(Lanes& all, int first) { return pack<group>(reinterpret_cast<real*>(&all) + first); }
 

@@ -39,8 +39,6 @@ template <int n> RATTLEBOX_INLINE Pack<n> all(const Pack<n>&, real v) { return P
 template <int n> RATTLEBOX_INLINE Pack<n> root(const Pack<n>& a) {
     if constexpr (n > register_width) {
         return {root(a.low), root(a.high)};
-    } else if constexpr (n == 1) {
-        return {std::sqrt(a.v)};
     } else {
         Pack<n> r;
         for (int i = 0; i < n; ++i) r.v[i] = std::sqrt(a.v[i]);
@@ -113,20 +111,7 @@ struct Columns {
 
 // The rows of(0), of(1), ... as lanes.
 template <class Of> RATTLEBOX_INLINE Columns columns_of(Of&& of) {
-#if defined(__AVX512F__)
-    const auto two = [&](int l) __attribute__((always_inline)) {
-        return __builtin_shufflevector(of(l), of(l + 4), 0, 1, 2, 3, 4, 5, 6, 7);
-    };
-    const auto a = two(0), b = two(1), c = two(2), d = two(3);
-    const auto xz = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
-    const auto yw = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-    const auto zx = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
-    const auto wy = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
-    return {{__builtin_shufflevector(xz, zx, 0, 1, 8, 9, 4, 5, 12, 13)},
-            {__builtin_shufflevector(yw, wy, 0, 1, 8, 9, 4, 5, 12, 13)},
-            {__builtin_shufflevector(xz, zx, 2, 3, 10, 11, 6, 7, 14, 15)},
-            {__builtin_shufflevector(yw, wy, 2, 3, 10, 11, 6, 7, 14, 15)}};
-#elif defined(__AVX__)
+#if defined(__AVX__)
     const Row a = of(0), b = of(1), c = of(2), d = of(3);
     const Row xz = __builtin_shufflevector(a, b, 0, 4, 2, 6), yw = __builtin_shufflevector(a, b, 1, 5, 3, 7);
     const Row zx = __builtin_shufflevector(c, d, 0, 4, 2, 6), wy = __builtin_shufflevector(c, d, 1, 5, 3, 7);
@@ -149,20 +134,7 @@ template <class At> RATTLEBOX_INLINE Columns columns(At&& at) {
 
 // The other way: lane l becomes the row that at(l) points to. Where lanes share a row, one of them stays.
 template <class At> RATTLEBOX_INLINE void store(const Columns& c, At&& at) {
-#if defined(__AVX512F__)
-    const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 8, 9, 4, 5, 12, 13);
-    const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 8, 9, 4, 5, 12, 13);
-    const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 10, 11, 6, 7, 14, 15);
-    const auto wy = __builtin_shufflevector(c.y.v, c.w.v, 2, 3, 10, 11, 6, 7, 14, 15);
-    const auto put = [&](int l, auto both) __attribute__((always_inline)) {
-        *at(l) = __builtin_shufflevector(both, both, 0, 1, 2, 3);
-        *at(l + 4) = __builtin_shufflevector(both, both, 4, 5, 6, 7);
-    };
-    put(0, __builtin_shufflevector(xz, yw, 0, 8, 2, 10, 4, 12, 6, 14));
-    put(1, __builtin_shufflevector(xz, yw, 1, 9, 3, 11, 5, 13, 7, 15));
-    put(2, __builtin_shufflevector(zx, wy, 0, 8, 2, 10, 4, 12, 6, 14));
-    put(3, __builtin_shufflevector(zx, wy, 1, 9, 3, 11, 5, 13, 7, 15));
-#elif defined(__AVX__)
+#if defined(__AVX__)
     const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 4, 5);
     const auto yw = __builtin_shufflevector(c.y.v, c.w.v, 0, 1, 4, 5);
     const auto zx = __builtin_shufflevector(c.x.v, c.z.v, 2, 3, 6, 7);
