@@ -171,18 +171,17 @@ def test_nothing_is_missed_in_a_moving_cavity() -> None:
     assert seen["pairs"] > 150 and seen["walls"] > 100
 
 
-@pytest.mark.parametrize("blow", [1e8, 1e9])
-def test_nothing_is_missed_after_a_blow_within_one_step(blow: float) -> None:
+def test_nothing_is_missed_after_a_blow_within_one_step() -> None:
     """Spheres at rest that get to 1 km/s in a microsecond touch just those that overlap."""
     seen = follow(
         rb.Case(
             structure=rb.Shaker(
-                motion=rb.Record(times=[0, 1e-3, 1.001e-3, 1.002e-3, 2e-3], values=[0, 0, blow, 0, 0], unit="m/s^2")
+                motion=rb.Record(times=[0, 1e-3, 1.001e-3, 1.002e-3, 2e-3], values=[0, 0, 1e9, 0, 0], unit="m/s^2")
             ),
             damper=rb.ParticleDamper(
                 particles=rb.Particles(material="steel", diameter="2 mm", count=200),
                 cavity=rb.Box(size=("30 mm", "30 mm", "30 mm")),
-                contact=rb.Tsuji(restitution=0.5),
+                contact=rb.Tsuji(restitution=1.0),
                 packing=rb.Lattice(noise=0.5, seed=1),
             ),
             duration="1.01 ms",
