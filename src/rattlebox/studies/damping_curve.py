@@ -14,9 +14,9 @@ from rattlebox.analysis.damping_curve import band_edges, damping_over_amplitude,
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint, nearest
+from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
 from rattlebox.model.packing import Lattice, Settled
-from rattlebox.model.signals import Harmonic
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
 
