@@ -71,7 +71,7 @@ def impact() -> Callable[[], Any]:
 
     case = _case(IMPACT)
     starts = {"damper.start": np.linspace(-0.99, 0.99, STARTS)}
-    return lambda: rb.sweep(case, starts, ["impact_share"], threads=1, progress=False)
+    return lambda: rb.sweep(case, starts, ["impact_share"], workers=1, progress=False)
 
 
 def dem(count: int) -> Callable[[], Any]:

@@ -92,7 +92,7 @@ def rate(count: int = 20_000) -> Iterator[tuple[str, str]]:
     case = rb.reference_case(duration=5.0)
 
     def run(threads: int) -> Any:
-        return rb.sweep(case, starts(count), ["impacts", "impact_share"], threads=threads, progress=False)
+        return rb.sweep(case, starts(count), ["impacts", "impact_share"], workers=threads, progress=False)
 
     seconds, study = min((timed(lambda: run(1)) for _ in range(3)), key=lambda pair: pair[0])
     impacts = float(study.impacts.sum())
@@ -102,7 +102,7 @@ def rate(count: int = 20_000) -> Iterator[tuple[str, str]]:
     )
     yield "two cores against one", f"{pairs(lambda: run(1), lambda: run(2)):.2f}"
     hard = rb.reference_case(duration=5.0, method=rb.Newton())
-    work = partial(rb.sweep, hard, starts(count), ["impacts", "impact_share"], threads=1, progress=False)
+    work = partial(rb.sweep, hard, starts(count), ["impacts", "impact_share"], workers=1, progress=False)
     seconds, study = min((timed(work) for _ in range(3)), key=lambda pair: pair[0])
     yield "the same with hard impacts", f"{float(study.impacts.sum()) / seconds:,.0f} impacts/s"
 
@@ -130,17 +130,17 @@ def dask(count: int = 40_000) -> Iterator[tuple[str, str]]:
         LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
         Client(cluster) as client,
     ):
-        rb.sweep(case, starts(100), ["impacts"], on=client, progress=False)
+        rb.sweep(case, starts(100), ["impacts"], backend=client, progress=False)
         yield (
             "two Dask workers against two threads, time",
-            f"{pairs(partial(run, on=client), partial(run, threads=2)):.3f}",
+            f"{pairs(partial(run, backend=client), partial(run, workers=2)):.3f}",
         )
 
 
 def scipy(count: int = 100_000, members: int = 3) -> Iterator[tuple[str, str]]:
     """Extrapolate SciPy's time for the ensemble from a few members, against ours on one core."""
     ours, _ = timed(
-        lambda: rb.sweep(rb.reference_case(duration=5.0), starts(2000), ["impact_share"], threads=1, progress=False)
+        lambda: rb.sweep(rb.reference_case(duration=5.0), starts(2000), ["impact_share"], workers=1, progress=False)
     )
     theirs, _ = timed(lambda: [peer(start) for start in np.linspace(-0.9, 0.9, members)])
     ratio = (theirs / members) / (ours / 2000)

@@ -98,6 +98,6 @@ from rattlebox.studies.sampling import geomspace as geomspace
 from rattlebox.studies.sampling import linspace as linspace
 from rattlebox.studies.sampling import random_design as random_design
 from rattlebox.studies.sampling import replicas as replicas
-from rattlebox.studies.store import open_study as open_study
+from rattlebox.studies.stored import open_study as open_study
 
 __version__: str

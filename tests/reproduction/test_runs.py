@@ -3,7 +3,7 @@
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.study_file import read_study
 from reproduction.reference import PLASTIC, paper_case
 from reproduction.runs import grouped, record_cases, simulate, write_runs
@@ -20,7 +20,7 @@ def read(folder, files):
         yield rb.Case.from_file(folder / each.case)
         if each.study:
             study = read_study(folder / each.study)
-            design = Design.of(study.case, study.axes)
+            design = read_axes(study.case, study.axes)
             assert design.size == each.runs
             yield from (design.case_at(study.case, number) for number in range(design.size))
 

@@ -17,7 +17,7 @@ from rattlebox.engines.dem_step import WARNINGS
 from rattlebox.results.quantities import MISSING, quantity
 from rattlebox.results.schema import HOW_ENDED
 from rattlebox.studies.kinds.design import trials_in
-from rattlebox.studies.store import Progress, has_map, open_study, progress_of, readable
+from rattlebox.studies.stored import Progress, has_map, open_study, progress_of, report_damage
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,7 +46,7 @@ def show_study(path: Path) -> None:
     kind = "design" if study is None else str(study.attrs.get("study", "sweep"))
     said = "" if kind == "sweep" else f"{kind.replace('_', ' ')}, "
     console.print(Text.assemble((str(path), "bold"), f": {said}{far}"), soft_wrap=True)
-    with readable(path):
+    with report_damage(path):
         if study is not None:
             console.print(_axes(study))
         if study is not None and some:

@@ -43,8 +43,8 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
         typer.echo(printable(f"{path}: {told}"), err=True)
     try:
         with _cluster(dask) as client, _naming(path, out):
-            where = {"threads": None if client else workers} if client or workers else {}
-            result = study.run(store=out, on=client, **where)
+            where = {"backend": client, "workers": None} if client else {"workers": workers} if workers else {}
+            result = study.run(store=out, **where)
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)
         sys.exit(130)

@@ -1,170 +1,54 @@
-"""What varies in a study: axes by path, their values in SI, and the case of any one variant."""
+"""Reads axes, the user's description of what varies, into a grid of variants."""
 
 from __future__ import annotations
 
 import itertools
-import json
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from hashlib import sha256
 from typing import Any
 
 import numpy as np
 
 from rattlebox._util.exceptions import CaseError, RattleboxError
-from rattlebox.model.base import Part
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.materials import Material
-from rattlebox.model.paths import Place, all_paths, get, replaced, unit_of
-from rattlebox.model.restitutions import Constant
+from rattlebox.model.paths import Place, all_paths, get
 
-from .parameter import Column, Parameter, Values, objects
+from .grid import Column, Grid, labels
+from .parameter import Parameter, Values, objects
 from .sampling import RandomDesign, Replicas
 
 Axes = Mapping[Any, Any] | RandomDesign | Replicas | Sequence[Mapping[Any, Any] | RandomDesign | Replicas]
 
-_TOLD = 16  # values that a description holds in full
 _TRIED = 8  # variants tried besides the extreme ones
 _EXAMPLE = '{"damper.gap": rb.linspace("0.1 mm", "2 mm", 20)}'
 
 
-@dataclass(frozen=True, eq=False)
-class Design:
-    """The variants of a case: a grid of some dimensions, along each of which one parameter varies, or several linked ones.
+def read_axes(case: Case, axes: Axes, *, source: str = "axes") -> Grid:
+    """Return the grid of variants that axes describe, and check its extreme variants.
 
-    Attributes
+    Parameters
     ----------
-    dims : tuple of str
-        Names of the dimensions; the last one varies fastest.
-    shape : tuple of int
-        Their lengths.
-    columns : dict of str to array
-        By path: the values, broadcastable to `shape`. Numbers in SI, float64; else an array of objects as they stand in a
-        Case. Start positions are fractions of the gap.
+    case
+        Case that varies.
+    axes
+        A mapping, a random design, replicas, or a list of such, whose dimensions follow each other. A mapping has one
+        dimension for each item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
+        together; or `name: {path: values, ...}` for those too, with a name for the dimension. Values are a list or an
+        array of numbers in SI, text with units, names or parts; or linspace, geomspace.
+    source
+        Name of the axes in messages.
+
+    Raises
+    ------
+    CaseError
+        If a path, a value or a variant is not valid, with its name and what is allowed.
     """
-
-    dims: tuple[str, ...]
-    shape: tuple[int, ...]
-    columns: dict[str, Column]
-    _coords: dict[str, tuple[str, Column, dict[str, str]]] = field(repr=False)
-
-    @classmethod
-    def of(cls, case: Case, axes: Axes, *, source: str = "axes") -> Design:
-        """Read what a user says of axes, and try the extreme variants.
-
-        Parameters
-        ----------
-        case
-            The case that varies.
-        axes
-            A mapping, a random design, replicas, or a list of such, whose dimensions follow each other. A mapping has one
-            dimension an item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
-            together; or `name: {path: values, ...}` for those too, with a name for the dimension. Values are a list or an
-            array of numbers in SI, text with units, names or parts; or linspace, geomspace.
-        source
-            What messages call the axes.
-
-        Raises
-        ------
-        CaseError
-            When a path, a value or a variant does not fit, naming it and what is allowed.
-        """
-        try:
-            return _Reader(case, source).design(axes)
-        except Hint as hint:
-            raise CaseError(f"{source}: {hint}") from None
-
-    @property
-    def size(self) -> int:
-        """Number of variants."""
-        return math.prod(self.shape)
-
-    def coords(self) -> dict[str, tuple[str, Column, dict[str, str]]]:
-        """Return the coordinates of an xarray Dataset: (dimension, values, attributes) by name."""
-        return dict(self._coords)
-
-    def values_at(self, index: int) -> dict[str, Any]:
-        """Return what is different in one variant, by path.
-
-        Parameters
-        ----------
-        index
-            Number of the variant, from 0, the last dimension varying fastest.
-        """
-        if not 0 <= index < self.size:
-            raise Hint(f"there is no variant {index}", f"0 to {self.size - 1}")
-        place = np.unravel_index(index, self.shape)
-        members = {
-            path: values[tuple(0 if length == 1 else at for at, length in zip(place, values.shape, strict=True))]
-            for path, values in self.columns.items()
-        }
-        return {path: float(value) if isinstance(value, float) else value for path, value in members.items()}
-
-    def case_at(self, case: Case, index: int) -> Case:
-        """Return the case of one variant.
-
-        Parameters
-        ----------
-        case
-            The case that varies.
-        index
-            Number of the variant, from 0, the last dimension varying fastest.
-
-        Raises
-        ------
-        CaseError
-            When there is no such variant, or its parts do not fit together.
-        """
-        return replaced(case, self.values_at(index))
-
-    def told(self, case: Case, index: int) -> str:
-        """Return what is different in one variant in a line, with units; arguments as of `case_at`."""
-        units = {path: unit_of(case, path) for path in self.columns}
-        return ", ".join(
-            f"{path} = {_label(value)}" + (f" {units[path]}" if units[path] not in (None, "1") else "")
-            for path, value in self.values_at(index).items()
-        )
-
-    def describe(self) -> dict[str, Any]:
-        """Return what JSON can hold of the design; equal designs have equal descriptions, however they were spelt."""
-        return {
-            "dims": [[name, length] for name, length in zip(self.dims, self.shape, strict=True)],
-            "columns": {
-                path: {"varies_along": [d for d, n in zip(self.dims, values.shape, strict=True) if n > 1]}
-                | _summary(values)
-                for path, values in sorted(self.columns.items())
-            },
-            "coords": {
-                name: {"dim": dim, "units": attrs.get("units")} | _summary(values)
-                for name, (dim, values, attrs) in sorted(self._coords.items())
-                if name not in self.columns and values.dtype.kind == "f"
-            },
-        }
-
-
-def _summary(values: Column) -> dict[str, Any]:
-    """What tells an array from any other."""
-    flat = values.ravel()
-    if flat.dtype.kind == "f":
-        if flat.size <= _TOLD:
-            return {"values": flat.tolist()}
-        ends = {"first": flat[0], "last": flat[-1], "smallest": flat.min(), "largest": flat.max()}
-        digest = sha256(np.ascontiguousarray(flat, dtype="<f8").tobytes()).hexdigest()
-        return {"count": flat.size, **{name: float(value) for name, value in ends.items()}, "sha256": digest}
-    told = {id(value): _plain(value) for value in {id(value): value for value in flat}.values()}
-    if flat.size <= _TOLD:
-        return {"values": [told[id(value)] for value in flat]}
-    digests = {key: sha256(json.dumps(item, sort_keys=True).encode()).digest() for key, item in told.items()}
-    return {"count": flat.size, "sha256": sha256(b"".join(digests[id(value)] for value in flat)).hexdigest()}
-
-
-def _plain(value: Any) -> Any:
-    """What JSON can hold of an object."""
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    return value.model_dump(mode="json", exclude_none=True) if isinstance(value, Part) else value
+    try:
+        return _Reader(case, source).grid(axes)
+    except Hint as hint:
+        raise CaseError(f"{source}: {hint}") from None
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,13 +68,13 @@ def materials_in(case: Case) -> dict[str, Material]:
 
 
 class _Reader:
-    """Turns what a user says into a design."""
+    """Reader of the axes of one case."""
 
     def __init__(self, case: Case, source: str) -> None:
         self.case, self.source = case, source
         self.materials = materials_in(case)
 
-    def design(self, axes: Any) -> Design:
+    def grid(self, axes: Any) -> Grid:
         """Read axes, put them together and try some variants."""
         directions: list[_Direction] = []
         for part in axes if isinstance(axes, (list, tuple)) else [axes]:
@@ -208,19 +92,19 @@ class _Reader:
         for name in names:
             if names.count(name) > 1:
                 raise Hint(f"two dimensions are called {name!r}", '{"a name": {path: values, path: values}}')
-        columns = _Grid(self.case, directions).columns()
+        columns = _Columns(self.case, directions).columns()
         for direction in directions:
             for values in direction.values:
                 if values.parameter.path in {*names} - {direction.name}:
                     raise Hint(f"{values.parameter.path} varies, but another dimension is called so", "another name")
-        design = Design(
+        grid = Grid(
             tuple(names),
             tuple(direction.size for direction in directions),
             columns,
             {name: coord for direction in directions for name, coord in _coordinates(direction)},
         )
-        self.try_some(design)
-        return design
+        self.try_some(grid)
+        return grid
 
     def parameter(self, path: Any) -> Parameter:
         return Parameter(self.case, path, self.source, self.materials)
@@ -290,26 +174,26 @@ class _Reader:
             read.append(Values(parameter, number[0] * offsets, number[1]))
         return _Direction("replica", replicas.count, [], read)
 
-    def try_some(self, design: Design) -> None:
+    def try_some(self, grid: Grid) -> None:
         """Build the extreme variants and a few more."""
-        corners = itertools.product(*({0, length - 1} for length in design.shape))
-        tried = [int(np.ravel_multi_index(corner, design.shape)) for corner in itertools.islice(corners, 4 * _TRIED)]
-        for values in design.columns.values():
+        corners = itertools.product(*({0, length - 1} for length in grid.shape))
+        tried = [int(np.ravel_multi_index(corner, grid.shape)) for corner in itertools.islice(corners, 4 * _TRIED)]
+        for values in grid.columns.values():
             flat = values.ravel()
             numbers = flat.dtype.kind == "f"
             for which in (flat.argmin(), flat.argmax()) if numbers else range(min(flat.size, 8 * _TRIED)):
-                tried.append(int(np.ravel_multi_index(np.unravel_index(which, values.shape), design.shape)))
-        tried += np.linspace(0, design.size - 1, _TRIED).astype(int).tolist()
+                tried.append(int(np.ravel_multi_index(np.unravel_index(which, values.shape), grid.shape)))
+        tried += np.linspace(0, grid.size - 1, _TRIED).astype(int).tolist()
         for index in dict.fromkeys(tried):
             try:
-                design.case_at(self.case, index)
+                grid.case_at(self.case, index)
             except RattleboxError as error:
                 said = str(error).removeprefix("case: ").replace("\n", "\n  ")
-                told = design.told(self.case, index)
+                told = grid.told(self.case, index)
                 raise CaseError(f"{self.source}: variant {index} does not fit: {told}\n  {said}") from None
 
 
-class _Grid:
+class _Columns:
     """Puts the dimensions together."""
 
     def __init__(self, case: Case, directions: list[_Direction]) -> None:
@@ -406,30 +290,3 @@ def _coordinates(direction: _Direction) -> Iterator[tuple[str, tuple[str, Column
 
 def _spoken(path: str) -> str:
     return path.replace(".", " ").replace("_", " ")
-
-
-def labels(items: Column) -> Column:
-    """Return texts that tell objects apart."""
-    different = {id(item): item for item in items}
-    texts = {key: _label(item) for key, item in different.items()}
-    first: dict[str, Any] = {}
-    if any(first.setdefault(texts[key], item) != item for key, item in different.items()):
-        return np.array([f"{texts[id(item)]} ({number})" for number, item in enumerate(items, start=1)])
-    return np.array([texts[id(item)] for item in items])
-
-
-def _label(value: Any) -> str:
-    """A short text for a value."""
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_label, value))}]"
-    if not isinstance(value, Part):
-        return str(value)
-    if getattr(value, "name", ""):
-        return str(getattr(value, "name", ""))
-    given = {key: _label(getattr(value, key)) for key in sorted(value.model_fields_set - {"kind"})}
-    if isinstance(value, Constant) and given.keys() == {"e"}:
-        return given["e"]
-    kind = getattr(value, "kind", type(value).__name__)
-    return f"{kind}({', '.join(f'{key}={text}' for key, text in given.items())})" if given else str(kind)

@@ -30,7 +30,7 @@ def check_softening(
     tolerance: float = 0.1,
     skip: Any = 0.0,
     cycles: tuple[int, int] | None = None,
-    threads: int | None = None,
+    workers: int | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
     """Run a case again with smaller softening, and return the change of measures with its statistical error.
@@ -52,7 +52,7 @@ def check_softening(
         Number of random packings of each.
     tolerance
         Relative change that is accepted.
-    skip, cycles, threads, progress
+    skip, cycles, workers, progress
         As of `rb.sweep`. With a harmonic motion a few dozen `cycles` do.
 
     Returns
@@ -119,7 +119,7 @@ def check_softening(
             for each in case.dampers
         ]
         variant = case.model_copy(update={"dampers": tuple(dampers)})
-        study = sweep(variant, {path: seeds}, names, skip=skip, cycles=cycles, threads=threads, progress=progress)
+        study = sweep(variant, {path: seeds}, names, skip=skip, cycles=cycles, workers=workers, progress=progress)
         for name in names:
             found[name].append(study[name])
     data: dict[str, Any] = {}

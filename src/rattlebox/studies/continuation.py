@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,12 +16,14 @@ from rattlebox.engines.status import STATUSES
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import place_of
 
-from .axes import Axes, Design
+from .axes import Axes, read_axes
 from .blocks import Blocks
 from .gather_variants import gather_variants
+from .grid import Grid
 from .impact_work import Extra, ImpactWork
 from .measures import MEASURES, check_names
 from .runner import run_work
+from .work import Values
 
 if TYPE_CHECKING:
     import os
@@ -32,7 +34,6 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 Members = NDArray[np.intp]
-Values = Mapping[str, NDArray[Any]]
 
 _FINISHED = [name for name, _ in STATUSES].index("finished")
 _STARTS = ("start", "velocity", "displacement")
@@ -54,8 +55,8 @@ def follow(
     point: str | None = None,
     motion: bool = False,
     last: int = 0,
-    threads: int | None = None,
-    on: Any = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
@@ -86,7 +87,7 @@ def follow(
     samples, point, motion, last
         As of `rb.sweep`: samples over the cycles looked at, the point that is watched, whether to keep its motion, how many
         of the last impacts to keep.
-    threads, on, store, progress
+    workers, backend, store, progress
         As of `rb.sweep`. Ways and variants beside each other are independent work; with a store, a walk goes on from the
         last value that is there.
 
@@ -118,7 +119,7 @@ def follow(
             )
     task = ContinuationWork(
         case,
-        _there_and_back(Design.of(case, axes), ways),
+        _there_and_back(read_axes(case, axes), ways),
         measures=_named(measure),
         cycles=cycles,
         samples=samples,
@@ -129,17 +130,15 @@ def follow(
         ways=tuple(ways),
         turning=turning,
     )
-    task.check()
-    found = run_work(
-        task, design=task.design, coords=task.coords(), store=store, on=on, threads=threads, progress=progress
-    )
+    task.validate()
+    found = run_work(task, store=store, backend=backend, workers=workers, progress=progress)
     return found.drop_dims("component").drop_vars("early")
 
 
-def _there_and_back(design: Design, ways: Sequence[str]) -> Design:
+def _there_and_back(design: Grid, ways: Sequence[str]) -> Grid:
     """The same variants, once for each direction."""
     directions = "direction", np.array(ways), {"long_name": "direction"}
-    return Design(
+    return Grid(
         ("direction", *design.dims),
         (len(ways), *design.shape),
         {path: column[None] for path, column in design.columns.items()},
@@ -158,7 +157,7 @@ def _named(measure: Sequence[str]) -> list[str]:
 
 @dataclass
 class ContinuationWork(ImpactWork):
-    """Variants that are followed along the last dimension of the design, in the directions of the first one.
+    """Variants that are followed along the last dimension of the grid, in the directions of the first one.
 
     Attributes
     ----------
@@ -176,10 +175,10 @@ class ContinuationWork(ImpactWork):
         return {**super().outputs, "early": ((), "float64", early)}
 
     def describe(self) -> dict[str, Any]:
-        """What is computed besides the design, in JSON's types."""
+        """What is computed besides the grid, in JSON's types."""
         return {"study": "follow", **super().describe(), "ways": list(self.ways), "turning": self.turning}
 
-    def check(self) -> None:
+    def validate(self) -> None:
         """Refuse loads that do not repeat.
 
         Raises
@@ -293,7 +292,7 @@ class _Step:
         self, work: ContinuationWork, at: At | None, members: Members, cancelled: Callable[[], bool] | None
     ) -> None:
         self._cancelled, self._count = cancelled, len(members)
-        shape, look = work.design.shape, work.look
+        shape, look = work.grid.shape, work.look
         self._own: Packed = gather_variants(work.packed, shape, members)
 
         def each(number: Any) -> Any:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from time import perf_counter
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,43 +21,43 @@ from rattlebox.model.errors import Hint
 from .case_digest import describe_case
 from .fingerprint import fingerprint
 from .measures import MEASURES, name_of
+from .work import Values
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.results import Run
 
-    from .axes import Design
+    from .grid import Grid
 
 Extra = tuple[tuple[str, int], ...]
-Values = Mapping[str, NDArray[Any]]
 UserMeasure = Callable[["Run"], float]
-_UNHEARD = 0.05  # s, after which a stop is asked for between runs
+_one_at_a_time = Lock()  # functions of users need not be safe to call from several threads
 
 
 @dataclass
 class ImpactWork:
-    """A case, its variants, and what is kept of each.
+    """Variants of a case with impact dampers, run in the core without keeping trajectories.
 
     Attributes
     ----------
-    case, design
-        The base case and the grid of its variants.
+    case, grid
+        Base case and the grid of its variants.
     measures
-        Names of measures of the core, and functions of a Run.
+        Names of measures, and functions of a Run.
     skip
-        Begin of the window [s].
+        Time from which measures are evaluated [s].
     cycles
-        Instead of the case's duration and of `skip`: cycles of the harmonic load to skip, and to look at.
+        Numbers of cycles of the harmonic load to skip and to evaluate, in place of `skip` and the duration of the case.
     samples
-        Samples of the window; None for as many as the measures need.
+        Number of samples of the evaluated window; None for as many as the measures need.
     point
-        Of the structure, that is watched; default the first damper's.
+        Name of the observed point of the structure; default that of the first damper.
     motion, last, state
-        Keep samples of the motion, the last impacts, the state at the end.
+        Whether to keep the samples of the motion, number of the last impacts to keep, whether to keep the final state.
     """
 
     case: Case
-    design: Design
+    grid: Grid
     measures: Sequence[str | UserMeasure] = ()
     skip: float = 0.0
     cycles: tuple[int, int] | None = None
@@ -72,12 +73,12 @@ class ImpactWork:
     @property
     def size(self) -> int:
         """Number of variants."""
-        return self.design.size
+        return self.grid.size
 
     @property
-    def block(self) -> int | None:
-        """Largest number of variants in a block; None for what takes about a second."""
-        return None
+    def block(self) -> int:
+        """Preferred number of variants in a block: as many as there are blocks, or one run for functions of a Run."""
+        return 1 if self.own else math.isqrt(self.size)
 
     @property
     def named(self) -> list[str]:
@@ -103,8 +104,8 @@ class ImpactWork:
         for name in self.own:
             found[name] = ((), "float64", {"units": "", "long_name": name.replace("_", " ")})
         balls = self._balls
-        time: Extra = (("instant", self.look.samples),)
         if self.motion:
+            time: Extra = (("instant", self.look.samples),)
             found["displacement"] = (time, "float64", {"units": "m", "long_name": "displacement"})
             found["velocity"] = (time, "float64", {"units": "m/s", "long_name": "velocity"})
             ball: Extra = (*time, ("ball", balls))
@@ -146,10 +147,10 @@ class ImpactWork:
         return np.linspace(start, stop, self.look.samples)
 
     def describe(self) -> dict[str, Any]:
-        """What is computed besides the design, in JSON's types."""
+        """What is computed besides the grid, in JSON's types."""
         kept = {name: getattr(self, name) for name in ("skip", "samples", "point", "motion", "last", "state")}
         return {
-            **describe_case(self.case, self.design.columns),
+            **describe_case(self.case, self.grid.columns),
             "measures": [*self.named, *(f"{name} {fingerprint(own)}" for name, own in self.own.items())],
             "cycles": None if self.cycles is None else list(self.cycles),
             **kept,
@@ -187,19 +188,13 @@ class ImpactWork:
         if result is None or not self.own:
             return result
         columns = {name: np.full(stop - start, np.nan) for name in self.own}
-        first, count = start, threads
-        while first < stop:
+        for index in range(start, stop):
             if not go_on():
                 return None
-            began = perf_counter()
-            members = range(first, min(first + count, stop))
-            runs = simulate_many([self.design.case_at(self.case, index) for index in members], threads=threads)
-            for index, run in zip(members, runs, strict=True):
-                if run.status == "finished":
-                    for name, number in self.own_of(run, index).items():
-                        columns[name][index - start] = number
-            first = members.stop
-            count = max(threads, int(len(members) * min(2.0, _UNHEARD / (perf_counter() - began))))
+            (run,) = simulate_many([self.grid.case_at(self.case, index)], threads=1)
+            if run.status == "finished":
+                for name, number in self.own_of(run, index).items():
+                    columns[name][index - start] = number
         return {**result, **columns}
 
     def own_of(self, run: Run, index: int) -> dict[str, float]:
@@ -212,7 +207,8 @@ class ImpactWork:
         """
         found = {}
         for name, measure in self.own.items():
-            value: Any = measure(run)
+            with _one_at_a_time:
+                value: Any = measure(run)
             try:
                 if isinstance(value, str) or np.ndim(value):
                     raise TypeError
@@ -281,7 +277,7 @@ class ImpactWork:
     @cached_property
     def _prepared(self) -> list[tuple[Batch, Look, NDArray[np.intp] | None]]:
         """Parts that differ in numbers only, with the numbers of their variants."""
-        parts = pack_parts(self.case, self.design.columns, self.design.shape)
+        parts = pack_parts(self.case, self.grid.columns, self.grid.shape)
         found = []
         for part in parts:
             balls = sum(len(damper["mass"]) for damper in part.packed["dampers"])
@@ -292,7 +288,7 @@ class ImpactWork:
                 and (balls, modes) != (self._balls, len(self.case.modes.decay))
             ):
                 raise part.unlike
-            numbers = part.numbers(self.design.shape) if len(parts) > 1 else None
+            numbers = part.numbers(self.grid.shape) if len(parts) > 1 else None
             found.append((*self._seen(part), numbers))
         return found
 

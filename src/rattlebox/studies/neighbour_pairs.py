@@ -50,7 +50,7 @@ class Pairs:
     ) -> None:
         self._task, self._threads, self._asked = task, threads, cancelled
         self._count = stop - start
-        shape = task.design.shape
+        shape = task.grid.shape
         members = np.arange(start, stop)
         self._packed: Packed = gather_variants(task.sweep.packed, shape, members, 2)
         self._modes = len(self._packed["mode_decay"])

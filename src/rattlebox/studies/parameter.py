@@ -23,9 +23,8 @@ from rattlebox.model.restitutions import Constant
 from rattlebox.model.signals import Signal
 from rattlebox.model.units import parse, plain
 
+from .grid import Column
 from .sampling import Spaced
-
-Column = NDArray[Any]  # float64, or objects
 
 
 @dataclass(frozen=True, eq=False)

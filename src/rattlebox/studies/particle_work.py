@@ -15,7 +15,6 @@ from scipy.integrate import trapezoid
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox.analysis import settling_time, shaken_cavity
 from rattlebox.analysis.granular import LEAST_SAMPLES, StillCavity
-from rattlebox.engines.batch import Look
 from rattlebox.engines.dem import objection, settled, simulate_dem
 from rattlebox.engines.dem_step import WARNINGS, warnings_of
 from rattlebox.engines.status import REFUSED, STATUSES
@@ -26,16 +25,15 @@ from rattlebox.model.space import unit_vector
 from rattlebox.results import GranularRun
 from rattlebox.results.schema import GRANULAR_CHANNELS
 
-from .blocks import Blocks
-from .impact_work import Extra, ImpactWork, Values
+from .impact_work import Extra, ImpactWork
 from .measures import MEASURES
+from .work import Values
 
 if TYPE_CHECKING:
     import xarray
 
     from rattlebox.model.case import Case
 
-_BLOCKS = 2000
 _SUMS = ("load_work", "base_work", "viscous_loss", "normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
 _NUMBERS = {name: number for number, (name, _) in enumerate(STATUSES)}
 
@@ -156,18 +154,13 @@ class ParticleWork(ImpactWork):
         about = {"long_name": "in what the run left its bounds", "flag_masks": masks, "flag_meanings": names}
         return {"status": found.pop("status"), "warnings": ((), "int8", about), **found}
 
-    @property
-    def look(self) -> Look:
-        """Settings of the samples that the 1-D core takes; the defaults, since it does not run."""
-        return Look()
-
     def validate(self) -> None:
-        """Raise, before anything runs, if the arguments do not fit the case.
+        """Raise if the arguments do not fit the case or each other.
 
         Raises
         ------
         CaseError
-            If they do not.
+            With what to try.
         """
         for name in self.named:
             if name not in _FOUND:
@@ -194,21 +187,13 @@ class ParticleWork(ImpactWork):
             raise Hint(f"there is no point {self.point!r}", " or ".join(points) or "leave it out", ["point"])
 
     def coords(self) -> dict[str, Any]:
-        """Return the coordinates of the further dimensions, of which there are none."""
+        """Return the coordinates of the dimensions beyond the grid, of which there are none."""
         return {}
 
     @property
     def block(self) -> int:
-        """Largest number of variants in a block: one, unless there are very many."""
-        return math.ceil(self.size / _BLOCKS)
-
-    def chains(self, blocks: Blocks) -> list[list[int]]:
-        """Return the numbers of blocks, each by itself: they need nothing of each other, and take very different times."""
-        return [[number] for number in range(len(blocks))]
-
-    def order(self, start: int, stop: int) -> range:
-        """Return variants of a block in the order in which they are run."""
-        return range(start, stop)
+        """Preferred number of variants in a block."""
+        return 1
 
     def run(
         self,
@@ -217,7 +202,6 @@ class ParticleWork(ImpactWork):
         *,
         threads: int = 1,
         cancelled: Callable[[], bool] | None = None,
-        before: Values | None = None,
     ) -> Values | None:
         """Run variants start to stop.
 
@@ -229,8 +213,6 @@ class ParticleWork(ImpactWork):
             Of each run.
         cancelled
             Asked some fifty times a second; True stops.
-        before
-            Not needed.
 
         Returns
         -------
@@ -293,7 +275,7 @@ class ParticleWork(ImpactWork):
         CaseError
             When it cannot be.
         """
-        case = self.design.case_at(self.case, index)
+        case = self.grid.case_at(self.case, index)
         if not case.particle_dampers:
             raise Hint("a variant without particles in space", "one sweep for each kind of damper")
         return self._windowed(case)

@@ -19,7 +19,7 @@ from rattlebox.model.files import existing, read_toml
 from rattlebox.model.materials import Material
 
 from . import sampling
-from .axes import Design
+from .axes import read_axes
 from .studytables import INSIDE, KINDS, Range, Spaced, shape_of
 from .studytables import Study as Content
 
@@ -57,7 +57,7 @@ class Study(NamedTuple):
         Parameters
         ----------
         **where
-            Arguments of the function that the file does not give: store, threads, on, progress.
+            Arguments of the function that the file does not give: store, workers, backend, progress.
 
         Raises
         ------
@@ -152,7 +152,7 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
             f"{source}: axes\n  a bifurcation diagram has one\n  try: a table [axes.together] that links them"
         )
     if axes:
-        Design.of(case, axes, source=source)
+        read_axes(case, axes, source=source)
     return Study(case, axes, options, kind)
 
 

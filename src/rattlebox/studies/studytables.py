@@ -112,7 +112,7 @@ class Study(Table):
     axes_needed: ClassVar[bool] = False
     kind: str = "sweep"
     case: Any = Field(examples=["case.toml"])
-    threads: Count | None = None
+    workers: Count | None = None
 
 
 class _OverAxes(Study):

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.owned_folder import read_marker
-from rattlebox.studies.store import progress_of
+from rattlebox.studies.stored import progress_of
 
 
 @dataclass
@@ -50,6 +50,15 @@ class Logistic:
     def size(self) -> int:
         """Number of variants."""
         return math.prod(self.grid.shape)
+
+    @property
+    def block(self) -> int:
+        """Preferred number of variants in a block."""
+        return 7
+
+    def coords(self) -> dict[str, Any]:
+        """No further dimension has coordinates."""
+        return {}
 
     @property
     def outputs(self) -> dict[str, Any]:
@@ -100,4 +109,4 @@ def is_made(store: Path) -> bool:
 if __name__ == "__main__":
     from rattlebox.studies.runner import run_work
 
-    run_work(Logistic(pause=float(sys.argv[2])), design=Grid(), store=sys.argv[1], block=5)
+    run_work(Logistic(pause=float(sys.argv[2])), store=sys.argv[1], block=5)

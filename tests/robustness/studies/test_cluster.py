@@ -22,10 +22,10 @@ from distributed import Client, LocalCluster
 import rattlebox as rb
 from rattlebox.engines.core import choice, supported
 from rattlebox.studies.runner import Stopped, run_work
-from rattlebox.studies.store import progress_of
+from rattlebox.studies.stored import progress_of
 
 from . import fake
-from .fake import Grid, Logistic
+from .fake import Logistic
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
 
@@ -95,10 +95,10 @@ def test_a_worker_is_killed_in_the_middle(scheduler: Path, tmp_path: Path) -> No
         client.wait_for_workers(2, timeout=30)
         assert set(client.run(os.getpid).values()) == {first.pid, second.pid}
         slow = Logistic(pause=0.02)
-        found = run_work(slow, design=Grid(), on=client, store=tmp_path / "study.zarr", block=3, progress=kill)
+        found = run_work(slow, backend=client, store=tmp_path / "study.zarr", block=3, progress=kill)
         assert first.poll() is not None
         assert len(client.scheduler_info()["workers"]) == 1
-    assert bits(found) == bits(run_work(Logistic(), design=Grid()))
+    assert bits(found) == bits(run_work(Logistic()))
 
 
 @pytest.fixture(scope="module")
@@ -113,10 +113,10 @@ def local() -> Iterator[Client]:
 
 def test_a_local_cluster(local: Client) -> None:
     """A cluster of processes gives the bits of this process; blocks are chosen by time, and a fault arrives as it is."""
-    found = run_work(Logistic(), design=Grid(), on=local)
-    assert bits(found) == bits(run_work(Logistic(), design=Grid()))
+    found = run_work(Logistic(), backend=local)
+    assert bits(found) == bits(run_work(Logistic()))
     with pytest.raises(ZeroDivisionError, match="a fault in the task"):
-        run_work(Logistic(broken=True), design=Grid(), on=local, block=20)
+        run_work(Logistic(broken=True), backend=local, block=20)
 
 
 def last_speed(run: rb.Run) -> float:
@@ -128,7 +128,7 @@ def test_a_measure_of_ones_own(local: Client) -> None:
     """A function of a Run travels to the workers with its study and gives the bits of this process."""
     case = rb.Case.from_file(EXAMPLE)
     axes = {"damper.start": rb.linspace(-0.5, 0.5, 5)}
-    found = rb.sweep(case, axes, [last_speed, "impacts"], on=local)
+    found = rb.sweep(case, axes, [last_speed, "impacts"], backend=local)
     here = rb.sweep(case, axes, [last_speed, "impacts"])
     assert bits(found) == bits(here)
     damper = case.dampers[0].model_copy(update={"start": -0.25})
@@ -141,7 +141,7 @@ def test_particles_in_space(local: Client) -> None:
     short = case.model_copy(update={"duration": 0.01, "output": rb.Output()})
     axes = {"damper.contact.restitution": [0.5, 0.7, 0.9]}
     here = rb.sweep(short, axes, ["impact_share", spins], progress=False)
-    there = rb.sweep(short, axes, ["impact_share", spins], on=local, progress=False)
+    there = rb.sweep(short, axes, ["impact_share", spins], backend=local, progress=False)
     assert bits(here) == bits(there)
     assert (here.status == 0).all()
 
@@ -164,15 +164,19 @@ def test_ready_maps(local: Client) -> None:
     starts = {"damper.start": rb.linspace(-1, 1, 5)}
     gaps = {"damper.gap": ("0.5 mm", "5 mm")}
     maps: list[Callable[[Any], xr.Dataset]] = [
-        lambda on: rb.bifurcation(case, "damper.gap", [1e-3, 2e-3], cycles=(20, 8), direction="fresh", on=on),
-        lambda on: rb.basins(case, starts, cycles=(20, 8), on=on),
-        lambda on: rb.lyapunov(case, starts, cycles=(20, 8), pairs=2, on=on),
-        lambda on: rb.loss_map(case, ["1 mm", "2 mm"], [10.0], cycles=(10, 10), on=on),
-        lambda on: rb.sensitivity(case, gaps, "reduced_loss", 8, cycles=(10, 10), on=on),
-        lambda on: rb.design(case, gaps, {"reduced_loss": "max"}, starts=3, cycles=(10, 10), trials=3, on=on),
+        lambda backend: rb.bifurcation(
+            case, "damper.gap", [1e-3, 2e-3], cycles=(20, 8), direction="fresh", backend=backend
+        ),
+        lambda backend: rb.basins(case, starts, cycles=(20, 8), backend=backend),
+        lambda backend: rb.lyapunov(case, starts, cycles=(20, 8), pairs=2, backend=backend),
+        lambda backend: rb.loss_map(case, ["1 mm", "2 mm"], [10.0], cycles=(10, 10), backend=backend),
+        lambda backend: rb.sensitivity(case, gaps, "reduced_loss", 8, cycles=(10, 10), backend=backend),
+        lambda backend: rb.design(
+            case, gaps, {"reduced_loss": "max"}, starts=3, cycles=(10, 10), trials=3, backend=backend
+        ),
     ]
     for made in maps:
-        there, here = (made(on).drop_vars("case", errors="ignore") for on in (local, None))  # texts have no bits
+        there, here = (made(on).drop_vars("case", errors="ignore") for on in (local, "threads"))  # texts have no bits
         assert bits(there) == bits(here)
 
 
@@ -191,10 +195,10 @@ def test_ctrl_c_stops_the_workers_too(scheduler: Path, tmp_path: Path) -> None:
         client.wait_for_workers(1, timeout=30)
         threading.Timer(1.0, press).start()
         with pytest.raises(Stopped, match="0 of 60 variants are in"):
-            run_work(Logistic(pause=10), design=Grid(), on=client, store=tmp_path / "study.zarr", block=10)
+            run_work(Logistic(pause=10), backend=client, store=tmp_path / "study.zarr", block=10)
         assert time.perf_counter() - pressed[0] < 2.0
         wait_for(lambda: sum(client.run(busy).values()) == 0)
-        run_work(Logistic(), design=Grid(), on=client, store=tmp_path / "study.zarr")
+        run_work(Logistic(), backend=client, store=tmp_path / "study.zarr")
     assert progress_of(tmp_path / "study.zarr").done == 60
 
 
@@ -205,7 +209,7 @@ def test_a_worker_with_other_instructions_is_refused(scheduler: Path) -> None:
     with worker(scheduler, RATTLEBOX_SIMD=other), Client(scheduler_file=str(scheduler)) as client:
         client.wait_for_workers(1, timeout=30)
         with pytest.raises(rb.ResourceError, match=rf" and {other} instructions, the study with .* {choice()[0]} "):
-            run_work(Logistic(), design=Grid(), on=client, block=20)
+            run_work(Logistic(), backend=client, block=20)
 
 
 def test_a_block_that_kills_its_worker(tmp_path: Path) -> None:
@@ -218,7 +222,7 @@ def test_a_block_that_kills_its_worker(tmp_path: Path) -> None:
     ):
         client.wait_for_workers(2, timeout=30)
         with pytest.raises(rb.ResourceError, match="2 workers in turn died of one block"):
-            run_work(Logistic(deadly=True), design=Grid(), on=client, block=60)
+            run_work(Logistic(deadly=True), backend=client, block=60)
 
 
 def test_the_scheduler_dies(tmp_path: Path) -> None:
@@ -236,6 +240,6 @@ def test_the_scheduler_dies(tmp_path: Path) -> None:
                 process.kill()
 
         with pytest.raises(rb.ResourceError, match="the cluster is lost"):
-            run_work(Logistic(pause=0.02), design=Grid(), on=client, store=store, block=3, progress=kill)
+            run_work(Logistic(pause=0.02), backend=client, store=store, block=3, progress=kill)
     assert 20 <= progress_of(store).done < 60
-    assert bits(run_work(Logistic(), design=Grid(), store=store)) == bits(run_work(Logistic(), design=Grid()))
+    assert bits(run_work(Logistic(), store=store)) == bits(run_work(Logistic()))

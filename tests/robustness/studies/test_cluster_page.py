@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rattlebox.engines.core import choice
-from rattlebox.studies.store import open_study
+from rattlebox.studies.stored import open_study
 from rattlebox.studies.study_file import study_from_toml
 
 ROOT = Path(__file__).parents[3]

@@ -14,7 +14,7 @@ from distributed import Client
 
 import rattlebox as rb
 from rattlebox.studies.runner import Stopped
-from rattlebox.studies.store import progress_of
+from rattlebox.studies.stored import progress_of
 
 from .fake import done_in
 from .test_cluster import running_scheduler, worker
@@ -22,7 +22,6 @@ from .test_cluster import running_scheduler, worker
 AMPLITUDE = "structure.motion.amplitude"
 STUDY = """\
 import rattlebox as rb
-from rattlebox.studies import runner
 
 case = rb.Case(
     structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz")),
@@ -37,7 +36,6 @@ values = rb.linspace("0.5 mm", "2.5 mm", 60)
 KILLED = (
     STUDY
     + """
-runner._block_size = lambda *_: 4
 rb.bifurcation(case, "structure.motion.amplitude", values, cycles=(400, 16), store="study.zarr")
 """
 )
@@ -85,7 +83,7 @@ def test_going_on_computes_nothing_twice(tmp_path: Path) -> None:
         diagram(store=store, progress=lambda n, _: told.append(n))
         return told
 
-    with pytest.raises(Stopped, match=r"of 120 variants are in .* and the same command goes on"):
+    with pytest.raises(Stopped, match=r"of 120 variants are in .* and the same command resumes"):
         diagram(store=store, progress=press)
     first = progress_of(store).done
     told = again()
@@ -119,7 +117,7 @@ def test_a_worker_is_killed_on_the_way(tmp_path: Path) -> None:
     ):
         client.wait_for_workers(2, timeout=30)
         found = rb.frequency_response(
-            case, frequencies, on=client, store=tmp_path / "study.zarr", progress=kill, **options
+            case, frequencies, backend=client, store=tmp_path / "study.zarr", progress=kill, **options
         )
         assert first.poll() is not None
     assert bits(found) == bits(rb.frequency_response(case, frequencies, progress=False, **options))

@@ -15,9 +15,9 @@ import pytest
 import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER, Marker, fill, read_marker, remove, write_marker
 from rattlebox.studies.runner import run_work
-from rattlebox.studies.store import open_study
+from rattlebox.studies.stored import open_study
 
-from .fake import Grid, Logistic
+from .fake import Logistic
 
 CASE = """
 duration = "50 ms"
@@ -78,7 +78,7 @@ def test_a_folder_of_a_user_is_no_store(tmp_path: Path, mine: Any) -> None:
         folder = tmp_path / str(number)
         mine(folder, names)
         with pytest.raises(rb.StoreError, match=r"\n  try: "):
-            run_work(Logistic(), design=Grid(), store=folder, progress=False)
+            run_work(Logistic(), store=folder, progress=False)
         assert {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} == {*names}
 
 
@@ -116,21 +116,21 @@ def test_a_study_goes_on_beside_files_of_a_user(tmp_path: Path, mine: Any) -> No
             raise ZeroDivisionError
 
     with suppress(ZeroDivisionError):
-        run_work(Logistic(), design=Grid(), store=store, block=5, progress=stop)
+        run_work(Logistic(), store=store, block=5, progress=stop)
     mine(store)
     left = store / "value" / "c" / "1" / f"0.{'a' * 32}.partial"
     left.write_text("half a chunk")
-    first = run_work(Logistic(), design=Grid(), store=store, progress=False).load()
+    first = run_work(Logistic(), store=store, progress=False).load()
     assert not left.exists()
     (store / "gap" / "zarr.json").unlink()
     (store / "value" / "c" / "0" / "0").unlink()
-    assert run_work(Logistic(), design=Grid(), store=store, progress=False).load().equals(first)
+    assert run_work(Logistic(), store=store, progress=False).load().equals(first)
 
 
 def test_a_half_made_store_with_files_of_a_user(tmp_path: Path, mine: Any) -> None:
     """What a killed process left is removed by its list."""
     store = tmp_path / "study.zarr"
-    run_work(Logistic(), design=Grid(), store=tmp_path / "other.zarr", progress=False)
+    run_work(Logistic(), store=tmp_path / "other.zarr", progress=False)
     made = read_marker(tmp_path / "other.zarr")
     assert made
     store.mkdir()
@@ -139,7 +139,7 @@ def test_a_half_made_store_with_files_of_a_user(tmp_path: Path, mine: Any) -> No
         (store / name).parent.mkdir(exist_ok=True)
         (store / name).write_text("{")
     mine(store, ("thesis.tex", "gone/notes.txt", "photos/a.jpg"))
-    run_work(Logistic(), design=Grid(), store=store, progress=False)
+    run_work(Logistic(), store=store, progress=False)
     assert not (store / "gone" / "zarr.json").exists()
 
 
@@ -151,7 +151,7 @@ def test_files_in_the_way_are_not_written_over(name: str, tmp_path: Path, mine: 
     write_marker(store, Marker("Rattlebox study", rb.__version__))
     mine(store, (name,))
     with pytest.raises(rb.StoreError, match="was not written by Rattlebox\n  try: move it"):
-        run_work(Logistic(), design=Grid(), store=store, progress=False)
+        run_work(Logistic(), store=store, progress=False)
 
 
 def test_a_map_beside_files_of_a_user(tmp_path: Path, mine: Any) -> None:
@@ -196,5 +196,5 @@ def test_a_store_that_is_removed_while_it_runs(tmp_path: Path) -> None:
             store.rename(tmp_path / "elsewhere")
 
     with pytest.raises(rb.StoreError, match=rf"{store} was removed while the study ran"):
-        run_work(Logistic(), design=Grid(), store=store, block=5, progress=clear)
+        run_work(Logistic(), store=store, block=5, progress=clear)
     assert not store.exists()

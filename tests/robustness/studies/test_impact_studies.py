@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.runner import Stopped, run_work
-from rattlebox.studies.store import open_study, progress_of
+from rattlebox.studies.stored import open_study, progress_of
 from rattlebox.studies.study_file import read_study
 
 from .fake import done_in
@@ -32,14 +32,14 @@ file = "{EXAMPLE}"
 "load.amplitude" = ["2 kN", "5 kN"]
 """
 SMALL_BLOCKS = """\
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.runner import run_work
 from rattlebox.studies.study_file import read_study
 from rattlebox.studies.impact_work import ImpactWork
 study = read_study("study.toml")
-design = Design.of(study.case, study.axes)
+design = read_axes(study.case, study.axes)
 task = ImpactWork(study.case, design, study.options["measure"])
-run_work(task, design=design, store="study.zarr", threads=1, block=100)
+run_work(task, store="study.zarr", workers=1, block=100)
 """
 
 
@@ -58,7 +58,7 @@ def test_a_killed_study_goes_on(tmp_path: Path) -> None:
     told = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     assert told == "2,000 variants: 2,000 finished\nwritten to study.zarr\n"
     study = read_study(tmp_path / "study.toml")
-    whole = rb.sweep(study.case, study.axes, threads=2, **study.options)
+    whole = rb.sweep(study.case, study.axes, workers=2, **study.options)
     found = open_study(store)
     assert {name: found[name].values.tobytes() for name in found} == {
         name: whole[name].values.tobytes() for name in whole
@@ -82,8 +82,8 @@ def ball() -> rb.Case:
 def one_block(store: Path) -> None:
     """One block that takes minutes."""
     case = rb.Case.from_file(EXAMPLE)
-    design = Design.of(case, {"damper.start": rb.linspace(-0.5, 0.5, 100_000)})
-    run_work(ImpactWork(case, design, ["impacts"]), design=design, store=store, block=100_000, progress=False)
+    design = read_axes(case, {"damper.start": rb.linspace(-0.5, 0.5, 100_000)})
+    run_work(ImpactWork(case, design, ["impacts"]), store=store, block=100_000, progress=False)
 
 
 STARTS = {"damper.start": rb.linspace(-0.5, 0.5, 100_000)}
@@ -113,7 +113,7 @@ def test_ctrl_c_stops_within_a_fifth_of_a_second(work: str, tmp_path: Path) -> N
             os.kill(os.getpid(), signal.SIGINT)
 
         threading.Timer(0.5 + 0.2 * attempt, press).start()
-        with pytest.raises(Stopped, match="the same command goes on from there"):
+        with pytest.raises(Stopped, match="the same command resumes from there"):
             WORK[work](tmp_path / "study.zarr")
         took.append(time.perf_counter() - pressed[0])
         if took[-1] < 0.2:

@@ -16,9 +16,9 @@ import xarray as xr
 
 import rattlebox as rb
 from rattlebox.studies.runner import Stopped, run_work
-from rattlebox.studies.store import open_study, progress_of
+from rattlebox.studies.stored import open_study, progress_of
 
-from .fake import Grid, Logistic, done_in
+from .fake import Logistic, done_in
 
 FAKE = Path(__file__).with_name("fake.py")
 
@@ -58,9 +58,9 @@ def test_killed_and_resumed_is_bit_for_bit_the_same(tmp_path: Path) -> None:
         before, done = done, progress_of(store).done
         assert before < done < 60
     steps: list[int] = []
-    finished = run_work(Logistic(), design=Grid(), store=store, progress=lambda n, _: steps.append(n))
+    finished = run_work(Logistic(), store=store, progress=lambda n, _: steps.append(n))
     assert steps[0] == done
-    assert bits(finished) == bits(run_work(Logistic(), design=Grid()))
+    assert bits(finished) == bits(run_work(Logistic()))
     assert not list(store.rglob("*.partial"))
 
 
@@ -73,7 +73,7 @@ def test_killed_while_the_store_is_made(tmp_path: Path, after: float) -> None:
     time.sleep(after)
     process.kill()
     process.communicate()
-    assert bits(run_work(Logistic(), design=Grid(), store=store)) == bits(run_work(Logistic(), design=Grid()))
+    assert bits(run_work(Logistic(), store=store)) == bits(run_work(Logistic()))
 
 
 def test_ctrl_c_in_a_process(tmp_path: Path) -> None:
@@ -84,9 +84,9 @@ def test_ctrl_c_in_a_process(tmp_path: Path) -> None:
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=20)
     assert process.returncode != 0
-    assert f"of 60 variants are in {store}, and the same command goes on from there" in said
+    assert f"of 60 variants are in {store}, and the same command resumes from there" in said
     assert 5 <= progress_of(store).done < 60
-    assert bits(run_work(Logistic(), design=Grid(), store=store)) == bits(run_work(Logistic(), design=Grid()))
+    assert bits(run_work(Logistic(), store=store)) == bits(run_work(Logistic()))
 
 
 def test_ctrl_c_is_quick(tmp_path: Path) -> None:
@@ -99,19 +99,19 @@ def test_ctrl_c_is_quick(tmp_path: Path) -> None:
 
     threading.Timer(0.3, press).start()
     with pytest.raises(Stopped, match="0 of 60 variants are in"):
-        run_work(Logistic(pause=10), design=Grid(), store=tmp_path / "study.zarr", block=30)
+        run_work(Logistic(pause=10), store=tmp_path / "study.zarr", block=30)
     assert time.perf_counter() - pressed[0] < 2.0  # 0.2 s where nothing else runs
     threading.Timer(0.3, press).start()
     with pytest.raises(Stopped, match="which are lost"):
-        run_work(Logistic(pause=10), design=Grid())
+        run_work(Logistic(pause=10))
 
 
 def test_ctrl_c_between_blocks(tmp_path: Path) -> None:
     """Ctrl-C while a result is being kept keeps it, and a later study is not stopped by it."""
     with pytest.raises(KeyboardInterrupt):
-        run_work(Logistic(), design=Grid(), store=tmp_path / "study.zarr", block=5, progress=_press_once())
+        run_work(Logistic(), store=tmp_path / "study.zarr", block=5, progress=_press_once())
     assert 0 < progress_of(tmp_path / "study.zarr").done < 60
-    run_work(Logistic(), design=Grid(), store=tmp_path / "study.zarr")
+    run_work(Logistic(), store=tmp_path / "study.zarr")
     assert progress_of(tmp_path / "study.zarr").done == 60
 
 
@@ -125,8 +125,8 @@ def test_two_processes_on_one_store(tmp_path: Path) -> None:
     process = start(store, pause=0.06)
     wait_for(has_begun(store, 5))
     with pytest.raises(rb.StoreError, match=rf"is being written by process {process.pid} on "):
-        run_work(Logistic(), design=Grid(), store=store)
+        run_work(Logistic(), store=store)
     assert open_study(store).sizes["gap"] == 6
     process.kill()
     process.communicate()
-    assert bits(run_work(Logistic(), design=Grid(), store=store)) == bits(run_work(Logistic(), design=Grid()))
+    assert bits(run_work(Logistic(), store=store)) == bits(run_work(Logistic()))

@@ -17,7 +17,7 @@ import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER, read_marker, write_marker
 from rattlebox.cli.show import show_study
 from rattlebox.studies.runner import run_work
-from rattlebox.studies.store import open_study, progress_of
+from rattlebox.studies.stored import open_study, progress_of
 
 from ..mounts import needs_mounts, with_own_mounts
 from .fake import Grid, Logistic
@@ -28,7 +28,7 @@ FAKE = Path(__file__).with_name("fake.py")
 def study(store: Path | None = None, task: Logistic | None = None, **options: Any) -> xr.Dataset:
     """Run the fake study."""
     task = task or Logistic()
-    return run_work(task, design=task.grid, store=store, block=7, progress=False, **options)
+    return run_work(task, store=store, block=7, progress=False, **options)
 
 
 def bits(data: xr.Dataset) -> dict[str, bytes]:
@@ -46,9 +46,9 @@ def test_on_disk_and_in_memory_are_the_same(tmp_path: Path) -> None:
     assert here.attrs | {"created": ""} == there.attrs | {"created": ""}
     assert there.gap.attrs["units"] == "m"
     assert there.value.attrs == {"units": "J", "long_name": "value"}
-    larger = run_work(Logistic(), design=Grid(), store=tmp_path / "larger.zarr", block=23)
+    larger = run_work(Logistic(), store=tmp_path / "larger.zarr", block=23)
     assert bits(larger) == bits(here)
-    chosen = run_work(Logistic(), design=Grid(), store=tmp_path / "chosen.zarr")
+    chosen = run_work(Logistic(), store=tmp_path / "chosen.zarr")
     assert bits(chosen) == bits(here)
 
 
@@ -70,7 +70,7 @@ def test_what_is_not_finished_is_not_a_number(tmp_path: Path) -> None:
             raise ZeroDivisionError
 
     with pytest.raises(ZeroDivisionError):
-        run_work(Logistic(), design=Grid(), store=tmp_path / "study.zarr", block=7, progress=fail)
+        run_work(Logistic(), store=tmp_path / "study.zarr", block=7, progress=fail)
     how_far = progress_of(tmp_path / "study.zarr")
     assert (how_far.done, how_far.total) == (20, 60)
     data = open_study(tmp_path / "study.zarr")
@@ -84,7 +84,7 @@ def test_going_on_computes_nothing_twice(tmp_path: Path) -> None:
     study(tmp_path / "study.zarr")
     seen: list[int] = []
     task = Logistic(broken=True)
-    again = run_work(task, design=Grid(), store=tmp_path / "study.zarr", progress=lambda done, total: seen.append(done))
+    again = run_work(task, store=tmp_path / "study.zarr", progress=lambda done, total: seen.append(done))
     assert bits(again) == bits(study())
     assert seen == [60]
 
@@ -220,7 +220,7 @@ def test_damage_of_the_fixed_part_is_reported_and_repaired(name: str, how: str, 
     for use in (open_study, show_study):
         with pytest.raises(rb.StoreError, match=f"{name} is lost or has changed\n  try: the command that began it"):
             use(store)
-    again = run_work(Logistic(broken=True), design=Grid(), store=store, progress=False)  # which computes nothing
+    again = run_work(Logistic(broken=True), store=store, progress=False)  # which computes nothing
     assert bits(again) == before
     xr.testing.assert_equal(again.load(), study())
 
@@ -256,7 +256,7 @@ def test_a_damaged_block_counts_as_not_computed(how: str, tmp_path: Path, capsys
         show_study(store)
         assert "77 of 84 variants" in capsys.readouterr().out
         seen: list[int] = []
-        run_work(task, design=task.grid, store=store, progress=lambda done, total, seen=seen: seen.append(done))
+        run_work(task, store=store, progress=lambda done, total, seen=seen: seen.append(done))
         assert (seen[0], seen[-1]) == (77, 84)
         assert bits(open_study(store)) == before
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from rattlebox.studies.store import progress_of
+from rattlebox.studies.stored import progress_of
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
 STUDY = f"""\
@@ -63,7 +63,7 @@ def test_bar_and_ctrl_c(tmp_path: Path) -> None:
     assert re.search(r"[1-9][\d,]* of 100,000 variants .*\d% +[\d,]+/s +\d+:\d\d(:\d\d)? left", text)
     last = text.strip().splitlines()[-1]
     done = re.fullmatch(
-        r"stopped; ([\d,]+) of 100,000 variants are in study.zarr, and the same command goes on from there", last
+        r"stopped; ([\d,]+) of 100,000 variants are in study.zarr, and the same command resumes from there", last
     )
     assert done, text
     assert int(done[1].replace(",", "")) == progress_of(tmp_path / "study.zarr").done > 0

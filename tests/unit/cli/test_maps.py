@@ -204,7 +204,7 @@ def test_a_design_without_a_best_trial_is_shown(answer: Answer) -> None:
     assert answer("plot", "study.zarr")[0] == 0
 
 
-@pytest.mark.parametrize(("kind", "after", "told"), [("bifurcation", 1, "9 of 18 variants"), ("design", 2, "2 trials")])
+@pytest.mark.parametrize(("kind", "after", "told"), [("bifurcation", 1, "3 of 18 variants"), ("design", 2, "2 trials")])
 def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer) -> None:
     """A map that was stopped tells how far it is, cannot be drawn as one yet, and the command finishes it."""
     Path("study.toml").write_text(study(kind))

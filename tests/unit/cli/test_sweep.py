@@ -10,7 +10,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.cli.main import main
-from rattlebox.studies.store import open_study
+from rattlebox.studies.stored import open_study
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
 STUDY = f"""\

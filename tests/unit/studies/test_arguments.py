@@ -31,7 +31,7 @@ WRONG = [
     *(("samples", value) for value in [1, 0, -1, 2.5, math.nan, "x"]),
     *(("last", value) for value in [-1, 2.5, "x"]),
     *(("skip", value) for value in [-1, math.nan, "9 kg"]),
-    *(("threads", value) for value in [0, -1, 1.5, "x"]),
+    *(("workers", value) for value in [0, -1, 1.5, "x"]),
 ]
 
 
@@ -54,7 +54,7 @@ def test_arguments_are_refused_by_name(name: str, value: Any) -> None:
 )
 def test_ready_maps_refuse_the_same(study: Any, arguments: tuple[Any, ...]) -> None:
     """Ready maps look at their arguments as sweeps do."""
-    for name, value in {"cycles": (-1, 2), "threads": 0}.items():
+    for name, value in {"cycles": (-1, 2), "workers": 0}.items():
         with pytest.raises(rb.CaseError, match="^" + re.escape(f"{name} = {value!r}\n")):
             study(shaken(), *arguments, **{name: value})
 

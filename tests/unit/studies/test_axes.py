@@ -13,7 +13,8 @@ import xarray as xr
 
 import rattlebox as rb
 from rattlebox.model.paths import replaced
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
+from rattlebox.studies.grid import Grid
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -39,14 +40,14 @@ def shaker() -> rb.Case:
 def refused(case: rb.Case, axes: Any) -> str:
     """Return what is said of bad axes, and check that it is short."""
     with pytest.raises(rb.CaseError) as caught:
-        Design.of(case, axes)
+        read_axes(case, axes)
     message = str(caught.value)
     assert message.startswith("axes: ")
     assert len(message.splitlines()) <= 6
     return message
 
 
-def same(one: Design, other: Design) -> bool:
+def same(one: Grid, other: Grid) -> bool:
     """Tell whether two designs are described alike."""
     return one.describe() == other.describe()
 
@@ -75,7 +76,7 @@ def same(one: Design, other: Design) -> bool:
 )
 def test_values_are_read_in_si(case: rb.Case, path: str, given: Any, values: list[float], unit: str) -> None:
     """However values are spelt, the column holds them in SI and the coordinate tells the unit and a name."""
-    design = Design.of(case, {path: given})
+    design = read_axes(case, {path: given})
     assert design.columns[path].dtype == np.float64
     np.testing.assert_allclose(design.columns[path], values, rtol=1e-15)
     coord = xr.Dataset(coords=design.coords())[path]
@@ -87,13 +88,13 @@ def test_pint_quantities_are_read(case: rb.Case) -> None:
     """An array of pint keeps its unit."""
     from rattlebox.model.units import registry
 
-    design = Design.of(case, {"damper.gap": np.array([0.1, 0.2]) * registry().millimeter})
+    design = read_axes(case, {"damper.gap": np.array([0.1, 0.2]) * registry().millimeter})
     np.testing.assert_allclose(design.columns["damper.gap"], [1e-4, 2e-4], rtol=1e-15)
 
 
 def test_places_in_lists_have_their_units(row: rb.Case) -> None:
     """Members of lists vary on their own, in the unit of the list."""
-    design = Design.of(
+    design = read_axes(
         row,
         {
             "structure.frequencies[0]": ["7 Hz", "9 Hz"],
@@ -125,7 +126,7 @@ def test_places_in_lists_have_their_units(row: rb.Case) -> None:
 def test_names_and_parts_are_objects_with_labels(case: rb.Case) -> None:
     """What is no number comes as objects of the case, and as short texts on the coordinate."""
     contacts = [rb.Tsuji(restitution=0.9), {"kind": "thornton"}, rb.Linear(stiffness="1 MN/m", damping=5)]
-    design = Design.of(
+    design = read_axes(
         case,
         {
             "damper.ball.material": ["steel", "brass"],
@@ -147,7 +148,7 @@ def test_labels_of_different_objects_differ(case: rb.Case) -> None:
     """Two materials of one name can be told apart."""
     steel = rb.materials()["steel"]
     soft = rb.Material(**{**dict(steel), "yield_stress": "500 MPa"})
-    _, labels, _ = Design.of(case, {"damper.ball.material": [steel, soft]}).coords()["damper.ball.material"]
+    _, labels, _ = read_axes(case, {"damper.ball.material": [steel, soft]}).coords()["damper.ball.material"]
     assert labels.tolist() == ["steel (1)", "steel (2)"]
 
 
@@ -162,7 +163,7 @@ def test_materials_of_the_case_are_known_by_name() -> None:
         ),
         duration=1,
     )
-    design = Design.of(case, {"damper.ball.material": ["steel", "oak"]})
+    design = read_axes(case, {"damper.ball.material": ["steel", "oak"]})
     assert [design.case_at(case, i).dampers[0].balls[0].material.name for i in (0, 1)] == ["steel", "oak"]
 
 
@@ -171,7 +172,7 @@ def test_materials_of_the_case_are_known_by_name() -> None:
 
 def test_grid_has_one_dimension_an_item(case: rb.Case) -> None:
     """Columns of a grid stretch along their own dimension only, the last one varying fastest."""
-    design = Design.of(case, {"damper.gap": ["1 mm", "2 mm", "3 mm"], "load.amplitude": ["1 kN", "5 kN"]})
+    design = read_axes(case, {"damper.gap": ["1 mm", "2 mm", "3 mm"], "load.amplitude": ["1 kN", "5 kN"]})
     assert (design.dims, design.shape, design.size) == (("damper.gap", "load.amplitude"), (3, 2), 6)
     assert {path: column.shape for path, column in design.columns.items()} == {
         "damper.gap": (3, 1),
@@ -185,8 +186,8 @@ def test_grid_has_one_dimension_an_item(case: rb.Case) -> None:
 def test_linked_parameters_share_a_dimension(case: rb.Case) -> None:
     """A tuple of paths varies together along one dimension, called after the first, or as it is named."""
     gaps, loads = ["1 mm", "2 mm"], rb.linspace("1 kN", "5 kN", 2)
-    tied = Design.of(case, {("damper.gap", "load.amplitude"): (gaps, loads), "duration": [1, 2]})
-    named = Design.of(case, {"level": {"damper.gap": gaps, "load.amplitude": loads}, "duration": [1, 2]})
+    tied = read_axes(case, {("damper.gap", "load.amplitude"): (gaps, loads), "duration": [1, 2]})
+    named = read_axes(case, {"level": {"damper.gap": gaps, "load.amplitude": loads}, "duration": [1, 2]})
     assert (tied.dims, tied.shape) == (("damper.gap", "duration"), (2, 2))
     assert (named.dims, named.shape) == (("level", "duration"), (2, 2))
     for design in (tied, named):
@@ -200,7 +201,7 @@ def test_linked_parameters_share_a_dimension(case: rb.Case) -> None:
 
 def test_exclusive_fields_replace_each_other(case: rb.Case) -> None:
     """Varying a damping ratio, a cavity length or a diameter takes the place of what the case gives instead."""
-    design = Design.of(
+    design = read_axes(
         case,
         {"structure.damping_ratio": [0.1], "damper.cavity_length": ["68 mm"], "damper.ball.diameter": ["66 mm"]},
     )
@@ -214,7 +215,7 @@ def test_exclusive_fields_replace_each_other(case: rb.Case) -> None:
 def test_a_part_may_vary_with_what_is_in_it(case: rb.Case) -> None:
     """A whole contact comes first, then its restitution."""
     laws = [rb.Tsuji(restitution=0.1, ending=ending) for ending in ("zero_force", "zero_overlap")]
-    design = Design.of(case, {"damper.contact": laws, "damper.contact.restitution": [0.5, 0.9]})
+    design = read_axes(case, {"damper.contact": laws, "damper.contact.restitution": [0.5, 0.9]})
     contact = design.case_at(case, 3).dampers[0].contact
     assert contact == rb.Tsuji(restitution=0.9, ending="zero_overlap")
 
@@ -224,7 +225,7 @@ def test_a_part_may_vary_with_what_is_in_it(case: rb.Case) -> None:
 
 def test_lengths_of_the_start_become_fractions_of_each_gap(case: rb.Case) -> None:
     """A start given as a length stays that length whatever gap it meets."""
-    design = Design.of(case, {"damper.gap": ["0.1 mm", "1 mm"], "damper.start": ["50 um", "-0.02 mm"]})
+    design = read_axes(case, {"damper.gap": ["0.1 mm", "1 mm"], "damper.start": ["50 um", "-0.02 mm"]})
     np.testing.assert_allclose(design.columns["damper.start"], [[0.5, -0.2], [0.05, -0.02]], rtol=1e-14)
     assert design.coords()["damper.start"][2]["units"] == "m"
     for index, place in enumerate([5e-5, -2e-5, 5e-5, -2e-5]):
@@ -235,7 +236,7 @@ def test_lengths_of_the_start_become_fractions_of_each_gap(case: rb.Case) -> Non
 def test_lengths_of_the_start_meet_the_gap_of_a_cavity(case: rb.Case, size: str) -> None:
     """The gap that belongs to a cavity length and a varying ball is the one that counts."""
     sizes = ["30 mm", "33 mm"] if size.endswith("radius") else ["60 mm", "66 mm"]
-    design = Design.of(
+    design = read_axes(
         case, {"damper.cavity_length": ["67 mm", "70 mm"], size: sizes, "damper.start": ["0.1 mm", "0.3 mm"]}
     )
     for index in range(design.size):
@@ -247,7 +248,7 @@ def test_replicas_move_what_the_case_or_an_axis_gives(case: rb.Case) -> None:
     """Offsets fill the reach to both sides, are the same for every variant, and are added."""
     axes = {"damper.gap": ["0.1 mm", "1 mm"], "structure.mass": [10, 20]}
     moved = rb.replicas({"damper.start": "1 um", "structure.mass": "10 g"}, 64, seed=3)
-    design = Design.of(case, [axes, moved])
+    design = read_axes(case, [axes, moved])
     assert (design.dims, design.shape) == (("damper.gap", "structure.mass", "replica"), (2, 2, 64))
     assert design.columns["damper.start"].shape == (2, 1, 64)
     assert design.columns["structure.mass"].shape == (1, 2, 64)
@@ -270,7 +271,7 @@ def test_replicas_of_a_start_at_a_wall_stay_inside(case: rb.Case) -> None:
         centre = displacement / 4e-4
         here = replaced(case, {"structure.displacement": displacement, "damper.start": centre})
         axes = [{"damper.start": [centre - 1, centre, centre + 1]}, rb.replicas({"damper.start": "1 um"}, 8)]
-        beside = Design.of(here, axes).columns["damper.start"] - centre
+        beside = read_axes(here, axes).columns["damper.start"] - centre
         assert np.abs(beside).max() <= 1 + 1e-12
         np.testing.assert_allclose(beside[2], -np.sign(beside[1]) * beside[1] + 1, rtol=1e-12)
         np.testing.assert_allclose(beside[0], -beside[2], rtol=1e-12)
@@ -280,7 +281,7 @@ def test_replicas_move_a_number_that_a_gap_or_a_restitution_gives(case: rb.Case)
     """The gap that is moved is the one that a start in lengths refers to; a constant restitution counts as its number."""
     here = replaced(case, {"damper.contact.restitution": 0.9})
     reach = {"damper.gap": "0.1 mm", "damper.start": "10 um", "damper.contact.restitution": 0.05}
-    design = Design.of(here, rb.replicas(reach, 16))
+    design = read_axes(here, rb.replicas(reach, 16))
     coords = design.coords()
     np.testing.assert_allclose(
         design.columns["damper.start"] * design.columns["damper.gap"], coords["damper.start.offset"][1], rtol=1e-13
@@ -298,7 +299,7 @@ def test_random_points_fill_their_ranges(case: rb.Case, method: Any) -> None:
     """Points lie inside their ranges, evenly: a quarter of them in each quarter, in the logarithm where it is asked."""
     ranges = {"damper.gap": ("0.1 mm", "2 mm"), "load.amplitude": ("10 N", "1000 N")}
     random = rb.random_design(ranges, 1000, method=method, log=["load.amplitude"])
-    design = Design.of(case, random)
+    design = read_axes(case, random)
     assert (design.dims, design.shape) == (("sample",), (1000,))
     parts = {
         "gap": (design.columns["damper.gap"] - 1e-4) / 1.9e-3,
@@ -315,17 +316,17 @@ def test_random_points_fill_their_ranges(case: rb.Case, method: Any) -> None:
 def test_random_designs_repeat_and_differ_by_seed(case: rb.Case) -> None:
     """The same seed gives the same design, another one another, and a longer Sobol design begins with the shorter."""
     ranges = {"damper.gap": ("0.1 mm", "2 mm")}
-    design = Design.of(case, rb.random_design(ranges, 10, seed=1))
-    assert same(design, Design.of(case, rb.random_design(ranges, 10, seed=1)))
-    assert not same(design, Design.of(case, rb.random_design(ranges, 10, seed=2)))
-    longer = Design.of(case, rb.random_design(ranges, 100, seed=1))
+    design = read_axes(case, rb.random_design(ranges, 10, seed=1))
+    assert same(design, read_axes(case, rb.random_design(ranges, 10, seed=1)))
+    assert not same(design, read_axes(case, rb.random_design(ranges, 10, seed=2)))
+    longer = read_axes(case, rb.random_design(ranges, 100, seed=1))
     np.testing.assert_array_equal(longer.columns["damper.gap"][:10], design.columns["damper.gap"])
 
 
 def test_random_designs_choose_materials(case: rb.Case) -> None:
     """Where a parameter is no number, members of a list are drawn about equally often."""
     names = ["steel", "brass", "glass"]
-    design = Design.of(case, rb.random_design({"damper.ball.material": names, "duration": (1, 2)}, 300))
+    design = read_axes(case, rb.random_design({"damper.ball.material": names, "duration": (1, 2)}, 300))
     _, labels, _ = design.coords()["damper.ball.material"]
     assert {name: (labels == name).sum() for name in names} == pytest.approx(dict.fromkeys(names, 100), abs=3)
 
@@ -345,14 +346,14 @@ def test_description_is_plain_and_equal_for_equal_designs(case: rb.Case) -> None
             rb.replicas({"damper.start": 1e-6 * rb_metre()}, 50),
         ],
     ]
-    one, other = (Design.of(case, axes) for axes in spelt)
+    one, other = (read_axes(case, axes) for axes in spelt)
     assert same(one, other)
     assert json.loads(json.dumps(one.describe())) == one.describe()
     many = np.linspace(1e-4, 1e-3, 1000)
     moved = many.copy()
     moved[500] *= 1 + 2e-16
     designs = [
-        Design.of(case, axes)
+        read_axes(case, axes)
         for axes in (
             {"damper.gap": many},
             {"damper.gap": moved},
@@ -377,7 +378,7 @@ def rb_metre() -> Any:
 
 def test_designs_travel(case: rb.Case) -> None:
     """A pickled design is the same design."""
-    design = Design.of(case, [{"damper.ball.material": ["steel", "brass"]}, rb.replicas({"damper.start": 0.01}, 3)])
+    design = read_axes(case, [{"damper.ball.material": ["steel", "brass"]}, rb.replicas({"damper.start": 0.01}, 3)])
     copy = pickle.loads(pickle.dumps(design))
     assert same(copy, design)
     assert copy.case_at(case, 5) == design.case_at(case, 5)
@@ -385,10 +386,10 @@ def test_designs_travel(case: rb.Case) -> None:
 
 def test_a_million_variants_are_light(case: rb.Case) -> None:
     """A grid of a million holds its axes only, and big columns are not read value by value."""
-    grid = Design.of(case, {"damper.gap": np.linspace(1e-4, 2e-3, 1000), "load.amplitude": np.linspace(1, 9e3, 1000)})
+    grid = read_axes(case, {"damper.gap": np.linspace(1e-4, 2e-3, 1000), "load.amplitude": np.linspace(1, 9e3, 1000)})
     assert grid.size == 10**6
     assert sum(column.nbytes for column in grid.columns.values()) == 16000
-    random = Design.of(case, rb.random_design({"damper.gap": ("0.1 mm", "2 mm")}, 10**6, method="lhs"))
+    random = read_axes(case, rb.random_design({"damper.gap": ("0.1 mm", "2 mm")}, 10**6, method="lhs"))
     assert len(json.dumps(random.describe())) < 1000
 
 
@@ -396,7 +397,7 @@ def test_a_million_variants_are_light(case: rb.Case) -> None:
 def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> None:
     """Variants count from 0."""
     with pytest.raises(rb.CaseError, match="there is no variant"):
-        Design.of(case, {"duration": [1, 2]}).case_at(case, index)
+        read_axes(case, {"duration": [1, 2]}).case_at(case, index)
 
 
 # ---- bad axes
@@ -481,7 +482,7 @@ def test_values_that_the_place_has_in_another_unit_are_refused(shaker: rb.Case) 
     """The amplitude of a motion stays the displacement, or the acceleration, that it is."""
     message = refused(shaker, {"structure.motion.amplitude": ["1 m/s^2"]})
     assert "a length (m) is needed, not an acceleration" in message
-    assert Design.of(shaker, {"structure.motion.amplitude": ["0.1 mm"]}).coords()["structure.motion.amplitude"][2][
+    assert read_axes(shaker, {"structure.motion.amplitude": ["0.1 mm"]}).coords()["structure.motion.amplitude"][2][
         "units"
     ] == ("m")
 

@@ -94,7 +94,7 @@ def test_names_can_be_compared_fresh():
         (AMPLITUDE, [1e-3], {"show": "strobes"}, "show = 'strobes' is unknown"),
         (AMPLITUDE, [1e-3], {"direction": "left"}, "direction = 'left' is unknown"),
         (AMPLITUDE, [1e-3], {"cycles": (5, 1)}, "at least 2 to look at"),
-        (AMPLITUDE, [1e-3], {"threads": 0}, "threads = 0"),
+        (AMPLITUDE, [1e-3], {"workers": 0}, "workers = 0"),
         (AMPLITUDE, [1e-3], {"tolerance": 0}, "tolerance = 0"),
     ],
 )

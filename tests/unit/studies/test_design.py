@@ -158,7 +158,7 @@ def test_own_measure() -> None:
 
 def test_same_seed_same_trials() -> None:
     """A seed decides the trials, whatever the number of threads; another one gives others."""
-    assert searched().identical(searched(threads=1))
+    assert searched().identical(searched(workers=1))
     assert not searched(trials=3)[GAP].equals(searched(trials=3, seed=6)[GAP])
 
 
@@ -172,7 +172,7 @@ def test_a_stop_changes_nothing(tmp_path: Path) -> None:
             raise KeyboardInterrupt
 
     searched(trials=5, store=store)
-    with pytest.raises(Stopped, match=r"11 of 24 trials, .*design.* goes on"):
+    with pytest.raises(Stopped, match=r"11 of 24 trials, .*design.* resumes"):
         searched(store=store, progress=interrupt)
     assert trials_in(store) == 11
     with journal.open("ab") as file:

@@ -105,12 +105,12 @@ def test_variants_beside_each_other_do_not_disturb_each_other():
     options = {"cycles": (5, 2), "measure": ["impacts"], "samples": 3, "motion": True, "last": 3, **QUIET}
     gaps = [1e-3, 0.8e-3, 0.6e-3]
     both = follow(
-        shaken(), "structure.motion.frequency", frequencies, beside={"damper.gap": gaps}, threads=3, **options
+        shaken(), "structure.motion.frequency", frequencies, beside={"damper.gap": gaps}, workers=3, **options
     )
     assert both.status.dims == ("direction", "damper.gap", "structure.motion.frequency")
     for number, gap in enumerate(gaps):
         alone = follow(
-            shaken(), "structure.motion.frequency", frequencies, beside={"damper.gap": [gap]}, threads=1, **options
+            shaken(), "structure.motion.frequency", frequencies, beside={"damper.gap": [gap]}, workers=1, **options
         )
         for name in alone:
             np.testing.assert_array_equal(alone[name][:, 0], both[name][:, number])

@@ -69,7 +69,7 @@ def test_fresh_begins_each_time_as_the_case_says():
 
 def test_threads_leave_the_bits():
     """Results are the same bits for any number of threads."""
-    one, two = (rb.frequency_response(case(), [30, 31], levels=[5, 10, 20], threads=n, **QUICK) for n in (1, 2))
+    one, two = (rb.frequency_response(case(), [30, 31], levels=[5, 10, 20], workers=n, **QUICK) for n in (1, 2))
     assert one.drop_attrs().equals(two.drop_attrs())
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox import analysis
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.kinds.lyapunov import LyapunovWork
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "lyapunov.py"
@@ -58,9 +58,9 @@ def test_example():
 def test_variants_know_nothing_of_each_other():
     """A variant has the same bits alone, among others, on disk and with any number of threads."""
     axes = {"load.frequency": [29.0, 31.0, 33.0], "damper.gap": ["0.8 mm", "1 mm"]}
-    one, two = (rb.lyapunov(case(), axes, threads=n, **QUICK) for n in (1, 2))
+    one, two = (rb.lyapunov(case(), axes, workers=n, **QUICK) for n in (1, 2))
     assert one.drop_attrs().equals(two.drop_attrs())
-    variant = Design.of(case(), axes).case_at(case(), 3)
+    variant = read_axes(case(), axes).case_at(case(), 3)
     alone = rb.lyapunov(variant, **QUICK)
     assert float(alone.exponent) == float(one.exponent[1, 1])
     assert (alone.running_exponent.values == one.running_exponent.values[1, 1]).all()
@@ -78,7 +78,7 @@ def test_study_on_disk(tmp_path):
     alone = rb.lyapunov(case(), store=tmp_path / "alone.zarr", **QUICK).load()
     assert alone.equals(rb.lyapunov(case(), **QUICK))
     assert alone.exponent.dims == ()
-    with pytest.raises(rb.CaseError, match="pairs"):
+    with pytest.raises(rb.StoreError, match="pairs"):
         rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **{**QUICK, "pairs": 4})
 
 
@@ -175,7 +175,7 @@ def test_loads_that_cannot_be_begun_anew_are_refused():
 
 def test_it_stops_when_asked():
     """Long work ends soon after it is told to, also while motions settle."""
-    task = LyapunovWork(case(), Design.of(case(), {"load.frequency": np.linspace(29, 33, 64)}), cycles=(20000, 20000))
+    task = LyapunovWork(case(), read_axes(case(), {"load.frequency": np.linspace(29, 33, 64)}), cycles=(20000, 20000))
     begun = time.perf_counter()
     assert task.run(0, 64, threads=1, cancelled=lambda: time.perf_counter() - begun > 0.3) is None
     assert time.perf_counter() - begun < 1.5

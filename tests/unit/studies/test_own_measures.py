@@ -98,11 +98,11 @@ def test_functions_differ_by_their_modules_values(monkeypatch: pytest.MonkeyPatc
 
 def test_a_store_is_not_taken_for_that_of_another_function(tmp_path: Path) -> None:
     """A store goes on with the function that it was begun with, made anew, and refuses one that takes another limit."""
-    first = rb.sweep(case(), AXES, above(1e-3), store=tmp_path / "a.zarr", threads=1)
-    again = rb.sweep(case(), AXES, above(1e-3), store=tmp_path / "a.zarr", threads=1)
+    first = rb.sweep(case(), AXES, above(1e-3), store=tmp_path / "a.zarr", workers=1)
+    again = rb.sweep(case(), AXES, above(1e-3), store=tmp_path / "a.zarr", workers=1)
     np.testing.assert_array_equal(first.share, again.share)
     with pytest.raises(rb.StoreError, match="holds another study"):
-        rb.sweep(case(), AXES, above(1e-4), store=tmp_path / "a.zarr", threads=1)
+        rb.sweep(case(), AXES, above(1e-4), store=tmp_path / "a.zarr", workers=1)
 
 
 @pytest.mark.parametrize("name", ["status", "feasible", "added_mass"])

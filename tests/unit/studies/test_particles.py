@@ -13,7 +13,7 @@ from rattlebox.analysis import shaken_cavity
 from rattlebox.engines import dem_settle
 from rattlebox.results import GranularRun
 from rattlebox.studies import particle_work
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.runner import Stopped
 
 AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
@@ -68,7 +68,7 @@ def test_variants_are_runs() -> None:
         "peak_velocity",
         "settling_time",
     ]
-    found = rb.sweep(struck(), axes, [*names, turned], threads=2, progress=False)
+    found = rb.sweep(struck(), axes, [*names, turned], workers=2, progress=False)
     assert (found.status == 0).all()
     assert found.peak.attrs["units"] == "m"
     for i, restitution in enumerate([0.5, 0.9]):
@@ -82,7 +82,7 @@ def test_variants_are_runs() -> None:
         assert float(one.peak_velocity) == np.abs(alone.arrays.velocity).max()
         settled = rb.analysis.settling_time(alone.arrays.time, alone.arrays.displacement[:, 0])
         assert float(one.settling_time) == settled < 0.08
-    again = rb.sweep(struck(), axes, [*names, turned], threads=1, progress=False)
+    again = rb.sweep(struck(), axes, [*names, turned], workers=1, progress=False)
     assert again.equals(found)
 
 
@@ -236,13 +236,13 @@ def test_a_stop_loses_no_finished_run(tmp_path: Path, monkeypatch: pytest.Monkey
             raise KeyboardInterrupt
 
     with pytest.raises(Stopped, match="2 of 4 variants are in"):
-        rb.sweep(struck(), axes, "impact_share", store=store, threads=1, progress=stopping)
+        rb.sweep(struck(), axes, "impact_share", store=store, workers=1, progress=stopping)
     ran = []
     simulate = particle_work.simulate_dem
     monkeypatch.setattr(
         particle_work, "simulate_dem", lambda case, **options: (ran.append(case), simulate(case, **options))[1]
     )
-    found = rb.sweep(struck(), axes, "impact_share", store=store, threads=1, progress=False)
+    found = rb.sweep(struck(), axes, "impact_share", store=store, workers=1, progress=False)
     assert len(ran) == 2
     whole = rb.sweep(struck(), axes, "impact_share", progress=False)
     assert found.impact_share.values.tobytes() == whole.impact_share.values.tobytes()
@@ -315,7 +315,7 @@ def test_other_studies_say_that_they_are_for_impact_dampers() -> None:
 def test_stops_are_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     """A task that is told to stop ends within a run, and within the settling before it."""
     case = shaken(duration="1000 s", dampers=[box(packing=rb.Settled(seed=9))])
-    task = particle_work.ParticleWork(case, Design.of(case, {AMPLITUDE: [60.0]}), ["work"])
+    task = particle_work.ParticleWork(case, read_axes(case, {AMPLITUDE: [60.0]}), ["work"])
     assert task.run(0, 1, cancelled=lambda: True) is None
     asked: list[bool] = []
     monkeypatch.setattr(particle_work, "settled", lambda case, go_on: True)

@@ -42,9 +42,9 @@ def test_points_are_those_of_a_sweep() -> None:
 
 def test_same_seed_same_indices() -> None:
     """A seed decides points and intervals, whatever the number of threads or the state of NumPy's own generator."""
-    first = rb.sensitivity(struck(), BOUNDS, n=16, seed=0, threads=2, progress=False)
+    first = rb.sensitivity(struck(), BOUNDS, n=16, seed=0, workers=2, progress=False)
     np.random.seed(7)  # noqa: NPY002
-    again = rb.sensitivity(struck(), BOUNDS, n=16, seed=0, threads=1, progress=False)
+    again = rb.sensitivity(struck(), BOUNDS, n=16, seed=0, workers=1, progress=False)
     assert first.identical(again)
     other = rb.sensitivity(struck(), BOUNDS, n=16, seed=1, progress=False)
     assert not first.total.equals(other.total)

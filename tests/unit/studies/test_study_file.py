@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.sampling import RandomDesign, Replicas
 from rattlebox.studies.study_file import read_study, study_from_toml
 
@@ -49,7 +49,7 @@ def refused(content: str) -> str:
 def test_a_study_file_says_what_the_call_says() -> None:
     """Case, axes in their order and options are those that one would pass to a sweep."""
     study = study_from_toml(
-        'measure = ["impacts", "impact_share"]\nskip = "100 ms"\nthreads = 2\n'
+        'measure = ["impacts", "impact_share"]\nskip = "100 ms"\nworkers = 2\n'
         + BALL
         + """
 [axes]
@@ -67,8 +67,8 @@ def test_a_study_file_says_what_the_call_says() -> None:
         "damper.ball.material": ["steel", "brass"],
     }
     assert study.case == rb.Case.from_file(EXAMPLES / "steel_ball.toml")
-    assert study.options == {"measure": ["impacts", "impact_share"], "skip": 0.1, "threads": 2}
-    assert Design.of(study.case, study.axes).describe() == Design.of(study.case, axes).describe()
+    assert study.options == {"measure": ["impacts", "impact_share"], "skip": 0.1, "workers": 2}
+    assert read_axes(study.case, study.axes).describe() == read_axes(study.case, axes).describe()
 
 
 def test_one_measure_needs_no_list() -> None:
@@ -98,8 +98,8 @@ damper.start = "1 um"
     for path in ("damper.gap", "damper.contact.restitution", "load.amplitude", "structure.mass", "load.duration"):
         quoted = quoted.replace(f"{path} =", f'"{path}" =')
     one, other = (study_from_toml(BALL + text, folder=EXAMPLES) for text in (bare, quoted))
-    design = Design.of(one.case, one.axes)
-    assert design.describe() == Design.of(other.case, other.axes).describe()
+    design = read_axes(one.case, one.axes)
+    assert design.describe() == read_axes(other.case, other.axes).describe()
     assert design.dims == ("damper.gap", "damper.contact.restitution", "duration", "level", "sample", "replica")
 
 
@@ -132,7 +132,7 @@ def test_the_case_may_stand_in_the_file_with_its_materials() -> None:
     """A case written inside counts like one in a file, and its materials may stand on axes."""
     axes = '[axes]\n"damper.ball.material" = ["steel", "oak", "cork"]\n"damper.wall" = ["rigid", "cork"]\n'
     study = study_from_toml(INLINE + axes, folder=EXAMPLES)
-    last = Design.of(study.case, study.axes).case_at(study.case, 5).dampers[0]
+    last = read_axes(study.case, study.axes).case_at(study.case, 5).dampers[0]
     assert last.balls[0].material.density == 200
     assert last.wall == last.balls[0].material
     assert study.options == {}
@@ -148,7 +148,7 @@ def test_files_are_seen_from_the_folder_of_the_study(tmp_path: Path, monkeypatch
     monkeypatch.chdir(EXAMPLES)
     study = read_study(tmp_path / "study.toml")
     assert study.case.dampers[0].balls[0].material.name == "oak"
-    assert Design.of(study.case, study.axes).case_at(study.case, 1).dampers[0].balls[0].material.name == "cork"
+    assert read_axes(study.case, study.axes).case_at(study.case, 1).dampers[0].balls[0].material.name == "cork"
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ def test_files_are_seen_from_the_folder_of_the_study(tmp_path: Path, monkeypatch
         ("measure = 3\n" + BALL + GAPS, ["measure = 3", "a list is needed"]),
         (BALL + '[axes]\n"damper.gap" = "1 mm"', ["axes.damper.gap = '1 mm'", 'a list is needed\n  try: ["1 mm"]']),
         ('measure = ["peak", "peak"]\n' + BALL + GAPS, ["measure = ['peak', 'peak']", "two measures are called peak"]),
-        ("threads = 0\n" + BALL + GAPS, ["threads = 0", "at least 1"]),
+        ("workers = 0\n" + BALL + GAPS, ["workers = 0", "at least 1"]),
         ('skip = "1 kg"\n' + BALL + GAPS, ["skip = '1 kg'", "a time (s) is needed, not a mass"]),
         ("cycles = 3\n" + BALL + GAPS, ["cycles = 3", "whole numbers of cycles"]),
         (BALL + "axes = 3", ["axes = 3", "a table is needed"]),

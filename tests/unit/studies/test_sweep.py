@@ -10,7 +10,7 @@ import rattlebox as rb
 from rattlebox import analysis
 from rattlebox.engines.core import core
 from rattlebox.model.paths import replaced
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.measures import MEASURES
 from rattlebox.studies.runner import run_work
@@ -161,8 +161,8 @@ def test_threads_and_neighbours_change_no_bit() -> None:
     """One thread or two, alone or among others: the same bits."""
     case = rb.reference_case(duration=1.0)
     axes = {"damper.start": rb.linspace(-0.9, 0.9, 23)}
-    one = rb.sweep(case, axes, ["impact_share", "settling_time"], threads=1)
-    two = rb.sweep(case, axes, ["impact_share", "settling_time"], threads=2)
+    one = rb.sweep(case, axes, ["impact_share", "settling_time"], workers=1)
+    two = rb.sweep(case, axes, ["impact_share", "settling_time"], workers=2)
     alone = rb.sweep(case, {"damper.start": [float(one["damper.start"][7])]}, ["impact_share", "settling_time"])
     assert one.equals(two)
     assert float(alone.impact_share[0]) == float(one.impact_share[7])
@@ -193,7 +193,7 @@ def test_a_member_that_fails_carries_its_status() -> None:
         ({"cycles": (10, 5)}, "harmonic"),
         ({"skip": "9 kg"}, "s"),
         ({"point": "tip"}, "mass"),
-        ({"on": "gpu"}, "not a client of a Dask cluster"),
+        ({"backend": "gpu"}, "neither the name of a backend nor the client of a Dask cluster"),
     ],
 )
 def test_what_does_not_fit_is_told_before_anything_runs(options: dict[str, Any], told: str) -> None:
@@ -234,7 +234,7 @@ def test_what_is_no_number_to_the_core_varies_too(tmp_path: Path) -> None:
         "damper.ball.material": ["steel", "brass"],
     }
     maps = rb.sweep(case, axes, ["impacts"], motion=True, samples=3)
-    design = Design.of(case, axes)
+    design = read_axes(case, axes)
     for number in range(design.size):
         run = rb.simulate(design.case_at(case, number).model_copy(update={"output": rb.Output(times=[0, 0.25, 0.5])}))
         index = np.unravel_index(number, design.shape)
@@ -244,9 +244,7 @@ def test_what_is_no_number_to_the_core_varies_too(tmp_path: Path) -> None:
             np.testing.assert_allclose(maps.displacement.values[index], run.arrays.displacement[:, 0], rtol=1e-9)
     assert 0 < np.mean(maps.status == 0) < 1
     assert np.unique(maps.impacts.values[np.isfinite(maps.impacts.values)]).size > 6
-    blocks = run_work(
-        ImpactWork(case, design, ["impacts"], samples=3, motion=True), design=design, store=tmp_path / "s.zarr", block=3
-    )
+    blocks = run_work(ImpactWork(case, design, ["impacts"], samples=3, motion=True), store=tmp_path / "s.zarr", block=3)
     for name in maps.data_vars:
         np.testing.assert_array_equal(maps[name], blocks[name])
     laws = rb.sweep(case, {"damper.contact": [rb.Tsuji(restitution=0.5), rb.Linear(stiffness=1e6, restitution=0.5)]})

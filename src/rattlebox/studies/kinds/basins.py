@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.exceptions import CaseError
-from rattlebox.studies.axes import Axes, Design
+from rattlebox.studies.axes import Axes, read_axes
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.kinds.sweep import beside, sweep
 from rattlebox.studies.orbits import attractors, period_of, reduced_strobes
@@ -33,8 +33,8 @@ def basins(
     tolerance: float = 1e-4,
     apart: float = 1e-2,
     point: str | None = None,
-    threads: int | None = None,
-    on: Any = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
@@ -62,7 +62,7 @@ def basins(
         Motions whose strobes differ by less than this, in the same measure, are one attractor.
     point
         Of the structure, that is watched; default the first damper's.
-    threads, on, store, progress
+    workers, backend, store, progress
         Where it runs, what is kept and told, as of `rb.sweep`.
 
     Returns
@@ -96,10 +96,10 @@ def basins(
     """
     if not case.dampers:
         raise CaseError("without a damper the motion is linear, and all starts lead to the same one")
-    given = checked("basins", cycles=cycles, tolerance=tolerance, apart=apart, threads=threads)
-    cycles, tolerance, apart, threads = given.values()
+    given = checked("basins", cycles=cycles, tolerance=tolerance, apart=apart, workers=workers)
+    cycles, tolerance, apart, workers = given.values()
     look = cycles[1]
-    design = Design.of(case, starts, source="basins")
+    design = read_axes(case, starts, source="basins")
     task = ImpactWork(case, design, cycles=cycles, point=point)
     task.require_alike()
     basic = ("impacts", "impacts_per_cycle")
@@ -111,8 +111,8 @@ def basins(
         samples=look + 1,
         point=point,
         motion=True,
-        threads=threads,
-        on=on,
+        workers=workers,
+        backend=backend,
         store=store,
         progress=progress,
     ).load()

@@ -9,8 +9,9 @@ import numpy as np
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox.model.errors import Hint
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.continuation import follow
+from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.kinds.sweep import beside, sweep
 from rattlebox.studies.orbits import period_of, reduced_strobes
@@ -41,8 +42,8 @@ def bifurcation(
     measure: str | Sequence[str] = (),
     tolerance: float = 1e-4,
     point: str | None = None,
-    threads: int | None = None,
-    on: Any = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
@@ -70,7 +71,7 @@ def bifurcation(
         angular frequency.
     point
         Of the structure, that is watched; default the first damper's.
-    threads, on, store, progress
+    workers, backend, store, progress
         Where it runs, what is kept and told, as of `rb.sweep`. Only "fresh" has work for several threads or workers; what
         follows the motion goes on from the last value in the store.
 
@@ -107,10 +108,10 @@ def bifurcation(
             raise Hint(f"{name} = {given!r} is unknown", ", ".join(f'"{one}"' for one in get_args(known)))
     if not case.dampers:
         raise CaseError("without a damper the motion is linear, and nothing bifurcates")
-    cycles, tolerance, threads = checked("bifurcation", cycles=cycles, tolerance=tolerance, threads=threads).values()
+    cycles, tolerance, workers = checked("bifurcation", cycles=cycles, tolerance=tolerance, workers=workers).values()
     look = cycles[1]
     path = tuple(map(str, path)) if isinstance(path, (list, tuple)) else str(path)
-    design = Design.of(case, {path: values}, source="bifurcation")
+    design = read_axes(case, {path: values}, source="bifurcation")
     task = ImpactWork(case, design, cycles=cycles, point=point)
     task.require_alike()
     _check_order(design, direction)
@@ -122,8 +123,8 @@ def bifurcation(
         "motion": True,
         "last": _IMPACTS * look if show == "impacts" else 0,
         "point": point,
-        "threads": threads,
-        "on": on,
+        "workers": workers,
+        "backend": backend,
         "store": store,
         "progress": progress,
     }
@@ -136,7 +137,7 @@ def bifurcation(
     return keep_map(_looked_at(maps.load(), task, tolerance).assign_attrs(about), "bifurcation", store)
 
 
-def _check_order(design: Design, direction: str) -> None:
+def _check_order(design: Grid, direction: str) -> None:
     """Refuse values that do not rise."""
     path, values = next(iter(design.columns.items()))
     if values.dtype.kind == "f":

@@ -21,16 +21,17 @@ from rattlebox._util.owned_folder import read_marker
 from rattlebox._util.progress import progress_bar
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import replaced
-from rattlebox.studies.axes import Design, labels, materials_in
+from rattlebox.studies.axes import materials_in, read_axes
 from rattlebox.studies.case_digest import describe_case
 from rattlebox.studies.fingerprint import fingerprint
+from rattlebox.studies.grid import Grid, labels
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.kinds.sweep import known, sweep
 from rattlebox.studies.measures import check_names
 from rattlebox.studies.parameter import Parameter
 from rattlebox.studies.robust import robust_axes
 from rattlebox.studies.runner import Stopped
-from rattlebox.studies.store import JOURNAL, keep_map, taken
+from rattlebox.studies.store import JOURNAL, exclusive_writer, keep_map
 from rattlebox.studies.studytables import checked
 
 if TYPE_CHECKING:
@@ -61,8 +62,8 @@ def design(
     cycles: tuple[int, int] | None = None,
     samples: int | None = None,
     point: str | None = None,
-    threads: int | None = None,
-    on: Any = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xr.Dataset:
@@ -95,7 +96,7 @@ def design(
         How many.
     seed
         The same seed gives the same trials.
-    skip, cycles, samples, point, threads, on
+    skip, cycles, samples, point, workers, backend
         As in `rb.sweep`. Trials follow each other; what a cluster shares are the levels and starts of each.
     store
         Folder that keeps all trials: the same call goes on after a stop, and one with more trials goes further.
@@ -127,8 +128,8 @@ def design(
     trials, seed, robust, limit = checked(
         "design", trials=trials, seed=seed, robust=robust, max_added_mass=max_added_mass
     ).values()
-    given = checked("design", skip=skip, cycles=cycles, samples=samples, threads=threads)
-    where = {"threads": given.pop("threads"), "on": on}
+    given = checked("design", skip=skip, cycles=cycles, samples=samples, workers=workers)
+    where = {"workers": given.pop("workers"), "backend": backend}
     search = _Search(
         case=case,
         parameters=[_Parameter.of(case, path, given, path in log) for path, given in _some(parameters).items()],
@@ -152,9 +153,9 @@ def design(
             found = search.result(_told(optuna, study)[:trials])
         return keep_map(found, "design", store)
     except KeyboardInterrupt:
-        kept = "which are lost; with a store, they would be kept"
+        kept = "which are lost; a store would have kept them"
         if store is not None:
-            kept = f"which are in {os.fspath(store)}, and the same command goes on from there"
+            kept = f"which are in {os.fspath(store)}, and the same command resumes from there"
         raise Stopped(f"stopped after {done} of {trials} trials, {kept}") from None
 
 
@@ -269,9 +270,9 @@ class _Search:
         ImpactWork(self.case, self.members, measures=measures, **self.options).validate()
 
     @cached_property
-    def members(self) -> Design:
+    def members(self) -> Grid:
         """The runs of a trial."""
-        return Design.of(self.case, self.axes_of(self.case), source="levels")
+        return read_axes(self.case, self.axes_of(self.case), source="levels")
 
     def axes_of(self, case: Case) -> list[Any]:
         """The axes over which a design is judged; without any it is run once."""
@@ -308,7 +309,7 @@ class _Search:
         with suppress(CaseError):  # the parameters do not fit together
             case = replaced(self.case, values)
             mass = sum(ball.weight for damper in case.impact_dampers for ball in damper.balls)
-            Design.of(case, self.axes_of(case))
+            read_axes(case, self.axes_of(case))
             fitting = case
         if fitting and (self.limit is None or mass <= self.limit):
             found, missing = self.judge(fitting)
@@ -425,7 +426,7 @@ def _storage(optuna: Any, store: str | os.PathLike[str] | None) -> Iterator[Any]
     if store is None:
         yield None
         return
-    with taken(Path(store)) as progress:
+    with exclusive_writer(Path(store)) as progress:
         if (marker := read_marker(Path(store))) and marker.complete:
             raise StoreError(f"{store} holds another study\n  try: another folder, or remove this one")
         path = progress / JOURNAL

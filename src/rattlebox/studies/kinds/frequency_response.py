@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.continuation import follow
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.kinds.sweep import beside, sweep
@@ -40,8 +40,8 @@ def frequency_response(
     point: str | None = None,
     samples: int = 64,
     tolerance: float = 1e-3,
-    threads: int | None = None,
-    on: Any = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
@@ -72,7 +72,7 @@ def frequency_response(
     tolerance
         A motion is held to repeat when positions of structure and balls a number of cycles apart differ by less than
         this part of their range.
-    threads, on, store, progress
+    workers, backend, store, progress
         Where it runs, what is kept and told, as of `rb.sweep`. Each sweep upwards or downwards at one level is work for one
         thread or worker.
 
@@ -107,13 +107,13 @@ def frequency_response(
     """
     if direction not in (*get_args(Direction), "both"):
         raise Hint(f"direction = {direction!r} is unknown", '"up", "down", "both" or "fresh"')
-    given = checked("frequency_response", cycles=cycles, samples=samples, tolerance=tolerance, threads=threads)
-    cycles, samples, tolerance, threads = given.values()
+    given = checked("frequency_response", cycles=cycles, samples=samples, tolerance=tolerance, workers=workers)
+    cycles, samples, tolerance, workers = given.values()
     look = cycles[1]
     place, driver = _driver(case)
     at, strength = f"{place}.frequency", f"{place}.amplitude"
     level = {strength: [f"{driver.amplitude!r} {driver.unit}"] if levels is None else levels}
-    design = Design.of(case, [level, {at: frequencies}], source="frequency_response")
+    design = read_axes(case, [level, {at: frequencies}], source="frequency_response")
     hertz = design.coords()[at][1]
     if np.any(np.diff(hertz) <= 0):
         raise Hint("frequencies must rise from each to the next", "each once, in order")
@@ -124,8 +124,8 @@ def frequency_response(
         "samples": samples * look + 1,
         "point": point,
         "motion": True,
-        "threads": threads,
-        "on": on,
+        "workers": workers,
+        "backend": backend,
         "store": store,
         "progress": progress,
     }
@@ -172,7 +172,7 @@ def _bare(task: ImpactWork) -> NDArray[np.float64]:
         force = np.broadcast_to(np.moveaxis(load["shape"], 0, -1), matrix.shape[:-1])
         motion = np.moveaxis(np.linalg.solve(matrix, force[..., None])[..., 0], -1, 0)
     response = np.sum(task.look.shape * motion, axis=0)
-    return np.asarray(np.broadcast_to(np.abs(load["amplitude"] * response), task.design.shape))
+    return np.asarray(np.broadcast_to(np.abs(load["amplitude"] * response), task.grid.shape))
 
 
 def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float) -> xarray.Dataset:

@@ -9,7 +9,7 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.structures import Shaker
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.kinds.sweep import sweep
 from rattlebox.studies.store import keep_map
 
@@ -31,8 +31,8 @@ def loss_map(
     *,
     cycles: tuple[int, int] = (50, 50),
     samples: int | None = None,
-    threads: int | None = None,
-    on: Any = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
@@ -54,7 +54,7 @@ def loss_map(
         How many to skip, until the motion is steady, and to average over.
     samples
         Equally spaced in those averaged over, from which the masses are found; default 64 a cycle. The loss needs none.
-    threads, on, store, progress
+    workers, backend, store, progress
         As in `rb.sweep`.
 
     Returns
@@ -92,7 +92,7 @@ def loss_map(
     amplitudes, frequencies = (list(x) if isinstance(x, Iterator) else x for x in (amplitudes, frequencies))
     axes = {"structure.motion.amplitude": amplitudes, "structure.motion.frequency": frequencies}
     for (path, values), source in zip(axes.items(), ("amplitudes", "frequencies"), strict=True):
-        column = Design.of(case, {path: values}, source=source).columns[path]  # for messages, in the words of this map
+        column = read_axes(case, {path: values}, source=source).columns[path]  # for messages, in the words of this map
         for number, value in enumerate(column):
             if not value > 0:
                 raise CaseError(f"{source}: {path}[{number}] = {value:g}\n  must be greater than zero")
@@ -102,8 +102,8 @@ def loss_map(
         [name for name in MEASURES if name != "impacts_per_cycle" or not case.particle_dampers],
         cycles=cycles,
         samples=samples,
-        threads=threads,
-        on=on,
+        workers=workers,
+        backend=backend,
         store=store,
         progress=progress,
     )

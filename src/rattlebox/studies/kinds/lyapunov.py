@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import CaseError
-from rattlebox.studies.axes import Axes, Design
+from rattlebox.studies.axes import Axes, read_axes
 from rattlebox.studies.case_digest import describe_case
+from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import Extra, ImpactWork
 from rattlebox.studies.neighbour_pairs import Pairs
 from rattlebox.studies.runner import run_work
@@ -37,8 +38,8 @@ def lyapunov(
     distance: float = 1e-7,
     reach: float = 1e-3,
     seed: int = 0,
-    threads: int | None = None,
-    on: Any = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
@@ -65,7 +66,7 @@ def lyapunov(
         Of the differences between the starts of the pairs, over half the clearance.
     seed
         Of the directions in which neighbours lie at first, and of the differences of the starts.
-    threads, on, store, progress
+    workers, backend, store, progress
         As of `rb.sweep`.
 
     Returns
@@ -118,25 +119,21 @@ def lyapunov(
         distance=distance,
         reach=reach,
         seed=seed,
-        threads=threads,
+        workers=workers,
     )
-    threads = given.pop("threads")
+    workers = given.pop("workers")
     task = LyapunovWork(
         case,
-        Design((), (), {}, {}) if axes is None else Design.of(case, axes),
+        Grid((), (), {}, {}) if axes is None else read_axes(case, axes),
         **given,
     )
-    task.check()
-    block = 1 if task.size == 1 else None
+    task.validate()
     return run_work(
         task,
-        design=task.design,
-        coords=task.coords(),
-        on=on,
+        backend=backend,
         store=store,
-        threads=threads,
+        workers=workers,
         progress=progress,
-        block=block,
     )
 
 
@@ -145,7 +142,7 @@ class LyapunovWork:
     """A case, its variants, and how their neighbours are watched; attributes as of `lyapunov`."""
 
     case: Case
-    design: Design
+    grid: Grid
     cycles: tuple[int, int] | None = None
     skip: float = 0.0
     steps: int | None = None
@@ -157,7 +154,7 @@ class LyapunovWork:
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "sweep"}
 
-    def check(self) -> None:
+    def validate(self) -> None:
         """Refuse what does not fit.
 
         Raises
@@ -181,7 +178,12 @@ class LyapunovWork:
     @property
     def size(self) -> int:
         """Number of variants."""
-        return self.design.size
+        return self.grid.size
+
+    @property
+    def block(self) -> int:
+        """Preferred number of variants in a block."""
+        return 1
 
     @property
     def count(self) -> int:
@@ -212,16 +214,16 @@ class LyapunovWork:
         return {"time": ("time", seconds, {"units": "s", "long_name": "time looked at"})}
 
     def describe(self) -> dict[str, Any]:
-        """What is computed besides the design, in JSON's types."""
+        """What is computed besides the grid, in JSON's types."""
         names = "skip", "steps", "pairs", "distance", "reach", "seed"
         cycles = None if self.cycles is None else list(self.cycles)
-        about = {"study": "lyapunov", **describe_case(self.case, self.design.columns), "cycles": cycles}
+        about = {"study": "lyapunov", **describe_case(self.case, self.grid.columns), "cycles": cycles}
         return about | {name: getattr(self, name) for name in names}
 
     @cached_property
     def sweep(self) -> ImpactWork:
         """The variants as they are swept."""
-        return ImpactWork(self.case, self.design, skip=self.skip, cycles=self.cycles)
+        return ImpactWork(self.case, self.grid, skip=self.skip, cycles=self.cycles)
 
     def run(
         self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None

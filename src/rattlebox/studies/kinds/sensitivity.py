@@ -13,7 +13,7 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox._util.optional_imports import optional_import
 from rattlebox.model.errors import Hint
 from rattlebox.results.schema import HOW_ENDED
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.kinds.sweep import sweep
 from rattlebox.studies.robust import robust_axes
 from rattlebox.studies.sampling import RandomDesign, random_design
@@ -59,8 +59,8 @@ def sensitivity(
     cycles: tuple[int, int] | None = None,
     samples: int | None = None,
     point: str | None = None,
-    threads: int | None = None,
-    on: Any = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xr.Dataset:
@@ -90,7 +90,7 @@ def sensitivity(
         Level of the confidence intervals, by bootstrap.
     seed
         The same seed gives the same points and intervals.
-    skip, cycles, samples, point, threads, on, store, progress
+    skip, cycles, samples, point, workers, backend, store, progress
         As in `rb.sweep`.
 
     Returns
@@ -121,7 +121,7 @@ def sensitivity(
         raise Hint("bounds: paths with bounds or choices are needed", '{"damper.gap": ("0.1 mm", "2 mm")}')
     ranges = random_design(bounds, n * (len(bounds) + 2), seed=seed, log=log)
     points = _Crossed(ranges.ranges, ranges.count, ranges.method, ranges.seed, ranges.log)
-    Design.of(case, points, source="bounds")  # for messages, in the words of this study
+    read_axes(case, points, source="bounds")  # for messages, in the words of this study
     runs = sweep(
         case,
         [points, *robust_axes(case, levels, starts)],
@@ -130,8 +130,8 @@ def sensitivity(
         cycles=cycles,
         samples=samples,
         point=point,
-        threads=threads,
-        on=on,
+        workers=workers,
+        backend=backend,
         store=store,
         progress=progress,
     )

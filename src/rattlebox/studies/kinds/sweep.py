@@ -9,7 +9,7 @@ import numpy as np
 
 from rattlebox.engines.status import REFUSED
 from rattlebox.model.errors import Hint, nearest
-from rattlebox.studies.axes import Design
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.measures import MEASURES, check_names
 from rattlebox.studies.particle_work import ParticleWork
@@ -37,8 +37,8 @@ def sweep(
     point: str | None = None,
     motion: bool = False,
     last: int = 0,
-    threads: int | None = None,
-    on: Any = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
@@ -70,10 +70,11 @@ def sweep(
         Keep the samples of each variant.
     last
         Keep the last so many impacts of each variant.
-    threads
-        Threads of this process; default as many as there are cores. Results do not depend on it, to the last bit.
-    on
-        Client of a Dask cluster (`dask.distributed.Client`) that runs the blocks of variants; default this process.
+    workers
+        Number of threads or processes; default as many as there are cores. Results do not depend on it, to the last bit.
+    backend
+        "threads" of this process; "processes", for measures in Python, which run one at a time in threads; or the client of
+        a Dask cluster (`dask.distributed.Client`).
     store
         Folder of a Zarr store for results: what is finished is on disk, and the same call goes on after a stop.
     progress
@@ -100,12 +101,12 @@ def sweep(
     >>> maps.impacts.dims
     ('damper.gap',)
     """
-    given = checked("sweep", skip=skip, cycles=cycles, samples=samples, last=last, threads=threads)
-    threads = given.pop("threads")
+    given = checked("sweep", skip=skip, cycles=cycles, samples=samples, last=last, workers=workers)
+    workers = given.pop("workers")
     measures = known(measure)
     if not (measures or motion or given["last"]):
         raise Hint("there is no measure", ", ".join(MEASURES))
-    design = Design.of(case, axes)
+    design = read_axes(case, axes)
     kind = ParticleWork if case.particle_dampers else ImpactWork
     task = kind(
         case,
@@ -116,16 +117,7 @@ def sweep(
         **given,
     )
     task.validate()
-    found = run_work(
-        task,
-        design=design,
-        coords=task.coords(),
-        store=store,
-        on=on,
-        threads=threads,
-        progress=progress,
-        block=task.block,
-    )
+    found = run_work(task, store=store, backend=backend, workers=workers, progress=progress)
     if not isinstance(task, ParticleWork):
         return found
     refused = _refused(task, found)
@@ -140,7 +132,7 @@ def _refused(task: ParticleWork, found: xarray.Dataset) -> dict[str, str]:
     if not refused.size or not (why := task.why_refused(int(refused[0]))):
         return {}
     said = why.replace("\n", "\n  ")
-    return {"refused": f"{task.design.told(task.case, int(refused[0]))}\n  {said}"}
+    return {"refused": f"{task.grid.told(task.case, int(refused[0]))}\n  {said}"}
 
 
 def beside(needed: Sequence[str], measure: str | Sequence[str]) -> list[str]:

@@ -1,0 +1,316 @@
+"""Backends that run the blocks of a study: threads, processes, or the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import threading
+import warnings
+from collections import deque
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from importlib import import_module
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from typing import Any, Protocol, TypeVar
+
+from rattlebox._util.exceptions import CaseError, ResourceError
+from rattlebox.model.errors import Hint
+
+from .work import Block, Cancelled, Chain, Values, Work, last_values, run_block
+
+Results = Generator[tuple[Block, Values]]
+"""Blocks with their outputs, in the order in which they finish. Closing the generator stops the rest."""
+
+Pool = TypeVar("Pool", bound=Executor)
+
+_POLL = 0.05  # s, the longest wait in which Ctrl-C has no effect
+
+
+class Backend(Protocol):
+    """Anything that can run blocks."""
+
+    def run(self, work: Work, chains: Sequence[Chain]) -> Results:
+        """Run the blocks of chains: chains beside each other, the blocks of each in order.
+
+        Parameters
+        ----------
+        work
+            The work to which the blocks belong.
+        chains
+            The blocks.
+        """
+
+
+def make_backend(backend: Any = "threads", workers: int | None = None) -> Backend:
+    """Return the backend that the arguments of a study name.
+
+    Parameters
+    ----------
+    backend
+        "threads", "processes", or a `dask.distributed.Client`.
+    workers
+        Number of threads or processes; default the number of cores. A cluster has its own.
+
+    Raises
+    ------
+    CaseError
+        If there is no such backend, or `workers` is given for a cluster.
+    """
+    if backend == "threads":
+        return Threads(workers or cores())
+    if backend == "processes":
+        return Processes(workers or cores())
+    if not hasattr(backend, "nthreads"):
+        raise Hint(
+            f"backend = {backend!r} is neither the name of a backend nor the client of a Dask cluster",
+            '"threads", "processes" or distributed.Client(...)',
+        )
+    if workers is not None:
+        raise Hint(f"workers = {workers}: a Dask cluster has its own workers", "leave it out, or scale the cluster")
+    return DaskCluster(backend)
+
+
+def cores() -> int:
+    """Return the number of processor cores that this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not available on every system
+        return os.cpu_count() or 1
+
+
+def wait_for(future: Future[Any]) -> Any:
+    """Return the result of a future; unlike `future.result()`, Ctrl-C interrupts the wait on every system."""
+    while not wait([future], timeout=_POLL).done:
+        pass
+    return future.result()
+
+
+# ---- this machine
+
+
+@dataclass(frozen=True)
+class Threads:
+    """Threads of this process. The core releases the interpreter lock, so that they run at the same time.
+
+    Attributes
+    ----------
+    count
+        Number of threads. With fewer chains than threads, several threads share each block.
+    """
+
+    count: int
+
+    def run(self, work: Work, chains: Sequence[Chain]) -> Results:
+        """Run blocks; see `Backend.run`."""
+        beside = max(1, min(self.count, len(chains)))
+        stop = threading.Event()
+
+        def submit(block: Block, before: Values | None) -> Future[Values | None]:
+            return pool.submit(run_block, work, block, before, threads=self.count // beside, cancelled=stop.is_set)
+
+        with _abandoned(ThreadPoolExecutor(beside), stop.set) as pool:
+            yield from _run_chains(work, chains, beside, submit)
+
+
+@dataclass(frozen=True)
+class Processes:
+    """Processes of this machine, for measures in Python, which the interpreter lock keeps from running in parallel threads.
+
+    Attributes
+    ----------
+    count
+        Number of processes.
+    """
+
+    count: int
+
+    def run(self, work: Work, chains: Sequence[Chain]) -> Results:
+        """Run blocks; see `Backend.run`.
+
+        Raises
+        ------
+        ResourceError
+            If a process ends before its block is computed.
+        """
+        beside = max(1, min(self.count, len(chains)))
+        # A fork of a process with threads may deadlock, so processes start anew.
+        context = get_context("spawn")
+        running, stop = context.Pipe(duplex=False)
+        pool = ProcessPoolExecutor(beside, context, _start_process, (_pickled(work), running))
+        try:
+            with _abandoned(pool, stop.close):
+                yield from _run_chains(
+                    work, chains, beside, lambda block, before: pool.submit(_run_in_process, block, before)
+                )
+        except BrokenProcessPool:
+            raise ResourceError(
+                "a worker process ended before its block was computed\n"
+                '  try: in a script the call below `if __name__ == "__main__":`; fewer workers if memory is short'
+            ) from None
+
+
+def _pickled(work: Work) -> bytes:
+    """Return the pickled work; functions of a notebook or prompt need cloudpickle, which comes with Dask."""
+    with suppress(ImportError):
+        content: bytes = import_module("cloudpickle").dumps(work)
+        return content
+    try:
+        return pickle.dumps(work)
+    except (pickle.PicklingError, AttributeError) as error:
+        raise CaseError(
+            f"a function cannot be sent to other processes: {error}\n"
+            "  try: define it at the top level of a module, or pip install cloudpickle"
+        ) from None
+
+
+_process_work: Work  # work of this worker process
+
+
+def _start_process(content: bytes, running: Connection) -> None:
+    """Prepare a worker process."""
+    global _process_work
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes; only the first one handles it
+    threading.Thread(target=_exit_at_end_of, args=[running], daemon=True).start()
+    _process_work = pickle.loads(content)
+
+
+def _exit_at_end_of(running: Connection) -> None:
+    """End this process when the other end of a pipe closes: the study stops, or its process ends, however that happens."""
+    with suppress(EOFError, OSError):
+        running.recv()
+    os._exit(1)
+
+
+def _run_in_process(block: Block, before: Values | None) -> Values | None:
+    values = run_block(_process_work, block, before, threads=1, cancelled=None)
+    return None if values is None else dict(values)
+
+
+@contextmanager
+def _abandoned(pool: Pool, stop: Callable[[], None]) -> Iterator[Pool]:
+    """Tell the work of a pool to stop on leaving, without waiting for it."""
+    try:
+        yield pool
+    finally:
+        stop()
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _run_chains(
+    work: Work,
+    chains: Sequence[Chain],
+    beside: int,
+    submit: Callable[[Block, Values | None], Future[Values | None]],
+) -> Results:
+    """Run chains on a pool, `beside` of them at a time; each worker starts its next block before a result is yielded."""
+    waiting = deque(chains)
+    running: dict[Future[Values | None], deque[Block]] = {}
+
+    def start(blocks: deque[Block], before: Values | None) -> None:
+        running[submit(blocks[0], before)] = blocks
+
+    def start_chain() -> None:
+        if waiting:
+            chain = waiting.popleft()
+            start(deque(chain.blocks), chain.before)
+
+    for _ in range(beside):
+        start_chain()
+    while running:
+        for future in wait(running, timeout=_POLL, return_when=FIRST_COMPLETED).done:
+            blocks, values = running.pop(future), _complete(future.result())
+            block = blocks.popleft()
+            if blocks:
+                start(blocks, last_values(work, block, values))
+            else:
+                start_chain()
+            yield block, values
+
+
+def _complete(values: Values | None) -> Values:
+    if values is None:
+        raise RuntimeError("a block was cancelled although the study was not")
+    return values
+
+
+# ---- a cluster
+
+
+@dataclass(frozen=True)
+class DaskCluster:
+    """Workers of a Dask cluster, one thread for each block. Blocks of a worker that dies run again on others.
+
+    Attributes
+    ----------
+    client
+        A `dask.distributed.Client`.
+    """
+
+    client: Any
+
+    def run(self, work: Work, chains: Sequence[Chain]) -> Results:
+        """Run blocks; see `Backend.run`.
+
+        Raises
+        ------
+        ResourceError
+            If the cluster is lost, a block kills its workers, or a worker computes with another core.
+        """
+        client, dask, cloudpickle = self.client, import_module("distributed"), import_module("cloudpickle")
+        disconnected = import_module("distributed.comm").CommClosedError
+        with warnings.catch_warnings():
+            # Scattered data would be lost with the worker that holds it; a submitted task is run again.
+            warnings.filterwarnings("ignore", "Sending large graph")
+            shared = client.submit(pickle.loads, cloudpickle.dumps(work), pure=False)
+        blocks: dict[Any, Block] = {}
+        for chain in chains:
+            before: Any = chain.before
+            previous: Block | None = None
+            for block in chain.blocks:
+                future = client.submit(
+                    _run_on_worker, shared, block, before, previous, bits(), pure=False, priority=-len(blocks)
+                )
+                blocks[future] = block
+                before, previous = future, block
+        try:
+            for future in dask.as_completed(list(blocks)):
+                values = future.result()
+                yield blocks.pop(future), _complete(values)
+        except dask.KilledWorker as error:
+            raise ResourceError(
+                f"{error.allowed_failures + 1} workers in turn died of one block\n"
+                "  try: workers with more memory, or smaller blocks"
+            ) from None
+        except (dask.CancelledError, disconnected) as error:
+            raise ResourceError(f"the cluster is lost: {error}\n  try: check that its scheduler is running") from None
+        finally:
+            with suppress(disconnected):
+                client.cancel([shared, *blocks], force=True)
+
+
+def bits() -> str:
+    """Return what decides the last bits of results: version and instruction set."""
+    from rattlebox import __version__
+    from rattlebox.engines.core import instructions
+
+    return f"Rattlebox {__version__} and {instructions()} instructions"
+
+
+def _run_on_worker(work: Work, block: Block, before: Values | None, previous: Block | None, expected: str) -> Any:
+    """Run a block on a Dask worker; `before` holds the outputs of the previous block, or of the variant before all."""
+    worker: Any = import_module("distributed").get_worker()
+    if bits() != expected:
+        raise ResourceError(
+            f"the worker {worker.address} computes with {bits()}, the study with {expected}: results would differ\n"
+            "  try: the same version, and the same RATTLEBOX_SIMD in the environment of all"
+        )
+    tasks, key = worker.state.tasks, worker.get_current_task()
+    if before is not None and previous is not None:
+        before = last_values(work, previous, before)
+    cancelled: Cancelled = lambda: key not in tasks or tasks[key].state == "cancelled"  # noqa: E731
+    return run_block(work, block, before, threads=1, cancelled=cancelled)

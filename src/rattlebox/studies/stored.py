@@ -1,0 +1,322 @@
+"""Reads studies on disk, finished or not, and finds the blocks that are missing or damaged."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox._util.exceptions import RattleboxError, StoreError
+from rattlebox._util.owned_folder import DamagedError, Marker, damaged_files, read_marker
+
+from .blocks import Blocks
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FORMAT = 2
+"""Number of the layout; stores with a higher one are refused."""
+
+KIND = "Rattlebox study"
+"""Kind of folder in the marker of a study."""
+
+MAP = "map"
+"""Subfolder of a store for the dataset that the study returns, where it differs from the runs."""
+
+_REPAIR = "a copy of it, or remove it and give its command again"
+
+
+def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
+    """Open a study on disk, finished or not.
+
+    Parameters
+    ----------
+    path
+        Folder that `store=` or `rattlebox sweep -o` named.
+
+    Returns
+    -------
+    xarray.Dataset
+        The dataset that the study returned, read from disk when its values are used. Before the study has finished: its
+        runs, with NaN, or the smallest number of an integer variable, where a variant is not computed yet.
+
+    Raises
+    ------
+    StoreError
+        If there is no study, or it is damaged.
+    """
+    if has_map(path):
+        return _open_map(Path(path) / MAP)
+    with report_damage(path):
+        marker = study_marker(path)
+        return open_runs(Path(path), marker).assign_attrs(marker.about.get("added", {}))
+
+
+def has_map(path: str | os.PathLike[str]) -> bool:
+    """Return whether a store holds the dataset that its study returned beside the runs.
+
+    Parameters
+    ----------
+    path
+        Folder of the study.
+
+    Raises
+    ------
+    StoreError
+        If the list of the files of that dataset is damaged.
+    """
+    folder = Path(path) / MAP
+    try:
+        marker = read_marker(folder)
+    except DamagedError as error:
+        raise StoreError(f"{folder} is damaged: {error}\n  try: remove {folder}, and give its command again") from None
+    return marker is not None and marker.complete
+
+
+@dataclass(frozen=True)
+class Progress:
+    """State of a study on disk.
+
+    Attributes
+    ----------
+    blocks
+        Blocks of the study.
+    finished : (len(blocks),) bool
+        Whether each block is finished.
+    last
+        Time at which a block was last written [s since 1970].
+    """
+
+    blocks: Blocks
+    finished: NDArray[np.bool_]
+    last: float
+
+    @property
+    def done(self) -> int:
+        """Number of finished variants."""
+        return self.blocks.variants(self.finished)
+
+    @property
+    def total(self) -> int:
+        """Number of variants."""
+        return math.prod(self.blocks.shape)
+
+
+def progress_of(path: str | os.PathLike[str]) -> Progress:
+    """Return the state of a study on disk, also while it runs.
+
+    Parameters
+    ----------
+    path
+        Folder of the study.
+
+    Raises
+    ------
+    StoreError
+        If there is no study.
+    """
+    with report_damage(path):
+        marker = study_marker(path)
+        chunks = Chunks(Path(path), marker)
+        finished = chunks.finished()
+        (name, *_) = marker.about["manifest"]["outputs"]
+        files = [Path(path) / chunks.key(name, block) for block in np.flatnonzero(finished).tolist()]
+        last = max((file.stat().st_mtime for file in files), default=0.0)
+        return Progress(chunks.blocks, finished, last)
+
+
+# ---- markers
+
+
+def check_marker(path: str | os.PathLike[str]) -> Marker | None:
+    """Return the marker of a study, which may not be complete; None without one.
+
+    Raises
+    ------
+    StoreError
+        If the folder belongs to something else, or to a later version.
+    """
+    marker = read_marker(Path(path))
+    if marker and marker.name not in (KIND, ""):
+        raise StoreError(f"{path} is no study, but a {marker.name}\n  try: another folder")
+    if marker and marker.about.get("format", 0) > FORMAT:
+        raise StoreError(f"{path} was written by a later Rattlebox\n  try: update Rattlebox")
+    return marker
+
+
+def study_marker(path: str | os.PathLike[str]) -> Marker:
+    """Return the complete marker of a study.
+
+    Raises
+    ------
+    StoreError
+        If there is no study.
+    """
+    marker = check_marker(path)
+    if marker and marker.complete:
+        return marker
+    what = "is not a study" if Path(path).exists() else "is not there"
+    raise StoreError(f"{path} {what}\n  try: the folder that 'rattlebox sweep -o' wrote")
+
+
+@contextmanager
+def report_damage(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Turn errors of reading a store into a message that it is damaged.
+
+    Parameters
+    ----------
+    path
+        Folder of the study.
+
+    Raises
+    ------
+    StoreError
+        If it is damaged.
+    """
+    try:
+        yield
+    except RattleboxError as error:
+        if isinstance(error, DamagedError):
+            raise StoreError(f"{path} is damaged: {error}", _REPAIR) from error
+        raise
+    except PermissionError as error:
+        raise StoreError(f"{path} cannot be opened: {error.strerror}", "another folder") from error
+    except (ValueError, KeyError, RuntimeError, FileNotFoundError) as error:
+        what = str(error).partition("\n")[0] or type(error).__name__
+        raise StoreError(f"{path} is damaged: {what}", _REPAIR) from error
+
+
+# ---- blocks
+
+
+class Chunks:
+    """Files of the blocks of a study: each block is one file of every variable, which ends with its CRC-32C.
+
+    Parameters
+    ----------
+    path
+        Folder of the study.
+    marker
+        Its marker.
+    """
+
+    def __init__(self, path: Path, marker: Marker) -> None:
+        self.blocks = Blocks(tuple(marker.about["shape"]), tuple(marker.about["box"]))
+        self._path = path
+        # "float64 step=3 mode=2" has one word for the number type and one for each dimension beyond the grid.
+        self._further = {name: len(text.split()) - 1 for name, text in marker.about["manifest"]["outputs"].items()}
+
+    def key(self, name: str, block: int) -> str:
+        """Return the path of a block of a variable in the folder."""
+        place = np.unravel_index(block, self.blocks.counts) if self.blocks.shape else ()
+        return "/".join([name, "c", *(str(int(i)) for i in place), *"0" * self._further[name]])
+
+    def is_intact(self, block: int) -> bool:
+        """Return whether all files of a block exist and have their checksums."""
+        return all(_has_checksum(self._path / self.key(name, block)) for name in self._further)
+
+    def finished(self) -> NDArray[np.bool_]:
+        """Return whether each block is intact, (len(blocks),)."""
+        return np.array([self.is_intact(block) for block in range(len(self.blocks))], bool)
+
+    def block_of(self, key: str) -> int | None:
+        """Return the block to which a path belongs; None for other files."""
+        name, _, rest = key.partition("/c")
+        if name not in self._further or not re.fullmatch(r"(/\d+)*", rest):
+            return None
+        place = [int(i) for i in rest.split("/")[1:]][: len(self.blocks.shape)]
+        return int(np.ravel_multi_index(place, self.blocks.counts)) if place else 0
+
+
+def _has_checksum(chunk: Path) -> bool:
+    import google_crc32c
+
+    try:
+        content = chunk.read_bytes()
+    except OSError:
+        return False
+    return len(content) > 4 and google_crc32c.value(content[:-4]) == int.from_bytes(content[-4:], "little")
+
+
+# ---- datasets
+
+
+def open_runs(path: Path, marker: Marker) -> xr.Dataset:
+    """Open the outputs of all variants; blocks that are missing or damaged read as missing values.
+
+    Parameters
+    ----------
+    path
+        Folder of the study.
+    marker
+        Its marker.
+
+    Raises
+    ------
+    StoreError
+        If a file besides the blocks is damaged.
+    """
+    import xarray as xr
+    from zarr.storage import LocalStore
+
+    if damaged := damaged_files(path, marker):
+        raise StoreError(
+            f"{path} is damaged: {damaged[0]} is lost or has changed\n"
+            "  try: the command that began it, which repairs it and computes only what is missing"
+        )
+    with report_damage(path):
+        store = _intact_only()(LocalStore(path, read_only=True), Chunks(path, marker))
+        data: xr.Dataset = xr.open_zarr(store, chunks=None)
+        return data[list(marker.about["manifest"]["outputs"])]
+
+
+def _open_map(folder: Path) -> xr.Dataset:
+    import xarray as xr
+
+    with report_damage(folder):
+        marker = read_marker(folder)
+        if marker and (damaged := damaged_files(folder, marker)):
+            raise StoreError(
+                f"{folder} is damaged: {damaged[0]} is lost or has changed\n"
+                "  try: its command again, which makes the map anew from the runs"
+            )
+        data = xr.open_zarr(folder, chunks=None)
+        found: xr.Dataset = data[data.attrs.pop("variables")]
+        return found
+
+
+@cache
+def _intact_only() -> Any:
+    """Return the class of a Zarr store that hides the blocks that are missing or damaged in any variable.
+
+    Zarr itself would raise at a damaged chunk, and would show the other variables of an incomplete block.
+    """
+    from zarr.storage import LocalStore, WrapperStore
+
+    class IntactOnly(WrapperStore[LocalStore]):
+        def __init__(self, store: Any, chunks: Chunks) -> None:
+            super().__init__(store)
+            self._chunks = chunks
+            self._intact: dict[int, bool] = {}
+
+        def _with_store(self, store: Any) -> Any:
+            return type(self)(store, self._chunks)
+
+        async def get(self, key: str, prototype: Any, byte_range: Any = None) -> Any:
+            block = self._chunks.block_of(key)
+            if block is None:
+                return await super().get(key, prototype, byte_range)
+            if not self._intact.get(block):
+                self._intact[block] = self._chunks.is_intact(block)
+            return await super().get(key, prototype, byte_range) if self._intact[block] else None
+
+    return IntactOnly

@@ -1,0 +1,160 @@
+"""Interfaces of the work that studies run: many variants, computed in blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from .blocks import Blocks
+
+Values = Mapping[str, NDArray[Any]]
+"""Arrays by the name of the output, variants first."""
+
+Output = tuple[tuple[tuple[str, int], ...], Any, Mapping[str, Any]]
+"""Dimensions beyond those of the grid with their lengths, number type, attributes."""
+
+Cancelled = Callable[[], bool] | None
+"""Function that returns True when the work must stop; work calls it about fifty times a second."""
+
+
+class VariantGrid(Protocol):
+    """Variants along the dimensions of a study; see `rattlebox.studies.grid.Grid`."""
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Names of the dimensions."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Lengths of the dimensions."""
+
+    def coords(self) -> Mapping[str, Any]:
+        """Return the coordinates as `xarray.Dataset` takes them."""
+
+    def describe(self) -> Mapping[str, Any]:
+        """Return a description in JSON types; equal grids have equal descriptions."""
+
+
+class Work(Protocol):
+    """Computation of many variants. The bits of a variant depend on its number alone, not on the blocks."""
+
+    @property
+    def grid(self) -> VariantGrid:
+        """Variants."""
+
+    @property
+    def size(self) -> int:
+        """Number of variants."""
+
+    @property
+    def block(self) -> int:
+        """Preferred number of variants in a block: 1 where a variant takes seconds."""
+
+    @property
+    def outputs(self) -> Mapping[str, Output]:
+        """Outputs by name."""
+
+    def coords(self) -> Mapping[str, Any]:
+        """Return the coordinates of the dimensions beyond those of the grid."""
+
+    def describe(self) -> Mapping[str, Any]:
+        """Return what is computed of each variant, in JSON types; a store refuses work that differs in it."""
+
+    def run(self, start: int, stop: int, *, threads: int, cancelled: Cancelled) -> Values | None:
+        """Return the outputs of variants start to stop, variants first; None soon after `cancelled` returns True."""
+
+
+@runtime_checkable
+class ChainedWork(Work, Protocol):
+    """Work in which a variant starts from the final state of another one, along the last dimension."""
+
+    def chains(self, blocks: Blocks) -> list[list[int]]:
+        """Return the numbers of the blocks of each chain in their order; chains are independent of each other."""
+
+    def order(self, start: int, stop: int) -> range:
+        """Return the variants of a block in the order in which they follow each other."""
+
+    def run(
+        self, start: int, stop: int, *, threads: int, cancelled: Cancelled, before: Values | None = None
+    ) -> Values | None:
+        """Return the outputs of variants start to stop; `before` holds those of the variant that precedes them."""
+
+
+class Block(NamedTuple):
+    """A range of variants.
+
+    Attributes
+    ----------
+    number
+        Number of the block.
+    start, stop
+        First variant, and the one after the last.
+    """
+
+    number: int
+    start: int
+    stop: int
+
+
+class Chain(NamedTuple):
+    """Blocks that must run one after the other.
+
+    Attributes
+    ----------
+    blocks
+        The blocks in their order; a single one where blocks are independent.
+    before
+        Outputs of the variant that precedes the first block; None at the beginning of a chain.
+    """
+
+    blocks: list[Block]
+    before: Values | None = None
+
+
+def run_block(work: Work, block: Block, before: Values | None, *, threads: int, cancelled: Cancelled) -> Values | None:
+    """Return the outputs of a block; None if it was cancelled."""
+    if isinstance(work, ChainedWork):
+        return work.run(block.start, block.stop, threads=threads, cancelled=cancelled, before=before)
+    return work.run(block.start, block.stop, threads=threads, cancelled=cancelled)
+
+
+def last_values(work: Work, block: Block, values: Values) -> Values | None:
+    """Return the outputs of the variant from which the next block of a chain continues; None for independent blocks."""
+    if not isinstance(work, ChainedWork):
+        return None
+    last = work.order(block.start, block.stop)[-1] - block.start
+    return {name: array[last : last + 1] for name, array in values.items()}
+
+
+def make_chains(work: Work, blocks: Blocks, finished: NDArray[np.bool_]) -> list[tuple[list[Block], int | None]]:
+    """Return the blocks that remain to be computed, by chain.
+
+    Parameters
+    ----------
+    work
+        The work.
+    blocks
+        Its blocks.
+    finished
+        Whether each block is finished, (len(blocks),).
+
+    Returns
+    -------
+    list of tuple
+        Blocks of each chain that has some left, in order, and the number of the variant that precedes the first of them, or
+        None at the beginning of the chain.
+    """
+    numbers = work.chains(blocks) if isinstance(work, ChainedWork) else [[number] for number in range(len(blocks))]
+    chains: list[tuple[list[Block], int | None]] = []
+    for chain in numbers:
+        done = int(np.argmin([*finished[chain], False]))
+        before = None
+        if isinstance(work, ChainedWork) and done:
+            before = work.order(*blocks.range(chain[done - 1]))[-1]
+        if done < len(chain):
+            chains.append(([Block(number, *blocks.range(number)) for number in chain[done:]], before))
+    return chains
