@@ -95,6 +95,30 @@ def require_readable(path: Path) -> None:
         raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
 
 
+def check_format(path: Path, found: object, own: int) -> None:
+    """Raise if a file has another format than the one that is read.
+
+    Parameters
+    ----------
+    path
+        The file.
+    found
+        Number of the format in the file.
+    own
+        Number of the format that this version of the package reads and writes.
+
+    Raises
+    ------
+    DataError
+        If the numbers differ; the message names both.
+    """
+    if found != own:
+        raise DataError(
+            f"{path} has format {found}, and this version of Rattlebox reads format {own}",
+            "the version of Rattlebox that wrote it, or run the case again",
+        )
+
+
 @contextmanager
 def atomic_write(path: str | os.PathLike[str], advice: str = WRITE_AGAIN) -> Iterator[Path]:
     """Yield the name of a temporary file, which replaces the target once the block has ended.

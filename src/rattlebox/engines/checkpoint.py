@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import os
 import socket
+import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -16,7 +18,15 @@ import numpy as np
 from filelock import FileLock, Timeout
 from numpy.typing import NDArray
 
-from rattlebox._util.atomic_io import atomic_write, disk_errors, remove_temporaries, require_folder, require_readable
+from rattlebox._util.atomic_io import (
+    atomic_write,
+    check_format,
+    disk_errors,
+    remove_temporaries,
+    require_folder,
+    require_readable,
+)
+from rattlebox._util.digests import array_digest
 from rattlebox._util.exceptions import DataError
 from rattlebox.engines.core import instructions
 from rattlebox.model.differences import differences
@@ -25,8 +35,8 @@ from rattlebox.results.provenance import Provenance
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
-FORMAT = 2
-"""Number of the layout; files with a higher one are refused."""
+FORMAT = 3
+"""Number of the layout; files of another one are refused."""
 
 _FREE: dict[str, set[str]] = {"method": {"threads", "checkpoint", "checkpoint_every"}, "output": {"snapshots"}}
 """Fields of the case that may change: the bits do not depend on them."""
@@ -138,15 +148,18 @@ class Checkpoint:
         if not self.path.exists():
             return None
         require_readable(self.path)
+        block = "its description"
         try:
-            with self.path.open("rb") as content, np.load(content, allow_pickle=False) as file:
-                about = json.loads(file["about"].tobytes())
-                if about["format"] > FORMAT:
-                    raise DataError(f"{self.path} was written by a later Rattlebox\n  try: update Rattlebox")
+            with zipfile.ZipFile(self.path) as archive:
+                about = json.loads(_member(archive, "about").tobytes())
+                check_format(self.path, about["format"], FORMAT)
                 self._compare(about)
-                arrays = {name: file[name] for name in file.files if name != "about"}
-            if about["digest"] != fingerprint(arrays):
-                raise ValueError("the arrays are not those that were written")
+                arrays: dict[str, NDArray[Any]] = {}
+                for name, digest in about["digests"].items():
+                    block = f"the block {name!r}"
+                    arrays[name] = _member(archive, name)
+                    if array_digest([arrays[name]]).hex() != digest:
+                        raise ValueError("the array is not the one that was written")
             groups: dict[str, dict[str, NDArray[Any]]] = {"records": {}, "position": {}}
             for name, array in arrays.items():
                 group, _, own = name.partition(".")
@@ -156,10 +169,12 @@ class Checkpoint:
             kept = Kept(
                 about["numbers"], about["time"], about["seconds"], positions, groups["records"], arrays["state"]
             )
-        except (OSError, MemoryError):
+        except (DataError, MemoryError):
             raise
         except Exception:
-            raise DataError(f"{self.path} is not a whole checkpoint\n  try: another file, or remove this one") from None
+            raise DataError(
+                f"{self.path} is not a whole checkpoint: {block} is damaged", "another file, or remove this one"
+            ) from None
         self.time = kept.time
         return kept
 
@@ -187,7 +202,8 @@ class Checkpoint:
         arrays = {f"records.{name}": values for name, values in records.items()}
         arrays |= {f"position.{k}": cavity["position"] for k, cavity in enumerate(packed["cavities"])}
         arrays["state"] = np.asarray(dem.save())
-        about = np.frombuffer(json.dumps({**told, "digest": fingerprint(arrays)}).encode(), np.uint8)
+        digests = {name: array_digest([array]).hex() for name, array in arrays.items()}
+        about = np.frombuffer(json.dumps({**told, "digests": digests}).encode(), np.uint8)
         with atomic_write(self.path, _LOST) as name, name.open("wb") as file:
             np.savez(file, allow_pickle=False, about=about, **arrays)
         self.time = time
@@ -203,6 +219,12 @@ class Checkpoint:
             if len(lines) == 1 and there["core"] != self._about["core"]:
                 hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another file"
             raise AnotherRun("\n".join([f"{self.path} holds another run", *lines]), hint)
+
+
+def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
+    """Read an array whole, so that its checksum is compared before its shape is believed."""
+    array: NDArray[Any] = np.lib.format.read_array(io.BytesIO(archive.read(f"{name}.npy")), allow_pickle=False)
+    return array
 
 
 def joined(pieces: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:

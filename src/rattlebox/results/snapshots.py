@@ -21,17 +21,22 @@ from numpy.typing import NDArray
 from rattlebox._util.atomic_io import (
     HDF5_ERRORS,
     atomic_write,
+    check_format,
     disk_errors,
     require_readable,
     reserve_space,
     sync,
 )
+from rattlebox._util.digests import SIZE, array_digest, group_digest
 from rattlebox._util.exceptions import DataError
 
 from .arrays import FloatArray, IntArray
 
-FORMAT = 1
-"""Number of what is said beside the VTKHDF; files with a higher one are refused."""
+FORMAT = 2
+"""Number of the layout beside the VTKHDF; files of another one are refused."""
+
+_DIGESTS = "digests"
+"""Dataset beside the VTKHDF: the digest of each snapshot, zero before it is written, (steps, SIZE)."""
 
 ROOT = "VTKHDF"
 """Group of a VTKHDF file that holds everything."""
@@ -45,6 +50,7 @@ _OFFSETS, _LAYOUT = 25, 1 << 16
 _HEAD = 1 << 20
 """Length of the first part of a file, in which the name of our attribute lies [bytes]."""
 
+_AGAIN = "a copy of the file, or run the case again"
 _LOST = "make room and give the same call again, with fewer snapshots or another folder"
 
 
@@ -101,6 +107,18 @@ def is_snapshots(path: Path) -> bool:
         return b"rattlebox_format" in begin
 
 
+_GROWING = frozenset(
+    (
+        _DIGESTS,
+        f"{ROOT}/Points",
+        f"{ROOT}/FieldData/displacement",
+        f"{ROOT}/Steps@NSteps",
+        *(f"{ROOT}/PointData/{field}" for field in _MOVING),
+    )
+)
+"""Parts of the file that change after it was made; the digest of the file does not cover their values."""
+
+
 class SnapshotFile:
     """The file that a run adds snapshots to.
 
@@ -151,6 +169,8 @@ class SnapshotFile:
             reserve_space(name, self._room())
             with h5py.File(name, "w") as file:
                 self._lay_out(file)
+            with h5py.File(name, "r+") as file:
+                file.attrs["digest"] = group_digest(file, _GROWING)
             reserve_space(name, name.stat().st_size)  # no holes that are to be filled when the disk may be full
 
     def _room(self) -> int:
@@ -158,7 +178,7 @@ class SnapshotFile:
         steps, count, cavities = self._times.size, self._fixed["radius"].size, len(self._places)
         moving = 3 + sum(math.prod(shape) for shape in _MOVING.values())
         numbers = steps * (moving * count + 3 * cavities + _OFFSETS) + (2 + len(_FIXED)) * count + 3 * cavities
-        return 8 * numbers + len(self._case.encode()) + _LAYOUT
+        return 8 * numbers + SIZE * steps + len(self._case.encode()) + _LAYOUT
 
     def _lay_out(self, file: Any) -> None:
         """Make the places of all numbers, and write those that do not change."""
@@ -199,9 +219,11 @@ class SnapshotFile:
         kept["FieldDataOffsets/place"] = once
         kept["FieldDataSizes/place"] = np.tile([3, cavities], (steps, 1))
         # Storage is given out with the first values, and nothing but numbers changes later.
-        for dataset in (root["Points"], *(root[f"PointData/{f}"] for f in _MOVING), root["FieldData/displacement"]):
+        file.create_dataset(_DIGESTS, (steps, SIZE), "u1")
+        moving = (root["Points"], *(root[f"PointData/{f}"] for f in _MOVING), root["FieldData/displacement"])
+        for dataset in (*moving, file[_DIGESTS]):
             if dataset.size:
-                dataset[-1] = 0.0
+                dataset[-1] = 0
 
     def sync(self) -> None:
         """Wait until the snapshots are on the disk.
@@ -259,15 +281,24 @@ class SnapshotFile:
         placed = [each["position"] + place for each, place in zip(cavities, self._places, strict=True)]
         # Without a lock, so that others may look at the file during the run.
         with disk_errors(self.path, _LOST), h5py.File(self.path, "r+", locking=False) as file:
-            root = file[ROOT]
-            count = root["NumberOfPoints"][0]
-            rows = slice(number * count, (number + 1) * count)
-            root["Points"][rows] = np.concatenate(placed)
-            for field in _MOVING:
-                root[f"PointData/{field}"][rows] = np.concatenate([each[field] for each in cavities])
-            root["FieldData/displacement"][number * len(cavities) : (number + 1) * len(cavities)] = displacement
+            root, blocks = file[ROOT], _blocks(number, self._fixed["radius"].size, len(cavities))
+            fields = {field: np.concatenate([each[field] for each in cavities]) for field in _MOVING}
+            parts = [np.concatenate(placed), *fields.values(), displacement]
+            for (name, rows), part in zip(blocks.items(), parts, strict=True):
+                root[name][rows] = part
+            file.flush()
+            file[_DIGESTS][number] = np.frombuffer(
+                array_digest(root[name][rows] for name, rows in blocks.items()), "u1"
+            )
             file.flush()
             root["Steps"].attrs.modify("NSteps", max(number + 1, int(root["Steps"].attrs["NSteps"])))
+
+
+def _blocks(number: int, count: int, cavities: int) -> dict[str, slice]:
+    """Datasets of the VTKHDF that hold a snapshot, and its rows in each."""
+    rows = slice(number * count, (number + 1) * count)
+    names = ("Points", *(f"PointData/{field}" for field in _MOVING))
+    return dict.fromkeys(names, rows) | {"FieldData/displacement": slice(number * cavities, (number + 1) * cavities)}
 
 
 def _pushes(touching: Mapping[str, Any], count: int) -> FloatArray:
@@ -294,35 +325,58 @@ class Snapshots:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
         with self._opened() as file:
-            refused = self._refused(file)
-            if not refused:
-                self.case_toml, self.numbers = str(file.attrs["case"]), str(file.attrs["numbers"])
-                root = file[ROOT]
-                self.planned: FloatArray = root["Steps/Values"][...]
-                self.times = self.planned[: int(root["Steps"].attrs["NSteps"])]
-                self._fixed = {field: root[f"PointData/{field}"][...] for field in _FIXED}
-                self._places: FloatArray = root["FieldData/place"][...]
-        if refused:
-            raise DataError(refused)
+            self._check_format(file)
+            if file.attrs.get("digest") != group_digest(file, _GROWING):
+                raise self._damaged("its description")
+            self.case_toml, self.numbers = str(file.attrs["case"]), str(file.attrs["numbers"])
+            root = file[ROOT]
+            self.planned: FloatArray = root["Steps/Values"][...]
+            self._fixed = {field: root[f"PointData/{field}"][...] for field in _FIXED}
+            self._places: FloatArray = root["FieldData/place"][...]
+            self.times = self.planned[: self._taken(file)]
 
     @contextmanager
     def _opened(self) -> Iterator[Any]:
-        """The file, open to be read; what fails meanwhile is told as damage."""
+        """Open the file to read; errors of HDF5 meanwhile are reported as damage."""
         import h5py
 
         require_readable(self.path)
         try:
             with h5py.File(self.path, "r", locking=False) as file:
                 yield file
+        except DataError:
+            raise
         except HDF5_ERRORS as error:
-            raise DataError(f"{self.path} is not an HDF5 file that is whole") from error
+            raise DataError(f"{self.path} is not an HDF5 file that is whole", _AGAIN) from error
 
-    def _refused(self, file: Any) -> str:
-        """Why a file of HDF5 holds no snapshots that can be read; "" where it does."""
+    def _check_format(self, file: Any) -> None:
+        """Raise if a file of HDF5 holds no snapshots, or snapshots of another format."""
         layout = file.attrs.get("rattlebox_format")
         if layout is None or ROOT not in file:
-            return f"{self.path} holds no snapshots of particles written by Rattlebox"
-        return f"{self.path} was written by a later Rattlebox; update to read it" if layout > FORMAT else ""
+            raise DataError(f"{self.path} holds no snapshots of particles written by Rattlebox")
+        check_format(self.path, layout, FORMAT)
+
+    def _damaged(self, block: str) -> DataError:
+        return DataError(f"{self.path} is damaged: {block} is not as it was written", _AGAIN)
+
+    def _taken(self, file: Any) -> int:
+        """Number of snapshots that are complete.
+
+        A process that is killed while it writes a snapshot may leave one that its digest does not fit, or one that
+        is complete and not yet in the number of steps that ParaView reads.
+        """
+        written = np.any(file[_DIGESTS][...], axis=1)
+        taken = int(written.size if written.all() else written.argmin())
+        listed = int(file[ROOT]["Steps"].attrs["NSteps"])
+        if listed not in (taken, taken - 1):
+            raise self._damaged("the number of its steps")
+        return taken - (listed < taken and self._read(file, taken - 1) is None)
+
+    def _read(self, file: Any, number: int) -> list[FloatArray] | None:
+        """Points, moving fields and displacements of a snapshot; None if it is damaged."""
+        blocks = _blocks(number, self._fixed["radius"].size, len(self._places))
+        parts = [file[ROOT][name][rows] for name, rows in blocks.items()]
+        return parts if array_digest(parts) == file[_DIGESTS][number].tobytes() else None
 
     def __len__(self) -> int:
         return int(self.times.size)
@@ -342,14 +396,17 @@ class Snapshots:
         if not -len(self) <= number < len(self):
             raise IndexError(f"{self.path} holds {len(self)} snapshots, numbered from 0; there is no number {number}")
         number %= len(self)
-        count, cavities = self._fixed["radius"].size, len(self._places)
-        rows = slice(number * count, (number + 1) * count)
         with self._opened() as file:
-            root = file[ROOT]
-            return Frame(
-                time=float(self.times[number]),
-                position=root["Points"][rows] - self._places[self._fixed["cavity"]],
-                displacement=root["FieldData/displacement"][number * cavities : (number + 1) * cavities],
-                **{field: root[f"PointData/{field}"][rows] for field in _MOVING},
-                **self._fixed,
-            )
+            parts = self._read(file, number)
+        if parts is None:
+            raise self._damaged(f"snapshot {number}")
+        points, velocity, spin, push, displacement = parts
+        return Frame(
+            time=float(self.times[number]),
+            position=points - self._places[self._fixed["cavity"]],
+            velocity=velocity,
+            spin=spin,
+            push=push,
+            displacement=displacement,
+            **self._fixed,
+        )

@@ -264,9 +264,9 @@ def test_damaged_snapshots_are_named(written: Any, tmp_path: Path) -> None:
         path.write_bytes(written[1].read_bytes())
         with h5py.File(path, "r+") as file:
             del file["VTKHDF"][lost]
-        with pytest.raises(rb.DataError, match=r"run\.vtkhdf is not an HDF5 file that is whole"):
+        with pytest.raises(rb.DataError, match=r"run\.vtkhdf is damaged: its description is not as it was"):
             _ = Snapshots(path)[0]
     with h5py.File(path, "r+") as file:
         del file.attrs["case"]
-    with pytest.raises(rb.DataError, match=r"run\.vtkhdf is not an HDF5 file that is whole"):
+    with pytest.raises(rb.DataError, match=r"run\.vtkhdf is damaged: its description is not as it was"):
         Snapshots(path)

@@ -1,0 +1,168 @@
+"""A bit that changes in a file of results is detected on reading, or the content that is read is the same."""
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.engines.checkpoint import Checkpoint
+
+FILES = ("run.vtkhdf", "run.checkpoint")
+FLIPS = 160
+
+
+def case() -> rb.Case:
+    """Return a short run of five particles with snapshots."""
+    return rb.Case(
+        structure=rb.SDOF(mass=1.0, stiffness=1e4, velocity=0.5),
+        dampers=rb.ParticleDamper(
+            cavity=rb.Box(size=("20 mm", "20 mm", "20 mm")),
+            particles=rb.Particles(diameter="4 mm", material="steel", count=5),
+            contact=rb.Tsuji(restitution=0.8),
+            packing=rb.Lattice(),
+            gravity=(0, 0, 0),
+        ),
+        duration=2e-3,
+        output=rb.Output(rate=5e3, snapshots=4),
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the files of a run."""
+    folder = tmp_path_factory.mktemp("run")
+    rb.simulate(case(), checkpoint=folder / "run.checkpoint", snapshots=folder / "run.vtkhdf")
+    return folder
+
+
+def content(path: Path) -> Any:
+    """Everything that a reader returns of a file, as bytes."""
+    if path.suffix == ".vtkhdf":
+        snapshots = rb.Snapshots(path)
+        frames = [{name: np.asarray(value).tobytes() for name, value in vars(frame).items()} for frame in snapshots]
+        return snapshots.case_toml, snapshots.numbers, snapshots.planned.tobytes(), frames
+    kept = Checkpoint(path, case()).read()
+    assert kept is not None
+    arrays = {**kept.records, "state": kept.state, **{str(k): array for k, array in enumerate(kept.positions)}}
+    return kept.numbers, kept.time, kept.seconds, {name: array.tobytes() for name, array in arrays.items()}
+
+
+def detected(path: Path, changed: bytes, exact: Any) -> bool:
+    """Return whether a changed file is refused with its name; else it must be read as it was."""
+    path.write_bytes(changed)
+    try:
+        found = content(path)
+    except rb.DataError as error:
+        message = str(error)
+    else:
+        assert found == exact
+        return False
+    assert path.name in message
+    return True
+
+
+def flipped(whole: bytes, place: int, bit: int) -> bytes:
+    """Return a content with one bit changed."""
+    return whole[:place] + bytes([whole[place] ^ 1 << bit]) + whole[place + 1 :]
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_flipped_bit_is_detected_or_harmless(name: str, folder: Path, tmp_path: Path) -> None:
+    """Bits all over a file: structure of the file, attributes, short arrays, numbers."""
+    whole, path = (folder / name).read_bytes(), tmp_path / name
+    exact = content(folder / name)
+    generator = np.random.default_rng(11)
+    used = np.flatnonzero(np.frombuffer(whole, "u1"))  # most zeros of a file of HDF5 belong to nothing
+    places = [*generator.integers(0, len(whole), FLIPS // 2), *generator.choice(used, FLIPS)]
+    refused = sum(detected(path, flipped(whole, place, int(generator.integers(8))), exact) for place in places)
+    assert refused > FLIPS // 2
+
+
+def numbers_of(path: Path) -> Iterator[tuple[str, int, int]]:
+    """Name, place in the file and size of the values of each dataset."""
+    found: list[tuple[str, int, int]] = []
+    with h5py.File(path) as file:
+
+        def add(name: str, item: Any) -> None:
+            if isinstance(item, h5py.Dataset) and item.id.get_offset() is not None:
+                found.append((name, item.id.get_offset(), item.id.get_storage_size()))
+
+        file.visititems(add)
+    yield from found
+
+
+def test_a_flipped_bit_of_any_dataset_of_snapshots_is_detected(folder: Path, tmp_path: Path) -> None:
+    """The values of every dataset are protected, those of short ones and of those that ParaView alone reads, too."""
+    whole, path = (folder / "run.vtkhdf").read_bytes(), tmp_path / "run.vtkhdf"
+    exact, generator = content(folder / "run.vtkhdf"), np.random.default_rng(5)
+    names = set()
+    for name, start, size in numbers_of(folder / "run.vtkhdf"):
+        for place in start + generator.integers(0, size, 3):
+            assert detected(path, flipped(whole, int(place), int(generator.integers(8))), exact), name
+        names.add(name)
+    assert {"VTKHDF/Points", "VTKHDF/NumberOfPoints", "VTKHDF/Steps/Values", "digests"} <= names
+
+
+def test_the_damaged_block_is_named(folder: Path, tmp_path: Path) -> None:
+    """The message names the snapshot or the array that is damaged; other snapshots can still be read."""
+    path = tmp_path / "run.vtkhdf"
+    path.write_bytes((folder / "run.vtkhdf").read_bytes())
+    with h5py.File(path, "r+") as file:
+        file["VTKHDF/PointData/push"][7] += 1.0  # of the second snapshot of five particles
+    snapshots = rb.Snapshots(path)
+    assert len(snapshots) == 4
+    assert np.isfinite(snapshots[0].position).all()
+    with pytest.raises(
+        rb.DataError, match=r"run\.vtkhdf is damaged: snapshot 1 is not as it was written\n  try: a copy"
+    ):
+        snapshots[1]
+    with h5py.File(path, "r+") as file:
+        file["VTKHDF/PointData/mass"][0] *= 2
+    with pytest.raises(rb.DataError, match=r"run\.vtkhdf is damaged: its description"):
+        rb.Snapshots(path)
+    state = tmp_path / "run.checkpoint"
+    with np.load(folder / "run.checkpoint") as there:
+        arrays = dict(there)
+    arrays["position.0"][0, 0] += 1e-9
+    with state.open("wb") as file:
+        np.savez(file, **arrays)
+    with pytest.raises(
+        rb.DataError, match=r"run\.checkpoint is not a whole checkpoint: the block 'position\.0' is damaged"
+    ):
+        Checkpoint(state, case()).read()
+
+
+def _format_of_snapshots(path: Path, number: int) -> None:
+    with h5py.File(path, "r+") as file:
+        file.attrs["rattlebox_format"] = number
+
+
+def _format_of_checkpoint(path: Path, number: int) -> None:
+    with np.load(path) as there:
+        arrays = dict(there)
+    about = json.loads(arrays["about"].tobytes()) | {"format": number}
+    arrays["about"] = np.frombuffer(json.dumps(about).encode(), np.uint8)
+    with path.open("wb") as file:
+        np.savez(file, **arrays)
+
+
+@pytest.mark.parametrize(
+    ("name", "change"), [("run.vtkhdf", _format_of_snapshots), ("run.checkpoint", _format_of_checkpoint)], ids=FILES
+)
+@pytest.mark.parametrize("number", [0, 99])
+def test_another_format_is_refused_with_both_numbers(
+    name: str, change: Callable[[Path, int], None], number: int, folder: Path, tmp_path: Path
+) -> None:
+    """Files of an older and of a newer format are refused; the message has the number of the file and ours."""
+    path = tmp_path / name
+    path.write_bytes((folder / name).read_bytes())
+    change(path, number)
+    with pytest.raises(
+        rb.DataError, match=rf"{name} has format {number}, and this version .* reads format \d+\n  try: "
+    ):
+        content(path)
