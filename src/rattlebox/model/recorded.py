@@ -10,13 +10,14 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, PrivateAttr, model_serializer, model_validator
 
 from rattlebox._util.exceptions import DataError
+from rattlebox.exchange.read.ground_motion import read_ground_motion
 
 from .elementwise import Vector
 from .errors import Hint, at
-from .files import absolute
-from .records import Column, Columns, as_columns, read_columns
+from .files import absolute, existing
+from .records import Column, Columns, as_columns, read_columns, read_samples
 from .signals import UNIT_NAMES, UNITS, Sampled
-from .units import Number, numbers, unit_above
+from .units import Number, PositiveTime, factor_of, numbers, parse, plain, unit_above
 
 
 def _in_si(found: Columns, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -57,6 +58,34 @@ def _in_si(found: Columns, given: Mapping[str, Any]) -> dict[str, Any]:
     return {**read, "unit": wanted or unit, "scale": scale}
 
 
+def _with_si_unit(values: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a record with another unit of the same dimension turned into the SI unit and a scale."""
+    unit = values.get("unit")
+    known = factor_of(unit, UNITS) if isinstance(unit, str) and unit not in UNITS else None
+    if known is None:
+        return values
+    if known[0] == 1:
+        return {**values, "unit": known[1]}
+    with at("scale"):
+        scale = 1.0 if values.get("scale") is None else plain(values["scale"])
+    if not isinstance(scale, (int, float)):
+        return values
+    return {**values, "unit": known[1], "scale": scale * known[0]}
+
+
+def _check_unit(found: Columns, wanted: Any) -> None:
+    """Raise if a file states another unit of acceleration, force or displacement than the one that is given."""
+    given = factor_of(wanted, UNITS) if isinstance(wanted, str) and wanted not in UNITS else None
+    if given is None or given[0] == 1:
+        return
+    try:
+        stated = unit_above(found.above[1], UNITS)
+    except Hint:
+        return  # the numbers are in the unit that is given
+    if stated is not None and stated != given:
+        raise Hint(f"the file states another unit above the column: {found.above[1][-1]!r}", "leave unit out", ["unit"])
+
+
 def _column(value: Any) -> tuple[float, ...]:
     try:
         array = numbers(value)
@@ -82,10 +111,15 @@ class Record(Sampled):
         Strictly increasing [s].
     values, scale
         As many, in `unit`, and what they are multiplied by. Left out, `scale` is 1, or follows from the unit in the file.
+    dt
+        Time between samples [s] that are evenly spaced from 0 s on, instead of times.
+    unit
+        Unit of the values: "N", "m/s^2", "m", or another of these dimensions, such as "g", "gal", "mg", "cm/s^2" or "kN".
     file, columns
-        Instead of both: a CSV, NPY, NPZ or MAT file, and its columns of times and values, by number counted from 1 or by
-        name: `columns=(1, 3)`, `columns=("t", "a")`. Variables count in the order of the file. They may be left out where
-        there are only two, or variables called time and value. Units above the columns of a text file, as in "time (ms),
+        Instead of times and values: a CSV, NPY, NPZ, MAT or AT2 file, and its columns of times and values, by number counted
+        from 1 or by name: `columns=(1, 3)`, `columns=("t", "a")`; with `dt` that of the values alone. Variables count in the
+        order of the file. Columns may be left out where there are only two (with `dt` one), or variables called time and
+        value; an AT2 file of the PEER data base has one record. Units above the columns of a text file, as in "time (ms),
         acceleration (g)", are converted; unknown ones are refused. Without them times are in s, and values in `unit`; if
         neither states a unit, the run notes the unit that is assumed, and the peak.
     """
@@ -95,7 +129,8 @@ class Record(Sampled):
     times: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
     values: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
     file: str | None = None
-    columns: tuple[Column, Column] | None = None
+    columns: tuple[Column, Column] | tuple[Column] | None = None
+    dt: PositiveTime | None = None
     scale: Number = 1.0
     _unit_is_assumed: bool = PrivateAttr(default=False)
 
@@ -104,19 +139,44 @@ class Record(Sampled):
     def _from_file(cls, values: Any) -> Any:
         if not isinstance(values, dict):
             return values
+        wanted = values.get("unit")
+        values = _with_si_unit(values)
+        step = None
+        if values.get("dt") is not None:
+            with at("dt"):
+                step = parse(values["dt"], ("s",))[0]
+                if not step > 0:
+                    raise Hint("must be greater than zero")
         if values.get("file") is None:
             if values.get("columns") is not None:
                 raise Hint("columns are those of a file", 'file = "push.csv"', ["columns"])
+            if step is not None and "values" in values:
+                if "times" in values:
+                    raise Hint("give times or dt, not both", "leave dt out", ["dt"])
+                return {**values, "times": step * np.arange(np.size(values["values"])), "dt": None}
             return values
         if "times" in values or "values" in values:
             raise Hint(
                 "give times and values, or a file, not both", 'columns = ["time", "force"] names those of the file'
             )
         with at("columns"):
-            columns = as_columns(values.get("columns"))
+            columns = as_columns(values.get("columns"), 2 if step is None else 1)
         with at("file"):
             path = absolute(values["file"])
-            found = read_columns(path, columns)
+            if path.lower().endswith(".at2"):
+                if step is not None or columns is not None:
+                    raise Hint(f"{path} states its time step and has one record", "leave dt and columns out")
+                motion = read_ground_motion(existing(path))
+                heads = [f"a ({motion.unit})"] if motion.unit else []
+                found = Columns(np.arange(motion.values.size, dtype=float) * motion.step, motion.values, ([], heads))
+                if not motion.unit and values.get("unit") is None:
+                    raise DataError(f"{path} states no unit", 'unit = "g"')
+            elif step is not None:
+                samples, heads = read_samples(path, columns[0] if columns else None)
+                found = Columns(np.arange(samples.size, dtype=float) * step, samples, ([], heads))
+            else:
+                found = read_columns(path, columns)
+        _check_unit(found, wanted)
         return {**values, **_in_si(found, values), "file": path}
 
     @model_validator(mode="after")
@@ -157,14 +217,14 @@ class Record(Sampled):
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Record:
-        """Read a record from a CSV, NPY, NPZ or MAT file.
+        """Read a record from a CSV, NPY, NPZ, MAT or AT2 file.
 
         Parameters
         ----------
         path
             The file; times in seconds, unless it says otherwise above them.
         **options
-            columns, unit, scale, point.
+            columns, dt, unit, scale, point, direction.
 
         Raises
         ------

@@ -50,8 +50,53 @@ def read_columns(path: str, columns: Sequence[Column] | None = None) -> Columns:
     return _from_text(file, columns)
 
 
-def as_columns(value: Any) -> tuple[Column, Column] | None:
-    """Return a pair of columns as it is given.
+def read_samples(path: str, column: Column | None = None) -> tuple[Array, list[str]]:
+    """Read evenly spaced samples from a file.
+
+    Parameters
+    ----------
+    path
+        File as for `read_columns`.
+    column
+        Column or variable that holds them; may be left out where there is only one.
+
+    Returns
+    -------
+    (n,) float
+        Samples.
+    list of str
+        What is written above the column.
+
+    Raises
+    ------
+    DataError
+        When the file cannot be read, naming the line that is wrong, or the columns that there are.
+    """
+    file = existing(path)
+    if file.suffix.lower() not in BINARY:
+        lines, names, heads = _data(file, asked=[] if column is None else [str(column)])
+        (place,) = _numbers(file, None if column is None else [column], names, needed=1)
+        return _rows(file, lines, [place])[:, 0], [cells[place] for cells in heads]
+    arrays = read_arrays(file)
+    if not arrays:
+        raise DataError(f"{file} holds no numbers")
+    if len(arrays) == 1 and next(iter(arrays.values())).ndim == 2 and not isinstance(column, str):
+        (table,) = arrays.values()
+        table = table.T if table.shape[0] == 1 else table
+        (place,) = _numbers(
+            file, None if column is None else [column], [str(k + 1) for k in range(table.shape[1])], needed=1
+        )
+        return check_finite(table[:, place], f"{file}: column {place + 1}"), []
+    there = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
+    (place,) = _numbers(file, None if column is None else [column], list(arrays), there, needed=1)
+    name, array = list(arrays.items())[place]
+    if array.size != max(array.shape, default=1):
+        raise DataError(f"{file}: one row of numbers is needed, but {name} has shape {array.shape}")
+    return check_finite(array.ravel(), f"{file}: {name}"), []
+
+
+def as_columns(value: Any, count: int = 2) -> Any:
+    """Return a pair of columns as it is given, or a tuple of one.
 
     Raises
     ------
@@ -60,10 +105,12 @@ def as_columns(value: Any) -> tuple[Column, Column] | None:
     """
     if value is None:
         return None
-    good = isinstance(value, (list, tuple)) and len(value) == 2
+    good = isinstance(value, (list, tuple)) and len(value) == count
     if not good or not all(isinstance(item, (int, str)) and not isinstance(item, bool) for item in value):
+        if count == 1:
+            raise Hint("with dt, columns names one column, that of values", 'columns = ["force"]')
         raise Hint("columns are two numbers or names: that of times, that of values", 'columns = ["time", "force"]')
-    return value[0], value[1]
+    return tuple(value)
 
 
 def _pick(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> tuple[Array, Array]:
@@ -93,18 +140,23 @@ def _pick(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None
 
 
 def _numbers(
-    file: Path, columns: Sequence[Column] | None, names: list[str], there: Sequence[str] | None = None
+    file: Path,
+    columns: Sequence[Column] | None,
+    names: list[str],
+    there: Sequence[str] | None = None,
+    needed: int = 2,
 ) -> list[int]:
-    """Places of the two columns, or of the two variables that are there, counted from 0."""
+    """Places of the columns, or of the variables that are there, counted from 0."""
     what = "column" if there is None else "variable"
     available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in enumerate(there or names, start=1))
     if columns is None:
-        if len(names) != 2:
+        if len(names) != needed:
+            advice = 'dt = "0.01 s", the time between samples' if (needed, len(names)) == (2, 1) else ""
             raise DataError(
-                f"{file} has {several(len(names), what)} ({available}), two are needed",
-                "columns = [1, 2]" if len(names) > 2 else "",
+                f"{file} has {several(len(names), what)} ({available}), {'two are' if needed == 2 else 'one is'} needed",
+                f"columns = {list(range(1, needed + 1))}" if len(names) > needed else advice,
             )
-        columns = (1, 2)
+        columns = range(1, needed + 1)
     places = []
     for column in columns:
         if isinstance(column, str) and names.count(column) > 1:
@@ -117,7 +169,7 @@ def _numbers(
         else:
             suggestion = nearest(column, names) if isinstance(column, str) else f"{what}s count from 1"
             raise DataError(f"{file} has no {what} {column!r}; it has {available}", suggestion)
-    if places[0] == places[1]:
+    if needed == 2 and places[0] == places[1]:
         raise DataError(
             f"{file}: times and values are both {what} {columns[0]!r}; it has {available}", "two that differ"
         )
@@ -174,7 +226,10 @@ def _data(
     for number, cells, _ in lines[:start]:
         if len(cells) != width and set(cells) <= set(known):
             raise DataError(f"{file}, line {lines[start][0]}: {width} columns, but {len(cells)} in line {number}")
-    heads = [cells for _, cells, _ in lines[:start] if len(cells) == width and not any(map(_is_number, cells))]
+    above = [cells for _, cells, _ in lines[:start]]
+    if width == 1:
+        above = [[" ".join(cells)] for cells in above]  # of one column no delimiter is known
+    heads = [cells for cells in above if len(cells) == width and not any(map(_is_number, cells))]
     sought = {*known, *asked}
     names = max(reversed(heads), key=lambda cells: len(sought & set(cells)), default=None)
     data = [(number, cells) for number, cells, marked in lines[start:] if not marked]

@@ -83,8 +83,7 @@ class Signal(Part):
             return value
         if factor == 1:
             return unit
-        advice = f'unit = "{unit}", scale = {factor!r}' if "scale" in cls.model_fields else f'amplitude = "5 {value}"'
-        raise Hint(f"must be {', '.join(map(repr, UNITS[:-1]))} or {UNITS[-1]!r}", advice)
+        raise Hint(f"must be {', '.join(map(repr, UNITS[:-1]))} or {UNITS[-1]!r}", f'amplitude = "5 {value}"')
 
     @model_validator(mode="before")
     @classmethod

@@ -1,0 +1,96 @@
+"""Ground motions of the PEER data base, files with the ending .AT2."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox._util.exceptions import DataError
+
+_COUNT = re.compile(r"NPTS\s*=\s*(\d+)", re.I)
+_STEP = re.compile(r"DT\s*=\s*([\d.]+(?:E[-+]?\d+)?)", re.I)
+_OLD = re.compile(r"^\s*(\d+)\s+([\d.]+(?:E[-+]?\d+)?)\s+NPTS\s*,\s*DT", re.I)
+_UNIT = re.compile(r"UNITS?\s+OF\s+(\S+)|\bIN\s+(G|CM/S\S*|M/S\S*)\s*$", re.I)
+_OTHER = re.compile(r"\b(velocity|displacement)\b", re.I)
+_HEADER = 12  # lines
+
+
+@dataclass(frozen=True, eq=False)
+class GroundMotion:
+    """Evenly spaced samples of an acceleration.
+
+    Attributes
+    ----------
+    step
+        Time between samples [s].
+    values : (n,) float
+        Samples, in `unit`.
+    unit
+        Unit as the file states it, such as "G"; "" if it states none.
+    """
+
+    step: float
+    values: NDArray[np.float64]
+    unit: str
+
+
+def read_ground_motion(path: Path) -> GroundMotion:
+    """Read an AT2 file.
+
+    Parameters
+    ----------
+    path
+        An existing file: up to twelve lines of text, the last with NPTS and DT, then the samples row by row.
+
+    Raises
+    ------
+    DataError
+        If the file is not an AT2 file of an acceleration, or holds another number of samples than it states.
+    """
+    try:
+        lines = path.read_text(encoding="latin-1").splitlines()
+    except OSError as error:
+        raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
+    begin, count, step = 0, "", ""
+    for line in lines[:_HEADER]:
+        begin += 1
+        old = _OLD.match(line)
+        count, step = (old[1], old[2]) if old else (_first(_COUNT, line), _first(_STEP, line))
+        if count and step:
+            break
+    else:
+        raise DataError(
+            f"{path}: none of the first {min(_HEADER, len(lines))} lines states NPTS and DT, as an AT2 file does",
+            'the ending .csv or .txt, with dt = "0.01 s" for one column of numbers',
+        )
+    header = "\n".join(lines[:begin])
+    other = _OTHER.search(header)
+    if other and not re.search(r"\baccel", header, re.I):
+        raise DataError(f"{path} holds a {other[1].lower()}, not an acceleration", "the file with the ending .AT2")
+    if not float(step) > 0:
+        raise DataError(f"{path}, line {begin}: the time step is {step}; it must be greater than zero")
+    values = []
+    for place, line in enumerate(lines[begin:], start=begin + 1):
+        try:
+            values += [float(word) for word in line.split()]
+        except ValueError:
+            raise DataError(f"{path}, line {place}: {line.strip()[:40]!r} is not a row of numbers") from None
+    if len(values) != int(count):
+        raise DataError(
+            f"{path} states {count} samples, but holds {len(values)}",
+            "the whole file: it may be cut short" if len(values) < int(count) else "the file as it was downloaded",
+        )
+    samples = np.array(values)
+    if not np.isfinite(samples).all():
+        raise DataError(f"{path}: sample {int(np.argmin(np.isfinite(samples))) + 1} is not finite")
+    unit = _UNIT.search(header)
+    return GroundMotion(float(step), samples, (unit[1] or unit[2]).strip(".,") if unit else "")
+
+
+def _first(pattern: re.Pattern[str], line: str) -> str:
+    match = pattern.search(line)
+    return match[1] if match else ""
