@@ -15,16 +15,8 @@ FEWEST_BATCHES = 10
 
 
 class Interval(NamedTuple):
-    """Mean with its 95 % confidence interval.
-
-    Attributes
-    ----------
-    mean
-        Mean of the samples.
-    lower, upper
-        Limits of the interval; NaN if the samples are too few for it.
-    batches
-        Number of batches that were found to be independent; 0 if there are too few.
+    """Mean with its 95 % confidence interval: `mean`, its limits `lower` and `upper` (NaN if the samples are too few), and
+    the number of `batches` that were found to be independent (0 if there are too few).
     """
 
     mean: float
