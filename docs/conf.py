@@ -1,5 +1,9 @@
 from docutils import nodes
+from docutils.parsers.rst import Directive
+from docutils.statemachine import StringList
 from latex2mathml.converter import convert
+
+from rattlebox.results.schema import COUNTS, DIAGNOSTICS, VARIABLES
 
 project = "Rattlebox"
 author = "Rattlebox developers"
@@ -17,8 +21,34 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 
 
+class SchemaTable(Directive):
+    """A table of the declared variables of a group, or of `counts` or `diagnostics`."""
+
+    required_arguments = 1
+
+    def run(self):
+        """Return the table."""
+        name = self.arguments[0]
+        if name == "counts":
+            lines = ["| name | number of |", "|---|---|", *(f"| `{key}` | {told} |" for key, told in COUNTS.items())]
+        elif name == "diagnostics":
+            rows = (f"| `{key}` | {units} | {told} |" for key, (units, told) in DIAGNOSTICS.items())
+            lines = ["| name | unit | meaning |", "|---|---|---|", *rows]
+        else:
+            rows = (
+                f"| `{v.name}` | {', '.join(v.dims)} | {v.units} | {v.long_name} | {' and '.join(v.engines)} |"
+                for v in VARIABLES
+                if v.group == name
+            )
+            lines = ["| name | dimensions | unit | meaning | engines |", "|---|---|---|---|---|", *rows]
+        container = nodes.container()
+        self.state.nested_parse(StringList(lines), self.content_offset, container)
+        return container.children
+
+
 def setup(app):
-    """Write formulas as MathML, which browsers draw by themselves: MathJax would need the network."""
+    """Add tables of output variables, and write formulas as MathML: browsers draw it, and MathJax would need the network."""
+    app.add_directive("schema", SchemaTable)
 
     def write(display):
         def visit(self, node):

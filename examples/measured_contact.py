@@ -25,7 +25,7 @@ if __name__ == "__main__":
         hit = run.impacts.isel(impact=0)
         restitution = float(hit.separation_speed / hit.approach_speed)
         print(f"{speed} m/s: overlap {1e6 * float(hit.peak_overlap):.0f} um, restitution {restitution:.3f}")
-        for note in run.arrays.notes:
+        for note in run.notes:
             print(f"  {note}")
     # The areas below straight lines through the points give nearly the same for an impact as deep as the measurement.
     loading = np.trapezoid(PAD.force, PAD.overlap)

@@ -50,7 +50,7 @@ def ensemble(make_case: Callable[[float], Case], members: int = 64, reach: float
     --------
     >>> from reproduction.reference import paper_case
     >>> runs = ensemble(lambda offset: paper_case(start=near(0.0, offset), duration=2.0), members=8)
-    >>> low, median, high = band([run.ledger.impact_loss for run in runs])
+    >>> low, median, high = band([run.ledger.channels["normal"] for run in runs])
     """
     if members < 1:
         raise ValueError(f"members is {members}, but an ensemble needs at least 1")

@@ -113,7 +113,7 @@ def data() -> xr.Dataset:
         return np.array([run.ledger.structure[fast], run.ledger.particles[fast]])
 
     def level(run: Run) -> NDArray[np.float64]:
-        parts = np.array([run.arrays.viscous_loss, run.ledger.impact_loss, run.ledger.motion])[:, slow]
+        parts = np.array([run.arrays.viscous_loss, run.ledger.channels["normal"], run.ledger.motion])[:, slow]
         return np.asarray(np.cumsum(parts, axis=0) / run.arrays.load_work[-1])
 
     variables = {}
@@ -158,7 +158,7 @@ def data() -> xr.Dataset:
             "scheme": described("scheme", [_OURS, _THEIRS], "", "scheme"),
             "other": described("other", [_THEIRS, _TWIN], "", "scheme compared with the event-driven one"),
             "part": described("part", ["structure", "ball"], "", "body"),
-            "channel": described("channel", ["viscous", "impact", "motion"], "", "where the work of the pulse is"),
+            "channel": described("channel", ["viscous", "normal", "motion"], "", "where the work of the pulse is"),
             "begin": described("begin", _FAST, "s", "time, beginning"),
             "later": described("later", _LATER, "s", "time, around the parting"),
             "time": described("time", _SLOW, "s", "time"),

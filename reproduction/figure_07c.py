@@ -39,7 +39,7 @@ def data() -> xr.Dataset:
     """Compute the energy lost in impacts, of one run and of an ensemble."""
     single = [simulate(case) for case in cases().values()]
     ensembles = [ensemble(partial(_case, model)) for model in MODELS]
-    lost = np.array(band([[run.ledger.impact_loss for run in runs] for runs in ensembles], axis=1))
+    lost = np.array(band([[run.ledger.channels["normal"] for run in runs] for runs in ensembles], axis=1))
     counts = [[_contacts_to_half(run) for run in runs] for runs in ensembles]
     totals = [[len(run.arrays.impacts) for run in runs] for runs in ensembles]
     time = single[0].arrays.time
@@ -51,7 +51,10 @@ def data() -> xr.Dataset:
     return xr.Dataset(
         {
             "single": described(
-                ("model", "time"), [run.ledger.impact_loss for run in single], "J", "energy lost in impacts, one run"
+                ("model", "time"),
+                [run.ledger.channels["normal"] for run in single],
+                "J",
+                "energy lost in impacts, one run",
             ),
             "lost": described((*many, "time"), lost, "J", "energy lost in impacts, ensemble of start positions"),
             "ratio": described(

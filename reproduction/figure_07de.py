@@ -52,7 +52,7 @@ def _case(model: str, start: int, amplitude: float, offset: float = 0.0) -> Case
 
 def _results(run: Run) -> tuple[float, float, float]:
     work = run.arrays.load_work[-1]
-    return run.ledger.impact_loss[-1] / work, run.arrays.viscous_loss[-1] / work, len(run.arrays.impacts)
+    return run.ledger.channels["normal"][-1] / work, run.arrays.viscous_loss[-1] / work, len(run.arrays.impacts)
 
 
 def data() -> xr.Dataset:

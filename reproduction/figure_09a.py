@@ -106,7 +106,7 @@ def portraits(of: Literal["ball", "structure"]) -> xr.Dataset:
                 [a.impacts.approach_speed.max(initial=0.0) for a in arrays], "m/s", "greatest approach speed"
             ),
             "work": each([run.ledger.work[-1] for run in runs], "J", "work of the pulse"),
-            "impact_loss": each([run.ledger.impact_loss[-1] for run in runs], "J", "energy lost in impacts"),
+            "impact_loss": each([run.ledger.channels["normal"][-1] for run in runs], "J", "energy lost in impacts"),
             "critical_speed": described(
                 "wall", [JacksonGreen(wall=w).critical_speed(pair) for w in wall], "m/s", "speed at which yield begins"
             ),

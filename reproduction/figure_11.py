@@ -126,7 +126,7 @@ def data() -> xr.Dataset:
             ),
             "impact_share": described(
                 ("model",),
-                np.array([(run.ledger.impact_loss / run.ledger.work[-1])[-1] for run in single]),
+                np.array([(run.ledger.channels["normal"] / run.ledger.work[-1])[-1] for run in single]),
                 "",
                 "share of the work lost in impacts, single run",
             ),

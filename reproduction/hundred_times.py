@@ -72,7 +72,7 @@ def _measured(run: Run, losses: Sequence[float]) -> list[float]:
     """First loss, total loss, and the times at which given losses are reached."""
     return [
         run.arrays.impacts.energy_lost[0],
-        run.ledger.impact_loss[-1],
+        run.ledger.channels["normal"][-1],
         *(_time_to(run, loss) for loss in losses),
     ]
 
@@ -80,7 +80,7 @@ def _measured(run: Run, losses: Sequence[float]) -> list[float]:
 def data() -> xr.Dataset:
     """Compare losses and times of both models, over the yield stress of the elasto-plastic one."""
     constant = _runs(MODELS[CONSTANT_E])
-    total = float(np.median([run.ledger.impact_loss[-1] for run in constant]))
+    total = float(np.median([run.ledger.channels["normal"][-1] for run in constant]))
     losses = [part * total for part in _PARTS.values()]
     reference = np.median([_measured(run, losses) for run in constant], axis=0)
     powers = np.array([1, 1, -1, -1])  # faster is more energy, but less time

@@ -201,7 +201,7 @@ def data() -> xr.Dataset:
 
 def _shares(make: Callable[[float], Case], start: float) -> Band:
     runs = ensemble(lambda offset: make(near(start, offset)), _MEMBERS)
-    return band([run.ledger.shares["impact"] for run in runs])
+    return band([run.ledger.shares["normal"] for run in runs])
 
 
 def _impacts(make: Callable[[float], Case], start: float) -> Band:

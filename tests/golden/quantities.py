@@ -58,8 +58,10 @@ _PARTICLES = {
     "rotation_energy": "rotation_energy",
     "sliding_loss": "sliding_loss",
     "rolling_loss": "rolling_loss",
+}
+_FINAL = {
     "final_position": "position",
-    "final_velocity": "particle_velocity",
+    "final_velocity": "velocity",
     "final_spin": "spin",
     "radius": "radius",
 }
@@ -93,11 +95,12 @@ def quantities(run: Any) -> Quantities:
     """
     arrays = run.arrays
     found = {name: np.asarray(getattr(arrays, of)) for name, of in _SHARED.items()}
-    if hasattr(arrays, "particle_velocity"):
+    if "particles" in run.groups:
         found |= {name: np.asarray(getattr(arrays, of)) for name, of in _PARTICLES.items()}
-        found["time_step"] = np.array(arrays.figures["step"])
-        found["largest_overlap"] = np.array(arrays.figures["largest_overlap"])
-        found["largest_approach_speed"] = np.array(arrays.figures["largest_approach_speed"])
+        found |= {name: np.asarray(getattr(arrays.particles, of)) for name, of in _FINAL.items()}
+        found["time_step"] = np.array(run.diagnostics["step"])
+        found["largest_overlap"] = np.array(run.diagnostics["largest_overlap"])
+        found["largest_approach_speed"] = np.array(run.diagnostics["largest_approach_speed"])
     else:
         found |= {name: np.asarray(getattr(arrays, of)) for name, of in _BALLS.items()}
         found |= {name: np.asarray(getattr(arrays.impacts, of)) for name, of in _IMPACTS.items()}

@@ -25,7 +25,7 @@ def test_ensemble_is_the_same_in_every_call():
         ensemble(lambda offset: paper_case(start=near(0.0, offset), duration=3.0), members=3) for _ in range(2)
     )
     for a, b in zip(first, second, strict=True):
-        np.testing.assert_array_equal(a.ledger.impact_loss, b.ledger.impact_loss)
+        np.testing.assert_array_equal(a.ledger.channels["normal"], b.ledger.channels["normal"])
 
 
 def test_band_holds_four_fifths():

@@ -67,7 +67,7 @@ def read(path: Path, folder: Path) -> Any:
     """Read a file as a user does; return all numbers in it."""
     if path.suffix == ".nc":
         run = rb.load(path)
-        return run.arrays.displacement.tobytes(), run.arrays.position.tobytes(), run.arrays.notes
+        return run.arrays.displacement.tobytes(), run.arrays.particles.position.tobytes(), run.notes
     if path.suffix == ".vtkhdf":
         return [(frame.time, frame.position.tobytes(), frame.velocity.tobytes()) for frame in Snapshots(path)]
     if path.suffix == ".mat":
@@ -76,7 +76,7 @@ def read(path: Path, folder: Path) -> Any:
         return rb.Case.from_file(path)
     (folder / "a.vtkhdf").write_bytes((path.parent.parent / "a.vtkhdf").read_bytes())
     run = rb.simulate(rb.Case.from_toml(BEADS), checkpoint=path, snapshots=folder / "a.vtkhdf")
-    return run.arrays.displacement.tobytes(), run.arrays.position.tobytes()
+    return run.arrays.displacement.tobytes(), run.arrays.particles.position.tobytes()
 
 
 @pytest.mark.parametrize("name", ["run.nc", "run.vtkhdf", "run.mat", "case.toml", "a.checkpoint"])

@@ -151,7 +151,7 @@ def run(kind, **changes):
 
 
 def particle(**changes):
-    return run("particle", **changes).arrays.particle_velocity[0].tolist()
+    return run("particle", **changes).arrays.particles.velocity[0].tolist()
 
 
 spring = rb.HertzRatio(coefficient=0.3, ratio=2 * (1 - poisson) / (2 - poisson))

@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 import rattlebox as rb
-from rattlebox.results.arrays import ImpactArrays
+from rattlebox.results.schema import variables
 
 Array = NDArray[np.float64]
 CLOSE = 1e-8
@@ -148,7 +147,9 @@ def check(seeds: Iterable[int]) -> Counter[str]:
         run = on_a_grid(random_case(seed))
         wrong = list(complaints(run.arrays, seen))
         assert not wrong, f"case {seed}: " + "; ".join(wrong[:3])
-        assert run.ok and run.closure <= 1e-9, f"case {seed}: {run.status}, closure {run.closure}"
+        assert run.ok and run.energy_residual <= 1e-9, (
+            f"case {seed}: {run.status}, energy residual {run.energy_residual}"
+        )
     return seen
 
 
@@ -173,7 +174,7 @@ def test_grid_finds_a_wrong_log(fault: str) -> None:
     a = on_a_grid(random_case(3)).arrays
     assert not list(complaints(a, Counter()))
     log = a.impacts
-    lines = {field.name: np.array(getattr(log, field.name)) for field in fields(log)}
+    lines = {v.name: np.array(getattr(log, v.name)) for v in variables("impact", "impacts")}
     k = len(log) // 2
     if fault == "missed":
         lines = {name: np.delete(values, k) for name, values in lines.items()}
@@ -182,4 +183,4 @@ def test_grid_finds_a_wrong_log(fault: str) -> None:
         lines["time"][-1] = 0.5 * (a.time[5] + a.time[6])
     else:
         lines["time"][k] -= 1e-6
-    assert list(complaints(replace(a, impacts=ImpactArrays(**lines)), Counter()))
+    assert list(complaints(a.replaced(impacts=lines), Counter()))

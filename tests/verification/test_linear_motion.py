@@ -117,7 +117,7 @@ def test_motion_is_exact(kind: str, load: str) -> None:
     for ours, column in ((run.arrays.displacement, 0), (run.arrays.velocity, 1)):
         difference = np.abs(ours[:, 0] - wanted[:, column]).max() / np.abs(wanted[:, column]).max()
         assert difference < 2e-12
-    assert run.closure < 1e-11
+    assert run.energy_residual < 1e-11
 
 
 def test_several_modes_add_up() -> None:

@@ -108,7 +108,7 @@ def test_both_engines_move_as_the_signal_says(rate: float | None, parts: dict[st
     found = run.arrays.displacement[late, 0]
     assert np.std(found) == pytest.approx(np.std(exact), rel=allowed)
     assert np.std(found - exact) < 4 * allowed * np.std(exact)
-    assert not any("straight lines" in note for note in run.arrays.notes)
+    assert not any("straight lines" in note for note in run.notes)
 
 
 @pytest.mark.parametrize("rate", [4500.0, 8000.0])
@@ -134,7 +134,7 @@ def test_the_loss_stated_for_a_record_is_what_a_run_loses(rate: float) -> None:
     stated = change_by_interpolation(rate, frequency[1:], np.abs(spectrum[1:]) ** 2, FREQUENCY, decay)
     assert stated < -0.1
     assert np.sqrt(np.mean(late**2)) / meant == pytest.approx(1 + stated, rel=0.05)  # 0.06 s are left out
-    (note,) = run.arrays.notes
+    (note,) = run.notes
     assert "straight lines" in note
     advised = float(note.split("resampled to ")[1].split()[0])
     up, down = (advised / rate).as_integer_ratio()
@@ -142,7 +142,7 @@ def test_the_loss_stated_for_a_record_is_what_a_run_loses(rate: float) -> None:
     spectrum = np.fft.rfft(values)
     dense = np.fft.irfft(spectrum, times.size - 1) * (up / down)
     resampled = rb.Record(times=times, values=np.append(dense, dense[0]), unit="m/s^2")
-    assert rb.simulate(case.model_copy(update={"base": (resampled,)})).arrays.notes == ()
+    assert rb.simulate(case.model_copy(update={"base": (resampled,)})).notes == ()
 
 
 @pytest.mark.parametrize(("fraction", "warned"), [(0.025, False), (0.1, False), (0.2, True)])
@@ -162,8 +162,8 @@ def test_means_over_steps_take_what_is_stated(fraction: float, warned: bool) -> 
     late = run.arrays.time > 0.06
     frequency, coefficient, _ = coefficients(record, fine=1)
     driven = (frequency >= 1500.0) & (frequency <= HIGH)
-    means = np.sinc(frequency[driven] * run.arrays.figures["step"])
+    means = np.sinc(frequency[driven] * run.diagnostics["step"])
     spectrum = 2 * means * coefficient[driven] * response(frequency[driven])
     exact = np.real(np.exp(2j * np.pi * np.outer(run.arrays.time[late], frequency[driven])) @ spectrum)
     assert np.std(run.arrays.displacement[late, 0]) == pytest.approx(np.std(exact), rel=5e-3)
-    assert warned == any("mean over each step" in note for note in run.arrays.notes)
+    assert warned == any("mean over each step" in note for note in run.notes)

@@ -86,7 +86,7 @@ def test_power_laws_rebound_as_their_equation(name: str) -> None:
     assert float(run.impacts.separation_speed[0]) == pytest.approx(expected, rel=1e-8)
     run = particle(law)
     assert run.ok
-    assert -run.arrays.particle_velocity[0, 0] == pytest.approx(expected, rel=1e-3)
+    assert -run.arrays.particles.velocity[0, 0] == pytest.approx(expected, rel=1e-3)
 
 
 @pytest.mark.parametrize("ending", ["zero_force", "zero_overlap"])
@@ -97,7 +97,7 @@ def test_restitution_asked_for_is_met(exponent: float, ending: str) -> None:
     run = impact(law)
     assert float(run.impacts.separation_speed[0]) / SPEED == pytest.approx(0.7, rel=1e-8)
     run = particle(law, softening=30.0)
-    assert -run.arrays.particle_velocity[0, 0] / SPEED == pytest.approx(0.7, rel=1e-3)
+    assert -run.arrays.particles.velocity[0, 0] / SPEED == pytest.approx(0.7, rel=1e-3)
 
 
 def test_hunt_and_crossley_lose_in_proportion_to_the_speed() -> None:
@@ -162,7 +162,7 @@ def test_measured_curves_give_back_what_unloading_holds(speed: float) -> None:
     assert float(run.impacts.energy_lost[0]) == pytest.approx(0.5 * MASS * speed**2 * (1 - expected**2), rel=1e-8)
     run = particle(MEASURED, speed)
     assert run.ok
-    assert -run.arrays.particle_velocity[0, 0] / speed == pytest.approx(expected, rel=2e-3)
+    assert -run.arrays.particles.velocity[0, 0] / speed == pytest.approx(expected, rel=2e-3)
     assert float(run.arrays.plastic_loss.sum(axis=(1, 2))[-1]) == pytest.approx(
         0.5 * MASS * speed**2 * (1 - expected**2), rel=5e-3
     )
@@ -175,7 +175,7 @@ def test_a_measured_curve_without_unloading_is_elastic() -> None:
     assert float(run.impacts.separation_speed[0]) == pytest.approx(SPEED, rel=1e-9)
     assert float(run.impacts.peak_force[0]) < FORCE[-1]
     run = particle(law)
-    assert -run.arrays.particle_velocity[0, 0] == pytest.approx(SPEED, rel=1e-3)
+    assert -run.arrays.particles.velocity[0, 0] == pytest.approx(SPEED, rel=1e-3)
 
 
 def test_user_laws_work_with_friction_in_tables_and_sweeps(tmp_path: Any) -> None:
@@ -184,7 +184,7 @@ def test_user_laws_work_with_friction_in_tables_and_sweeps(tmp_path: Any) -> Non
         run = particle(law, friction=0.3, rolling=0.01)
         case = rb.Case.from_toml(run.case_toml)
         again = rb.simulate(case)
-        np.testing.assert_array_equal(again.arrays.particle_velocity, run.arrays.particle_velocity)
+        np.testing.assert_array_equal(again.arrays.particles.velocity, run.arrays.particles.velocity)
     base = rb.Case(
         structure=rb.SDOF(mass="1 kg", stiffness="10 kN/m"),
         damper=rb.ImpactDamper(

@@ -4,7 +4,6 @@ from .chaos import lyapunov_exponent
 from .damping_curve import damping_over_amplitude
 from .decay import damping_ratio, decay_envelope
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
-from .granular import shaken_cavity
 from .measures import peak_reduction, rms_reduction, settling_time
 from .power_spectra import (
     band_levels,
@@ -14,6 +13,7 @@ from .power_spectra import (
     transmissibility,
 )
 from .sections import impacts_per_cycle, phase_portrait, poincare_section
+from .shaken import shaken_cavity
 from .shock import shock_response_spectrum
 from .spectra import amplitude_spectrum
 from .statistics import Interval, mean_interval

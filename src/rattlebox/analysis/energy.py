@@ -28,8 +28,9 @@ def energy_shares(run: Run) -> xarray.DataArray:
     Returns
     -------
     xarray.DataArray
-        Over `channel`: lost in the structure ("viscous"), in impacts ("impact"), in plastic flow ("plastic"), and left
-        in "motion". They add up to one, to the closure of the ledger; NaN when nothing was put in.
+        Over `channel`: lost in the structure ("viscous"), in contacts by normal damping ("normal"), in plastic flow
+        ("plastic"), in 3-D runs by "sliding" and "rolling", and left in "motion". They add up to one, to the energy
+        residual; NaN when nothing was put in.
     """
     shares = run.ledger.shares
     channel = ("channel", list(shares), {"units": "", "long_name": "channel of the energy"})

@@ -11,14 +11,14 @@ import typer
 from rich.progress import Progress
 
 from rattlebox._util.exceptions import CaseError, DataError
+from rattlebox.cli.exit_codes import STOPPED
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS
-from rattlebox.cli.main import STOPPED
 from rattlebox.cli.plot import FORMATS, target
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
 from rattlebox.plots.spheres import usual_renderer
-from rattlebox.results import GranularRun, load
+from rattlebox.results import load
 from rattlebox.results.snapshots import Snapshots
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def plot_run(
 def _instead(path: Path) -> str:
     """What to try where a file of a run is not there."""
     there = {name for name in (RUN, SNAPSHOTS, CHECKPOINT) if (path.parent / name).is_file()}
-    if path.name == SNAPSHOTS and RUN in there and not isinstance(load(path.parent / RUN), GranularRun):
+    if path.name == SNAPSHOTS and RUN in there and "particles" not in load(path.parent / RUN).groups:
         return ", and this run has no particles in space to show"
     if path.name == SNAPSHOTS:
         return "\n  try: output.snapshots in the case"
@@ -132,7 +132,7 @@ def _figure(of: Any, kind: str | None, number: int, options: dict[str, Any]) -> 
     if isinstance(of, Snapshots):
         kinds: tuple[str, ...] = ("particles",)
     else:
-        kinds = ("motion", "energy", "particles" if isinstance(of, GranularRun) else "impacts")
+        kinds = of.groups
     if (kind or kinds[0]) not in kinds:
         raise CaseError(f"--kind {kind}: there is no such kind here\n  {nearest(str(kind), kinds)}")
     if isinstance(of, Snapshots):

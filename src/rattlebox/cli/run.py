@@ -15,15 +15,17 @@ from rich.text import Text
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox._util.text import printable
+from rattlebox.cli.exit_codes import STOPPED
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, Place, check_own, note_begun, taken
-from rattlebox.cli.main import STOPPED
 from rattlebox.cli.terminal import terminal
 from rattlebox.engines.checkpoint import AnotherRun
 from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
-from rattlebox.results import GranularRun, Run
+from rattlebox.results import Run
+from rattlebox.results.schema import Engine, groups
 
+_FIGURES = ("motion", "energy", "impacts")
 _RESULTS = (".nc", ".vtkhdf", ".mat", ".csv", ".png")
 _MINUTE = 60.0  # s
 
@@ -160,20 +162,16 @@ def _run_in(path: Path, case: Case, place: Place, *, csv: bool, mat: bool, figur
 
 def _names(case: Case, *, csv: bool, mat: bool, figures: bool) -> list[str]:
     """Return the names of the files that a run of a case writes."""
-    particles = bool(case.particle_dampers)
+    engine: Engine = "dem" if case.particle_dampers else "impact"
     names = [SNAPSHOTS] if case.output.snapshots else []
     names.append(RUN)
     if mat:
         names.append("run.mat")
     if csv:
-        names += [f"{group}.csv" for group in ("motion", "energy", "particles" if particles else "impacts")]
+        names += [f"{group}.csv" for group in groups(engine)]
     if figures:
-        names += [f"{name}.png" for name in _figures(particles)]
+        names += [f"{name}.png" for name in groups(engine) if name in _FIGURES]
     return names
-
-
-def _figures(particles: bool) -> Sequence[str]:
-    return ("motion", "energy") if particles else ("motion", "energy", "impacts")
 
 
 def _write(run: Run, folder: Path, *, csv: bool, mat: bool, figures: bool) -> Iterator[str]:
@@ -186,7 +184,7 @@ def _write(run: Run, folder: Path, *, csv: bool, mat: bool, figures: bool) -> It
     if csv:
         yield from [path.name for path in run.to_csv(folder)]
     if figures:
-        for name in _figures(isinstance(run, GranularRun)):
+        for name in (name for name in run.groups if name in _FIGURES):
             getattr(run.plot, name)().savefig(folder / f"{name}.png")
             yield f"{name}.png"
 

@@ -1,4 +1,4 @@
-"""Particle dampers: Case -> the plain numbers that the core reads -> core -> GranularRun."""
+"""Particle dampers: Case -> the plain numbers that the core reads -> core -> Run."""
 
 from __future__ import annotations
 
@@ -38,8 +38,10 @@ from rattlebox.model.errors import at
 from rattlebox.model.in_space import direction_of_base, inertia_along
 from rattlebox.model.methods import Dem, EventDriven, Output
 from rattlebox.model.packing import Settled
-from rattlebox.results.granular import GranularArrays, GranularRun
+from rattlebox.results.arrays import RunArrays
+from rattlebox.results.ledger import Ledger
 from rattlebox.results.provenance import Provenance
+from rattlebox.results.run import Run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -63,7 +65,7 @@ def simulate_dem(
     progress: Progress | None = None,
     checkpoint: Path | None = None,
     snapshots: Path | None = None,
-) -> GranularRun:
+) -> Run:
     """Run a case with particle dampers.
 
     Parameters
@@ -81,8 +83,8 @@ def simulate_dem(
 
     Returns
     -------
-    GranularRun
-        Its status tells how it ended.
+    Run
+        Its status is the reason why it ended.
 
     Raises
     ------
@@ -120,7 +122,7 @@ def _simulated(
     progress: Progress | None,
     file: Checkpoint | None,
     snapshots: Path | None,
-) -> GranularRun:
+) -> Run:
     method = instance(case.method, Dem)
     kept = None if file is None else file.read()
     packed, step, tables = pack_dem(case, None if kept is None else kept.positions)
@@ -133,12 +135,7 @@ def _simulated(
     if snapshots is not None:
         journey.watch(*snapshots_of(case, packed, snapshots))
     status = journey.go(progress)
-    arrays = _arrays(case, packed, journey.records(), dem, status, step, tables, journey)
-    run = GranularRun(arrays, case.to_toml, Provenance.now(method=method.kind, seed=case.seed))
-    if run.ok and (end := end_of(run.ledger, core().worst_closure, arrays.particle_mass.sum())) != FINISHED:
-        name, message = describe(end, case.duration, "", run.closure, method.kind)
-        run = GranularRun(replace(arrays, status=name, message=message), case.to_toml, run.provenance)
-    return run
+    return _run(case, packed, dem, status, step, tables, journey)
 
 
 def settled(case: Case, go_on: Callable[[], bool]) -> bool:
@@ -339,17 +336,52 @@ def _contact(damper: ParticleDamper, entry: Entry) -> Packed:
 # ---- results
 
 
-def _arrays(
-    case: Case,
-    packed: Packed,
-    raw: dict[str, Any],
-    dem: Any,
-    status: int,
-    step: Step,
-    tables: list[ContactTable],
-    journey: Journey,
-) -> GranularArrays:
-    case, chosen = resolved(case)
+def _run(
+    case: Case, packed: Packed, dem: Any, status: int, step: Step, tables: list[ContactTable], journey: Journey
+) -> Run:
+    resolved_case, chosen = resolved(case)
+    raw, counters = journey.records(), dem.counters()
+    arrays = _arrays(resolved_case, packed, raw, dem)
+    overlaps, speeds = (counters[name].tolist() for name in ("largest_overlap", "largest_approach_speed"))
+    lost = sum(raw[f"{channel}_loss"][-1].sum(axis=1) for channel in ("normal", "plastic", "sliding", "rolling"))
+    moves = arrays.base_velocity[:, None] + arrays.cavity_velocity
+    softened = effects(resolved_case, step.motions, moves, lost, counters["enduring_loss"])
+    diagnostics, notes = outcome(resolved_case, tables, step, overlaps, speeds, softened)
+    touches = np.asarray(counters["first_touches"])
+    name, message = _ended(resolved_case, arrays, dem, status, step, journey.checkpoint)
+    return Run(
+        arrays,
+        case,
+        Provenance.now(method=case.method.kind, seed=case.seed),
+        status=name,
+        message=message,
+        notes=(
+            *notes,
+            *chosen,
+            *doubts(resolved_case),
+            *(
+                particle_notes(resolved_case, touches, arrays.contacts, arrays.centre_of_mass, overlaps)
+                if status == FINISHED
+                else ()
+            ),
+            *table_notes(resolved_case, speeds),
+            *extrapolated(counters["extrapolated"]),
+        ),
+        counts={
+            "steps": counters["steps"],
+            "rebuilds": counters["rebuilds"],
+            "refreshes": counters["refreshes"],
+            "first_touches_particle": int(touches[:, 0].sum()),
+            "first_touches_wall": int(touches[:, 1].sum()),
+            "extrapolated": counters["extrapolated"],
+            "memory_bytes": counters["memory_bytes"],
+        },
+        diagnostics=diagnostics,
+        wall_time=journey.seconds,
+    )
+
+
+def _arrays(case: Case, packed: Packed, raw: dict[str, Any], dem: Any) -> RunArrays:
     modes, dampers = case.modes, case.particle_dampers
     times, q, p = raw["time"], raw["q"], raw["p"]
     lines = modes.lines()
@@ -359,31 +391,21 @@ def _arrays(
     base = np.zeros((3, times.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         base += np.multiply.outer(base_motion(acceleration, times), direction_of_base(case, signal))
-    counters = dem.counters()
-    overlaps, speeds = (counters[name].tolist() for name in ("largest_overlap", "largest_approach_speed"))
-    cavity_velocity = np.stack([p @ shape for shape in shapes], axis=1)
-    lost = sum(raw[f"{channel}_loss"][-1].sum(axis=1) for channel in ("normal", "plastic", "sliding", "rolling"))
-    moves = base[1][:, None] + cavity_velocity
-    softened = effects(case, step.motions, moves, lost, counters["enduring_loss"])
-    figures, notes = outcome(case, tables, step, overlaps, speeds, softened)
-    names = [damper.label(index) for index, damper in enumerate(dampers)]
-    name, message = _told(case, names, dem, status, step, journey.checkpoint)
     ends = dem.state()["cavities"]
     contents = [damper.contents for damper in dampers]
-    touches = np.asarray(counters["first_touches"])
-    moved = raw["centre"] - displacement
-    return GranularArrays(
+    return RunArrays(
+        engine="dem",
         time=times,
         points=tuple(lines),
-        dampers=tuple(names),
+        dampers=tuple(damper.label(index) for index, damper in enumerate(dampers)),
         loads=tuple(f"{signal.kind} {index + 1}" for index, signal in enumerate(case.loads)),
         displacement=q @ at_points.T,
         velocity=p @ at_points.T,
         cavity_displacement=displacement,
-        cavity_velocity=cavity_velocity,
+        cavity_velocity=np.stack([p @ shape for shape in shapes], axis=1),
         cavity_force=raw["force"],
         cavity_moment=raw["moment"],
-        centre_of_mass=moved,
+        centre_of_mass=raw["centre"] - displacement,
         momentum=raw["momentum"],
         contacts=raw["contacts"],
         base_displacement=base[0],
@@ -404,47 +426,30 @@ def _arrays(
         plastic_loss=raw["plastic_loss"],
         sliding_loss=raw["sliding_loss"],
         rolling_loss=raw["rolling_loss"],
-        position=np.concatenate([end["position"] - end["displacement"] for end in ends]),
-        particle_velocity=np.concatenate([end["velocity"] for end in ends]),
-        spin=np.concatenate([end["spin"] for end in ends]),
-        radius=np.concatenate([each.radius for each in contents]),
-        mass=np.concatenate([each.mass for each in contents]),
-        particle_damper=np.repeat(np.arange(len(dampers)), [each.radius.size for each in contents]),
-        particle_species=np.concatenate([each.species for each in contents]),
-        status=name,
-        message=message,
-        counts={
-            "steps": counters["steps"],
-            "rebuilds": counters["rebuilds"],
-            "refreshes": counters["refreshes"],
-            "first_touches_particle": int(touches[:, 0].sum()),
-            "first_touches_wall": int(touches[:, 1].sum()),
-            "extrapolated": counters["extrapolated"],
-            "memory_bytes": counters["memory_bytes"],
+        particles={
+            "position": np.concatenate([end["position"] - end["displacement"] for end in ends]),
+            "velocity": np.concatenate([end["velocity"] for end in ends]),
+            "spin": np.concatenate([end["spin"] for end in ends]),
+            "radius": np.concatenate([each.radius for each in contents]),
+            "mass": np.concatenate([each.mass for each in contents]),
+            "damper": np.repeat(np.arange(len(dampers)), [each.radius.size for each in contents]),
+            "species": np.concatenate([each.species for each in contents]),
         },
-        figures=figures,
-        notes=(
-            *notes,
-            *chosen,
-            *doubts(case),
-            *(particle_notes(case, touches, raw["contacts"], moved, overlaps) if status == FINISHED else ()),
-            *table_notes(case, speeds),
-            *extrapolated(counters["extrapolated"]),
-        ),
-        wall_time=journey.seconds,
     )
 
 
-def _told(
-    case: Case, names: list[str], dem: Any, status: int, step: Step, checkpoint: Checkpoint | None
+def _ended(
+    case: Case, arrays: RunArrays, dem: Any, status: int, step: Step, checkpoint: Checkpoint | None
 ) -> tuple[str, str]:
-    """Name of the status, and what happened."""
-    if status == 0:
-        return describe(0, case.duration, "", 0.0, case.method.kind)
+    """Return the status and the message of a run."""
+    if status == FINISHED:
+        ledger = Ledger(arrays)
+        end = end_of(ledger, core().worst_closure, arrays.particle_mass.sum())
+        return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
     stopped = dem.stopped()
     cavity = stopped["cavity"]
     number = stopped["particle"] + sum(damper.contents.radius.size for damper in case.particle_dampers[:cavity])
-    where = f"Particle {number}, in {names[cavity]!r},"
+    where = f"Particle {number}, in {arrays.dampers[cavity]!r},"
     softened = case.particle_dampers[cavity].softening_factor > 1
     name, message = describe(status, stopped["time"], where, stopped["speed"], case.method.kind, softened=softened)
     if status == INTERRUPTED:

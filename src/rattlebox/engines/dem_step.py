@@ -355,7 +355,7 @@ def outcome(
     speeds: Sequence[float],
     effects: Sequence[Effect] = (),
 ) -> tuple[dict[str, float], list[str]]:
-    """Return figures and notes on a step, after the run.
+    """Return diagnostics and notes on a step, after the run.
 
     Parameters
     ----------
@@ -378,7 +378,7 @@ def outcome(
         key=lambda limit: limit.duration,
     )
     steps = shortest.duration / step.dt
-    figures = {
+    diagnostics = {
         "step": step.dt,
         "longest_automatic_step": step.limit.step,
         "expected_approach_speed": max(step.speeds),
@@ -387,7 +387,7 @@ def outcome(
         "largest_overlap": max(overlaps),
     }
     if effects:
-        figures |= {
+        diagnostics |= {
             "softening": max(effect.softening for effect in effects),
             "bed_resonance": min(effect.resonance for effect in effects),
             "softening_change": max(effect.change for effect in effects),
@@ -395,7 +395,7 @@ def outcome(
             "softened_enduring_share": max(effect.share if effect.softening > 1 else 0.0 for effect in effects),
         }
     notes = [_limited(case, step), *_softened(case)]
-    warned = warnings_of(figures)
+    warned = warnings_of(diagnostics)
     if "few_steps" in warned:
         notes.append(
             f"warning: only {steps:.3g} steps in the shortest contact, that of {shortest.what.removeprefix('contact of ')}; "
@@ -412,7 +412,7 @@ def outcome(
                 f"{100 * MOST_OVERLAP:g} %: "
                 + ("less softening or a stiffer contact" if damper.softening_factor > 1 else "a stiffer contact")
             )
-    return figures, notes
+    return diagnostics, notes
 
 
 def _averaged(case: Case, step: Step) -> Iterator[str]:
@@ -428,20 +428,20 @@ def _averaged(case: Case, step: Step) -> Iterator[str]:
         )
 
 
-def warnings_of(figures: Mapping[str, float]) -> list[str]:
+def warnings_of(diagnostics: Mapping[str, float]) -> list[str]:
     """Return in what a run left its bounds, names of `WARNINGS`.
 
     Parameters
     ----------
-    figures
+    diagnostics
         From `outcome`.
     """
-    steps = figures["steps_per_contact"]
+    steps = diagnostics["steps_per_contact"]
     found = (
         math.isfinite(steps) and steps < FEWEST_STEPS,
-        figures["largest_overlap"] > MOST_OVERLAP,
-        figures.get("softening_change", 0.0) > MOST_CHANGE,
-        figures.get("softened_enduring_share", 0.0) > MOST_ENDURING,
+        diagnostics["largest_overlap"] > MOST_OVERLAP,
+        diagnostics.get("softening_change", 0.0) > MOST_CHANGE,
+        diagnostics.get("softened_enduring_share", 0.0) > MOST_ENDURING,
     )
     return [name for name, is_so in zip(WARNINGS, found, strict=True) if is_so]
 

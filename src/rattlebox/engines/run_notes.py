@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.model.dampers import ImpactDamper
     from rattlebox.model.granular import ParticleDamper
-    from rattlebox.results.arrays import ImpactArrays
+    from rattlebox.results.arrays import Table
 
 MOST_OVERLAP = 0.01
 """Largest overlap over the smaller radius: beyond it contacts of spheres are no longer small against them."""
@@ -29,7 +29,7 @@ MOST_LINEAR_OVERLAP = 0.1
 _TOUCHING = 1e-9  # gap over the clearance
 
 
-def impact_notes(case: Case, places: NDArray[np.float64], impacts: ImpactArrays) -> tuple[str, ...]:
+def impact_notes(case: Case, places: NDArray[np.float64], impacts: Table) -> tuple[str, ...]:
     """Return the notes on a run that finished.
 
     Parameters
@@ -112,9 +112,7 @@ def extrapolated(count: int) -> Iterator[str]:
         )
 
 
-def _measured_impacts(
-    case: Case, index: int, name: str, impacts: ImpactArrays, own: NDArray[np.bool_]
-) -> Iterator[str]:
+def _measured_impacts(case: Case, index: int, name: str, impacts: Table, own: NDArray[np.bool_]) -> Iterator[str]:
     """Yield a note if an impact went beyond the last point of a measured curve."""
     damper, pairs = case.impact_dampers[index], contact_pairs(case, index)
     deepest: list[tuple[float, TabulatedNormal]] = []

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +17,8 @@ from rattlebox.model.case import Case
 from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import whole_number
-from rattlebox.results.arrays import ImpactArrays, RunArrays
+from rattlebox.results.arrays import RunArrays
+from rattlebox.results.ledger import Ledger
 from rattlebox.results.provenance import Provenance
 from rattlebox.results.run import Run
 
@@ -52,8 +52,8 @@ def simulate(
     Returns
     -------
     Run
-        Motion, energy ledger, impacts, and a status: a run that cannot be finished ends with a status and a message,
-        not with an exception, and keeps what it has. Of particles in space a GranularRun.
+        Motion, energy ledger, impacts or particles, and a status: a run that cannot be finished ends with a status and a
+        message, not with an exception, and holds the results until then.
 
     Raises
     ------
@@ -143,15 +143,35 @@ def _sampled(raw: dict[str, Any]) -> dict[str, Any]:
 
 
 def _run(case: Case, raw: dict[str, Any]) -> Run:
-    with np.errstate(over="ignore", invalid="ignore"):  # motion beyond all numbers has a status
+    with np.errstate(over="ignore", invalid="ignore"):  # a solution that became non-finite has a status
         arrays = _arrays(case, raw)
-    provenance = Provenance.now(method=case.method.kind, seed=case.seed)
-    run = Run(arrays, case_toml=case.to_toml, provenance=provenance)
-    mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
-    if run.ok and (end := end_of(run.ledger, raw["closure_bound"], mass)) != FINISHED:
-        status, message = describe(end, case.duration, "", run.closure, case.method.kind)
-        run = Run(replace(arrays, status=status, message=message), case_toml=case.to_toml, provenance=provenance)
-    return run
+    status, message = _ended(case, arrays, raw)
+    notes = doubts(case)
+    if raw["status"] == FINISHED:
+        notes += impact_notes(case, arrays.relative_position - arrays.ball_centre, arrays.impacts)
+        notes += tuple(extrapolated(raw["counts"]["extrapolated"]))
+    return Run(
+        arrays,
+        case,
+        Provenance.now(method=case.method.kind, seed=case.seed),
+        status=status,
+        message=message,
+        notes=notes,
+        counts={**raw["counts"], "impacts": raw["impacts"]["time"].size},
+        wall_time=raw["seconds"],
+    )
+
+
+def _ended(case: Case, arrays: RunArrays, raw: dict[str, Any]) -> tuple[str, str]:
+    """Return the status and the message of a run."""
+    if raw["status"] == FINISHED:
+        ledger = Ledger(arrays)
+        mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
+        end = end_of(ledger, raw["closure_bound"], mass)
+        return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
+    counts = [len(damper.balls) for damper in case.impact_dampers]
+    contact = _contact_name(arrays.dampers, counts, raw["stopped_contact"])
+    return describe(raw["status"], raw["stopped_at"], contact, raw["stopped_value"], case.method.kind)
 
 
 def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
@@ -175,21 +195,7 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
     at_points = np.array(list(lines.values())).reshape(len(points), m)
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     base = _base_motion(case, time)
-    stopped = raw["stopped_contact"]
-    name, message = describe(
-        raw["status"],
-        raw["stopped_at"],
-        _contact_name(names, counts, stopped),
-        raw["stopped_value"],
-        case.method.kind,
-    )
     by_damper = (time.size, d)
-    log = {key: value for key, value in raw["impacts"].items() if key != "complete"}
-    impacts = ImpactArrays(**log, complete=raw["impacts"]["complete"].astype(bool))
-    notes = doubts(case)
-    if raw["status"] == FINISHED:
-        notes += impact_notes(case, position - (q @ shapes.T)[:, of], impacts)
-        notes += tuple(extrapolated(raw["counts"]["extrapolated"]))
     return RunArrays(
         time=time,
         points=tuple(points),
@@ -220,16 +226,11 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
         viscous_loss=raw["viscous"],
         normal_loss=raw["normal"].reshape(by_damper),
         plastic_loss=raw["plastic"].reshape(by_damper),
-        impacts=impacts,
-        status=name,
-        message=message,
-        counts={**raw["counts"], "impacts": raw["impacts"]["time"].size},
-        notes=notes,
-        wall_time=raw["seconds"],
+        impacts=raw["impacts"],
     )
 
 
-def _contact_name(names: list[str], counts: list[int], contact: int) -> str:
+def _contact_name(names: Sequence[str], counts: list[int], contact: int) -> str:
     for name, balls in zip(names, counts, strict=True):
         if contact <= balls:
             place = (

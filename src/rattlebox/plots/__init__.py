@@ -5,7 +5,6 @@ from .bifurcation import plot_bifurcation
 from .compare import plot_comparison
 from .damping_curve import plot_damping_curve
 from .energy import plot_energy
-from .granular import plot_granular_motion
 from .impacts import plot_impacts
 from .lyapunov import plot_lyapunov
 from .motion import plot_motion
@@ -46,7 +45,6 @@ __all__ = [
     "plot_damping_curve",
     "plot_energy",
     "plot_frequency_response",
-    "plot_granular_motion",
     "plot_impacts",
     "plot_lyapunov",
     "plot_motion",

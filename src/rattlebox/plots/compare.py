@@ -39,13 +39,13 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
         raise ValueError("there is no run to compare")
     every = list(runs.values())
     moving = any(run.arrays.mode_frequency.size for run in every)
-    dampers = any(np.any(run.arrays.ball_damper == 0) for run in every)
-    rows = int(moving) + int(dampers) + 1
+    with_balls = [run for run in every if _has_balls(run)]
+    rows = int(moving) + int(bool(with_balls)) + 1
     with figure_style(size):
         figure = StyledFigure(size, 0.1 + 0.17 * rows)
         panels = figure.subplots(rows, len(every), sharex="col", sharey="row", squeeze=False)
         length = scaled([np.abs(run.arrays.displacement).max(initial=0.0) for run in every], "m")
-        places = [np.abs(row_places(run.arrays, 0)).max() for run in every if run.arrays.dampers]
+        places = [np.abs(row_places(run.arrays, 0)).max() for run in with_balls]
         travel = scaled(places, "m")
         energy = scaled([run.ledger.supplied.max() for run in every], "J")
         for column, (name, run) in enumerate(runs.items()):
@@ -54,9 +54,9 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
             panels[0, column].set_title(shorten(name, letters(panels[0, column])))
             if moving:
                 draw_structure(next(left), arrays, shown, time, length)
-            if dampers:
+            if with_balls:
                 panel = next(left)
-                if np.any(arrays.ball_damper == 0):
+                if _has_balls(run):
                     draw_cavity(panel, arrays, 0, shown, time, travel)
                 else:
                     panel.text(0.5, 0.5, "no ball", transform=panel.transAxes, ha="center", va="center")
@@ -71,3 +71,8 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
         figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=len(entries))
         figure.align_ylabels(panels[:, 0])
     return figure
+
+
+def _has_balls(run: Run) -> bool:
+    """Return whether the first damper of a run has balls."""
+    return "impacts" in run.groups and bool(np.any(run.arrays.ball_damper == 0))

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..results import Run
+from ..results.figures import run_figure
 from .style import (
     CHANNEL_COLOURS,
     INK,
@@ -25,7 +26,6 @@ from .style import (
 LOG_DECADES = 6.0
 _LEDGER_LABELS = {
     "viscous": "structure damping",
-    "impact": "impacts",
     "normal": "normal damping",
     "plastic": "plastic flow",
     "sliding": "sliding",
@@ -34,6 +34,7 @@ _LEDGER_LABELS = {
 }
 
 
+@run_figure("energy")
 def plot_energy(run: Run, *, size: Size = "column", log: bool = False) -> Figure:
     """Draw the instantaneous energies, and below them the ledger stacked up to the energy supplied.
 
@@ -97,7 +98,7 @@ def draw_energies(run: Run, axes: Axes, time: Scale, *, log: bool = False) -> No
     parts = {name: energy for name, energy in parts.items() if np.any(energy != 0.0)}
     highest = max((float(np.nanmax(energy)) for energy in parts.values()), default=0.0)
     scale, unit = scaled(highest, "J")
-    names = {"particles": "balls" if "impact" in ledger.channels else "particles", "contact": "contacts"}
+    names = {"particles": "balls" if "impacts" in run.groups else "particles", "contact": "contacts"}
     for (name, energy), style in zip(parts.items(), SERIES_STYLES, strict=False):
         axes.plot(
             run.arrays.time / time.divisor,

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..results import Run, RunArrays
+from ..results.figures import run_figure
 from .style import (
     FAINT,
     INK,
@@ -34,6 +35,7 @@ _SIDES: dict[str, dict[str, Any]] = {
 }
 
 
+@run_figure("impacts", needs="impacts")
 def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figure:
     """Draw approach speed, peak force and restitution of every impact against its time of first touch.
 

@@ -8,7 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..results import GranularArrays, Run, RunArrays
+from ..results import Run, RunArrays
+from ..results.figures import run_figure
+from ..results.schema import AXES
 from ..results.summary import shown_points
 from .style import (
     FAINT,
@@ -32,10 +34,13 @@ LETTERS_ASIDE = 14
 FAR = 3.0  # a wall at this many times the balls' travel is out of sight
 
 
+@run_figure("motion")
 def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float] | None = None) -> Figure:
-    """Draw the displacement of the structure, and below it the place of the balls in each cavity.
+    """Draw the displacement of the structure, and below it the motion in each cavity.
 
-    The balls' range is marked: a ball touches a wall or its neighbour when it reaches the edge of its band.
+    Of balls, their positions are drawn, and their range is marked: a ball touches a wall or its neighbour when it reaches
+    the edge of its band. Of particles, the shift of their centre of mass is drawn, and below it their mean number of
+    contacts.
 
     Parameters
     ----------
@@ -49,7 +54,7 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
     Returns
     -------
     Figure
-        With one panel for the structure (unless it cannot move) and one for each damper.
+        With one panel for the structure (unless it cannot move), one for each damper, and one for contacts of particles.
 
     Raises
     ------
@@ -58,8 +63,10 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
     """
     arrays = run.arrays
     shown = _window(arrays, between)
-    moving = arrays.mode_frequency.size > 0 or not arrays.balls
-    panels = int(moving) + sum(bool(np.any(arrays.ball_damper == d)) for d in range(len(arrays.dampers)))
+    with_particles = "particles" in run.groups
+    filled = [d for d in range(len(arrays.dampers)) if with_particles or np.any(arrays.ball_damper == d)]
+    moving = arrays.mode_frequency.size > 0 or not filled
+    panels = int(moving) + len(filled) + int(with_particles)
     with figure_style(size):
         figure = StyledFigure(size, 0.14 + 0.36 * panels if size == "column" else 0.1 + 0.2 * panels)
         axes = list(np.ravel(figure.subplots(panels, 1, sharex=True)))
@@ -67,15 +74,46 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
         left = iter(axes)
         if moving:
             draw_structure(next(left), arrays, shown, time, scaled(arrays.displacement[shown], "m"))
-        for d, name in enumerate(arrays.dampers):
-            if np.any(arrays.ball_damper == d):
-                panel = next(left)
+        for d in filled:
+            panel = next(left)
+            if with_particles:
+                _draw_centre_of_mass(panel, arrays, d, shown, time)
+            else:
                 draw_cavity(panel, arrays, d, shown, time, scaled(row_places(arrays, d), "m"))
-                if len(arrays.dampers) > 1:
-                    name_aside(panel, name)
+            if len(arrays.dampers) > 1:
+                name_aside(panel, arrays.dampers[d])
+        if with_particles:
+            _draw_contacts(next(left), run, shown, time)
         time_axis(axes[-1], arrays.time[shown], time)
         figure.align_ylabels(axes)
     return figure
+
+
+def _draw_centre_of_mass(axes: Axes, arrays: RunArrays, damper: int, shown: slice, time: Scale) -> None:
+    """Draw the shift of the particles' centre of mass in a cavity since the start, along each axis."""
+    x = (arrays.centre_of_mass[:, damper] - arrays.centre_of_mass[0, damper])[shown]
+    axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
+    length = scaled(x, "m")
+    for k, name in enumerate(AXES):
+        _line(axes, arrays.time[shown] / time.divisor, x[:, k] / length.divisor, k, f"along {name}")
+    label(axes, "y", "Shift of particles", length.unit)
+    legend_above(axes)
+
+
+def _draw_contacts(axes: Axes, run: Run, shown: slice, time: Scale) -> None:
+    """Draw the mean number of contacts of a particle in each cavity."""
+    arrays = run.arrays
+    for k, name in enumerate(arrays.dampers[:MOST_SERIES]):
+        told = name if len(arrays.dampers) > 1 else None
+        _line(axes, arrays.time[shown] / time.divisor, run.ledger.coordination[shown, k], k, told)
+    axes.set_ylim(bottom=0.0)
+    label(axes, "y", "Contacts of a particle", "")
+    legend_above(axes)
+
+
+def _line(axes: Axes, x: Any, y: Any, series: int, name: str | None) -> None:
+    style = {"color": SERIES_COLOURS[series], "linestyle": SERIES_STYLES[series], "linewidth": pen()}
+    axes.plot(x, y, label=name, **style)
 
 
 def _window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
@@ -115,7 +153,7 @@ def row_places(arrays: RunArrays, damper: int) -> Any:
     return np.append((arrays.relative_position - arrays.ball_centre)[:, own], arrays.clearance[damper] / 2)
 
 
-def draw_structure(axes: Axes, arrays: RunArrays | GranularArrays, shown: slice, time: Scale, length: Scale) -> None:
+def draw_structure(axes: Axes, arrays: RunArrays, shown: slice, time: Scale, length: Scale) -> None:
     """Draw the displacement of the structure's points that move, of many those that move most.
 
     Parameters

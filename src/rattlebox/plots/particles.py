@@ -25,7 +25,8 @@ from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
 
 from ..model.cavities import AnyCavity, Box, Cavity, Cylinder
-from ..results import GranularRun
+from ..results import Run
+from ..results.figures import run_figure
 from ..results.snapshots import Frame, Snapshots
 from .spheres import Renderer, draw_spheres
 from .style import INK, Size, StyledFigure, figure_style, pen, scaled
@@ -43,8 +44,9 @@ VIEW: Array = np.array([_RIGHT, np.cross(_TOWARDS, _RIGHT), _TOWARDS])
 """Right, up and towards the viewer, (3, 3), one a row: x points to the right, z upwards."""
 
 
+@run_figure("particles", needs="particles")
 def plot_particles(
-    of: GranularRun | Snapshots, *, number: int = -1, size: Size = "page", renderer: Renderer | None = None
+    of: Run | Snapshots, *, number: int = -1, size: Size = "page", renderer: Renderer | None = None
 ) -> Figure:
     """Draw the particles in their cavities at one time, coloured by their speed, as seen from the base.
 
@@ -67,14 +69,16 @@ def plot_particles(
     Raises
     ------
     TypeError
-        When something else is given, as a run without particles in space.
+        If something else is given.
+    AttributeError
+        If the run has no particles.
     ValueError
         When the size is unknown.
     DataError
         When there is no snapshot.
     """
-    if not isinstance(of, (GranularRun, Snapshots)):
-        raise TypeError(f"a run with particles in space or its snapshots are needed, not {of!r:.60}")
+    if not isinstance(of, (Run, Snapshots)):
+        raise TypeError(f"a run with particles or its snapshots are needed, not {of!r:.60}")
     if isinstance(of, Snapshots) and not len(of):
         raise DataError(f"{of.path} holds no snapshot yet", "again when the run has taken one")
     frame = of[number] if isinstance(of, Snapshots) else _end(of)
@@ -170,20 +174,20 @@ def _let_go(writer: Any) -> None:
         log.disabled = before
 
 
-def _end(run: GranularRun) -> Frame:
-    """The particles at the end of a run."""
-    arrays = run.arrays
-    displacement = arrays.cavity_displacement[-1]
+def _end(run: Run) -> Frame:
+    """Return the particles at the end of a run."""
+    particles = run.arrays.particles
+    displacement = run.arrays.cavity_displacement[-1]
     return Frame(
-        time=float(arrays.time[-1]),
-        position=arrays.position + displacement[arrays.particle_damper],
-        velocity=arrays.particle_velocity,
-        spin=arrays.spin,
-        push=np.zeros_like(arrays.radius),
-        radius=arrays.radius,
-        mass=arrays.mass,
-        cavity=arrays.particle_damper,
-        species=arrays.particle_species,
+        time=float(run.arrays.time[-1]),
+        position=particles.position + displacement[particles.damper],
+        velocity=particles.velocity,
+        spin=particles.spin,
+        push=np.zeros_like(particles.radius),
+        radius=particles.radius,
+        mass=particles.mass,
+        cavity=particles.damper,
+        species=particles.species,
         displacement=displacement,
     )
 

@@ -9,9 +9,11 @@ from matplotlib.figure import Figure
 
 from ..analysis import phase_portrait
 from ..results import Run
+from ..results.figures import run_figure
 from .style import FAINT, INK, Size, StyledFigure, figure_style, label, pen, scaled
 
 
+@run_figure("phase_portrait")
 def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column") -> Figure:
     """Draw velocity against position of a ball relative to its cavity, or of a point of the structure.
 

@@ -34,7 +34,6 @@ FAINT = "#b3b3b3"
 
 CHANNEL_COLOURS: dict[str, str] = {
     "viscous": "#0b3d6b",
-    "impact": "#d1742c",
     "normal": "#d1742c",
     "sliding": "#8fb8c9",
     "rolling": "#a33b5c",

@@ -1,24 +1,19 @@
-"""What comes back: runs, impacts, the energy ledger, and their files."""
+"""Runs and their files: arrays, datasets, energy ledger, summary."""
 
-from .arrays import ImpactArrays, RunArrays
-from .granular import GranularArrays, GranularLedger, GranularRun
+from .arrays import RunArrays, Table
 from .ledger import Ledger
-from .netcdf import load
 from .provenance import Provenance
-from .run import Run
+from .run import Run, load
 from .summary import Comparison, Summary, compare
 
 __all__ = [
     "Comparison",
-    "GranularArrays",
-    "GranularLedger",
-    "GranularRun",
-    "ImpactArrays",
     "Ledger",
     "Provenance",
     "Run",
     "RunArrays",
     "Summary",
+    "Table",
     "compare",
     "load",
 ]

@@ -1,45 +1,63 @@
-"""The plain arrays of a run, as an engine fills them.
+"""The plain arrays of a run, as an engine fills them; `schema.py` declares them.
 
-Frames and signs: everything moves on one line, and all motion is relative to the base. Balls of a damper are
-numbered along the positive direction, and so are its contacts: 0 is the trailing wall, `k` lies between balls
-`k` and `k + 1` (counted from 1), and the last is the leading wall.
+Frames and signs: all motion is relative to the base. Balls of a damper move on one line and are numbered along the
+positive direction, and so are their contacts: 0 is the trailing wall, `k` lies between balls `k` and `k + 1` (counted
+from 1), and the last is the leading wall.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
-from types import MappingProxyType
-from typing import Any, ClassVar
+from collections.abc import Mapping
+from typing import Any, NoReturn, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from .schema import CHANNELS, IMPACT, IMPACT_VARIABLES, RUN_VARIABLES, Form, Kind, Variable
+from .schema import (
+    AXES,
+    BOTH,
+    PARTNERS,
+    Engine,
+    Kind,
+    Variable,
+    channels,
+    dimensions,
+    explain_absence,
+    groups,
+    variables,
+)
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 _DTYPES: dict[Kind, Any] = {"float": np.float64, "int": np.int64, "bool": np.bool_}
-_ABSENT = np.zeros(0)
-_INCIDENTAL = {"wall_time", "memory_bytes"}
-"""Fields and counts that tell how a run was computed, not what came out: they differ when the same case is run again."""
 
 
-def _absent() -> Any:
-    return _ABSENT
+def same(a: Any, b: Any) -> bool:
+    """Return whether two values are equal to the last bit, where NaN equals NaN.
+
+    Parameters
+    ----------
+    a, b
+        Arrays, numbers, or mappings of them.
+    """
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return a.keys() == b.keys() and all(same(a[name], b[name]) for name in a)
+    if isinstance(a, (np.ndarray, float)) and isinstance(b, (np.ndarray, float)):
+        return np.array_equal(a, b, equal_nan=np.asarray(a).dtype.kind == "f")
+    return bool(a == b)
 
 
-def _checked(variable: Variable, value: Any, sizes: Mapping[str, int]) -> NDArray[Any]:
-    """Return `value` as a read-only array of the variable's type, zeros where it was left out."""
+def _checked(variable: Variable, values: ArrayLike | None, sizes: Mapping[str, int]) -> NDArray[Any]:
+    """Return values as a read-only array of the variable's type, zeros where they are left out."""
     shape = tuple(sizes[dim] for dim in variable.dims)
     dtype = np.dtype(_DTYPES[variable.kind])
-    if value is _ABSENT:
+    if values is None:
         array: NDArray[Any] = np.zeros(shape, dtype)
     else:
-        given = np.asarray(value)
-        if not np.can_cast(given.dtype, dtype, "same_kind") and given.size:
+        given = np.asarray(values)
+        flags = variable.kind == "bool" and given.dtype.kind in "iu"
+        if not flags and not np.can_cast(given.dtype, dtype, "same_kind") and given.size:
             raise TypeError(f"{variable.name} holds {given.dtype}, but {dtype} is needed")
         array = np.ascontiguousarray(given, dtype).view()
     if array.shape != shape:
@@ -49,13 +67,8 @@ def _checked(variable: Variable, value: Any, sizes: Mapping[str, int]) -> NDArra
     return array
 
 
-def checked_arrays(holder: Any, variables: Sequence[Variable], sizes: Mapping[str, int]) -> dict[str, NDArray[Any]]:
-    """Read-only arrays of the variables' types and shapes, by name; zeros where one was left out."""
-    return {v.name: _checked(v, getattr(holder, v.name), sizes) for v in variables}
-
-
-def checked_time(times: Any) -> FloatArray:
-    """Output times as a read-only array; they must increase."""
+def _checked_time(times: ArrayLike) -> FloatArray:
+    """Return output times as a read-only array; they must increase."""
     time = np.ascontiguousarray(times, np.float64).view()
     if time.ndim != 1 or time.size == 0:
         raise ValueError(f"time has shape {time.shape}, but (T,) with at least one time is needed")
@@ -65,239 +78,176 @@ def checked_time(times: Any) -> FloatArray:
     return time
 
 
-def checked_labels(name: str, given: Any) -> tuple[str, ...]:
-    """Labels as texts; they must differ."""
+def _checked_labels(name: str, given: Any) -> tuple[str, ...]:
+    """Return labels as texts; they must differ."""
     labels = tuple(str(label) for label in given)
     if len(set(labels)) != len(labels) or "" in labels or any("\0" in label for label in labels):
         raise ValueError(f"{name} {labels} must be different and not empty")
     return labels
 
 
-def checked_counts(given: Mapping[str, int]) -> Mapping[str, int]:
-    """Counts by identifiers, read-only."""
-    counts = {str(name): int(number) for name, number in given.items()}
-    for name in counts:
-        if not name.isidentifier():
-            raise ValueError(f"count {name!r} is not an identifier")
-    return MappingProxyType(counts)
+class _Frozen:
+    """A holder of read-only arrays by name, built from keyword arguments, equal by value."""
 
-
-def _same(a: Any, b: Any) -> bool:
-    if isinstance(a, Mapping) and isinstance(b, Mapping):
-        names = a.keys() - _INCIDENTAL
-        return names == b.keys() - _INCIDENTAL and all(_same(a[name], b[name]) for name in names)
-    if isinstance(a, (np.ndarray, float)) and isinstance(b, (np.ndarray, float)):
-        return np.array_equal(a, b, equal_nan=np.asarray(a).dtype.kind == "f")
-    return bool(a == b)
-
-
-class _Comparable:
-    """Equality by value of every field but the incidental ones; NaN equals NaN."""
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{name} cannot be set: results are read-only; replaced({name}=...) returns a copy")
 
     def __eq__(self, other: object) -> bool:
-        return _same(vars(self), vars(other)) if type(other) is type(self) else NotImplemented
+        return same(vars(self), vars(other)) if type(other) is type(self) else NotImplemented
 
     __hash__ = None  # type: ignore[assignment]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuild, (type(self), dict(vars(self)))
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ImpactArrays(_Comparable):
-    """The impact log: one entry for each contact that closed, in the order of first touch.
+    def replaced(self, **changes: Any) -> Self:
+        """Return a copy with other values.
 
-    Attributes
+        Parameters
+        ----------
+        **changes
+            New values, by name.
+        """
+        return type(self)(**{**vars(self), **changes})
+
+
+def _rebuild(cls: type[Any], values: dict[str, Any]) -> Any:
+    return cls(**values)
+
+
+class Table(_Frozen):
+    """Columns of equal length, one row for each impact or particle; read-only.
+
+    `schema.VARIABLES` lists the columns of each group.
+
+    Parameters
     ----------
-    damper : (I,) int
-        Damper, counted from 0.
-    contact : (I,) int
-        Contact in the row of that damper: 0 is the trailing wall, `n` (number of its balls) the leading
-        wall, `k` between them the contact of balls `k` and `k + 1`, counted from 1.
-    time : (I,) float
-        Time of first touch [s].
-    approach_speed : (I,) float
-        Approach speed at first touch [m/s].
-    restitution : (I,) float
-        Coefficient of restitution that the law returned; NaN where the law has none.
-    separation_speed : (I,) float
-        Speed of separation at the end of the contact [m/s].
-    duration : (I,) float
-        Duration of the contact [s].
-    peak_overlap : (I,) float
-        Largest overlap [m].
-    peak_force : (I,) float
-        Largest contact force [N].
-    energy_lost : (I,) float
-        Energy lost in the contact [J].
-    complete : (I,) bool
-        True where the contact opened before the run ended.
+    group
+        Group of the columns, such as "impacts".
+    engine
+        Engine that wrote them.
+    **columns : (N,) or (N, 3)
+        All columns of the group, or none for a table without rows.
 
     Raises
     ------
     ValueError
-        When the arrays differ in length.
+        If a column is missing, or columns differ in length.
     TypeError
-        When an array holds the wrong kind of numbers.
+        If an array holds the wrong kind of numbers, or the group has no such column.
     """
 
-    damper: IntArray = field(default_factory=_absent)
-    contact: IntArray = field(default_factory=_absent)
-    time: FloatArray = field(default_factory=_absent)
-    approach_speed: FloatArray = field(default_factory=_absent)
-    restitution: FloatArray = field(default_factory=_absent)
-    separation_speed: FloatArray = field(default_factory=_absent)
-    duration: FloatArray = field(default_factory=_absent)
-    peak_overlap: FloatArray = field(default_factory=_absent)
-    peak_force: FloatArray = field(default_factory=_absent)
-    energy_lost: FloatArray = field(default_factory=_absent)
-    complete: BoolArray = field(default_factory=_absent)
+    group: str
+    engine: Engine
 
-    def __post_init__(self) -> None:
-        sizes = {"impact": np.asarray(self.time).size}
-        for variable in IMPACT_VARIABLES:
-            value = getattr(self, variable.name)
-            if value is _ABSENT and sizes["impact"]:
-                raise ValueError(f"{variable.name} of the impacts is missing")
-            object.__setattr__(self, variable.name, _checked(variable, value, sizes))
+    def __init__(self, group: str, engine: Engine, **columns: ArrayLike) -> None:
+        along = groups(engine)[group].along
+        rows = len(np.asarray(next(iter(columns.values())))) if columns else 0
+        sizes = {along: rows, "axis": len(AXES)}
+        vars(self).update(group=group, engine=engine)
+        for variable in variables(engine, group):
+            values = columns.pop(variable.name, None)
+            if values is None and rows:
+                raise ValueError(f"{variable.name} of the {group} is missing")
+            vars(self)[variable.name] = _checked(variable, values, sizes)
+        if columns:
+            raise TypeError(f"{group} have no {', '.join(columns)}")
 
     def __len__(self) -> int:
-        return int(self.time.size)
+        first = variables(self.engine, self.group)[0]
+        return len(vars(self)[first.name])
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (_rebuild_impacts, ({f.name: getattr(self, f.name) for f in fields(self)},))
+    def __getattr__(self, name: str) -> NDArray[Any]:
+        known = [key for key in vars(self) if key not in ("group", "engine")]
+        raise AttributeError(f"there is no column {name!r}; there are {', '.join(known)}")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RunArrays(_Comparable):
-    """Everything an engine computed in one run, in SI units.
+class RunArrays(_Frozen):
+    """All arrays of one run, in SI units, as attributes; `schema.VARIABLES` lists their names, dimensions and units.
 
-    Sizes: T times, P points, B balls (of all dampers, damper after damper), D dampers, L loads, m modes.
-    Fields left out are zero. Arrays become read-only; equality compares every value but the computing time, NaN equals NaN.
+    Dimensions: T times, P points, B balls (of all dampers, damper after damper), D dampers, L loads, M modes, three axes,
+    two contact partners (another particle, the wall). Variables that are left out are zero. Arrays are read-only;
+    equality compares every value, NaN equals NaN.
 
-    Attributes
+    Parameters
     ----------
-    time : (T,) float
+    time : (T,) array_like
         Output times, strictly increasing [s].
-    points, balls, dampers, loads : tuple of str
-        Names; a ball is named "damper/number".
-    displacement, velocity : (T, P) float
-        Motion of the structure's points relative to the base [m], [m/s].
-    ball_damper : (B,) int
-        Damper of each ball, counted from 0.
-    ball_centre : (B,) float
-        Place of the ball's centre from the cavity's centre in the packed, centred row [m].
-    clearance : (D,) float
-        Total clearance of each cavity [m]; ball positions span `ball_centre` plus or minus half of it.
-    ball_position, ball_velocity : (T, B) float
-        Ball centre from the cavity centre's place at rest [m], and its velocity [m/s], relative to the base.
-    relative_position, relative_velocity : (T, B) float
-        The same relative to the moving cavity's centre [m], [m/s].
-    base_displacement, base_velocity, base_acceleration : (T,) float
-        Motion of the base [m], [m/s], [m/s^2].
-    cavity_force : (T, D) float
-        Force of the balls on the cavity [N].
-    load : (T, L) float
-        Load forces [N].
-    mode_frequency : (m,) float
-        Natural frequencies [Hz].
-    mode_energy : (T, m) float
-        Kinetic and elastic energy of each mode [J].
-    ball_energy : (T, B) float
-        Kinetic energy of each ball relative to the base [J].
-    contact_energy, gravity_energy : (T, D) float
-        Elastic energy of the contacts and gravity potential of the balls [J].
-    load_work, base_work : (T,) float
-        Work done since the start by the loads and by the inertial forces of the base motion [J].
-    viscous_loss : (T,) float
-        Energy lost since the start in the structure's damping [J].
-    normal_loss, plastic_loss : (T, D) float
-        Energy lost since the start in impacts: by damping, clipping or hard impacts; by plastic flow [J].
-    impacts : ImpactArrays
-        The impact log.
-    status : str
-        "finished", or the reason why the run ended early.
-    message : str
-        One sentence that explains the status and says what to try.
-    counts : mapping of str to int
-        Numbers of events and steps, by name (an identifier).
-    notes : tuple of str
-        Warnings.
-    wall_time : float
-        Computing time [s].
+    engine
+        Engine that computed the run; it determines which variables and tables there are.
+    points, balls, dampers, loads
+        Names; a ball is named "damper/number", a point that moves in space is three: "tip x", "tip y" and "tip z".
+    **values
+        Variables by name; for the tables `impacts` and `particles` a `Table`, or its columns by name.
 
     Raises
     ------
     ValueError
-        When a shape does not fit, times do not increase, or a label is not what it should be.
+        If a shape does not fit, times do not increase, or a label is empty or repeated.
     TypeError
-        When an array holds the wrong kind of numbers.
+        If an array holds the wrong kind of numbers, or runs of this engine have no such variable.
     """
 
-    form: ClassVar[Form] = IMPACT
-    channels: ClassVar[tuple[str, ...]] = CHANNELS
-
+    engine: Engine
     time: FloatArray
-    points: tuple[str, ...] = ()
-    balls: tuple[str, ...] = ()
-    dampers: tuple[str, ...] = ()
-    loads: tuple[str, ...] = ()
-    displacement: FloatArray = field(default_factory=_absent)
-    velocity: FloatArray = field(default_factory=_absent)
-    ball_damper: IntArray = field(default_factory=_absent)
-    ball_centre: FloatArray = field(default_factory=_absent)
-    clearance: FloatArray = field(default_factory=_absent)
-    ball_position: FloatArray = field(default_factory=_absent)
-    ball_velocity: FloatArray = field(default_factory=_absent)
-    relative_position: FloatArray = field(default_factory=_absent)
-    relative_velocity: FloatArray = field(default_factory=_absent)
-    base_displacement: FloatArray = field(default_factory=_absent)
-    base_velocity: FloatArray = field(default_factory=_absent)
-    base_acceleration: FloatArray = field(default_factory=_absent)
-    cavity_force: FloatArray = field(default_factory=_absent)
-    load: FloatArray = field(default_factory=_absent)
-    mode_frequency: FloatArray = field(default_factory=_absent)
-    mode_energy: FloatArray = field(default_factory=_absent)
-    ball_energy: FloatArray = field(default_factory=_absent)
-    contact_energy: FloatArray = field(default_factory=_absent)
-    gravity_energy: FloatArray = field(default_factory=_absent)
-    load_work: FloatArray = field(default_factory=_absent)
-    base_work: FloatArray = field(default_factory=_absent)
-    viscous_loss: FloatArray = field(default_factory=_absent)
-    normal_loss: FloatArray = field(default_factory=_absent)
-    plastic_loss: FloatArray = field(default_factory=_absent)
-    impacts: ImpactArrays = field(default_factory=ImpactArrays)
-    status: str = "finished"
-    message: str = ""
-    counts: Mapping[str, int] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
-    wall_time: float = 0.0
+    points: tuple[str, ...]
+    balls: tuple[str, ...]
+    dampers: tuple[str, ...]
+    loads: tuple[str, ...]
+    impacts: Table
+    particles: Table
 
-    def __post_init__(self) -> None:
-        put = object.__setattr__
-        put(self, "time", checked_time(self.time))
-        for name in ("points", "balls", "dampers", "loads"):
-            put(self, name, checked_labels(name, getattr(self, name)))
-        modes = np.size(self.mode_frequency)
+    def __init__(
+        self,
+        *,
+        time: ArrayLike,
+        engine: Engine = "impact",
+        points: tuple[str, ...] = (),
+        balls: tuple[str, ...] = (),
+        dampers: tuple[str, ...] = (),
+        loads: tuple[str, ...] = (),
+        **values: Any,
+    ) -> None:
+        if engine not in BOTH:
+            raise ValueError(f"there is no engine {engine!r}; there are {', '.join(BOTH)}")
+        fields = vars(self)
+        fields.update(engine=engine, time=_checked_time(time))
+        for name, labels in {"points": points, "balls": balls, "dampers": dampers, "loads": loads}.items():
+            fields[name] = _checked_labels(name, labels)
         sizes = {
             "time": self.time.size,
             "point": len(self.points),
             "ball": len(self.balls),
             "damper": len(self.dampers),
             "source": len(self.loads),
-            "mode": modes,
+            "mode": np.size(values.get("mode_frequency", ())),
+            "axis": len(AXES),
+            "partner": len(PARTNERS),
         }
-        for name, array in checked_arrays(self, RUN_VARIABLES, sizes).items():
-            put(self, name, array)
-        self._check_references(sizes["damper"])
-        put(self, "counts", checked_counts(self.counts))
-        put(self, "notes", tuple(self.notes))
-        put(self, "wall_time", float(self.wall_time))
+        for group in groups(engine).values():
+            if group.along == "time":
+                for v in variables(engine, group.name):
+                    if not v.derived:
+                        fields[v.name] = _checked(v, values.pop(v.name, None), sizes)
+            else:
+                table = values.pop(group.name, {})
+                fields[group.name] = table if isinstance(table, Table) else Table(group.name, engine, **table)
+        for name in values:
+            raise TypeError(explain_absence(name, engine))
+        self._check_references()
 
-    def _check_references(self, dampers: int) -> None:
-        for name, index in (
-            ("ball_damper", self.ball_damper),
-            ("damper of the impacts", self.impacts.damper),
-        ):
-            if index.size and (index.min() < 0 or index.max() >= dampers):
+    def _check_references(self) -> None:
+        """Raise if an index names a damper or a contact that does not exist."""
+        dampers = len(self.dampers)
+        indices = {"ball_damper": vars(self).get("ball_damper")}
+        for name in ("impacts", "particles"):
+            if name in self:
+                indices[f"damper of the {name}"] = vars(self)[name].damper
+        for name, index in indices.items():
+            if index is not None and index.size and (index.min() < 0 or index.max() >= dampers):
                 raise ValueError(f"{name} names a damper outside 0..{dampers - 1}")
+        if "impacts" not in self:
+            return
         if np.any(np.diff(self.ball_damper) < 0):
             raise ValueError("ball_damper must not decrease: balls come damper after damper")
         last = np.bincount(self.ball_damper, minlength=max(dampers, 1))[self.impacts.damper]
@@ -305,13 +255,33 @@ class RunArrays(_Comparable):
         if np.any(contact < 0) or np.any(contact > last):
             raise ValueError("a contact of the impacts lies outside its row")
 
+    def __contains__(self, name: object) -> bool:
+        """Return whether the run has a variable or a table of that name."""
+        return name in vars(self)
+
+    def __getattr__(self, name: str) -> NDArray[Any]:
+        raise AttributeError(explain_absence(name, vars(self).get("engine", "impact")))
+
     @property
-    def modes(self) -> IntArray:
-        """Numbers of the modes, from 1."""
-        return np.arange(1, self.mode_frequency.size + 1)
+    def labels(self) -> dict[str, Any]:
+        """Values of the coordinates, by dimension: times, names, and numbers of modes (from 1) and particles (from 0)."""
+        known: dict[str, Any] = {
+            "time": self.time,
+            "point": self.points,
+            "ball": self.balls,
+            "damper": self.dampers,
+            "source": self.loads,
+            "mode": np.arange(1, self.mode_frequency.size + 1),
+            "axis": AXES,
+            "partner": PARTNERS,
+            "channel": channels(self.engine),
+        }
+        if "particles" in self:
+            known["particle"] = np.arange(len(self.particles))
+        return {dim: values for dim, values in known.items() if dim in dimensions(self.engine)}
 
     def contact_names(self, damper: int) -> tuple[str, ...]:
-        """Names of the contacts of a damper, in the order of the impact log's `contact`.
+        """Return the names of the contacts of a damper, in the order of the impact log's `contact`.
 
         Parameters
         ----------
@@ -322,15 +292,7 @@ class RunArrays(_Comparable):
         between = (f"ball {k} - ball {k + 1}" for k in range(1, balls))
         return ("trailing wall", *between, "leading wall") if balls else ()
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        values = {f.name: getattr(self, f.name) for f in fields(self)}
-        values["counts"] = dict(self.counts)
-        return (_rebuild, (values,))
 
-
-def _rebuild(values: dict[str, Any]) -> RunArrays:
-    return RunArrays(**values)
-
-
-def _rebuild_impacts(values: dict[str, Any]) -> ImpactArrays:
-    return ImpactArrays(**values)
+def refuse_absent(name: str, engine: Engine) -> NoReturn:
+    """Raise the error of a group that runs of an engine lack."""
+    raise AttributeError(explain_absence(name, engine))

@@ -7,78 +7,57 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .schema import dimensions, groups, variables
+
 if TYPE_CHECKING:
     import xarray
 
-    from .arrays import RunArrays
-    from .ledger import Ledger
-    from .provenance import Provenance
+    from .record import Record
 
 
-def columns(arrays: RunArrays, ledger: Ledger, group: str) -> dict[str, Any]:
-    """Values of all variables of a dataset, stored and derived, by name.
+def columns(run: Record, group: str) -> dict[str, Any]:
+    """Return the values of all variables of a group, stored and derived, by name.
 
     Parameters
     ----------
-    arrays
-        Arrays of the run.
-    ledger
-        Energy ledger of the same arrays.
+    run
+        Data of the run.
     group
-        Dataset.
+        Group that the run has.
     """
-    stored = arrays.impacts if group == "impacts" else arrays
-    return {
-        v.name: getattr(ledger if v in arrays.form.derived else stored, v.name) for v in arrays.form.variables(group)
-    }
+    engine = run.arrays.engine
+    stored = run.arrays if groups(engine)[group].along == "time" else getattr(run.arrays, group)
+    return {v.name: getattr(run.ledger if v.derived else stored, v.name) for v in variables(engine, group)}
 
 
-def labels(arrays: RunArrays) -> dict[str, Any]:
-    """Values of the coordinates, by dimension: times, names, and mode numbers from 1.
+def dataset(run: Record, group: str) -> xarray.Dataset:
+    """Return the labelled dataset of a group; every variable has `units` and `long_name`.
 
     Parameters
     ----------
-    arrays
-        Arrays of the run.
-    """
-    return {dim: getattr(arrays, attribute) for dim, attribute in arrays.form.labels.items()}
-
-
-def dataset(arrays: RunArrays, ledger: Ledger, group: str, provenance: Provenance, case: str) -> xarray.Dataset:
-    """Labelled dataset of one group; every variable has `units` and `long_name`.
-
-    Parameters
-    ----------
-    arrays
-        Arrays of the run.
-    ledger
-        Energy ledger of the same arrays.
+    run
+        Data of the run; case and provenance are written to the attributes.
     group
-        Dataset.
-    provenance
-        Origin of the run, written to the attributes.
-    case
-        Text of the case, written to the attributes.
+        Group that the run has.
     """
     import xarray
 
-    form = arrays.form
+    engine = run.arrays.engine
     data: dict[str, Any] = {}
     coords: dict[str, Any] = {}
-    values = columns(arrays, ledger, group)
-    names = labels(arrays)
-    for v in form.variables(group):
+    values, labels = columns(run, group), run.arrays.labels
+    for v in variables(engine, group):
         attrs = {"units": v.units, "long_name": v.long_name}
-        target = coords if v.name in ("time", "mode_frequency", "ball_damper") else data
+        target = coords if v.coordinate else data
         target[v.name] = (v.dims, values[v.name], attrs)
         for dim in v.dims:
-            if dim not in names or dim in coords:
+            if dim not in labels or dim in coords:
                 continue
-            units, long_name = form.coordinates[dim]
-            described = {"long_name": long_name} | ({"units": units} if units else {})
-            label = names[dim]
+            described = dimensions(engine)[dim]
+            meaning = {"long_name": described.long_name} | ({"units": described.units} if described.units else {})
+            label = labels[dim]
             # An empty tuple would become an array of floats.
             label = np.array(label, dtype=str) if isinstance(label, tuple) else label
-            coords[dim] = (dim, label, described)
-    attrs = {"title": form.titles[group], "status": arrays.status, "message": arrays.message}
-    return xarray.Dataset(data, coords, attrs | asdict(provenance) | {"case": case})
+            coords[dim] = (dim, label, meaning)
+    attrs = {"title": groups(engine)[group].title, "status": run.status, "message": run.message}
+    return xarray.Dataset(data, coords, attrs | asdict(run.provenance) | {"case": run.case_toml})

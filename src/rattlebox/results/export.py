@@ -13,10 +13,11 @@ import numpy as np
 from rattlebox._util.atomic_io import atomic_write, check_suffix, disk_errors, require_folder
 from rattlebox._util.exceptions import DataError
 
-from .datasets import columns, labels
+from .datasets import columns
+from .schema import dimensions, groups, variables
 
 if TYPE_CHECKING:
-    from .run import Run
+    from .record import Record
 
 _LOST = "make room and write the file again"
 
@@ -33,10 +34,10 @@ def _column(values: Any) -> Any:
     return values[:, None] if values.ndim == 1 else values
 
 
-def to_mat(run: Run, path: Path) -> Path:
+def to_mat(run: Record, path: Path) -> Path:
     """Write a MATLAB file (version 5, up to 2 GB a variable).
 
-    It holds the structs `motion`, `energy` and `impacts` with a field for each variable and coordinate,
+    It holds a struct for each dataset of the run, such as `motion`, with a field for each variable and coordinate,
     `units` with the unit of each of those, and `info` with the case, the status and the provenance. Time runs
     along the first dimension; vectors are columns. Indices count from 0, as in all other files.
 
@@ -63,21 +64,20 @@ def to_mat(run: Run, path: Path) -> Path:
 
     check_suffix(path, ".mat")
     require_folder(path)
-    arrays = run.arrays
-    names = labels(arrays)
+    engine, labels = run.arrays.engine, run.arrays.labels
     content: dict[str, Any] = {}
     units: dict[str, dict[str, str]] = {}
-    for group in arrays.form.titles:
-        values = columns(arrays, run.ledger, group)
+    for group in run.groups:
+        values = columns(run, group)
         struct: dict[str, Any] = {}
         unit: dict[str, str] = {}
-        for v in arrays.form.variables(group):
+        for v in variables(engine, group):
             for dim in v.dims:
-                if dim not in names or dim in struct:
+                if dim not in labels or dim in struct:
                     continue
-                label = names[dim]
+                label = labels[dim]
                 struct[dim] = _cells(label) if isinstance(label, tuple) else _column(label)
-                unit[dim] = arrays.form.coordinates[dim][0]
+                unit[dim] = dimensions(engine)[dim].units
             struct[v.name] = _column(values[v.name])
             unit[v.name] = v.units
         content[group] = struct
@@ -87,9 +87,10 @@ def to_mat(run: Run, path: Path) -> Path:
         "case_toml": run.case_toml,
         "status": run.status,
         "message": run.message,
-        "closure": run.closure,
-        "wall_time": arrays.wall_time,
-        "counts": dict(arrays.counts) or np.zeros((0, 0)),
+        "energy_residual": run.energy_residual,
+        "wall_time": run.wall_time,
+        "counts": dict(run.counts) or np.zeros((0, 0)),
+        "diagnostics": dict(run.diagnostics) or np.zeros((0, 0)),
     }
     with atomic_write(path, _LOST) as name:
         savemat(
@@ -106,26 +107,26 @@ def _header(name: str, label: str, units: str) -> str:
     return full if units == "1" else f"{full} [{units}]"
 
 
-def _columns(run: Run, group: str) -> Iterator[tuple[str, Any]]:
+def _columns(run: Record, group: str) -> Iterator[tuple[str, Any]]:
     """Header and values of every column of a CSV file: the index, then what runs along it."""
-    names = labels(run.arrays)
-    values = columns(run.arrays, run.ledger, group)
-    index = {"impacts": "impact", "particles": "particle"}.get(group, "time")
-    if index == "time":
+    engine, labels = run.arrays.engine, run.arrays.labels
+    values = columns(run, group)
+    along = groups(engine)[group].along
+    if along == "time":
         yield _header("time", "", "s"), run.arrays.time
-    for v in run.arrays.form.variables(group):
-        if v.dims[0] != index:
+    for v in variables(engine, group):
+        if v.dims[0] != along:
             continue
-        for place in product(*(range(len(names[dim])) for dim in v.dims[1:])):
-            told = " ".join(str(names[dim][k]) for dim, k in zip(v.dims[1:], place, strict=True))
+        for place in product(*(range(len(labels[dim])) for dim in v.dims[1:])):
+            told = " ".join(str(labels[dim][k]) for dim, k in zip(v.dims[1:], place, strict=True))
             yield _header(v.name, told, v.units), values[v.name][:, *place]
 
 
-def to_csv(run: Run, folder: Path) -> tuple[Path, ...]:
-    """Write motion.csv, energy.csv and impacts.csv.
+def to_csv(run: Record, folder: Path) -> tuple[Path, ...]:
+    """Write a CSV file for each dataset of the run, such as motion.csv.
 
-    One line of headers, "name label [unit]"; every number keeps all its digits. What does not run along time
-    or along the impacts (clearances, natural frequencies, final shares) is found in the other formats.
+    One line of headers, "name label [unit]"; every number keeps all its digits. Variables that do not run along the
+    rows (clearances, natural frequencies, final shares) are in the other formats.
 
     Parameters
     ----------
@@ -154,7 +155,7 @@ def to_csv(run: Run, folder: Path) -> tuple[Path, ...]:
     with disk_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
     written = []
-    for group in run.arrays.form.titles:
+    for group in run.groups:
         path = folder / f"{group}.csv"
         header, data = zip(*_columns(run, group), strict=True)
         # tolist() gives Python numbers, whose repr is the shortest text that reads back equal.

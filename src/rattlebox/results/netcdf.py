@@ -1,8 +1,8 @@
 """Runs in netCDF-4 files, restricted to what every netCDF reader knows.
 
 Numbers are double, 32-bit integer or byte; texts are arrays of characters (UTF-8), not variable-length
-strings; attributes are plain characters. Groups: `motion`, `energy` and `impacts` hold the datasets of a run,
-`counts` the counters, `figures` the numbers of the step, and the root the case, the message and the provenance.
+strings; attributes are plain characters. A group for each dataset of the run, `counts` and `diagnostics` for the
+numbers of these names; the root holds the engine, the case, the status, the message, the notes and the provenance.
 Dimensions of length zero are left out together with the variables that need them, except `impact`, which is unlimited.
 """
 
@@ -10,25 +10,24 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, TypeVar
+from typing import IO, TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
 from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder, require_readable
 from rattlebox._util.exceptions import DataError
 
-from .arrays import ImpactArrays, RunArrays
-from .datasets import columns, labels
-from .granular import GranularArrays, GranularRun
+from .arrays import RunArrays
+from .datasets import columns
 from .provenance import Provenance
-from .schema import COUNTS, FIGURES, GRANULAR, IMPACT, IMPACT_VARIABLES, Form, Kind
+from .schema import COUNTS, DIAGNOSTICS, Engine, Kind, dimensions, groups, variables
 from .snapshots import ROOT as SNAPSHOTS
 
 if TYPE_CHECKING:
-    from .run import Run
+    from .record import Record
 
 Read = TypeVar("Read")
 
@@ -38,7 +37,8 @@ FORMAT = 1
 _LOST = "make room and write the run again"
 
 _STORED: dict[Kind, str] = {"float": "f8", "int": "i4", "bool": "i1"}
-_LABELS = ("point", "ball", "damper", "source", "species")
+_NAMES = {"point": "points", "ball": "balls", "damper": "dampers", "source": "loads"}
+"""Argument of the arrays that holds the names of a dimension."""
 _LARGE: dict[str, Any] = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
 """Of arrays of more than 64 numbers; the last is a checksum, so that damage is told when they are read."""
 
@@ -91,57 +91,66 @@ def _write_coordinate(group: Any, dim: str, values: Any, units: str, long_name: 
     _describe(variable, long_name=long_name, units=units)
 
 
-def _write(run: Run, target: IO[bytes]) -> None:
+def _write_numbers(file: Any, group: str, numbers: Mapping[str, float], told: Mapping[str, tuple[str, str]]) -> None:
+    """Write single numbers, integers or floats, with the unit and the meaning of each."""
+    if not numbers:
+        return
+    target = file.create_group(group)
+    for name, number in numbers.items():
+        whole = isinstance(number, int)
+        variable = target.create_variable(name, (), "i8" if whole else "f8", data=np.asarray(number))
+        units, long_name = told.get(name, ("1", name))
+        _describe(variable, long_name=long_name, units=units)
+
+
+def _write_group(file: Any, run: Record, name: str) -> None:
+    """Write a dataset with its coordinates."""
+    engine, labels = run.arrays.engine, run.arrays.labels
+    target = file.create_group(name)
+    along = groups(engine)[name].along
+    _describe(target, title=groups(engine)[name].title)
+    values = columns(run, name)
+    for v in variables(engine, name):
+        if any(dim in labels and len(labels[dim]) == 0 for dim in v.dims):
+            continue
+        for dim in v.dims:
+            if dim in target.dimensions:
+                continue
+            if dim in labels:
+                known = dimensions(engine)[dim]
+                _write_coordinate(target, dim, labels[dim], known.units, known.long_name)
+            else:
+                target.dimensions[dim] = None
+                target.resize_dimension(dim, len(values[v.name]))
+        data = values[v.name]
+        chunks = {} if along in labels else {"chunks": (max(data.size, 1),)}
+        variable = target.create_variable(v.name, v.dims, _STORED[v.kind], **chunks, **_filters(data))
+        if data.size:
+            variable[...] = data
+        _describe(variable, units=v.units, long_name=v.long_name)
+
+
+def _write(run: Record, target: IO[bytes]) -> None:
     import h5netcdf  # type: ignore[import-untyped]
 
-    arrays = run.arrays
-    names = labels(arrays)
     # From version 1.10 on HDF5 has checksums of its own entries, too, and takes less room.
     with h5netcdf.File(target, "w", invalid_netcdf=False, libver="v110") as file:
-        _describe(file, title="Rattlebox run", status=arrays.status)
+        _describe(file, title="Rattlebox run", engine=run.arrays.engine, status=run.status)
         file.attrs["rattlebox_format"] = np.int32(FORMAT)
         for name, value in asdict(run.provenance).items():
             file.attrs[name] = np.int64(value) if isinstance(value, int) else _attribute(value)
-        file.attrs["wall_time"] = np.float64(arrays.wall_time)
+        file.attrs["wall_time"] = np.float64(run.wall_time)
         _write_text(file, "case", run.case_toml, "case that was run, as the text of a case file")
-        _write_text(file, "message", arrays.message, "what the status means and what to try")
-        _write_text(file, "notes", "\n".join(arrays.notes), "warnings, and what limits the step where there is one")
-        if arrays.counts:
-            counts = file.create_group("counts")
-            for name, number in arrays.counts.items():
-                variable = counts.create_variable(name, (), "i8", data=np.int64(number))
-                _describe(variable, long_name=COUNTS.get(name, name), units="byte" if name == "memory_bytes" else "1")
-        if isinstance(run, GranularRun):
-            file.attrs["rattlebox_kind"] = _attribute(arrays.form.name)
-            figures = file.create_group("figures")
-            for name, value in run.arrays.figures.items():
-                variable = figures.create_variable(name, (), "f8", data=np.float64(value))
-                units, long_name = FIGURES.get(name, ("1", name))
-                _describe(variable, long_name=long_name, units=units)
-        for title in arrays.form.titles:
-            group = file.create_group(title)
-            _describe(group, title=arrays.form.titles[title])
-            values = columns(arrays, run.ledger, title)
-            for v in arrays.form.variables(title):
-                if any(dim in names and len(names[dim]) == 0 for dim in v.dims):
-                    continue
-                for dim in v.dims:
-                    if dim in group.dimensions:
-                        continue
-                    if dim == "impact":
-                        group.dimensions[dim] = None
-                        group.resize_dimension(dim, len(arrays.impacts))
-                    else:
-                        _write_coordinate(group, dim, names[dim], *arrays.form.coordinates[dim])
-                data = values[v.name]
-                chunks = {"chunks": (max(data.size, 1),)} if v.dims == ("impact",) else {}
-                variable = group.create_variable(v.name, v.dims, _STORED[v.kind], **chunks, **_filters(data))
-                if data.size:
-                    variable[...] = data
-                _describe(variable, units=v.units, long_name=v.long_name)
+        _write_text(file, "message", run.message, "explanation of the status and advice")
+        _write_text(file, "notes", "\n".join(run.notes), "warnings, and what limits the step where there is one")
+        units = {name: ("byte" if name == "memory_bytes" else "1", meaning) for name, meaning in COUNTS.items()}
+        _write_numbers(file, "counts", run.counts, units)
+        _write_numbers(file, "diagnostics", run.diagnostics, DIAGNOSTICS)
+        for group in run.groups:
+            _write_group(file, run, group)
 
 
-def save(run: Run, path: Path) -> Path:
+def save(run: Record, path: Path) -> Path:
     """Write a run to one netCDF-4 file; an existing file is replaced once the new one is complete.
 
     Parameters
@@ -178,8 +187,8 @@ def _text_attribute(value: Any) -> str:
     return "" if raw == b" " else raw.decode()
 
 
-def load(path: str | os.PathLike[str]) -> Run:
-    """Read a run from a file that `Run.save` wrote.
+def read(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Read the data of a run from a file that `save` wrote.
 
     Parameters
     ----------
@@ -188,8 +197,8 @@ def load(path: str | os.PathLike[str]) -> Run:
 
     Returns
     -------
-    Run
-        Equal to the run that was saved, bit by bit.
+    dict
+        Arguments of the run.
 
     Raises
     ------
@@ -248,55 +257,41 @@ def _refused(file: Any, path: Path) -> str:
     return ""
 
 
-def _read_run(file: Any) -> Run:
-    from .run import Run
-
+def _read_run(file: Any) -> dict[str, Any]:
     texts: dict[str, Any] = {
         f.name: _text_attribute(file.attrs[f.name]) for f in fields(Provenance) if f.name in file.attrs
     }
-    provenance = Provenance(**texts | {"seed": int(file.attrs["seed"])})
-    if _text_attribute(file.attrs.get("rattlebox_kind", b" ")) == GRANULAR.name:
-        return GranularRun(_read_granular(file), _read_text(file, "case"), provenance)
-    return Run(_read(file), _read_text(file, "case"), provenance)
+    return {
+        "arrays": _read_arrays(file),
+        "source": _read_text(file, "case"),
+        "provenance": Provenance(**texts | {"seed": int(file.attrs["seed"])}),
+        "status": _text_attribute(file.attrs["status"]),
+        "message": _read_text(file, "message"),
+        "notes": tuple(_read_text(file, "notes").split("\n")) if "notes" in file.variables else (),
+        "counts": {name: int(number) for name, number in _read_numbers(file, "counts").items()},
+        "diagnostics": _read_numbers(file, "diagnostics"),
+        "wall_time": float(file.attrs["wall_time"]),
+    }
 
 
 def _read_text(file: Any, name: str) -> str:
     return file.variables[name][...].tobytes().decode() if name in file.variables else ""
 
 
-def _read_variables(file: Any, form: Form) -> dict[str, Any]:
-    """Stored variables but the impacts', names of what they are of, and what is told of the run as a whole."""
-    found: dict[str, Any] = {}
-    for v in form.stored:
-        group = file.groups[v.group]
-        if v in IMPACT_VARIABLES:
-            continue
-        if v.name in group.variables:
-            found[v.name] = group.variables[v.name][...]
-        for dim in v.dims:
-            if dim in _LABELS and dim in group.variables:
-                found[form.labels[dim]] = _texts(group.variables[dim][...])
-    counts = file.groups["counts"].variables if "counts" in file.groups else {}
-    return found | {
-        "time": file.groups["motion"].variables["time"][...],
-        "status": _text_attribute(file.attrs["status"]),
-        "message": _read_text(file, "message"),
-        "notes": tuple(_read_text(file, "notes").split("\n")) if "notes" in file.variables else (),
-        "counts": {name: int(variable[...]) for name, variable in counts.items()},
-        "wall_time": float(file.attrs["wall_time"]),
-    }
+def _read_numbers(file: Any, group: str) -> dict[str, Any]:
+    variables = file.groups[group].variables if group in file.groups else {}
+    return {name: variable[...].item() for name, variable in variables.items()}
 
 
-def _read_granular(file: Any) -> GranularArrays:
-    return GranularArrays(
-        **_read_variables(file, GRANULAR),
-        figures={name: float(variable[...]) for name, variable in file.groups["figures"].variables.items()},
-    )
-
-
-def _read(file: Any) -> RunArrays:
-    log = file.groups["impacts"].variables
-    impacts = ImpactArrays(
-        **{v.name: log[v.name][...].astype(bool) if v.kind == "bool" else log[v.name][...] for v in IMPACT_VARIABLES}
-    )
-    return RunArrays(**_read_variables(file, IMPACT), impacts=impacts)
+def _read_arrays(file: Any) -> RunArrays:
+    engine = cast("Engine", _text_attribute(file.attrs["engine"]))
+    arguments: dict[str, Any] = {"engine": engine, "time": file.groups["motion"].variables["time"][...]}
+    for name, group in groups(engine).items():
+        stored = file.groups[name].variables
+        values = {v.name: stored[v.name][...] for v in variables(engine, name) if v.name in stored and not v.derived}
+        if group.along == "time":
+            arguments |= values
+            arguments |= {names: _texts(stored[dim][...]) for dim, names in _NAMES.items() if dim in stored}
+        else:
+            arguments[name] = values
+    return RunArrays(**arguments)

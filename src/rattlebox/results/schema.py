@@ -1,22 +1,73 @@
-"""What a run holds: every variable with its group, dimensions, unit and meaning, told once.
+"""The output of a run: every variable with its group, dimensions, unit and meaning, declared once.
 
-The arrays are checked against this table, and the datasets and all files are written from it.
+The arrays are checked against these tables, and datasets, netCDF, MATLAB and CSV files are derived from them. A run of
+the impact engine moves on one line and has one kind of contact partner per contact: it has neither the dimension `axis`
+nor `partner`, and its variables are declared with them only for the engine that has them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from typing import Literal
 
 Kind = Literal["float", "int", "bool"]
+Engine = Literal["impact", "dem"]
 
-GROUPS: tuple[str, ...] = ("motion", "energy", "impacts")
-GROUP_TITLES: dict[str, str] = {
-    "motion": "Motion of the structure and the balls in the frame of the base",
-    "energy": "Energy ledger in the frame of the base",
-    "impacts": "Impact log, one entry for each closed contact",
-}
+BOTH: tuple[Engine, ...] = ("impact", "dem")
+_IMPACT: tuple[Engine, ...] = ("impact",)
+_DEM: tuple[Engine, ...] = ("dem",)
+
+AXES: tuple[str, ...] = ("x", "y", "z")
+PARTNERS: tuple[str, ...] = ("particle", "wall")
+"""Contact partners of a particle."""
+
+
+@dataclass(frozen=True, slots=True)
+class Dimension:
+    """One dimension of the variables.
+
+    Attributes
+    ----------
+    name
+        Name in datasets and files.
+    long_name
+        Meaning in a few words.
+    units
+        SI unit of the coordinate, "1" for pure numbers, "" for names.
+    engines
+        Engines whose runs have it; variables of other runs lack it.
+    """
+
+    name: str
+    long_name: str
+    units: str = ""
+    engines: tuple[Engine, ...] = BOTH
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """One dataset of a run.
+
+    Attributes
+    ----------
+    name
+        Name of the attribute of a run and of the group in files.
+    title
+        Content, in a line.
+    along
+        Dimension of its rows; variables without it hold once for the run.
+    engines
+        Engines whose runs have it.
+    absent
+        Why other runs lack it, and what they have instead.
+    """
+
+    name: str
+    title: str
+    along: str = "time"
+    engines: tuple[Engine, ...] = BOTH
+    absent: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +77,7 @@ class Variable:
     Attributes
     ----------
     name
-        Name of the field in the arrays, of the variable in datasets and files.
+        Name of the array, and of the variable in datasets and files.
     group
         Dataset that holds it.
     dims
@@ -37,6 +88,14 @@ class Variable:
         Meaning in a few words, fit for an axis label.
     kind
         Number type.
+    engines
+        Engines that write it.
+    derived
+        Whether the energy ledger computes it from the others.
+    cumulative
+        Whether it is a sum since the start of the run.
+    coordinate
+        Whether it labels the others in datasets.
     """
 
     name: str
@@ -45,246 +104,240 @@ class Variable:
     units: str
     long_name: str
     kind: Kind = "float"
+    engines: tuple[Engine, ...] = BOTH
+    derived: bool = False
+    cumulative: bool = False
+    coordinate: bool = False
 
+
+DIMENSIONS: tuple[Dimension, ...] = (
+    Dimension("time", "time", "s"),
+    Dimension("point", "point of the structure"),
+    Dimension("ball", "ball", engines=_IMPACT),
+    Dimension("damper", "damper"),
+    Dimension("source", "load"),
+    Dimension("mode", "number of the mode", "1"),
+    Dimension("axis", "axis", engines=_DEM),
+    Dimension("partner", "contact partner of the particles", engines=_DEM),
+    Dimension("impact", "number of the impact, from 0", "1", engines=_IMPACT),
+    Dimension("particle", "number of the particle, from 0, over all dampers", "1", engines=_DEM),
+    Dimension("channel", "channel of the energy"),
+)
+
+GROUPS: tuple[Group, ...] = (
+    Group("motion", "Motion of structure, cavities and particles in the frame of the base"),
+    Group("energy", "Energy ledger in the frame of the base"),
+    Group(
+        "impacts",
+        "Impact log, one entry for each closed contact",
+        along="impact",
+        engines=_IMPACT,
+        absent="a 3-D run counts its contacts (motion.contacts, counts) and does not log them one by one",
+    ),
+    Group(
+        "particles",
+        "Particles at the end of the run, in their moving cavities",
+        along="particle",
+        engines=_DEM,
+        absent="a 1-D run has balls, whose positions and velocities at all times are in motion",
+    ),
+)
 
 _TIME = ("time",)
 _POINT = ("time", "point")
 _BALL = ("time", "ball")
+_BASE = ("time", "axis")
 _DAMPER = ("time", "damper")
-_IMPACT = ("impact",)
-
-RUN_VARIABLES: tuple[Variable, ...] = (
-    Variable("displacement", "motion", _POINT, "m", "displacement of the structure"),
-    Variable("velocity", "motion", _POINT, "m/s", "velocity of the structure"),
-    Variable("ball_position", "motion", _BALL, "m", "ball position from the cavity's rest place"),
-    Variable("ball_velocity", "motion", _BALL, "m/s", "ball velocity"),
-    Variable("relative_position", "motion", _BALL, "m", "ball position in the cavity"),
-    Variable("relative_velocity", "motion", _BALL, "m/s", "ball velocity relative to the cavity"),
-    Variable("base_displacement", "motion", _TIME, "m", "displacement of the base"),
-    Variable("base_velocity", "motion", _TIME, "m/s", "velocity of the base"),
-    Variable("base_acceleration", "motion", _TIME, "m/s^2", "acceleration of the base"),
-    Variable("cavity_force", "motion", _DAMPER, "N", "force of the balls on the cavity"),
-    Variable("load", "motion", ("time", "source"), "N", "load on the structure"),
-    Variable("ball_damper", "motion", ("ball",), "1", "damper that holds the ball, from 0", "int"),
-    Variable("ball_centre", "motion", ("ball",), "m", "ball place in the packed, centred row"),
-    Variable("clearance", "motion", ("damper",), "m", "total clearance of the cavity"),
-    Variable("mode_frequency", "energy", ("mode",), "Hz", "natural frequency of the mode"),
-    Variable("mode_energy", "energy", ("time", "mode"), "J", "energy of the mode"),
-    Variable("ball_energy", "energy", _BALL, "J", "kinetic energy of the ball"),
-    Variable("contact_energy", "energy", _DAMPER, "J", "elastic energy of the contacts"),
-    Variable("gravity_energy", "energy", _DAMPER, "J", "gravity potential of the balls"),
-    Variable("load_work", "energy", _TIME, "J", "work of the load"),
-    Variable("base_work", "energy", _TIME, "J", "work of the inertial forces of the base motion"),
-    Variable("viscous_loss", "energy", _TIME, "J", "loss in the structure's damping"),
-    Variable("normal_loss", "energy", _DAMPER, "J", "loss in impacts by damping"),
-    Variable("plastic_loss", "energy", _DAMPER, "J", "loss in impacts by plastic flow"),
-)
-
-IMPACT_VARIABLES: tuple[Variable, ...] = (
-    Variable("damper", "impacts", _IMPACT, "1", "damper of the contact, from 0", "int"),
-    Variable("contact", "impacts", _IMPACT, "1", "contact in the row: 0 trailing wall, n leading wall", "int"),
-    Variable("time", "impacts", _IMPACT, "s", "time of first touch"),
-    Variable("approach_speed", "impacts", _IMPACT, "m/s", "approach speed at first touch"),
-    Variable("restitution", "impacts", _IMPACT, "1", "coefficient of restitution used"),
-    Variable("separation_speed", "impacts", _IMPACT, "m/s", "separation speed at the end of the contact"),
-    Variable("duration", "impacts", _IMPACT, "s", "duration of the contact"),
-    Variable("peak_overlap", "impacts", _IMPACT, "m", "largest overlap"),
-    Variable("peak_force", "impacts", _IMPACT, "N", "largest contact force"),
-    Variable("energy_lost", "impacts", _IMPACT, "J", "energy lost in the contact"),
-    Variable("complete", "impacts", _IMPACT, "1", "contact opened before the run ended", "bool"),
-)
-
-DERIVED_VARIABLES: tuple[Variable, ...] = (
-    Variable("structure", "energy", _TIME, "J", "energy of the structure"),
-    Variable("particles", "energy", _TIME, "J", "kinetic energy of the balls"),
-    Variable("total", "energy", _TIME, "J", "total energy"),
-    Variable("work", "energy", _TIME, "J", "work of load and base motion"),
-    Variable("losses", "energy", _TIME, "J", "energy lost since the start"),
-    Variable("residual", "energy", _TIME, "J", "what the ledger misses"),
-    Variable("share", "energy", ("channel",), "1", "share of the supplied energy at the end"),
-    Variable("damper_share", "energy", ("damper",), "1", "share of the supplied energy lost in this damper"),
-)
-
-CHANNELS: tuple[str, ...] = ("viscous", "impact", "plastic", "motion")
-"""Where the supplied energy can be found at the end of a run; the shares add up to one."""
-
-COORDINATES: dict[str, tuple[str, str]] = {
-    "time": ("s", "time"),
-    "point": ("", "point of the structure"),
-    "ball": ("", "ball"),
-    "damper": ("", "damper"),
-    "source": ("", "load"),
-    "mode": ("1", "number of the mode"),
-    "channel": ("", "channel of the energy"),
-}
-"""Unit and meaning of each coordinate; names have no unit."""
-
-
-@dataclass(frozen=True)
-class Form:
-    """What a kind of run holds.
-
-    Attributes
-    ----------
-    name
-        Kind of run.
-    titles
-        Title of each group, in the order of files.
-    stored, derived
-        Variables that the arrays hold, and those that follow from them.
-    coordinates
-        Unit and meaning of each coordinate.
-    labels
-        Name of the attribute of the arrays that holds the labels of each dimension.
-    """
-
-    name: str
-    titles: Mapping[str, str]
-    stored: tuple[Variable, ...]
-    derived: tuple[Variable, ...]
-    coordinates: Mapping[str, tuple[str, str]]
-    labels: Mapping[str, str]
-
-    def variables(self, group: str) -> tuple[Variable, ...]:
-        """Stored and derived variables of a dataset, in the order of files."""
-        return tuple(v for v in self.stored + self.derived if v.group == group)
-
-
-IMPACT = Form(
-    name="impact",
-    titles=GROUP_TITLES,
-    stored=RUN_VARIABLES + IMPACT_VARIABLES,
-    derived=DERIVED_VARIABLES,
-    coordinates=COORDINATES,
-    labels={
-        "time": "time",
-        "point": "points",
-        "ball": "balls",
-        "damper": "dampers",
-        "source": "loads",
-        "mode": "modes",
-        "channel": "channels",
-    },
-)
-"""Runs of impact dampers, and of structures without dampers."""
-
-_SPACE = ("time", "axis")
 _CAVITY = ("time", "damper", "axis")
 _PARTNER = ("time", "damper", "partner")
+_LOG = ("impact",)
 _EACH = ("particle",)
-_EACH_SPACE = ("particle", "axis")
+_EACH_AXIS = ("particle", "axis")
 
-GRANULAR_CHANNELS: tuple[str, ...] = ("viscous", "normal", "plastic", "sliding", "rolling", "motion")
-"""Where the supplied energy can be found at the end of a run with particles; the shares add up to one."""
-
-PARTNERS: tuple[str, ...] = ("particle", "wall")
-"""What a particle may touch."""
-
-GRANULAR = Form(
-    name="granular",
-    titles={
-        "motion": "Motion of the structure, the cavities and the particles as a whole, in the frame of the base",
-        "energy": "Energy ledger in the frame of the base",
-        "particles": "Particles at the end of the run, in their moving cavities",
-    },
-    stored=(
-        Variable("displacement", "motion", _POINT, "m", "displacement of the structure"),
-        Variable("velocity", "motion", _POINT, "m/s", "velocity of the structure"),
-        Variable("cavity_displacement", "motion", _CAVITY, "m", "displacement of the cavity"),
-        Variable("cavity_velocity", "motion", _CAVITY, "m/s", "velocity of the cavity"),
-        Variable("cavity_force", "motion", _CAVITY, "N", "force of the particles on the cavity"),
-        Variable("cavity_moment", "motion", _CAVITY, "N m", "moment of the particles about the cavity's centre"),
-        Variable("centre_of_mass", "motion", _CAVITY, "m", "centre of mass of the particles in the cavity"),
-        Variable("momentum", "motion", _CAVITY, "kg m/s", "momentum of the particles"),
-        Variable("contacts", "motion", _PARTNER, "1", "contacts", "int"),
-        Variable("base_displacement", "motion", _SPACE, "m", "displacement of the base"),
-        Variable("base_velocity", "motion", _SPACE, "m/s", "velocity of the base"),
-        Variable("base_acceleration", "motion", _SPACE, "m/s^2", "acceleration of the base"),
-        Variable("load", "motion", ("time", "source"), "N", "load on the structure"),
-        Variable("particle_mass", "motion", ("damper",), "kg", "mass of all particles"),
-        Variable("mode_frequency", "energy", ("mode",), "Hz", "natural frequency of the mode"),
-        Variable("mode_energy", "energy", ("time", "mode"), "J", "energy of the mode"),
-        Variable("kinetic_energy", "energy", _DAMPER, "J", "kinetic energy of the particles' translation"),
-        Variable("rotation_energy", "energy", _DAMPER, "J", "kinetic energy of the particles' spin"),
-        Variable("contact_energy", "energy", _DAMPER, "J", "elastic energy of the contacts"),
-        Variable("gravity_energy", "energy", _DAMPER, "J", "gravity potential of the particles"),
-        Variable("load_work", "energy", _TIME, "J", "work of the load"),
-        Variable("base_work", "energy", _TIME, "J", "work of the inertial forces of the base motion"),
-        Variable("viscous_loss", "energy", _TIME, "J", "loss in the structure's damping"),
-        Variable("normal_loss", "energy", _PARTNER, "J", "loss in contacts by damping along the normal"),
-        Variable("plastic_loss", "energy", _PARTNER, "J", "loss in contacts by plastic flow"),
-        Variable("sliding_loss", "energy", _PARTNER, "J", "loss in contacts by friction and tangential damping"),
-        Variable("rolling_loss", "energy", _PARTNER, "J", "loss in contacts by rolling resistance"),
-        Variable("position", "particles", _EACH_SPACE, "m", "place in the cavity"),
-        Variable("particle_velocity", "particles", _EACH_SPACE, "m/s", "velocity relative to the base"),
-        Variable("spin", "particles", _EACH_SPACE, "rad/s", "spin"),
-        Variable("radius", "particles", _EACH, "m", "radius"),
-        Variable("mass", "particles", _EACH, "kg", "mass"),
-        Variable("particle_damper", "particles", _EACH, "1", "damper that holds the particle, from 0", "int"),
-        Variable("particle_species", "particles", _EACH, "1", "species of the particle, from 0", "int"),
+VARIABLES: tuple[Variable, ...] = (
+    Variable("displacement", "motion", _POINT, "m", "displacement of the structure"),
+    Variable("velocity", "motion", _POINT, "m/s", "velocity of the structure"),
+    Variable("ball_position", "motion", _BALL, "m", "ball position from the cavity's rest place", engines=_IMPACT),
+    Variable("ball_velocity", "motion", _BALL, "m/s", "ball velocity", engines=_IMPACT),
+    Variable("relative_position", "motion", _BALL, "m", "ball position in the cavity", engines=_IMPACT),
+    Variable("relative_velocity", "motion", _BALL, "m/s", "ball velocity relative to the cavity", engines=_IMPACT),
+    Variable("cavity_displacement", "motion", _CAVITY, "m", "displacement of the cavity", engines=_DEM),
+    Variable("cavity_velocity", "motion", _CAVITY, "m/s", "velocity of the cavity", engines=_DEM),
+    Variable("cavity_force", "motion", _CAVITY, "N", "contact force on the cavity"),
+    Variable("cavity_moment", "motion", _CAVITY, "N m", "contact moment about the cavity's centre", engines=_DEM),
+    Variable("centre_of_mass", "motion", _CAVITY, "m", "centre of mass of the particles in the cavity", engines=_DEM),
+    Variable("momentum", "motion", _CAVITY, "kg m/s", "momentum of the particles", engines=_DEM),
+    Variable("contacts", "motion", _PARTNER, "1", "number of contacts", "int", engines=_DEM),
+    Variable("coordination", "motion", _DAMPER, "1", "mean contacts of a particle", engines=_DEM, derived=True),
+    Variable("base_displacement", "motion", _BASE, "m", "displacement of the base"),
+    Variable("base_velocity", "motion", _BASE, "m/s", "velocity of the base"),
+    Variable("base_acceleration", "motion", _BASE, "m/s^2", "acceleration of the base"),
+    Variable("load", "motion", ("time", "source"), "N", "load on the structure"),
+    Variable(
+        "ball_damper",
+        "motion",
+        ("ball",),
+        "1",
+        "damper that holds the ball, from 0",
+        "int",
+        engines=_IMPACT,
+        coordinate=True,
     ),
-    derived=(
-        Variable("coordination", "motion", _DAMPER, "1", "contacts of a particle in the mean"),
-        Variable("structure", "energy", _TIME, "J", "energy of the structure"),
-        Variable("particles", "energy", _TIME, "J", "kinetic energy of the particles"),
-        Variable("total", "energy", _TIME, "J", "total energy"),
-        Variable("work", "energy", _TIME, "J", "work of load and base motion"),
-        Variable("losses", "energy", _TIME, "J", "energy lost since the start"),
-        Variable("residual", "energy", _TIME, "J", "what the ledger misses"),
-        Variable("share", "energy", ("channel",), "1", "share of the supplied energy at the end"),
-        Variable("damper_share", "energy", ("damper",), "1", "share of the supplied energy lost in this damper"),
-        Variable("partner_share", "energy", ("partner",), "1", "share of the supplied energy lost with this partner"),
+    Variable("ball_centre", "motion", ("ball",), "m", "ball place in the packed, centred row", engines=_IMPACT),
+    Variable("clearance", "motion", ("damper",), "m", "total clearance of the cavity", engines=_IMPACT),
+    Variable("particle_mass", "motion", ("damper",), "kg", "mass of all particles", engines=_DEM),
+    Variable("mode_frequency", "energy", ("mode",), "Hz", "natural frequency of the mode", coordinate=True),
+    Variable("mode_energy", "energy", ("time", "mode"), "J", "energy of the mode"),
+    Variable("ball_energy", "energy", _BALL, "J", "kinetic energy of the ball", engines=_IMPACT),
+    Variable("kinetic_energy", "energy", _DAMPER, "J", "translational energy of the particles", engines=_DEM),
+    Variable("rotation_energy", "energy", _DAMPER, "J", "rotational energy of the particles", engines=_DEM),
+    Variable("contact_energy", "energy", _DAMPER, "J", "elastic energy of the contacts"),
+    Variable("gravity_energy", "energy", _DAMPER, "J", "gravity potential of the particles"),
+    Variable("load_work", "energy", _TIME, "J", "work of the load", cumulative=True),
+    Variable("base_work", "energy", _TIME, "J", "work of the inertial forces of the base motion", cumulative=True),
+    Variable("viscous_loss", "energy", _TIME, "J", "loss in the structure's damping", cumulative=True),
+    Variable("normal_loss", "energy", _PARTNER, "J", "loss in contacts by normal damping", cumulative=True),
+    Variable("plastic_loss", "energy", _PARTNER, "J", "loss in contacts by plastic flow", cumulative=True),
+    Variable(
+        "sliding_loss",
+        "energy",
+        _PARTNER,
+        "J",
+        "loss in contacts by friction and tangential damping",
+        engines=_DEM,
+        cumulative=True,
     ),
-    coordinates={
-        "time": ("s", "time"),
-        "point": ("", "point of the structure"),
-        "damper": ("", "damper"),
-        "source": ("", "load"),
-        "mode": ("1", "number of the mode"),
-        "axis": ("", "axis"),
-        "partner": ("", "what the particles touch"),
-        "particle": ("1", "number of the particle, from 0, over all dampers"),
-        "channel": ("", "channel of the energy"),
-    },
-    labels={
-        "time": "time",
-        "point": "points",
-        "damper": "dampers",
-        "source": "loads",
-        "mode": "modes",
-        "axis": "axes",
-        "partner": "partners",
-        "particle": "numbers",
-        "channel": "channels",
-    },
+    Variable(
+        "rolling_loss",
+        "energy",
+        _PARTNER,
+        "J",
+        "loss in contacts by rolling resistance",
+        engines=_DEM,
+        cumulative=True,
+    ),
+    Variable("structure", "energy", _TIME, "J", "energy of the structure", derived=True),
+    Variable("particles", "energy", _TIME, "J", "kinetic energy of the particles", derived=True),
+    Variable("total", "energy", _TIME, "J", "total energy", derived=True),
+    Variable("work", "energy", _TIME, "J", "work of load and base motion", derived=True),
+    Variable("losses", "energy", _TIME, "J", "energy lost since the start", derived=True),
+    Variable("residual", "energy", _TIME, "J", "imbalance of the energy ledger", derived=True),
+    Variable("share", "energy", ("channel",), "1", "share of the supplied energy at the end", derived=True),
+    Variable(
+        "damper_share", "energy", ("damper",), "1", "share of the supplied energy lost in this damper", derived=True
+    ),
+    Variable(
+        "partner_share",
+        "energy",
+        ("partner",),
+        "1",
+        "share of the supplied energy lost with this partner",
+        engines=_DEM,
+        derived=True,
+    ),
+    Variable("damper", "impacts", _LOG, "1", "damper of the contact, from 0", "int", engines=_IMPACT),
+    Variable(
+        "contact", "impacts", _LOG, "1", "contact in the row: 0 trailing wall, n leading wall", "int", engines=_IMPACT
+    ),
+    Variable("time", "impacts", _LOG, "s", "time of first touch", coordinate=True, engines=_IMPACT),
+    Variable("approach_speed", "impacts", _LOG, "m/s", "approach speed at first touch", engines=_IMPACT),
+    Variable("restitution", "impacts", _LOG, "1", "coefficient of restitution used", engines=_IMPACT),
+    Variable("separation_speed", "impacts", _LOG, "m/s", "separation speed at the end of the contact", engines=_IMPACT),
+    Variable("duration", "impacts", _LOG, "s", "duration of the contact", engines=_IMPACT),
+    Variable("peak_overlap", "impacts", _LOG, "m", "largest overlap", engines=_IMPACT),
+    Variable("peak_force", "impacts", _LOG, "N", "largest contact force", engines=_IMPACT),
+    Variable("energy_lost", "impacts", _LOG, "J", "energy lost in the contact", engines=_IMPACT),
+    Variable("complete", "impacts", _LOG, "1", "contact opened before the run ended", "bool", engines=_IMPACT),
+    Variable("position", "particles", _EACH_AXIS, "m", "position from the cavity's centre", engines=_DEM),
+    Variable("velocity", "particles", _EACH_AXIS, "m/s", "velocity relative to the base", engines=_DEM),
+    Variable("spin", "particles", _EACH_AXIS, "rad/s", "angular velocity", engines=_DEM),
+    Variable("radius", "particles", _EACH, "m", "radius", engines=_DEM),
+    Variable("mass", "particles", _EACH, "kg", "mass", engines=_DEM),
+    Variable("damper", "particles", _EACH, "1", "damper that holds the particle, from 0", "int", engines=_DEM),
+    Variable("species", "particles", _EACH, "1", "species of the particle, from 0", "int", engines=_DEM),
 )
-"""Runs of particle dampers."""
+
+
+@cache
+def dimensions(engine: Engine) -> dict[str, Dimension]:
+    """Return the dimensions of the runs of an engine, by name."""
+    return {dim.name: dim for dim in DIMENSIONS if engine in dim.engines}
+
+
+@cache
+def groups(engine: Engine) -> dict[str, Group]:
+    """Return the groups of the runs of an engine, by name, in the order of files."""
+    return {group.name: group for group in GROUPS if engine in group.engines}
+
+
+@cache
+def variables(engine: Engine, group: str | None = None) -> tuple[Variable, ...]:
+    """Return the variables that an engine writes, without the dimensions that its runs lack.
+
+    Parameters
+    ----------
+    engine
+        Engine of the run.
+    group
+        Group of the variables; default all.
+    """
+    known = dimensions(engine)
+    return tuple(
+        replace(v, dims=tuple(dim for dim in v.dims if dim in known))
+        for v in VARIABLES
+        if engine in v.engines and group in (None, v.group)
+    )
+
+
+@cache
+def channels(engine: Engine) -> tuple[str, ...]:
+    """Return the channels of the supplied energy: the losses and "motion", whose shares at the end add up to one."""
+    losses = (v.name for v in variables(engine) if v.cumulative and v.name.endswith("_loss"))
+    return (*(name.removesuffix("_loss") for name in losses), "motion")
+
+
+def explain_absence(name: str, engine: Engine) -> str:
+    """Return why runs of an engine have no group or variable of a name, and which groups they have."""
+    runs = {"impact": "1-D run (impact engine)", "dem": "3-D run (dem engine)"}[engine]
+    there = f"it has {', '.join(groups(engine))}"
+    for group in GROUPS:
+        if group.name == name:
+            return f"this {runs} has no {name!r}: {group.absent}; {there}"
+    same_name = [variable for variable in VARIABLES if variable.name == name]
+    for variable in same_name:
+        if engine in variable.engines:
+            return f"{name!r} is not one of the arrays along time; it is in run.{variable.group}"
+    for variable in same_name:
+        others = " and ".join(variable.engines)
+        return f"this {runs} has no {name!r}, which only the {others} engine writes; {there}"
+    return f"this {runs} has no {name!r}; {there}"
+
 
 HOW_ENDED = ("status", "warnings")
-"""What studies hold of each run beside its measures."""
+"""Variables of studies beside the measures of each run."""
 
 COUNTS: dict[str, str] = {
     "events": "touches, openings and other turns of a contact",
     "flights": "flights of balls between contacts",
     "contact_steps": "integration steps in contacts",
-    "rejected_steps": "integration steps that were tried again, shorter",
-    "collocated": "contacts solved as a whole",
+    "rejected_steps": "integration steps that were repeated with a shorter step",
+    "collocated": "contacts solved by collocation",
     "extrapolated": "impacts outside of the measured speeds of a law",
     "sticks": "balls that came to rest at a wall or a ball",
-    "impacts": "impacts, those that are not kept included",
+    "impacts": "impacts, including those that are not logged",
     "steps": "time steps",
-    "rebuilds": "neighbour lists made anew",
-    "refreshes": "neighbour lists looked through for pairs that may touch soon",
+    "rebuilds": "rebuilds of neighbour lists",
+    "refreshes": "searches of neighbour lists for pairs that may touch soon",
     "first_touches_particle": "first touches among particles",
     "first_touches_wall": "first touches of walls",
     "memory_bytes": "memory of particles, neighbours and contacts",
 }
-"""What the numbers in `counts` count; memory is in bytes."""
+"""Meanings of the numbers in `counts`; memory is in bytes."""
 
-FIGURES: dict[str, tuple[str, str]] = {
+DIAGNOSTICS: dict[str, tuple[str, str]] = {
     "step": ("s", "time step"),
-    "longest_automatic_step": ("s", "time step that would have been chosen"),
-    "expected_approach_speed": ("m/s", "approach speed that the step allows for"),
+    "longest_automatic_step": ("s", "time step that the automatic choice would take"),
+    "expected_approach_speed": ("m/s", "approach speed for which the step is chosen"),
     "largest_approach_speed": ("m/s", "largest approach speed at a first touch"),
     "steps_per_contact": ("1", "steps in the shortest contact"),
     "largest_overlap": ("1", "largest overlap over the smaller radius"),
@@ -294,4 +347,4 @@ FIGURES: dict[str, tuple[str, str]] = {
     "enduring_share": ("1", "share of the loss in contacts older than a quarter of a period"),
     "softened_enduring_share": ("1", "the same, of dampers with a softening above 1"),
 }
-"""Units and meanings of the numbers in `figures`."""
+"""Units and meanings of the numbers in `diagnostics`."""

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
-from .granular import GranularRun
 from .quantities import MISSING, digits, quantity
+from .schema import PARTNERS
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from rich.console import Group
 
-    from .run import Run
+    from .record import Record
 
 Value = float | int | str
 
@@ -25,7 +25,6 @@ _STILL = 1e-9
 """Of the largest motion of any point: a point that moves no more stands still but for rounding."""
 _CHANNEL_LABELS = {
     "viscous": "lost in the structure",
-    "impact": "lost in impacts",
     "normal": "lost in normal damping",
     "plastic": "lost in plastic flow",
     "sliding": "lost in sliding",
@@ -62,65 +61,61 @@ class _Row:
         return f"{value:,}".replace(",", " ") if isinstance(value, int) else value
 
 
-def _measure(run: Run) -> dict[str, Value]:
-    """Numbers of the summary, in SI units, in the order of its lines."""
+def _measure(run: Record) -> dict[str, Value]:
+    """Return the numbers of the summary, in SI units."""
     arrays = run.arrays
     values: dict[str, Value] = {"status": run.status, "end_time": float(arrays.time[-1])}
-    values |= _amounts(run)
+    if "impacts" in run.groups:
+        values |= _of_impacts(run)
+    if "particles" in run.groups:
+        values |= _of_particles(run)
     values["supplied_energy"] = float(run.ledger.supplied[-1])
-    values |= {f"share_{channel}": run.ledger.shares[channel] for channel in arrays.channels}
-    if isinstance(run, GranularRun):
-        lost = zip(run.arrays.partners, run.ledger.partner_share, strict=True)
-        values |= {f"share_at_{partner}": float(share) for partner, share in lost}
+    values |= {f"share_{channel}": share for channel, share in run.ledger.shares.items()}
     if len(arrays.dampers) > 1:
         shares = zip(arrays.dampers, run.ledger.damper_share, strict=True)
         values |= {f"share_in[{damper}]": float(share) for damper, share in shares}
-    values["closure"] = run.closure
-    values |= _extremes(run)
+    values["energy_residual"] = run.energy_residual
     if arrays.mode_frequency.size:
         for k, point in enumerate(arrays.points):
             x = arrays.displacement[:, k]
             values[f"peak_displacement[{point}]"] = _largest(np.abs(x))
             values[f"rms_displacement[{point}]"] = _rms(arrays.time, x)
-    values["computing_time"] = arrays.wall_time
-    if isinstance(run, GranularRun):
-        moved = run.arrays.radius.size * run.arrays.counts.get("steps", 0)
-        values["particle_steps_per_second"] = moved / arrays.wall_time if arrays.wall_time else float("nan")
+    values["computing_time"] = run.wall_time
     return values
 
 
-def _amounts(run: Run) -> dict[str, Value]:
-    """How much there is of what a run is about."""
-    if not isinstance(run, GranularRun):
-        return {"impacts": len(run.arrays.impacts)}
-    arrays = run.arrays
-    return {
-        "particles": arrays.radius.size,
-        "particle_mass": float(arrays.particle_mass.sum()),
-        "first_touches": sum(arrays.counts.get(f"first_touches_{partner}", 0) for partner in arrays.partners),
-        "contacts": float(arrays.contacts.sum(axis=(1, 2)).mean()),
-        "step": arrays.figures.get("step", float("nan")),
-        "steps_per_contact": arrays.figures.get("steps_per_contact", float("nan")),
-    }
-
-
-def _extremes(run: Run) -> dict[str, Value]:
-    """The largest of what contacts saw."""
-    if isinstance(run, GranularRun):
-        names = ("largest_overlap", "largest_approach_speed")
-        return {name: run.arrays.figures.get(name, float("nan")) for name in names}
+def _of_impacts(run: Record) -> dict[str, Value]:
+    """Return the numbers of a run with an impact log."""
     log = run.arrays.impacts
     # Hard impacts have no force, and a contact cut off by the end may lack a number.
     return {
+        "impacts": len(log),
         "peak_contact_force": _largest(log.peak_force[np.isfinite(log.peak_force)]),
         "largest_approach_speed": _largest(log.approach_speed[np.isfinite(log.approach_speed)]),
     }
 
 
-def _notes(run: Run) -> tuple[str, ...]:
-    """What is said below the numbers."""
+def _of_particles(run: Record) -> dict[str, Value]:
+    """Return the numbers of a run with particles."""
+    arrays = run.arrays
+    moved = len(arrays.particles) * run.counts.get("steps", 0)
+    names = ("step", "steps_per_contact", "largest_overlap", "largest_approach_speed")
+    shares = zip(PARTNERS, run.ledger.partner_share, strict=True)
+    return {
+        "particles": len(arrays.particles),
+        "particle_mass": float(arrays.particle_mass.sum()),
+        "first_touches": sum(run.counts.get(f"first_touches_{partner}", 0) for partner in PARTNERS),
+        "contacts": float(arrays.contacts.sum(axis=(1, 2)).mean()),
+        **{name: run.diagnostics.get(name, float("nan")) for name in names},
+        **{f"share_at_{partner}": float(share) for partner, share in shares},
+        "particle_steps_per_second": moved / run.wall_time if run.wall_time else float("nan"),
+    }
+
+
+def _notes(run: Record) -> tuple[str, ...]:
+    """Return the lines below the numbers."""
     message = (run.message,) if run.message and not run.ok else ()
-    return message + run.arrays.notes
+    return message + run.notes
 
 
 def _largest(x: Any) -> float:
@@ -156,7 +151,7 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
     rows += [_Row(f"share_at_{partner}", told, "%") for partner, told in _PARTNER_LABELS.items()]
     rows += [_Row(key, f"lost in {name}", "%") for key, name in _largest_of("share_in", all_values)]
     rows += [
-        _Row("closure", "ledger closure", "order"),
+        _Row("energy_residual", "energy residual", "order"),
         _Row("largest_overlap", "largest overlap over radius", "%"),
         _Row("peak_contact_force", "peak contact force", "N"),
         _Row("largest_approach_speed", "largest approach speed", "m/s"),
@@ -278,14 +273,14 @@ class Summary(_Report):
     ----------
     values : dict
         Numbers in SI units: `status`, `end_time`, `impacts`, `supplied_energy`, `share_viscous`,
-        `share_impact`, `share_plastic`, `share_motion` (of the energy supplied, adding to one), `closure`,
+        `share_normal`, `share_plastic`, `share_motion` (of the energy supplied, adding to one), `energy_residual`,
         `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`,
-        `rms_displacement[point]`, `computing_time`. Of particles in space: `particles`, `particle_mass`,
-        `first_touches`, `contacts`, `step`, `steps_per_contact`, shares by channel and, as `share_at_particle` and
-        `share_at_wall`, by partner, `largest_overlap` (of the smaller radius), `particle_steps_per_second`.
+        `rms_displacement[point]`, `computing_time`. For 3-D runs instead of the impacts: `particles`, `particle_mass`,
+        `first_touches`, `contacts`, `step`, `steps_per_contact`, `share_sliding`, `share_rolling`, shares by partner as
+        `share_at_particle` and `share_at_wall`, `largest_overlap` (of the smaller radius), `particle_steps_per_second`.
     """
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Record) -> None:
         super().__init__("", ("",), _notes(run))
         self.values = _measure(run)
 
@@ -314,7 +309,7 @@ class Comparison(_Report):
         When there is no run.
     """
 
-    def __init__(self, runs: Mapping[str, Run], title: str = "") -> None:
+    def __init__(self, runs: Mapping[str, Record], title: str = "") -> None:
         if not runs:
             raise ValueError("there is no run to compare")
         notes = tuple(f"{name}: {note}" for name, run in runs.items() for note in _notes(run))
@@ -326,7 +321,7 @@ class Comparison(_Report):
         return [(row.label, *(row.text(values) for values in every)) for row in _rows(every)]
 
 
-def compare(runs: Mapping[str, Run], title: str = "") -> Comparison:
+def compare(runs: Mapping[str, Record], title: str = "") -> Comparison:
     """Set the summaries of several runs side by side.
 
     Parameters

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.analysis.granular import LEAST_SAMPLES
+from rattlebox.analysis.shaken import LEAST_SAMPLES
 from rattlebox.engines.batch import Look, run_block
 from rattlebox.engines.pack import Batch, Packed, pack_parts
 from rattlebox.engines.simulate import simulate_many

@@ -14,7 +14,7 @@ from scipy.integrate import trapezoid
 
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox.analysis import settling_time, shaken_cavity
-from rattlebox.analysis.granular import LEAST_SAMPLES, StillCavity
+from rattlebox.analysis.shaken import LEAST_SAMPLES, StillCavity
 from rattlebox.engines.dem import objection, settled, simulate_dem
 from rattlebox.engines.dem_step import WARNINGS, warnings_of
 from rattlebox.engines.status import REFUSED, STATUSES
@@ -22,8 +22,8 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
 from rattlebox.model.space import unit_vector
-from rattlebox.results import GranularRun
-from rattlebox.results.schema import GRANULAR_CHANNELS
+from rattlebox.results import Run
+from rattlebox.results.schema import variables
 
 from .impact_work import Extra, ImpactWork
 from .measures import MEASURES
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
     from rattlebox.model.case import Case
 
-_SUMS = ("load_work", "base_work", "viscous_loss", "normal_loss", "plastic_loss", "sliding_loss", "rolling_loss")
 _NUMBERS = {name: number for number, (name, _) in enumerate(STATUSES)}
 
 
@@ -54,8 +53,8 @@ class Seen:
         Of the first harmonic load or motion [Hz], NaN without one that acts.
     """
 
-    run: GranularRun
-    whole: GranularRun
+    run: Run
+    whole: Run
     start: float
     motion: NDArray[np.float64]
     speed: NDArray[np.float64]
@@ -79,7 +78,7 @@ class Seen:
     @property
     def loss(self) -> float:
         """In all contacts [J]."""
-        return float(self.run.ledger.impact_loss[-1])
+        return float(self.run.ledger.contact_loss[-1])
 
     def rms(self, values: NDArray[np.float64]) -> float:
         """Return the root of the mean square over the window."""
@@ -117,9 +116,9 @@ _FOUND: dict[str, Callable[[Seen], float]] = {
     "viscous_loss": lambda s: s.run.arrays.viscous_loss[-1],
     "impact_loss": lambda s: s.loss,
     "viscous_share": lambda s: s.run.ledger.shares["viscous"],
-    "impact_share": lambda s: sum(s.run.ledger.shares[channel] for channel in GRANULAR_CHANNELS[1:-1]),
+    "impact_share": lambda s: s.run.ledger.contact_share,
     "motion_share": lambda s: s.run.ledger.shares["motion"],
-    "closure": lambda s: s.run.closure,
+    "closure": lambda s: s.run.energy_residual,
     "peak": lambda s: np.abs(s.motion).max(),
     "rms": lambda s: s.rms(s.motion),
     "peak_velocity": lambda s: np.abs(s.speed).max(),
@@ -235,10 +234,9 @@ class ParticleWork(ImpactWork):
             rows[index] = self.row(case, run, index)
         return self.columns(rows, start, stop)
 
-    def row(self, case: Case, run: GranularRun, index: int) -> dict[str, float]:
+    def row(self, case: Case, run: Run, index: int) -> dict[str, float]:
         """Return what is kept of a run, and of what was run, by name."""
-        arrays = run.arrays
-        warned = warnings_of(arrays.figures)
+        warned = warnings_of(run.diagnostics)
         row: dict[str, float] = {
             "status": _NUMBERS[run.status],
             "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in warned),
@@ -307,7 +305,7 @@ class ParticleWork(ImpactWork):
                 _check_dense(case, name)
         return case
 
-    def _seen_in(self, run: GranularRun, case: Case) -> Seen:
+    def _seen_in(self, run: Run, case: Case) -> Seen:
         frequency = _frequency(case)
         start = self.skip if self.cycles is None else self.cycles[0] / frequency
         window = since(run, start)
@@ -328,7 +326,7 @@ class ParticleWork(ImpactWork):
         return Seen(window, run, start, arrays.displacement[:, column], arrays.velocity[:, column], frequency)
 
 
-def since(run: GranularRun, start: float) -> GranularRun:
+def since(run: Run, start: float) -> Run:
     """Return a run from a time on [s], between two samples on the line; work and losses count from there."""
     arrays = run.arrays
     times = arrays.time
@@ -336,16 +334,16 @@ def since(run: GranularRun, start: float) -> GranularRun:
     between = 0 < first < len(times) and times[first] > start * (1 + 1e-9)
     part = (start - times[first - 1]) / (times[first] - times[first - 1]) if between else 0.0
     cut: dict[str, Any] = {"time": np.concatenate([[start], times[first:]]) if between else times[first:]}
-    for variable in arrays.form.stored:
-        if variable.dims[0] == "time":
+    for variable in variables(arrays.engine):
+        if variable.dims[0] == "time" and not variable.derived:
             values = getattr(arrays, variable.name)
             if between:
                 entry = values[first - 1] + part * (values[first] - values[first - 1])
                 values = np.concatenate([entry[None].astype(values.dtype), values[first:]])
             else:
                 values = values[first:]
-            cut[variable.name] = values - values[0] if variable.name in _SUMS else values
-    return GranularRun(replace(arrays, **cut), run.case_toml, run.provenance) if first else run
+            cut[variable.name] = values - values[0] if variable.cumulative else values
+    return replace(run, arrays=arrays.replaced(**cut)) if first else run
 
 
 def _driver(case: Case) -> Harmonic | None:

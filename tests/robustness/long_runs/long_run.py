@@ -46,12 +46,12 @@ def case(**changes: Any) -> rb.Case:
 
 def bits(run: Run) -> dict[str, Any]:
     """Every array and number of a run, to the last bit, but the computing time and the memory that the run took."""
-    values = {name: getattr(run.arrays, name) for name in run.arrays.__dataclass_fields__ if name != "wall_time"}
-    values["counts"] = {name: count for name, count in run.arrays.counts.items() if name != "memory_bytes"}
-    return {
-        name: value.tobytes() if isinstance(value, np.ndarray) else dict(value) if hasattr(value, "keys") else value
-        for name, value in values.items()
-    }
+    counts = {name: count for name, count in run.counts.items() if name != "memory_bytes"}
+    values = vars(run.arrays) | {f"particles.{name}": column for name, column in vars(run.arrays.particles).items()}
+    del values["particles"]
+    arrays = {name: value.tobytes() if isinstance(value, np.ndarray) else value for name, value in values.items()}
+    told = {"status": run.status, "message": run.message, "notes": run.notes, "diagnostics": dict(run.diagnostics)}
+    return arrays | told | {"counts": counts}
 
 
 if __name__ == "__main__":

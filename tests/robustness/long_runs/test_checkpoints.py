@@ -160,7 +160,7 @@ def test_states_are_kept_by_the_clock_of_the_run(
         checkpoint=tmp_path / "run.checkpoint",
         snapshots=tmp_path / "run.vtkhdf",
     )
-    step = run.arrays.figures["step"]
+    step = run.diagnostics["step"]
     assert times == pytest.approx([*np.arange(7) * 8e-3, 0.05], abs=1.5 * step)
     assert bits(run) == whole
 
@@ -418,7 +418,7 @@ def test_a_particle_that_leaves_is_told(tmp_path: Path) -> None:
     assert run.message.startswith(where)
     told = run.message.removeprefix(where).split()
     assert float(told[0]) == pytest.approx(40, rel=0.1)
-    step = run.arrays.figures["step"]
+    step = run.diagnostics["step"]
     assert f"The step was {step:.4g} s. The last checkpoint is of t = 0 s, in {file.name}." in run.message
     time_told = float(run.message.split("at t = ")[1].split()[0])
     assert 0.012 / 40 < time_told < 0.0185 / 40 + 3 * step

@@ -27,8 +27,8 @@ def test_shares_add_up_to_one_and_are_those_of_the_ledger():
     assert float(shares.sum()) == pytest.approx(1.0, abs=1e-12)
     work = run.arrays.load_work[-1]
     assert float(shares.sel(channel="viscous")) == pytest.approx(run.arrays.viscous_loss[-1] / work)
-    assert float(shares.sel(channel="impact")) == pytest.approx(run.arrays.normal_loss[-1, 0] / work)
-    assert 0.05 < float(shares.sel(channel="impact")) < 0.95
+    assert float(shares.sel(channel="normal")) == pytest.approx(run.arrays.normal_loss[-1, 0] / work)
+    assert 0.05 < float(shares.sel(channel="normal")) < 0.95
     assert shares.attrs["units"] == "1"
 
 

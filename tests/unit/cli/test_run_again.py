@@ -137,7 +137,7 @@ def test_a_run_tells_how_far_it_is_where_there_is_no_terminal(answer: Answer, mo
     assert answer("run", "beads.toml", "--no-figures")[::2] == (0, "")
     monkeypatch.setattr("rattlebox.cli.run._MINUTE", 0.0)
     code, _, errors = answer("run", "beads.toml", "--no-figures")
-    steps = rb.load("out/run.nc").arrays.counts["steps"] - 1
+    steps = rb.load("out/run.nc").counts["steps"] - 1
     line = re.compile(rf"([\d,]+) of {steps:,} steps \((\d+)%\), (\d+:\d\d:\d\d) left")
     told = [line.fullmatch(text) for text in errors.splitlines()]
     assert code == 0 and all(told)

@@ -35,7 +35,7 @@ def run(folder: Path, *options: str, case: str = CASE) -> subprocess.CompletedPr
 
 
 def test_a_case_with_particles_runs_from_its_file(tmp_path: Path) -> None:
-    """The terminal tells particles, contacts, energy, closure, the step with its limit, and the speed; files are written."""
+    """The terminal shows particles, contacts, energy, its residual, the step with its limit, and the speed; files exist."""
     done = run(tmp_path, "--csv")
     assert done.returncode == 0, done.stderr
     told = " ".join(done.stdout.split())
@@ -44,7 +44,7 @@ def test_a_case_with_particles_runs_from_its_file(tmp_path: Path) -> None:
         "contacts in the mean",
         "lost in sliding",
         "lost at walls",
-        "ledger closure",
+        "energy residual",
         "time step",
     ):
         assert said in told
@@ -83,8 +83,8 @@ def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
     ("where", "kept"),
     [
         ("rattlebox.engines.dem.settle", "nothing is kept yet"),
-        ("rattlebox.results.GranularRun.save", "the same command goes on from out/run.checkpoint"),
-        ("rattlebox.results.GranularRun.to_csv", "the same command goes on from out/run.checkpoint"),
+        ("rattlebox.results.Run.save", "the same command goes on from out/run.checkpoint"),
+        ("rattlebox.results.Run.to_csv", "the same command goes on from out/run.checkpoint"),
     ],
 )
 def test_a_stop_is_told_wherever_it_comes(

@@ -23,7 +23,7 @@ def notes(structure: Any = None, load: Any = PULSE, method: Any = None, **change
         duration="0.1 s",
         method=method or rb.EventDriven(),
     )
-    return rb.simulate(case).arrays.notes
+    return rb.simulate(case).notes
 
 
 @pytest.mark.parametrize("method", [rb.EventDriven(), rb.Newton(), rb.TwoStep()], ids=lambda method: method.kind)
@@ -54,7 +54,7 @@ def test_each_damper_is_judged_by_itself() -> None:
     )
     structure = rb.SDOF(mass="20 kg", stiffness="80 kN/m")
     run = rb.simulate(rb.Case(structure=structure, load=PULSE, dampers=[near, far], duration="0.1 s"))
-    (note,) = run.arrays.notes
+    (note,) = run.notes
     assert "far" in note and "near" not in note
 
 
@@ -84,7 +84,7 @@ def test_overlaps_are_measured_by_the_smaller_ball() -> None:
     )
     run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="1 ms"))
     assert run.arrays.impacts.contact.tolist() == [1]
-    (note,) = run.arrays.notes
+    (note,) = run.notes
     assert f"reach {100 * run.arrays.impacts.peak_overlap[0] / 1e-3:.3g} % of the radius" in note
 
 
@@ -101,7 +101,7 @@ def test_particles_that_never_touch_are_noted(size: Any, noted: int) -> None:
         softening=1000,
     )
     run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="10 ms"))
-    found = [note for note in run.arrays.notes if "touched anything" in note]
+    found = [note for note in run.notes if "touched anything" in note]
     assert len(found) == noted
     assert all("relative motion 10.0 mm" in note for note in found)
 
@@ -131,7 +131,7 @@ def particles_at(speed: Any, contact: Any) -> tuple[str, ...]:
         wall="steel",
         velocity=(speed, 0, 0),
     )
-    return rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="20 ms")).arrays.notes
+    return rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="20 ms")).notes
 
 
 MEASURED = rb.TabulatedNormal(overlap=("0 um", "5 um", "10 um"), force=("0 N", "50 N", "140 N"))
@@ -159,5 +159,5 @@ def test_no_silent_extrapolation_in_three_dimensions() -> None:
         )
         run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration=1.5e-3 / speed))
         assert run.ok
-        found = [note for note in run.arrays.notes if "measured up to 10.0 µm" in note]
-        assert len(found) == count, run.arrays.notes
+        found = [note for note in run.notes if "measured up to 10.0 µm" in note]
+        assert len(found) == count, run.notes

@@ -48,15 +48,15 @@ def small(amplitude: float, frequency: float, softening: Any, **changes: Any) ->
 
 def warnings(run: rb.Run) -> list[str]:
     """Return the warnings of a run."""
-    return [note for note in run.arrays.notes if note.startswith("warning")]
+    return [note for note in run.notes if note.startswith("warning")]
 
 
 @pytest.mark.parametrize("softening", [100, 20])
 def test_a_resting_softened_bed_has_both_warnings(softening: float) -> None:
     """At half of gravity the loss is 1.1 and 0.18 m V^2 at softening 100 and 20, and 0.01 without."""
     run = rb.simulate(shaken(5, 180, softening))
-    assert run.arrays.figures["softening_change"] > MOST_CHANGE
-    assert run.arrays.figures["enduring_share"] > 0.4
+    assert run.diagnostics["softening_change"] > MOST_CHANGE
+    assert run.diagnostics["enduring_share"] > 0.4
     found = warnings(run)
     assert len(found) == 2 and "resonance" in found[0] and "quarter of a period" in found[1]
 
@@ -72,7 +72,7 @@ def test_motions_given_as_displacement_are_judged_alike() -> None:
     motion = rb.Harmonic(amplitude=(12 / (2 * math.pi * 160) ** 2, "m"), frequency=160, direction="z")
     made = small(12, 160, 300)
     moved = rb.simulate(made.model_copy(update={"structure": rb.Shaker(motion=motion)}))
-    assert moved.arrays.figures["softening_change"] == rb.simulate(made).arrays.figures["softening_change"] > 0.2
+    assert moved.diagnostics["softening_change"] == rb.simulate(made).diagnostics["softening_change"] > 0.2
 
 
 def test_each_damper_has_its_own_warnings() -> None:
@@ -148,11 +148,11 @@ def test_the_resonance_falls_with_softening() -> None:
 def test_auto_takes_the_largest_within_its_bounds(amplitude: float, frequency: float, limit: str) -> None:
     """It runs as that number does, says so, and has no warning."""
     run = rb.simulate(small(amplitude, frequency, "auto"))
-    chosen = run.arrays.figures["softening"]
+    chosen = run.diagnostics["softening"]
     assert chosen > 1
-    change = run.arrays.figures["softening_change"]
+    change = run.diagnostics["softening_change"]
     assert 0.9 * AUTO_CHANGE < change <= AUTO_CHANGE if limit == "the loss" else change < AUTO_CHANGE
-    assert any(note.startswith(f"softening {chosen:g}, limited by {limit}") for note in run.arrays.notes)
+    assert any(note.startswith(f"softening {chosen:g}, limited by {limit}") for note in run.notes)
     assert warnings(run) == []
     same = rb.simulate(small(amplitude, frequency, chosen))
     assert np.array_equal(run.arrays.cavity_force, same.arrays.cavity_force)
@@ -168,8 +168,8 @@ def test_auto_takes_the_largest_within_its_bounds(amplitude: float, frequency: f
 def test_auto_is_one_where_nothing_can_be_promised(changes: dict[str, Any]) -> None:
     """For beds that stay on the floor, and without weight."""
     run = rb.simulate(small(**{"amplitude": 30.0, "frequency": 100, "softening": "auto", "cycles": 2, **changes}))
-    assert run.arrays.figures["softening"] == 1
-    assert any(note.startswith("softening 1: ") for note in run.arrays.notes)
+    assert run.diagnostics["softening"] == 1
+    assert any(note.startswith("softening 1: ") for note in run.notes)
 
 
 def test_auto_on_a_structure_looks_at_its_modes() -> None:
@@ -178,7 +178,7 @@ def test_auto_on_a_structure_looks_at_its_modes() -> None:
     def softening(stiffness: float) -> float:
         structure = rb.SDOF(mass="1 kg", stiffness=stiffness, velocity="0.3 m/s")
         case = small(10, 100, "auto").model_copy(update={"structure": structure, "duration": 1e-3})
-        return rb.simulate(rb.Case.model_validate(case.model_dump())).arrays.figures["softening"]
+        return rb.simulate(rb.Case.model_validate(case.model_dump())).diagnostics["softening"]
 
     assert 1 < softening(2.5e6) < softening(1e6)
 

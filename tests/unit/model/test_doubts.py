@@ -18,7 +18,7 @@ def notes(structure=None, **changes):
         damper=rb.ImpactDamper(**BALL | changes),
         duration="1 ms",
     )
-    return tuple(note for note in rb.simulate(case).arrays.notes if "touched anything" not in note)
+    return tuple(note for note in rb.simulate(case).notes if "touched anything" not in note)
 
 
 def test_nothing_is_noted_of_what_is_usual():
@@ -51,10 +51,10 @@ def test_particles_are_compared_as_well(tmp_path):
     )
     case = rb.Case(structure=rb.SDOF(mass=0.01, stiffness=100), damper=grains, duration="1 ms")
     run = rb.simulate(case)
-    assert run.arrays.notes[0].startswith("step ")
+    assert run.notes[0].startswith("step ")
     said = "warning: the particles of damper weigh 0.01776 kg, 1.78 times as much"
-    assert any(note.startswith(said) for note in run.arrays.notes[1:])
-    assert rb.load(run.save(tmp_path / "run.nc")).arrays.notes == run.arrays.notes
+    assert any(note.startswith(said) for note in run.notes[1:])
+    assert rb.load(run.save(tmp_path / "run.nc")).notes == run.notes
 
 
 @pytest.mark.parametrize(("friction", "told"), [(0.4, 0), ("40 %", 0), (40, 1)])
@@ -69,7 +69,7 @@ def test_friction_in_per_cent_is_noted(friction, told):
         softening=1000,
     )
     run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=grains, duration="1 ms"))
-    assert [note for note in run.arrays.notes if "friction" in note] == told * [
+    assert [note for note in run.notes if "friction" in note] == told * [
         "warning: the friction in damper is 40; per cent need their sign: 40 % is 0.4"
     ]
 
@@ -78,8 +78,8 @@ def test_notes_of_impacts_are_kept_and_shown(tmp_path):
     """A warning is below the summary, and in the file of the run."""
     case = rb.Case(structure=rb.Fixed(), damper=rb.ImpactDamper(**BALL | {"gap": 2.0}), duration="1 ms")
     run = rb.simulate(case)
-    assert "2 m" in run.arrays.notes[0]
-    assert set(run.arrays.notes) <= set(str(run.summary()).splitlines())
+    assert "2 m" in run.notes[0]
+    assert set(run.notes) <= set(str(run.summary()).splitlines())
     assert rb.load(run.save(tmp_path / "run.nc")) == run
 
 

@@ -294,7 +294,7 @@ def test_structures_in_case_files_and_both_engines(kind: str) -> None:
     case = rb.Case.from_toml(head + load + line)
     assert rb.Case.from_toml(case.to_toml()) == case
     ball = rb.simulate(case)
-    assert ball.ok and ball.closure < 1e-9
+    assert ball.ok and ball.energy_residual < 1e-9
     box = (
         f'[damper]\npoint = "{POINTS[kind]}"\ncavity = {{ kind = "box", size = ["10.2 mm", "11 mm", "11 mm"] }}\n'
         'particles = { material = "steel", diameter = "10 mm", count = 1 }\ndirection = "x"\n'

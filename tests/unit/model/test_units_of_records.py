@@ -70,7 +70,7 @@ def test_a_unit_that_nobody_states_is_noted(tmp_path: Path, above: str) -> None:
     )
     for each in (case, rb.Case.from_toml(case.to_toml())):
         assert each == case
-        (note,) = rb.simulate(each).arrays.notes
+        (note,) = rb.simulate(each).notes
         assert "quake.csv" in note and "m/s^2 is assumed" in note and "0.2 m/s^2 = 0.02039 g" in note
     assert "m/s^2 is assumed" in str(rb.simulate(case).summary())
     assert doubts(case, signals=False) == (note,)  # of studies, too
@@ -81,7 +81,7 @@ def test_a_unit_that_is_stated_is_not_noted(tmp_path: Path) -> None:
     for above, options in (("t,a (g)", {}), ("t,a", {"unit": "m/s^2"})):
         base = rb.Record(file=written(tmp_path, above), **options)
         case = rb.Case(structure=rb.SDOF(mass=1, stiffness=100), base=base, duration=0.02)
-        assert rb.simulate(case).arrays.notes == ()
+        assert rb.simulate(case).notes == ()
 
 
 def test_units_mean_what_their_quantity_is() -> None:

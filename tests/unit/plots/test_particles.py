@@ -307,8 +307,10 @@ def test_films_without_the_extra_are_told(
 def test_runs_without_particles_are_told(run: Any, tmp_path: Path) -> None:
     """What has no particles to draw, or no snapshots to film, is refused as what it is."""
     plain = rb.simulate(rb.Case(structure=rb.SDOF(mass=1, stiffness=1, velocity=1), duration=1))
-    with pytest.raises(TypeError, match="a run with particles in space or its snapshots are needed, not <Run finished"):
-        plot_particles(plain)  # type: ignore[arg-type]
+    with pytest.raises(AttributeError, match="has no 'particles'"):
+        plot_particles(plain)
+    with pytest.raises(TypeError, match=r"a run with particles or its snapshots are needed, not 'run\.nc'"):
+        plot_particles("run.nc")  # type: ignore[arg-type]
     for of in (plain, run[0]):
         with pytest.raises(
             TypeError, match=r'snapshots are needed, as rb.Snapshots\("run.vtkhdf"\), not <Run finished'

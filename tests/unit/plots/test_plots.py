@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -92,7 +91,7 @@ def test_ledger_closes_in_the_picture(run: Run) -> None:
 
 def test_open_ledger_shows(run: Run) -> None:
     """Where energy is missing, the areas end below the line."""
-    leaking = Run(replace(run.arrays, viscous_loss=0.5 * run.arrays.viscous_loss))
+    leaking = Run(run.arrays.replaced(viscous_loss=0.5 * run.arrays.viscous_loss))
     lower = leaking.plot.energy().axes[1]
     edge = lower.collections[-1].get_paths()[0].vertices
     last = edge[edge[:, 0] == edge[:, 0].max(), 1].max()
@@ -105,9 +104,9 @@ def test_all_channels_are_told_apart_in_grey(run: Run) -> None:
     def grey(name: str) -> float:
         return float(np.dot(to_rgb(CHANNEL_COLOURS[name]), (0.299, 0.587, 0.114)))
 
-    order = [grey(name) for name in ("viscous", "impact", "plastic", "motion")]
+    order = [grey(name) for name in ("viscous", "normal", "plastic", "motion")]
     assert np.min(np.diff(order)) > 0.1
-    flowing = Run(replace(run.arrays, plastic_loss=run.arrays.normal_loss / 2))
+    flowing = Run(run.arrays.replaced(plastic_loss=run.arrays.normal_loss / 2))
     assert len(flowing.plot.energy().axes[1].collections) == 4
 
 
@@ -121,7 +120,7 @@ def test_logarithmic_energies(run: Run) -> None:
 
 def test_gravity_is_drawn(run: Run) -> None:
     """A gravity potential has its own line, counted from its lowest value."""
-    heavy = Run(replace(run.arrays, gravity_energy=-10.0 - run.arrays.ball_position))
+    heavy = Run(run.arrays.replaced(gravity_energy=-10.0 - run.arrays.ball_position))
     upper = heavy.plot.energy().axes[0]
     names = [text.get_text() for text in upper.get_legend().get_texts()]
     assert names == ["structure", "balls", "gravity"]
@@ -144,7 +143,7 @@ def test_impacts_without_force_or_restitution(run: Run) -> None:
     """Quantities that no impact has get no empty panel."""
     log = run.arrays.impacts
     nan = np.full(len(log), np.nan)
-    bare = Run(replace(run.arrays, impacts=replace(log, peak_force=nan, restitution=nan)))
+    bare = Run(run.arrays.replaced(impacts=log.replaced(peak_force=nan, restitution=nan)))
     assert len(bare.plot.impacts().axes) == 1
     assert len(bare.plot.impacts(log=True).axes) == 1
 
@@ -208,8 +207,7 @@ def test_long_names_stay_on_the_paper(two_dampers: Run) -> None:
     """Names longer than the paper are wide are cut rather than squeezing the panels away."""
     arrays = two_dampers.arrays
     points = ("left end of the upper flange " * 4, "right end")
-    double = replace(
-        arrays,
+    double = arrays.replaced(
         points=points,
         displacement=np.repeat(arrays.displacement, 2, axis=1),
         velocity=np.repeat(arrays.velocity, 2, axis=1),

@@ -11,7 +11,7 @@ from math import cos, exp, inf, pi, sin, sqrt
 
 import numpy as np
 
-from rattlebox.results import ImpactArrays, Provenance, Run, RunArrays
+from rattlebox.results import Provenance, Run, RunArrays
 
 MASS, STIFFNESS, DAMPING = 20.0, 80e3, 25.3
 BALL_MASS, HERTZ = 1.2, 2.668518e10
@@ -143,24 +143,24 @@ def make_run(
             load_work=np.array(kept["work"]),
             viscous_loss=np.array(kept["viscous"]),
             normal_loss=np.array(kept["lost"]).reshape(times, len(rows)),
-            impacts=ImpactArrays(
-                damper=columns[0].astype(int),
-                contact=columns[1].astype(int),
-                time=columns[2],
-                approach_speed=columns[3],
-                restitution=columns[4],
-                separation_speed=columns[5],
-                duration=columns[6],
-                peak_overlap=columns[7],
-                peak_force=columns[8],
-                energy_lost=columns[9],
-                complete=np.ones(len(log), bool),
-            ),
-            status=status,
-            message=message,
-            counts={"impacts": len(log), "flights": len(log) + 1},
-            wall_time=1.25e-3,
+            impacts={
+                "damper": columns[0].astype(int),
+                "contact": columns[1].astype(int),
+                "time": columns[2],
+                "approach_speed": columns[3],
+                "restitution": columns[4],
+                "separation_speed": columns[5],
+                "duration": columns[6],
+                "peak_overlap": columns[7],
+                "peak_force": columns[8],
+                "energy_lost": columns[9],
+                "complete": np.ones(len(log), bool),
+            },
         ),
         CASE,
         PROVENANCE,
+        status=status,
+        message=message,
+        counts={"impacts": len(log), "flights": len(log) + 1},
+        wall_time=1.25e-3,
     )

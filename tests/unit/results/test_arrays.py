@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.results import GranularArrays, ImpactArrays, Run, RunArrays
+from rattlebox.results import Run, RunArrays, Table
+
+BOX = Path(__file__).parents[3] / "examples/steel_balls_in_a_box.toml"
 
 
 def test_missing_fields_are_zero() -> None:
@@ -52,17 +55,17 @@ def test_references_are_checked(run: Run) -> None:
     """Impacts of a damper or a contact that does not exist are refused."""
     log, count = run.arrays.impacts, len(run.arrays.impacts)
     with pytest.raises(ValueError, match="damper outside"):
-        replace(run.arrays, impacts=replace(log, damper=np.ones(count, int)))
+        run.arrays.replaced(impacts=log.replaced(damper=np.ones(count, int)))
     with pytest.raises(ValueError, match="outside its row"):
-        replace(run.arrays, impacts=replace(log, contact=np.full(count, 2)))
+        run.arrays.replaced(impacts=log.replaced(contact=np.full(count, 2)))
     with pytest.raises(ValueError, match="identifier"):
-        replace(run.arrays, counts={"not a name": 1})
+        replace(run, counts={"not a name": 1})
 
 
 def test_impacts_need_every_column() -> None:
     """An impact log with times alone is refused."""
     with pytest.raises(ValueError, match="damper of the impacts is missing"):
-        ImpactArrays(time=np.array([0.1]))
+        Table("impacts", "impact", time=np.array([0.1]))
 
 
 def test_arrays_are_read_only(run: Run) -> None:
@@ -75,31 +78,30 @@ def test_equality_sees_one_bit(run: Run) -> None:
     """Equality holds for copies with NaN and fails for one changed bit."""
     nan = np.full(len(run.arrays.impacts), np.nan)
     log = run.arrays.impacts
-    one, two = (replace(run.arrays, impacts=replace(log, restitution=nan.copy())) for _ in "12")
+    one, two = (run.arrays.replaced(impacts=log.replaced(restitution=nan.copy())) for _ in "12")
     assert one == two
     changed = run.arrays.velocity.copy()
     changed[5, 0] = np.nextafter(changed[5, 0], np.inf)
-    assert replace(run.arrays, velocity=changed) != run.arrays
-    assert replace(run.arrays, status="interrupted") != run.arrays
+    assert run.arrays.replaced(velocity=changed) != run.arrays
+    assert replace(run, status="interrupted") != run
 
 
 def test_runs_travel_between_processes(two_dampers: Run) -> None:
     """A pickled run comes back equal, with its computing time and provenance."""
     again = pickle.loads(pickle.dumps(two_dampers))
     assert again == two_dampers
-    assert again.arrays.wall_time == two_dampers.arrays.wall_time
+    assert again.wall_time == two_dampers.wall_time
     assert again.provenance == two_dampers.provenance
 
 
 def test_how_a_run_was_computed_does_not_count(run: Run) -> None:
     """Runs differ by their case, counts and results, not by when, where, how fast and in how much memory they came to be."""
-    counts = {**run.arrays.counts, "memory_bytes": 1000}
-    arrays = replace(run.arrays, counts=counts, wall_time=5.0)
+    counts = {**run.counts, "memory_bytes": 1000}
     elsewhere = replace(run.provenance, version="9.9", created="2031-01-01", platform="elsewhere")
-    assert Run(arrays, run.case_toml, elsewhere) == run
-    assert Run(arrays, run.case_toml + "seed = 2\n") != run
+    assert replace(run, counts=counts, wall_time=5.0, provenance=elsewhere) == run
+    assert replace(run, source=run.case_toml + "seed = 2\n") != run
     for changes in ({"counts": {**counts, "flights": 0}}, {"counts": {"memory_bytes": 1000}}, {"notes": ("beware",)}):
-        assert Run(replace(arrays, **changes), run.case_toml) != run
+        assert replace(run, **changes) != run
     assert run.__eq__(run.arrays) is NotImplemented
     assert run.arrays.__eq__(run) is NotImplemented
     assert run != "run" and run != run.arrays
@@ -136,12 +138,43 @@ def test_particles_again_are_the_same_run() -> None:
     assert rb.simulate(beads(seed=2)) != first
 
 
-def test_what_is_not_a_number_is_equal_in_figures_too() -> None:
-    """Figures that are not numbers in both of two runs do not make them differ."""
-    first, again = (GranularArrays(time=np.zeros(1), figures={"largest_overlap": float("nan")}) for _ in "12")
+def test_undefined_diagnostics_are_equal() -> None:
+    """Diagnostics that are NaN in both of two runs do not make them differ."""
+    arrays = RunArrays(time=np.zeros(1))
+    first, again = (Run(arrays, diagnostics={"largest_overlap": float("nan")}) for _ in "12")
     assert first == again
-    assert first != GranularArrays(time=np.zeros(1), figures={"largest_overlap": 0.0})
-    assert first != GranularArrays(time=np.zeros(1))
+    assert first != Run(arrays, diagnostics={"largest_overlap": 0.0})
+    assert first != Run(arrays)
+
+
+@pytest.mark.parametrize(
+    ("engine", "name", "reason"),
+    [
+        ("dem", "impacts", "does not log them one by one; it has motion, energy, particles"),
+        ("impact", "particles", "1-D run .* has balls, .*; it has motion, energy, impacts"),
+        ("impact", "sliding_loss", "only the dem engine writes"),
+        ("dem", "ball_position", "only the impact engine writes"),
+        ("dem", "no_such_array", "this 3-D run .* has no 'no_such_array'"),
+    ],
+)
+def test_absent_groups_and_variables_say_why(engine: str, name: str, reason: str) -> None:
+    """A group or a variable that a run lacks raises AttributeError with the reason and what the run has."""
+    run = Run(RunArrays(time=np.zeros(1), engine=engine))
+    assert name not in run.arrays
+    for holder in (run.arrays, run) if name in ("impacts", "particles") else (run.arrays,):
+        with pytest.raises(AttributeError, match=reason):
+            getattr(holder, name)
+    with pytest.raises(TypeError, match=reason):
+        run.arrays.replaced(**{name: np.zeros(1)})
+
+
+def test_a_run_holds_its_case(tmp_path: Path) -> None:
+    """A run of either engine returns the case that was run, and an equal one after it was read from a file."""
+    for case in (rb.reference_case(duration=0.01), rb.Case.from_file(BOX).model_copy(update={"duration": 1e-3})):
+        run = rb.simulate(case)
+        assert type(run) is rb.Run
+        assert run.case is case
+        assert rb.load(run.save(tmp_path / "run.nc")).case == case
 
 
 def test_contacts_have_names(two_dampers: Run) -> None:

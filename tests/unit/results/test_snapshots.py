@@ -46,7 +46,7 @@ def test_snapshots_are_where_the_run_was(written: Any) -> None:
     run, path = written
     found = Snapshots(path)
     assert len(found) == 11
-    np.testing.assert_allclose(found.times, np.linspace(0, 0.02, 11), atol=run.arrays.figures["step"])
+    np.testing.assert_allclose(found.times, np.linspace(0, 0.02, 11), atol=run.diagnostics["step"])
     for frame, place in zip(found, np.searchsorted(run.arrays.time, found.times - 1e-9), strict=True):
         np.testing.assert_allclose(frame.displacement, run.arrays.cavity_displacement[place], atol=1e-15)
         for d in range(2):
@@ -54,8 +54,10 @@ def test_snapshots_are_where_the_run_was(written: Any) -> None:
             centre = frame.mass[here] @ frame.position[here] / frame.mass[here].sum() - frame.displacement[d]
             np.testing.assert_allclose(centre, run.arrays.centre_of_mass[place, d], atol=1e-9)
     last = found[-1]
-    np.testing.assert_array_equal(last.velocity, run.arrays.particle_velocity)
-    np.testing.assert_allclose(last.position - last.displacement[last.cavity], run.arrays.position, atol=1e-15)
+    np.testing.assert_array_equal(last.velocity, run.arrays.particles.velocity)
+    np.testing.assert_allclose(
+        last.position - last.displacement[last.cavity], run.arrays.particles.position, atol=1e-15
+    )
     assert found.case_toml == run.case_toml
 
 
@@ -128,7 +130,7 @@ def test_times_are_chosen(tmp_path: Path) -> None:
     run = rb.simulate(case(snapshots=times), snapshots=tmp_path / "run.vtkhdf")
     found = Snapshots(tmp_path / "run.vtkhdf")
     assert len(found) == 3
-    assert abs(found.times - [0, 0.005, 0.02]).max() <= run.arrays.figures["step"] / 2
+    assert abs(found.times - [0, 0.005, 0.02]).max() <= run.diagnostics["step"] / 2
 
 
 def test_times_after_the_end_are_refused() -> None:
@@ -154,7 +156,7 @@ def test_snapshots_do_not_change_the_run(written: Any) -> None:
     run, _ = written
     plain = rb.simulate(case())
     np.testing.assert_array_equal(plain.arrays.cavity_force, run.arrays.cavity_force)
-    np.testing.assert_array_equal(plain.arrays.position, run.arrays.position)
+    np.testing.assert_array_equal(plain.arrays.particles.position, run.arrays.particles.position)
 
 
 @pytest.mark.parametrize(("content", "said"), [(None, "there is no file"), (b"notes", "is not an HDF5 file")])

@@ -214,7 +214,7 @@ def test_another_study_is_refused(tmp_path: Path) -> None:
         searched(trials=2, store=store, log=[])
 
     def measured(run: rb.Run) -> float:
-        return float(run.closure)
+        return float(run.energy_residual)
 
     def told_otherwise(run: rb.Run) -> float:
         return 2.0

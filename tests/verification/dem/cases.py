@@ -130,7 +130,7 @@ def head_on(
 
 def rebound(result: Any) -> float:
     """Relative velocity along x at the end: of two balls, or of one [m/s]."""
-    v = result.arrays.particle_velocity[:, 0]
+    v = result.arrays.particles.velocity[:, 0]
     return float(-v[0] if v.size == 1 else v[1] - v[0])
 
 

@@ -153,7 +153,7 @@ def oblique_impact(angle: float, per_contact: int, **options: Any) -> tuple[floa
     usual = {"contact": rb.Tsuji(restitution=OBLIQUE_E), "friction": rb.Mindlin(OBLIQUE_FRICTION)}
     case = cases.case([ball], dt=dt, steps=4 * per_contact, cavity=rb.Box(size=(2 * half,) * 3), **{**usual, **options})
     result = cases.run(case)
-    velocity, turning = result.arrays.particle_velocity[0], result.arrays.spin[0]
+    velocity, turning = result.arrays.particles.velocity[0], result.arrays.particles.spin[0]
     assert velocity[1] == turning[0] == turning[2] == 0
     return float(velocity[0]), float(velocity[2]), float(turning[1]), result
 
@@ -213,10 +213,11 @@ def first_touch(dt: float = 1e-5) -> float:
 def falling(e: float, dt: float = 1e-5) -> tuple[float, float, float]:
     """Return approach and rebound speed [m/s], and duration [s], of the first bounce of that test."""
     height, end = 2.0, 0.45
-    arrays = cases.run(ball_that_falls(e, height, end, dt)).arrays
-    high, speed = arrays.position[0, 2] + 0.5 * height - 0.1, arrays.particle_velocity[0, 2]
+    result = cases.run(ball_that_falls(e, height, end, dt))
+    arrays = result.arrays
+    high, speed = arrays.particles.position[0, 2] + 0.5 * height - 0.1, arrays.particles.velocity[0, 2]
     rebound = math.sqrt(speed**2 + 2 * 9.81 * high)
-    approach = arrays.figures["largest_approach_speed"]
+    approach = result.diagnostics["largest_approach_speed"]
     return approach, rebound, end - (rebound - speed) / 9.81 - approach / 9.81
 
 
@@ -275,7 +276,7 @@ def on_floor(
 def along(result: Any) -> tuple[Any, Any]:
     """Return path [m] and velocity [m/s] along x, (T,)."""
     arrays = result.arrays
-    return arrays.centre_of_mass[:, 0, 0] + 0.5, arrays.momentum[:, 0, 0] / arrays.mass[0]
+    return arrays.centre_of_mass[:, 0, 0] + 0.5, arrays.momentum[:, 0, 0] / arrays.particles.mass[0]
 
 
 def slip_to_roll() -> Iterator[Line]:
@@ -335,7 +336,7 @@ def inelastic_ball() -> Iterator[Line]:
         exact = shaken.inelastic_ball(gamma).apparent_mass()
         result, frequency, amplitude = shaken_ball(gamma)
         found = shaken_cavity(result, frequency=frequency, after=1 / frequency)
-        mass = result.arrays.mass[0]
+        mass = result.arrays.particles.mass[0]
         unit = math.pi * mass * (2 * math.pi * frequency * amplitude) ** 2
         power, ledger = (float(loss) / unit for loss in found.loss_per_cycle)
         # What is left of the speed, e = 0.1, bears e^2 = 1 % of the energy.
@@ -364,7 +365,7 @@ def settled(name: str) -> tuple[Any, float]:
         packing=rb.Settled(seed=1),
     )
     arrays = cases.run(rb.Case(structure=rb.Fixed(), damper=damper, duration=0.6, output=rb.Output(rate=100.0))).arrays
-    return arrays.cavity_force[-1, 0], float(arrays.mass.sum() * GRAVITY)
+    return arrays.cavity_force[-1, 0], float(arrays.particles.mass.sum() * GRAVITY)
 
 
 def hydrostatic() -> Iterator[Line]:

@@ -67,7 +67,7 @@ def test_ball_without_resistance_rolls_on() -> None:
     result = measures.on_floor(0.3, 0.3 / 0.02, 0.5)
     _, speed = measures.along(result)
     assert speed[-1] == pytest.approx(0.3, rel=1e-4)
-    energy = 0.7 * result.arrays.mass[0] * 0.3**2
+    energy = 0.7 * result.arrays.particles.mass[0] * 0.3**2
     assert result.arrays.sliding_loss[-1].sum() < 1e-4 * energy
     assert result.arrays.rolling_loss[-1].sum() == 0
 

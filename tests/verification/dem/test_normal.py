@@ -107,9 +107,9 @@ def test_wall_counts_with_the_mass_behind_it(e: float, share: float) -> None:
             structure=rb.SDOF(mass=share * ball.mass, stiffness=0),
         )
         arrays = cases.run(case).arrays
-        after = arrays.velocity[-1, 0] - arrays.particle_velocity[0, 0]
+        after = arrays.velocity[-1, 0] - arrays.particles.velocity[0, 0]
         assert after == pytest.approx(e * speed, abs=2.9 / per_contact**2)
-        assert ball.mass * (arrays.particle_velocity[0, 0] + share * arrays.velocity[-1, 0]) == pytest.approx(
+        assert ball.mass * (arrays.particles.velocity[0, 0] + share * arrays.velocity[-1, 0]) == pytest.approx(
             ball.mass * speed, rel=1e-12
         )
 

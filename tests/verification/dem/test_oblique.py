@@ -77,8 +77,8 @@ def test_oblique_impacts_of_unlike_balls_follow_the_law(degrees: float, e: float
         stiffness=stiffness * both**2.5 / (mass * down**2),
     )
     slip, swirl, up = law.follow(math.tan(angle))
-    relative = arrays.particle_velocity[0] - arrays.particle_velocity[1]
-    turned = first.radius * arrays.spin[0, 2] + second.radius * arrays.spin[1, 2]
+    relative = arrays.particles.velocity[0] - arrays.particles.velocity[1]
+    turned = first.radius * arrays.particles.spin[0, 2] + second.radius * arrays.particles.spin[1, 2]
     # The line between the centres turns during the contact, by some 1e-3, and what is along it with it.
     assert relative == pytest.approx((-up * down, -slip * down, 0), abs=3e-3)
     assert turned == pytest.approx(-swirl * down, abs=3e-3)
@@ -103,7 +103,7 @@ def test_gross_sliding_has_the_closed_form(degrees: float, e: float) -> None:
     assert along == pytest.approx(before[0] - FRICTION * (before[1] + up), rel=1e-12)
     # The lever is shorter than the radius by the overlap.
     turned = 2.5 * (before[0] - along) / RADIUS
-    assert turned * (1 - result.arrays.figures["largest_overlap"]) < spin < turned
+    assert turned * (1 - result.diagnostics["largest_overlap"]) < spin < turned
     tangential, rolled = oblique.sliding(angle, e, FRICTION)
     assert along / before[0] == pytest.approx(tangential, abs=2e-4)
     assert spin * RADIUS / before[1] == pytest.approx(rolled, rel=6e-3)
@@ -184,9 +184,9 @@ def test_sticking_springs_have_the_closed_form(ratio: float) -> None:
     arrays = cases.run(case).arrays
     e = oblique.sticking(ratio)
     # The lever is shorter than the radius by the overlap, 0.13 %, which turns the phase by as much of 2 pi.
-    assert arrays.particle_velocity[0] == pytest.approx((0.03 * e, -0.04 * e, speed), abs=0.05 * 3e-3)
+    assert arrays.particles.velocity[0] == pytest.approx((0.03 * e, -0.04 * e, speed), abs=0.05 * 3e-3)
     turn = 2.5 * (1 - e) / RADIUS
-    assert arrays.spin[0] == pytest.approx((0.04 * turn, 0.03 * turn, 0), abs=2.5 * 0.05 * 3e-3 / RADIUS)
+    assert arrays.particles.spin[0] == pytest.approx((0.04 * turn, 0.03 * turn, 0), abs=2.5 * 0.05 * 3e-3 / RADIUS)
 
 
 @pytest.mark.parametrize("spin", [400.0, 1000.0, 5000.0, -5000.0])
@@ -198,7 +198,7 @@ def test_spinning_ball_slides_on_a_plane(spin: float) -> None:
     assert abs(spin) * RADIUS > 3.5 * friction * (SPEED + up)
     assert sign * along == pytest.approx(friction * (SPEED + up), rel=1e-3 if abs(spin) > 500 else 5e-3)
     lost = 2.5 * abs(along) / RADIUS
-    assert lost * (1 - result.arrays.figures["largest_overlap"]) < sign * (spin - after) < lost
+    assert lost * (1 - result.diagnostics["largest_overlap"]) < sign * (spin - after) < lost
 
 
 def test_balls_that_spin_together_do_not_slide() -> None:
@@ -210,8 +210,8 @@ def test_balls_that_spin_together_do_not_slide() -> None:
         ball, other, 0.4, dt=time / 100, phase=0.5, lasts=2 * time, contact=rb.Tsuji(restitution=1.0), friction=0.4
     )
     arrays = cases.run(case).arrays
-    assert arrays.particle_velocity == pytest.approx(np.array([[-0.2, 0, 0], [0.2, 0, 0]]), abs=0.4e-5)
-    assert arrays.spin == pytest.approx(np.array([[0, 0, 300], [0, 0, -300]]), rel=1e-9)
+    assert arrays.particles.velocity == pytest.approx(np.array([[-0.2, 0, 0], [0.2, 0, 0]]), abs=0.4e-5)
+    assert arrays.particles.spin == pytest.approx(np.array([[0, 0, 300], [0, 0, -300]]), rel=1e-9)
     assert np.abs(arrays.sliding_loss).max() < 1e-12 * 0.5 * ball.mass * 0.2**2
 
 
@@ -227,7 +227,7 @@ def test_spinning_balls_slide_on_each_other(factor: float) -> None:
     )
     arrays = cases.run(case).arrays
     mass = cases.reduced(ball.mass, other.mass)
-    change = (arrays.particle_velocity - [[speed / 2, 0, 0], [-speed / 2, 0, 0]]) * arrays.mass[:, None]
+    change = (arrays.particles.velocity - [[speed / 2, 0, 0], [-speed / 2, 0, 0]]) * arrays.particles.mass[:, None]
     impulse = -change[0, 0]
     assert impulse == pytest.approx((1 + e) * mass * speed, rel=3e-4)
     # The surface of the first ball at the contact moves up, and so does that of the second: they rub with both speeds.
@@ -235,5 +235,5 @@ def test_spinning_balls_slide_on_each_other(factor: float) -> None:
     assert change[0, 1] == pytest.approx(-friction * impulse, rel=1e-3)
     assert change[1, :2] == pytest.approx(-change[0, :2], rel=1e-12)
     for number, one in enumerate((ball, other)):
-        turned = arrays.spin[number, 2] - 900
+        turned = arrays.particles.spin[number, 2] - 900
         assert turned == pytest.approx(-2.5 * friction * impulse / (one.mass * one.radius), rel=3e-3)

@@ -141,7 +141,7 @@ def gains(make: Any, share: float, **laws: Any) -> tuple[Any, Any]:
         return each.reshape(300, -1).sum(axis=1)
 
     before = energy(damper.start.velocity, damper.start.spin)
-    return energy(arrays.particle_velocity, arrays.spin) / before - 1, result
+    return energy(arrays.particles.velocity, arrays.particles.spin) / before - 1, result
 
 
 # Verlet keeps the energy of an elastic Hertz contact to the order 5/2, and what yields is elastic below the yield speed. A
@@ -155,7 +155,7 @@ def test_no_impact_gives_energy(contact: str, friction: str, make: Any) -> None:
     """Three hundred impacts, grazing to head-on, spinning or not, never end with more than they began with."""
     for share in (0.999, 0.4, 0.08):
         gained, result = gains(make, share, contact=CONTACTS[contact], **FRICTIONS[friction])
-        counts = result.arrays.counts
+        counts = result.counts
         assert counts["first_touches_particle"] + counts["first_touches_wall"] >= 280
         assert gained.max() <= LOOSE.get(contact, 0.0) * share**2.5 + 1e-13
         assert np.median(gained) < (1e-4 if friction == "none" else 0)

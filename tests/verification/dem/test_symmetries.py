@@ -56,7 +56,7 @@ def flown(
         output=rb.Output(times=[steps * DT]),
         method=rb.Dem(dt=DT * (1 + 1e-9)),
     )
-    return cases.run(case).arrays
+    return cases.run(case)
 
 
 def shaking(turn: Any) -> Any:
@@ -78,14 +78,14 @@ def turned(group: list[Ball], turn: Any) -> list[Ball]:
 def compare(one: Any, other: Any, turn: Any, rtol: float) -> None:
     """Assert that the second run ends as the first one, turned or mirrored."""
     sign = np.linalg.det(turn)
-    for name, factor in (("position", 1.0), ("particle_velocity", 1.0), ("spin", sign)):
-        a, b = getattr(one, name) @ turn.T * factor, getattr(other, name)
+    for name, factor in (("position", 1.0), ("velocity", 1.0), ("spin", sign)):
+        a, b = getattr(one.arrays.particles, name) @ turn.T * factor, getattr(other.arrays.particles, name)
         assert np.abs(a - b).max() < rtol * np.abs(a).max(), name
-    a, b = one.cavity_velocity[-1] @ turn.T, other.cavity_velocity[-1]
+    a, b = one.arrays.cavity_velocity[-1] @ turn.T, other.arrays.cavity_velocity[-1]
     assert np.abs(a - b).max() <= rtol * np.abs(a).max()
     for name in ("kinetic_energy", "normal_loss", "plastic_loss", "sliding_loss", "rolling_loss"):
-        a, b = getattr(one, name)[-1], getattr(other, name)[-1]
-        assert np.abs(a - b).max() <= rtol * one.kinetic_energy[0].sum(), name
+        a, b = getattr(one.arrays, name)[-1], getattr(other.arrays, name)[-1]
+        assert np.abs(a - b).max() <= rtol * one.arrays.kinetic_energy[0].sum(), name
     assert one.counts["first_touches_particle"] == other.counts["first_touches_particle"] > 50
     assert one.counts["first_touches_wall"] == other.counts["first_touches_wall"] > 20
 
@@ -140,9 +140,9 @@ def test_order_of_the_particles(law: str) -> None:
     plain = [group[2 * k] for k in range(len(order))] + [group[2 * k + 1] for k in range(len(order))]
     one, other = (flown(g, law, rb.Box(size=BOX), structure=shaking(np.eye(3))) for g in (plain, mixed))
     places = np.concatenate([order, len(order) + order])
-    assert np.array_equal(one.radius[places], other.radius)
-    for name in ("position", "particle_velocity", "spin"):
-        a, b = getattr(one, name)[places], getattr(other, name)
+    assert np.array_equal(one.arrays.particles.radius[places], other.arrays.particles.radius)
+    for name in ("position", "velocity", "spin"):
+        a, b = getattr(one.arrays.particles, name)[places], getattr(other.arrays.particles, name)
         assert np.abs(a - b).max() < CHAOS * np.abs(a).max(), name
     assert one.counts["first_touches_particle"] == other.counts["first_touches_particle"]
 
@@ -193,14 +193,15 @@ def test_other_units_give_the_same_run(law: str, exact: bool) -> None:
                 output=rb.Output(times=[steps * dt]),
                 method=rb.Dem(dt=dt * (1 + 1e-9)),
             )
-        ).arrays
+        )
 
     one = run(1.0, 1.0, 1.0, 1.0, {"soft": SOFT, "other": OTHER})
     other = run(length, time, speed, mass, {"soft": stuff(SOFT), "other": stuff(OTHER)})
-    for name, unit in (("position", length), ("particle_velocity", speed), ("spin", 1 / time)):
-        a, b = getattr(one, name), getattr(other, name) / unit
+    for name, unit in (("position", length), ("velocity", speed), ("spin", 1 / time)):
+        a, b = getattr(one.arrays.particles, name), getattr(other.arrays.particles, name) / unit
         assert np.abs(a - b).max() < CHAOS * np.abs(a).max(), name
-    lost = other.sliding_loss[-1].sum() + other.normal_loss[-1].sum() + other.plastic_loss[-1].sum()
-    known = one.sliding_loss[-1].sum() + one.normal_loss[-1].sum() + one.plastic_loss[-1].sum()
+    a, b = one.arrays, other.arrays
+    lost = b.sliding_loss[-1].sum() + b.normal_loss[-1].sum() + b.plastic_loss[-1].sum()
+    known = a.sliding_loss[-1].sum() + a.normal_loss[-1].sum() + a.plastic_loss[-1].sum()
     assert lost / (mass * speed**2) == pytest.approx(known, rel=1e-6)
     assert one.counts["first_touches_particle"] == other.counts["first_touches_particle"] > 40

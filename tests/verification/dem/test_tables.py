@@ -69,10 +69,10 @@ def meeting(first: Ball, second: Ball | None, **table: Any) -> tuple[Any, ...]:
             output=rb.Output(times=[4 * slowest]),
             method=rb.Dem(dt=DT),
         )
-    ).arrays
+    )
     assert result.counts["first_touches_wall"] == (second is None)
     assert result.counts["first_touches_particle"] == (second is not None)
-    return result.particle_velocity, result.spin
+    return result.arrays.particles.velocity, result.arrays.particles.spin
 
 
 PAIRS = {
@@ -128,7 +128,7 @@ def test_a_ratio_of_stiffnesses_holds_for_every_pair(radii: tuple[float, float |
             Ball(second, (second + gap / 2, 0, 0), (-speed / 2, -aside / 2, 0)),
         ]
     others = [Ball(2e-3, (0, half / 2, half / 2)), Ball(6e-3, (0, -half / 2, -half / 2))]  # so that the mean is neither
-    arrays = cases.run(
+    result = cases.run(
         cases.case(
             [*balls, *others],
             dt=dt,
@@ -138,10 +138,11 @@ def test_a_ratio_of_stiffnesses_holds_for_every_pair(radii: tuple[float, float |
             friction=rb.LinearSpring(1e6, ratio=ratio),
             one_kind=True,
         )
-    ).arrays
-    touches = [arrays.counts[f"first_touches_{partner}"] for partner in ("particle", "wall")]
+    )
+    arrays = result.arrays
+    touches = [result.counts[f"first_touches_{partner}"] for partner in ("particle", "wall")]
     assert touches == [int(second is not None), int(second is None)]
-    velocity, spin = arrays.particle_velocity, arrays.spin[:, 2]
+    velocity, spin = arrays.particles.velocity, arrays.particles.spin[:, 2]
     sliding = velocity[0, 1] + spin[0] * first
     if second is not None:
         sliding += spin[1] * second - velocity[1, 1]
@@ -180,10 +181,10 @@ def test_softening_does_what_is_told(law: str) -> None:
         for step in range(last + 1):
             dem.run(step)
             touching += dem.contacts(0)["first"].size > 0
-        overlap = result.arrays.figures["largest_overlap"]
+        overlap = result.diagnostics["largest_overlap"]
         found.append((touching * case.method.dt, overlap, cases.rebound(result)))
     (time, overlap, rebound), (longer, larger, after) = found
-    told = re.search(r"last ([\d.]+) times as long, and overlap ([\d.]+) times as much", result.arrays.notes[1])
+    told = re.search(r"last ([\d.]+) times as long, and overlap ([\d.]+) times as much", result.notes[1])
     assert told is not None
     assert longer / time == pytest.approx(float(told[1]), rel=0.01)
     assert larger / overlap == pytest.approx(float(told[2]), rel=0.002)

@@ -14,7 +14,7 @@ from .signals import FloatArray, first_harmonic, positive, steps_inside, trapezo
 if TYPE_CHECKING:
     import xarray
 
-    from rattlebox.results import GranularRun
+    from rattlebox.results import Run
 
 WAYS = ("complex power", "energy")
 
@@ -29,9 +29,7 @@ class StillCavity(DataError):
     """A cavity has hardly any motion at the frequency that is looked at."""
 
 
-def shaken_cavity(
-    run: GranularRun, *, frequency: float, damper: str | None = None, after: float = 0.0
-) -> xarray.Dataset:
+def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, after: float = 0.0) -> xarray.Dataset:
     """Compute the loss and the effective mass of the particles in a cavity that moves harmonically, in two ways.
 
     Both evaluate the last whole number of cycles. "complex power" takes the force that drives the particles and the
@@ -60,8 +58,8 @@ def shaken_cavity(
 
     Raises
     ------
-    TypeError
-        If the run has no 3-D particles.
+    AttributeError
+        If the run has no particles.
     ValueError
         If less than one cycle is covered, there are fewer than eight samples in a cycle, the cavity does not move at this
         frequency, or there is no such damper.
@@ -76,11 +74,7 @@ def shaken_cavity(
     """
     import xarray
 
-    from rattlebox.results import GranularRun
-
-    if not isinstance(run, GranularRun):
-        raise TypeError(f"a run with particles in space is needed, not {run!r:.60}")
-    arrays = run.arrays
+    arrays, particle_mass = run.arrays, run.arrays.particle_mass
     if damper is None and len(arrays.dampers) == 1:
         damper = arrays.dampers[0]
     if damper not in arrays.dampers:
@@ -92,7 +86,7 @@ def shaken_cavity(
     if cycles < 1:
         raise ValueError(f"no whole cycle of {frequency:g} Hz lies after {after:g} s; the run ends at {times[-1]:g} s")
     begin = times[-1] - cycles / frequency
-    mass = float(arrays.particle_mass[number])
+    mass = float(particle_mass[number])
     samples = np.count_nonzero(times > begin + 1e-9 / frequency)
     if samples < LEAST_SAMPLES * cycles:
         raise ValueError(
@@ -141,14 +135,14 @@ def shaken_cavity(
     )
 
 
-def _losses(run: GranularRun, damper: int) -> FloatArray:
+def _losses(run: Run, damper: int) -> FloatArray:
     """Energy lost in the contacts of a damper, (T,)."""
     arrays = run.arrays
     parts = (arrays.normal_loss, arrays.plastic_loss, arrays.sliding_loss, arrays.rolling_loss)
     return np.asarray(sum(part[:, damper].sum(axis=1) for part in parts))
 
 
-def _energy(run: GranularRun, damper: int) -> FloatArray:
+def _energy(run: Run, damper: int) -> FloatArray:
     """Energy of the particles of a damper seen from outside, (T,); gravity's without that of the base's place."""
     arrays = run.arrays
     mass, base = arrays.particle_mass[damper], arrays.base_velocity

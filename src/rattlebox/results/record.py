@@ -1,0 +1,149 @@
+"""The data of one finished run: the content of its files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from .arrays import RunArrays, same
+from .ledger import Ledger
+from .provenance import Provenance
+from .schema import groups
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
+_INCIDENTAL = {"memory_bytes"}
+"""Counts that depend on how a run was computed: they differ when the same case is run again."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Record:
+    """The data of a run: arrays, case, status, counts, notes and provenance.
+
+    Attributes
+    ----------
+    arrays : RunArrays
+        The plain arrays, SI units, read-only.
+    source : Case or str
+        The case, or its text as a case file; `case` and `case_toml` return the one and the other.
+    provenance : Provenance
+        Version, method, seed, date and platform; default here and now.
+    status : str
+        "finished", or the reason why the run ended early.
+    message : str
+        One sentence that explains the status and says what to try.
+    notes : tuple of str
+        Warnings, and in 3-D runs what limits the time step.
+    counts : mapping of str to int
+        Numbers of events and steps, by name (`schema.COUNTS`).
+    diagnostics : mapping of str to float
+        Time step, largest overlap and so on, by name (`schema.DIAGNOSTICS`); empty for 1-D runs.
+    wall_time : float
+        Computing time [s].
+
+    Raises
+    ------
+    ValueError
+        If the name of a count is not an identifier.
+    """
+
+    arrays: RunArrays
+    source: Case | str = ""
+    provenance: Provenance = field(default_factory=Provenance.now)
+    status: str = "finished"
+    message: str = ""
+    notes: tuple[str, ...] = ()
+    counts: Mapping[str, int] = field(default_factory=dict)
+    diagnostics: Mapping[str, float] = field(default_factory=dict)
+    wall_time: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in self.counts:
+            if not name.isidentifier():
+                raise ValueError(f"count {name!r} is not an identifier")
+        put = object.__setattr__
+        put(self, "notes", tuple(self.notes))
+        put(self, "counts", MappingProxyType({name: int(number) for name, number in self.counts.items()}))
+        put(self, "diagnostics", MappingProxyType({name: float(value) for name, value in self.diagnostics.items()}))
+        put(self, "wall_time", float(self.wall_time))
+
+    @cached_property
+    def case(self) -> Case:
+        """The case that was run.
+
+        Raises
+        ------
+        CaseError
+            If the run was read from a file, and a file that its case names can no longer be read.
+        """
+        if isinstance(self.source, str):
+            from rattlebox.model.case import Case
+
+            return Case.from_toml(self.source)
+        return self.source
+
+    @cached_property
+    def case_toml(self) -> str:
+        """The case that was run, as the text of a case file."""
+        return self.source if isinstance(self.source, str) else self.source.to_toml()
+
+    @property
+    def ok(self) -> bool:
+        """True if the run reached its end and its energies add up."""
+        return self.status == "finished"
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Names of the datasets that the run has: `motion`, `energy`, and `impacts` (1-D) or `particles` (3-D)."""
+        return tuple(groups(self.arrays.engine))
+
+    @cached_property
+    def ledger(self) -> Ledger:
+        """Sums over all energies, in J, each (T,)."""
+        return Ledger(self.arrays)
+
+    @property
+    def energy_residual(self) -> float:
+        """Largest imbalance of the energy ledger over the energy that was put in.
+
+        max|E(t) - E(0) - W_load - W_base + losses| / (max|W_load| + max|W_base| + E(0)); a gravity
+        potential V enters the denominator as max|V(t) - V(0)|, since its zero is arbitrary.
+        """
+        return self.ledger.energy_residual
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Record):
+            return NotImplemented
+        return same(self._results, other._results) and self.case_toml == other.case_toml
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @property
+    def _results(self) -> dict[str, Any]:
+        """Fields that do not depend on when, where and how fast the run was computed, nor on the form of the case."""
+        counts = {name: number for name, number in self.counts.items() if name not in _INCIDENTAL}
+        names = ("arrays", "status", "message", "notes", "diagnostics")
+        return {name: getattr(self, name) for name in names} | {"counts": counts}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        return _rebuild, (type(self), {**values, "counts": dict(self.counts), "diagnostics": dict(self.diagnostics)})
+
+    def __repr__(self) -> str:
+        arrays = self.arrays
+        contents = (
+            f"{len(arrays.balls)} balls, {len(arrays.impacts)} impacts"
+            if "impacts" in arrays
+            else f"{len(arrays.particles)} particles in {len(arrays.dampers)} dampers"
+        )
+        return (
+            f"<Run {self.status}: {arrays.time[0]:g} to {arrays.time[-1]:g} s, {len(arrays.points)} points, {contents}>"
+        )
+
+
+def _rebuild(cls: type[Record], values: dict[str, Any]) -> Record:
+    return cls(**values)
