@@ -10,7 +10,7 @@ import typer
 
 from rattlebox._util.exceptions import DataError, RattleboxError
 from rattlebox._util.text import printable
-from rattlebox.cli.main import STOPPED
+from rattlebox.cli.exit_codes import STOPPED
 
 app = typer.Typer(
     help="Simulate and design particle and impact dampers.",

@@ -7,7 +7,7 @@ import sys
 import weakref
 from types import FrameType
 
-STOPPED = 128 + signal.SIGINT
+from rattlebox.cli.exit_codes import STOPPED
 
 _LOSING = ("__del__", "cb")  # the latter lets go of a lock of importlib
 _COMPILED = "ExtensionFileLoader."  # of importlib: modules in C may lose what is raised while they load others

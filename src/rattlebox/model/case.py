@@ -30,6 +30,7 @@ from .matrices import Matrices
 from .methods import AnyMethod, Dem, EventDriven, Newton, Output
 from .modes import ModalModel
 from .pairs import contact_pairs
+from .paths import replaced
 from .shocks import Shock
 from .signals import Sampled, Signal, Unit, as_several, signals_in
 from .structures import Shaker
@@ -401,8 +402,6 @@ class Case(Part):
         CaseError
             When a path leads nowhere, or the new case does not fit, with the reason.
         """
-        from .paths import replaced
-
         return replaced(self, values)
 
     def to_toml(self) -> str:

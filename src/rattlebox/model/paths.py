@@ -5,19 +5,21 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from difflib import get_close_matches
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 from pydantic import ValidationError
 
 from rattlebox._util.narrow import instance
 
 from .base import Part, vocabulary
-from .case import Case
 from .dampers import ImpactDamper
 from .errors import Hint, nearest, translate
 from .materials import Material
 from .signals import Signal
 from .units import SI, parse
+
+if TYPE_CHECKING:
+    from .case import Case
 
 Place = tuple[str | int, ...]
 
@@ -184,10 +186,10 @@ def replaced(case: Case, values: Mapping[str, Any]) -> Case:
     tree: Any = case
     for place in sorted(places, key=len):  # a whole part first, then what is in it
         tree = _with(tree, place, places[place])
-    tree = _briefly(tree)
+    tree = _briefly(tree, (type(case), ImpactDamper))
     own = {material.name: material for material in _materials(case)}
     try:
-        return Case.model_validate(tree, context=own)
+        return type(case).model_validate(tree, context=own)
     except ValidationError as error:
         raise translate(error, "case", vocabulary(), tree) from None
 
@@ -261,14 +263,14 @@ def _with(node: Any, place: Place, value: Any) -> Any:
     return {**node, step: _with(node.get(step), tuple(rest), value)}
 
 
-def _briefly(node: Any) -> Any:
+def _briefly(node: Any, kinds: Sequence[type[Part]]) -> Any:
     """The same with "damper" for a list of one damper and so on: messages speak so."""
     if isinstance(node, list):
-        return [_briefly(item) for item in node]
+        return [_briefly(item, kinds) for item in node]
     if not isinstance(node, dict):
         return node
-    tree = {name: _briefly(item) for name, item in node.items()}
-    for part in (Case, ImpactDamper):
+    tree = {name: _briefly(item, kinds) for name, item in node.items()}
+    for part in kinds:
         for other, name in part.spellings.items():
             if isinstance(tree.get(name), list) and len(tree[name]) == 1:
                 tree[other] = tree.pop(name)[0]
