@@ -29,8 +29,6 @@ from rattlebox.model.dampers import Sphere as Sphere
 from rattlebox.model.friction import LinearSpring as LinearSpring
 from rattlebox.model.friction import Mindlin as Mindlin
 from rattlebox.model.friction import Rolling as Rolling
-from rattlebox.model.granular import PairLaws as PairLaws
-from rattlebox.model.granular import ParticleDamper as ParticleDamper
 from rattlebox.model.harmonics import Harmonic as Harmonic
 from rattlebox.model.harmonics import SineSweep as SineSweep
 from rattlebox.model.materials import Material as Material
@@ -47,6 +45,8 @@ from rattlebox.model.packing import Settled as Settled
 from rattlebox.model.pairs import Body as Body
 from rattlebox.model.pairs import Pair as Pair
 from rattlebox.model.pairs import contact_pairs as contact_pairs
+from rattlebox.model.particle_damper import PairLaws as PairLaws
+from rattlebox.model.particle_damper import ParticleDamper as ParticleDamper
 from rattlebox.model.particles import LogNormal as LogNormal
 from rattlebox.model.particles import Normal as Normal
 from rattlebox.model.particles import Particles as Particles

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
-    from rattlebox.model.granular import ContactTable, Entry, ParticleDamper
+    from rattlebox.model.particle_damper import ContactTable, Entry, ParticleDamper
 
     Array = NDArray[np.float64]
 

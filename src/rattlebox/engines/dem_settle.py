@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.cavities import AnyCavity
-    from rattlebox.model.granular import ParticleDamper
+    from rattlebox.model.particle_damper import ParticleDamper
 
     Array = NDArray[np.float64]
 

@@ -26,7 +26,7 @@ from rattlebox.model.signals import Sampled
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
-    from rattlebox.model.granular import ContactTable, Entry, ParticleDamper
+    from rattlebox.model.particle_damper import ContactTable, Entry, ParticleDamper
 
 BOUND = 0.2
 """Longest step over the shortest contact. A lone Hertz contact is followed stably up to half of it; a particle that many

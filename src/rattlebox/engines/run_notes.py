@@ -17,7 +17,7 @@ from rattlebox.results.quantities import quantity
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.model.dampers import ImpactDamper
-    from rattlebox.model.granular import ParticleDamper
+    from rattlebox.model.particle_damper import ParticleDamper
     from rattlebox.results.arrays import Table
 
 MOST_OVERLAP = 0.01

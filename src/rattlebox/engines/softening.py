@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
-    from rattlebox.model.granular import Entry, ParticleDamper
+    from rattlebox.model.particle_damper import Entry, ParticleDamper
 
 PACKED = 0.58
 """Fraction of a settled bed that is particles."""

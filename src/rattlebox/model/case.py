@@ -22,7 +22,6 @@ from .dampers import ImpactDamper
 from .elementwise import Vector
 from .errors import Hint, at, translate
 from .files import existing, read_toml
-from .granular import ParticleDamper
 from .harmonics import Harmonic, SineSweep
 from .in_space import check_in_space
 from .materials import Material, materials
@@ -30,6 +29,7 @@ from .matrices import Matrices
 from .methods import AnyMethod, Dem, EventDriven, Newton, Output
 from .modes import ModalModel
 from .pairs import contact_pairs
+from .particle_damper import ParticleDamper
 from .paths import replaced
 from .shocks import Shock
 from .signals import Sampled, Signal, Unit, as_several, signals_in
@@ -46,11 +46,11 @@ def _kind_of_damper(value: Any) -> str:
     """A damper with particles needs no kind in a file."""
     kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
     in_space = isinstance(value, dict) and not value.keys().isdisjoint(("particles", "cavity", "packing"))
-    return str(kind or ("granular" if in_space else "impact"))
+    return str(kind or ("particle" if in_space else "impact"))
 
 
 AnyDamper = Annotated[
-    Annotated[ImpactDamper, Tag("impact")] | Annotated[ParticleDamper, Tag("granular")],
+    Annotated[ImpactDamper, Tag("impact")] | Annotated[ParticleDamper, Tag("particle")],
     Discriminator(_kind_of_damper),
 ]
 

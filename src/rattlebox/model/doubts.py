@@ -19,7 +19,7 @@ from .space import Direction, unit_vector
 
 if TYPE_CHECKING:
     from .case import Case
-    from .granular import ParticleDamper
+    from .particle_damper import ParticleDamper
 
 _GRAVITY = 9.80665  # m/s^2
 _WIDE = 1.0  # m

@@ -57,7 +57,7 @@ _OTHERS = {  # ours: others'
     "log_normal": "lognormal",
     "box": "cuboid rectangular brick cube",
     "cylinder": "can pipe tube drum",
-    "granular": "particle particles dem",
+    "particle": "granular particles dem",
     "impact": "ball single",
     "sdof": "1dof single_degree_of_freedom spring_mass mass_spring",
     "matrices": "fem mdof",

@@ -10,8 +10,8 @@ import numpy as np
 
 from rattlebox.engines.dem import resolved
 from rattlebox.model.errors import Hint
-from rattlebox.model.granular import ParticleDamper
 from rattlebox.model.packing import Lattice, Settled
+from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.units import whole_number
 from rattlebox.studies.kinds.sweep import sweep
 

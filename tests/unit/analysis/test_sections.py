@@ -158,7 +158,7 @@ def test_bad_strobes_are_refused():
         poincare_section(run, 0.1)
 
 
-def granular(**options):
+def particle_run(**options):
     """Return a short run with particles in space."""
     usual = {
         "structure": rb.SDOF(mass=0.1, stiffness=1e4, velocity=0.5),
@@ -176,7 +176,7 @@ def granular(**options):
 
 def test_points_of_runs_with_particles():
     """With particles in space the points of the structure are shown, the first when none is named."""
-    run = granular()
+    run = particle_run()
     for of in (None, "mass"):
         portrait = phase_portrait(run, of)
         assert portrait.attrs["of"] == run.arrays.points[0]
@@ -190,7 +190,7 @@ def test_points_of_runs_with_particles():
 
 def test_runs_without_a_point_are_refused():
     """Where nothing but particles moves, that is told."""
-    still = granular(structure=rb.Fixed())
+    still = particle_run(structure=rb.Fixed())
     nothing = Run(RunArrays(time=np.linspace(0, 1, 5)))
     for run in (nothing,) if still.arrays.points else (nothing, still):
         with pytest.raises(ValueError, match="there is no ball in this run, and no point"):

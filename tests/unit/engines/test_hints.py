@@ -120,7 +120,7 @@ def test_far_too_many_are_refused_at_once(packing: Any, amount: dict[str, Any]) 
 
 def test_more_than_memory_holds_is_refused_before_it_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
     """Particles for which there is room, but no memory, are refused with how many there is memory for."""
-    monkeypatch.setattr("rattlebox.model.granular.memory", lambda: 1e6)
+    monkeypatch.setattr("rattlebox.model.particle_damper.memory", lambda: 1e6)
     with pytest.raises(rb.ResourceError, match=r"this machine has 0\.001 GB") as refused:
         attempt(
             {"cavity": CAVITIES["can"], "particles": {"diameter": "1 mm", "count": 20_000}, "packing": rb.Lattice()}

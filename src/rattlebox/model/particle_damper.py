@@ -220,7 +220,7 @@ class ParticleDamper(Part):
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")
-    kind: Literal["granular"] = "granular"
+    kind: Literal["particle"] = "particle"
     name: str = ""
     particles: Annotated[tuple[Particles, ...], BeforeValidator(as_species), AlsoTakes()] = Field(
         examples=[{"material": "steel", "diameter": "4 mm", "count": 100}]
