@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from .shown import Shown
+from .labels import LabelledValues
 from .style import INK, SERIES_COLOURS, Size, StyledFigure, figure_style, label, legend_above
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def plot_design(found: xr.Dataset, *, size: Size = "page") -> Figure:
 
 def _draw_progress(axes: Axes, found: xr.Dataset, goals: list[str]) -> None:
     """Draw the objective of each trial, and the best so far."""
-    goal = Shown.of(found[goals[0]])
+    goal = LabelledValues.of(found[goals[0]])
     best = (np.fmax if found[goals[0]].attrs["goal"] == "max" else np.fmin).accumulate(goal.numbers)
     axes.plot(found.trial, goal.numbers, label="trial", **_DOTS)
     axes.step(found.trial, best, where="post", color=SERIES_COLOURS[1], label="best so far")
@@ -80,7 +80,7 @@ def _draw_progress(axes: Axes, found: xr.Dataset, goals: list[str]) -> None:
 
 def _draw_front(axes: Axes, found: xr.Dataset, goals: list[str]) -> None:
     """Draw the second objective over the first, and the trials that none beats."""
-    across, up = Shown.of(found[goals[0]]), Shown.of(found[goals[1]])
+    across, up = LabelledValues.of(found[goals[0]]), LabelledValues.of(found[goals[1]])
     axes.plot(across.numbers, up.numbers, label="trial", **_DOTS)
     best = found.front.values
     axes.plot(across.numbers[best], up.numbers[best], label="not beaten", **_BEST)
@@ -91,7 +91,7 @@ def _draw_front(axes: Axes, found: xr.Dataset, goals: list[str]) -> None:
 
 def _draw_over(axes: Axes, found: xr.Dataset, path: str, goal: str) -> None:
     """Draw the objective over a parameter."""
-    across, up = Shown.of(found[path]), Shown.of(found[goal])
+    across, up = LabelledValues.of(found[path]), LabelledValues.of(found[goal])
     best = found.front.values
     axes.plot(across.numbers, up.numbers, **_DOTS)
     axes.plot(across.numbers[best], up.numbers[best], **_BEST)
@@ -102,7 +102,7 @@ def _draw_over(axes: Axes, found: xr.Dataset, path: str, goal: str) -> None:
 
 def _draw_along(axes: Axes, found: xr.Dataset, path: str, goal: str) -> None:
     """Draw a parameter along the front."""
-    across, up = Shown.of(found[goal]), Shown.of(found[path])
+    across, up = LabelledValues.of(found[goal]), LabelledValues.of(found[path])
     best = found.front.values
     axes.plot(across.numbers[best], up.numbers[best], **_BEST)
     axes.margins(0.04)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
+from .labels import value_of
 from .maps import draw_lines, draw_map, explain_gaps
-from .shown import value_of
 from .style import Size, StyledFigure, figure_style, letters, shorten
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from rattlebox._util.exceptions import CaseError
 from ..model.errors import Hint, nearest
 from ..model.units import parse
 from ..results.schema import HOW_ENDED
-from .shown import Shown, Vector, log_ticks, name_of, unit_of, value_of
+from .labels import LabelledValues, Vector, log_ticks, name_of, unit_of, value_of
 from .style import (
     FAINT,
     INK,
@@ -271,7 +271,7 @@ def draw_map(
     values = study[name]
     if _BAND in values.dims:
         values = values.median(_BAND)
-    measure = Shown.of(values.transpose(y, x))
+    measure = LabelledValues.of(values.transpose(y, x))
     across, up = _Axis.of(study[x]), _Axis.of(study[y])
     top = _largest_shown(name, measure.numbers)
     norm = None if top is None else Normalize(0.0, top)
@@ -337,13 +337,13 @@ def explain_gaps(figure: Figure, study: xr.Dataset, name: str) -> None:
 class _Axis(NamedTuple):
     """An axis of a map, with the edges of its cells."""
 
-    shown: Shown
+    shown: LabelledValues
     edges: Vector
     log: bool
 
     @classmethod
     def of(cls, coord: xr.DataArray) -> _Axis:
-        shown = Shown.of(coord)
+        shown = LabelledValues.of(coord)
         log = shown.names is None and _grows_by_factor(shown.numbers)
         inner = np.log(shown.numbers) if log else shown.numbers
         if inner.size == 1:
@@ -398,7 +398,7 @@ def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: l
     """
     along, *others = sorted(dims, key=lambda dim: study.sizes[dim], reverse=True)
     across, values = _Axis.of(study[along]), study[name]
-    measure = Shown.of(values)
+    measure = LabelledValues.of(values)
     looks: list[dict[str, Any]] = [{"color": SERIES_COLOURS[0], "marker": SERIES_MARKERS[0]}]
     for other in others:
         looks = _series(figure, axes, study[other])
@@ -424,7 +424,7 @@ def _cut_leaps(axes: Axes, name: str, values: xr.DataArray, along: str, across: 
         return []
     for line in axes.lines:
         line.set_clip_on(True)
-    axes.set_ylim(0.0, 1.25 * top / Shown.of(values).divisor)
+    axes.set_ylim(0.0, 1.25 * top / LabelledValues.of(values).divisor)
     leaps = (values > 1.25 * top).transpose(along, ...).values.reshape(across.shown.numbers.size, -1)
     places = across.shown.numbers[leaps.any(axis=1)]
     look: dict[str, Any] = {"marker": "^", "color": INK, "linestyle": ""}

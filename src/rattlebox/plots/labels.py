@@ -23,7 +23,7 @@ _LETTERS = 16  # of names beside ticks
 _EXACT = 2**53  # whole numbers below are written with all their digits
 
 
-class Shown(NamedTuple):
+class LabelledValues(NamedTuple):
     """Numbers in a unit with prefix; or places in a list of names.
 
     Attributes
@@ -45,7 +45,7 @@ class Shown(NamedTuple):
     names: list[str] | None
 
     @classmethod
-    def of(cls, values: xr.DataArray) -> Shown:
+    def of(cls, values: xr.DataArray) -> LabelledValues:
         """Read values, their `units` and `long_name`."""
         spoken = name_of(values).replace(" V^2", "\N{NO-BREAK SPACE}V²").replace("^2", "²")
         text = spoken[:1].upper() + spoken[1:]
