@@ -1,7 +1,7 @@
 """A bit that changes in a file of results is detected on reading, or the content that is read is the same."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import pytest
 import rattlebox as rb
 from rattlebox.engines.checkpoint import Checkpoint
 
-FILES = ("run.vtkhdf", "run.checkpoint")
+FILES = ("run.nc", "run.vtkhdf", "run.checkpoint")
 FLIPS = 160
 
 
@@ -36,12 +36,31 @@ def case() -> rb.Case:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the files of a run."""
     folder = tmp_path_factory.mktemp("run")
-    rb.simulate(case(), checkpoint=folder / "run.checkpoint", snapshots=folder / "run.vtkhdf")
+    run = rb.simulate(case(), checkpoint=folder / "run.checkpoint", snapshots=folder / "run.vtkhdf")
+    run.save(folder / "run.nc")
     return folder
+
+
+def bits(value: Any) -> Any:
+    """Return the same content with arrays as bytes, so that NaN equals NaN."""
+    if isinstance(value, np.ndarray):
+        return value.dtype.str, value.shape, value.tobytes()
+    if isinstance(value, Mapping):
+        return {name: bits(part) for name, part in value.items()}
+    if isinstance(value, (tuple, list)):
+        return [bits(part) for part in value]
+    if type(value).__module__.startswith("rattlebox"):
+        return bits(
+            {name: getattr(value, name) for name in getattr(value, "__dict__", getattr(value, "__slots__", ()))}
+        )
+    assert isinstance(value, (str, int, float, type(None))), type(value)
+    return repr(value)
 
 
 def content(path: Path) -> Any:
     """Everything that a reader returns of a file, as bytes."""
+    if path.suffix == ".nc":
+        return bits(vars(rb.load(path)))
     if path.suffix == ".vtkhdf":
         snapshots = rb.Snapshots(path)
         frames = [{name: np.asarray(value).tobytes() for name, value in vars(frame).items()} for frame in snapshots]
@@ -108,6 +127,30 @@ def test_a_flipped_bit_of_any_dataset_of_snapshots_is_detected(folder: Path, tmp
     assert {"VTKHDF/Points", "VTKHDF/NumberOfPoints", "VTKHDF/Steps/Values", "digests"} <= names
 
 
+def test_a_flipped_bit_of_any_array_or_attribute_of_a_run_is_detected(folder: Path, tmp_path: Path) -> None:
+    """Each variable and attribute of a run is protected, short ones, too."""
+    path = tmp_path / "run.nc"
+    names: list[str] = []
+    with h5py.File(folder / "run.nc") as file:
+        file.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+    assert {"case", "motion/time", "energy/kinetic_energy"} <= set(names)
+    for name in names:
+        for part in ("values", "units", "long_name"):
+            path.write_bytes((folder / "run.nc").read_bytes())
+            with h5py.File(path, "r+") as file:
+                item = file[name]
+                if part == "values":
+                    values = np.atleast_1d(item[()])
+                    values.view("u1").reshape(-1)[0] ^= 1
+                    item[...] = values.reshape(item.shape)
+                elif part in item.attrs:
+                    item.attrs.modify(part, np.bytes_(b"x" + bytes(item.attrs[part])[1:]))
+                else:
+                    continue
+            with pytest.raises(rb.DataError, match=r"run\.nc is damaged: the group '.*' is not"):
+                rb.load(path)
+
+
 def test_the_damaged_block_is_named(folder: Path, tmp_path: Path) -> None:
     """The message names the snapshot or the array that is damaged; other snapshots can still be read."""
     path = tmp_path / "run.vtkhdf"
@@ -125,6 +168,12 @@ def test_the_damaged_block_is_named(folder: Path, tmp_path: Path) -> None:
         file["VTKHDF/PointData/mass"][0] *= 2
     with pytest.raises(rb.DataError, match=r"run\.vtkhdf is damaged: its description"):
         rb.Snapshots(path)
+    run = tmp_path / "run.nc"
+    run.write_bytes((folder / "run.nc").read_bytes())
+    with h5py.File(run, "r+") as file:
+        file["energy/kinetic_energy"][0] += 1e-12
+    with pytest.raises(rb.DataError, match=r"run\.nc is damaged: the group 'energy' is not as .*\n  try: a copy"):
+        rb.load(run)
     state = tmp_path / "run.checkpoint"
     with np.load(folder / "run.checkpoint") as there:
         arrays = dict(there)
@@ -137,9 +186,9 @@ def test_the_damaged_block_is_named(folder: Path, tmp_path: Path) -> None:
         Checkpoint(state, case()).read()
 
 
-def _format_of_snapshots(path: Path, number: int) -> None:
+def _format_in_hdf5(path: Path, number: int) -> None:
     with h5py.File(path, "r+") as file:
-        file.attrs["rattlebox_format"] = number
+        file.attrs["rattlebox_format"] = np.int32(number)
 
 
 def _format_of_checkpoint(path: Path, number: int) -> None:
@@ -152,7 +201,9 @@ def _format_of_checkpoint(path: Path, number: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "change"), [("run.vtkhdf", _format_of_snapshots), ("run.checkpoint", _format_of_checkpoint)], ids=FILES
+    ("name", "change"),
+    [("run.nc", _format_in_hdf5), ("run.vtkhdf", _format_in_hdf5), ("run.checkpoint", _format_of_checkpoint)],
+    ids=FILES,
 )
 @pytest.mark.parametrize("number", [0, 99])
 def test_another_format_is_refused_with_both_numbers(

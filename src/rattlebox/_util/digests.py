@@ -43,7 +43,7 @@ def group_digest(group: Any, growing: Container[str] = (), *, nested: bool = Tru
         Paths below the group of what changes later: datasets, whose type and shape alone count, and attributes as
         "path@name", which do not count.
     nested
-        Whether to include the groups below.
+        Whether to include what is in the groups below; else their names alone.
     """
     digest = hashlib.blake2b(digest_size=SIZE)
 
@@ -63,6 +63,7 @@ def group_digest(group: Any, growing: Container[str] = (), *, nested: bool = Tru
     if nested:
         group.visititems(add)
     else:
+        digest.update("\0".join(sorted(group)).encode())
         for name in sorted(group):
             if hasattr(group[name], "shape"):
                 add(name, group[name])

@@ -10,14 +10,22 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
-from rattlebox._util.atomic_io import HDF5_ERRORS, atomic_write, check_suffix, require_folder, require_readable
+from rattlebox._util.atomic_io import (
+    HDF5_ERRORS,
+    atomic_write,
+    check_format,
+    check_suffix,
+    require_folder,
+    require_readable,
+)
+from rattlebox._util.digests import group_digest
 from rattlebox._util.exceptions import DataError
 
 from .arrays import RunArrays
@@ -31,9 +39,10 @@ if TYPE_CHECKING:
 
 Read = TypeVar("Read")
 
-FORMAT = 1
-"""Number of the layout; files with a higher one are refused."""
+FORMAT = 2
+"""Number of the layout; files of another one are refused."""
 
+_AGAIN = "a copy of the file, or run the case again"
 _LOST = "make room and write the run again"
 
 _STORED: dict[Kind, str] = {"float": "f8", "int": "i4", "bool": "i1"}
@@ -176,6 +185,7 @@ def save(run: Record, path: Path) -> Path:
     require_folder(path)
     content = io.BytesIO()  # HDF5 cannot be rid of what a full disk does not take, and takes the process with it
     _write(run, content)
+    _protect(content)
     with atomic_write(path, _LOST) as name:
         name.write_bytes(content.getbuffer())
     return path
@@ -226,35 +236,53 @@ def read_case(path: str | os.PathLike[str]) -> str:
     DataError
         As `load` does.
     """
-    return _from(Path(path), lambda file: _read_text(file, "case"))
+    return _from(Path(path), lambda file: _read_text(file, "case"), blocks=("/",))
 
 
-def _from(path: Path, read: Callable[[Any], Read]) -> Read:
-    """What is read from the file of a run; anything else is refused."""
+def _protect(content: IO[bytes]) -> None:
+    """Add to each group of a file the digest of its variables and attributes."""
+    import h5py  # type: ignore[import-untyped]
+
+    with h5py.File(content, "r+", libver="v110") as file:
+        for group in _groups(file).values():
+            group.attrs["digest"] = np.bytes_(group_digest(group, nested=False))
+
+
+def _groups(file: Any) -> dict[str, Any]:
+    """The root group and the groups below it, by name."""
+    return {"/": file} | {name: item for name, item in sorted(file.items()) if not hasattr(item, "shape")}
+
+
+def _from(path: Path, read: Callable[[Any], Read], blocks: Collection[str] | None = None) -> Read:
+    """Read from the file of a run, after its format and the digests of its groups (default all) are checked."""
     import h5netcdf
+    import h5py
 
     require_readable(path)
     try:
+        with h5py.File(path, "r") as file:
+            _check(file, path, blocks)
         with h5netcdf.File(path, "r") as file:
-            refused = _refused(file, path)
-            if not refused:
-                return read(file)
+            return read(file)
+    except DataError:
+        raise
     except HDF5_ERRORS as error:
-        raise DataError(f"{path} is not a netCDF-4 file that is whole") from error
-    raise DataError(refused)
+        raise DataError(f"{path} is not a netCDF-4 file that is whole", _AGAIN) from error
 
 
-def _refused(file: Any, path: Path) -> str:
-    """Why a netCDF-4 file holds no run that can be read; "" where it does."""
+def _check(file: Any, path: Path, blocks: Collection[str] | None) -> None:
+    """Raise if a file holds no run, a run of another format, or a group that is not as it was written."""
     layout = file.attrs.get("rattlebox_format")
     if layout is None:
-        return f"{path} is a netCDF-4 file, but not a run written by Rattlebox"
-    if SNAPSHOTS in file.groups:
-        return f"{path} holds snapshots of particles, not a run; rattlebox.Snapshots reads them"
-    if int(layout) > FORMAT:
-        version = _text_attribute(file.attrs.get("version", "?"))
-        return f"{path} was written by a later Rattlebox ({version}); update to read it"
-    return ""
+        raise DataError(f"{path} is a netCDF-4 file, but not a run written by Rattlebox")
+    if SNAPSHOTS in file:
+        raise DataError(f"{path} holds snapshots of particles, not a run; rattlebox.Snapshots reads them")
+    check_format(path, np.asarray(layout).item(), FORMAT)
+    for name, group in _groups(file).items():
+        if blocks is not None and name not in blocks:
+            continue
+        if group.attrs.get("digest") != np.bytes_(group_digest(group, nested=False)):
+            raise DataError(f"{path} is damaged: the group {name!r} is not as it was written", _AGAIN)
 
 
 def _read_run(file: Any) -> dict[str, Any]:

@@ -208,7 +208,9 @@ def test_loading_something_else(tmp_path: Path) -> None:
     later = Run(RunArrays(time=np.zeros(1)), "", Provenance("99.0")).save(tmp_path / "later.nc")
     with h5py.File(later, "a") as file:
         file.attrs["rattlebox_format"] = np.int32(1000)
-    with pytest.raises(rb.DataError, match=r"later Rattlebox \(99\.0\)"):
+    with pytest.raises(
+        rb.DataError, match=r"later\.nc has format 1000, and this version .* reads format \d+\n  try: the"
+    ):
         load(later)
 
 
@@ -226,7 +228,7 @@ def test_damaged_files_are_named(run: Run, tmp_path: Path) -> None:
         with h5py.File(damaged, "a") as file:
             del file[lost]
             del file.attrs["seed"]
-        with pytest.raises(rb.DataError, match=said):
+        with pytest.raises(rb.DataError, match=r"damaged\.nc is damaged: the group '/' is not as it was written"):
             load(damaged)
 
 
