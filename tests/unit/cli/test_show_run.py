@@ -102,7 +102,10 @@ def test_what_is_no_run_is_told(answer: Answer) -> None:
         ("nowhere.nc", "nowhere.nc is not there\n  try: the folder that 'rattlebox run -o' or"),
         ("notes.nc", "notes.nc is not a netCDF-4 file that is whole"),
         ("empty", "empty is not a study"),
-        ("case.toml", "case.toml says what to run, not what came of it\n  try: the folder that 'rattlebox run -o' or"),
+        (
+            "case.toml",
+            "case.toml is a case file or a study file, not a result\n  try: the folder that 'rattlebox run -o' or",
+        ),
     ):
         code, told, errors = answer("show", path)
         assert (code, told) == (2, "")
