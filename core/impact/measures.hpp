@@ -67,6 +67,15 @@ public:
         return z;
     }
 
+    // Absolute acceleration of the point, mean over the step before sample i: samples of the acceleration
+    // itself would meet the short pulses of contacts by chance.
+    real mean_acceleration(std::size_t i) const {
+        real base = 0;
+        for (const Load& load : problem_.loads)
+            if (load.base) base += load.signal.mean(time(i - 1), time(i));
+        return (point(i).p - point(i - 1).p) / (time(i) - time(i - 1)) + base;
+    }
+
     template <class F> real peak(F&& f) const {
         real most = 0;
         for (std::size_t i = 0; i < count(); ++i) most = std::fmax(most, std::fabs(f(i)));
@@ -323,6 +332,19 @@ inline constexpr Measure measures[] = {
      [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).p; }); }},
     {"rms_velocity", true, false,
      [](const Observer& o) { return o.rms([&](std::size_t i) { return o.point(i).p; }); }},
+    {"peak_acceleration", true, false,
+     [](const Observer& o) {
+         real most = 0;
+         for (std::size_t i = 1; i < o.count(); ++i)
+             most = std::fmax(most, std::fabs(o.mean_acceleration(i)));
+         return most;
+     }},
+    {"rms_acceleration", true, false,
+     [](const Observer& o) {
+         real total = 0;
+         for (std::size_t i = 1; i < o.count(); ++i) total += square(o.mean_acceleration(i));
+         return std::sqrt(total / static_cast<real>(o.last()));
+     }},
     {"settling_time", true, false, [](const Observer& o) { return o.settling(0.05); }},
     {"loss_per_cycle", false, false, [](const Observer& o) { return o.impact(o.last()) / o.cycles(); }},
     {"reduced_loss", true, false, [](const Observer& o) { return o.reduced_loss(); }},

@@ -28,6 +28,16 @@ struct Piece {
         return f;
     }
 
+    real integral(real from, real to) const {
+        real sum = (to - from) * (constant + slope * (0.5 * (from + to) - origin));
+        // cos(a) - cos(b) without cancellation
+        const real half = 0.5 * frequency * (to - from),
+                   middle = frequency * (0.5 * (from + to) - origin) + phase;
+        if (amplitude != 0)
+            sum += amplitude * std::sin(middle) * (half == 0 ? to - from : 2 * std::sin(half) / frequency);
+        return sum;
+    }
+
     // Adds `weight` times the Taylor coefficients about t to c[0..order].
     void add_taylor(real t, real weight, int order, real* c) const {
         const real s = t - origin;
@@ -72,6 +82,16 @@ struct Signal {
         p.frequency = frequency;
         p.phase = phase;
         return p;
+    }
+
+    // The mean over an interval.
+    real mean(real from, real to) const {
+        real sum = 0;
+        for (real begin = from, end; begin < to; begin = end) {
+            end = std::min(next_knot(begin), to);
+            sum += piece(begin).integral(begin, end);
+        }
+        return sum / (to - from);
     }
 
     // What acts in a step of this length around t: of a record its mean, as far as it is given, since its

@@ -30,6 +30,7 @@ from rattlebox.engines.dem_step import (
     packed_normal,
 )
 from rattlebox.engines.pack import pack, restitution
+from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolated, particle_notes, table_notes
 from rattlebox.engines.softening import ENDURING, choose_softening, effects, shaking
 from rattlebox.engines.status import FINISHED, INTERRUPTED, describe, end_of
@@ -391,6 +392,7 @@ def _arrays(case: Case, packed: Packed, raw: dict[str, Any], dem: Any) -> RunArr
     base = np.zeros((3, times.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         base += np.multiply.outer(base_motion(acceleration, times), direction_of_base(case, signal))
+    load = np.array([signal.evaluate(times) for signal in case.loads]).reshape(len(case.loads), times.size).T
     ends = dem.state()["cavities"]
     contents = [damper.contents for damper in dampers]
     return RunArrays(
@@ -411,7 +413,8 @@ def _arrays(case: Case, packed: Packed, raw: dict[str, Any], dem: Any) -> RunArr
         base_displacement=base[0],
         base_velocity=base[1],
         base_acceleration=base[2],
-        load=np.array([signal.evaluate(times) for signal in case.loads]).reshape(len(case.loads), times.size).T,
+        load=load,
+        **responses(case, q, p, load, base[2], raw["force"], shapes),
         particle_mass=np.array([each.mass.sum() for each in contents]),
         mode_frequency=np.sqrt(modes.stiffness) / (2 * np.pi),
         mode_energy=0.5 * (p**2 + modes.stiffness * q**2),

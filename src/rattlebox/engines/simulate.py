@@ -11,6 +11,7 @@ import numpy as np
 
 from rattlebox.engines.core import core
 from rattlebox.engines.pack import MOST_EVENTS, pack
+from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolated, impact_notes
 from rattlebox.engines.status import FINISHED, describe, end_of
 from rattlebox.model.case import Case
@@ -196,6 +197,8 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     base = _base_motion(case, time)
     by_damper = (time.size, d)
+    force = raw["force"].reshape(by_damper)
+    load = np.array([signal.evaluate(time) for signal in case.loads]).reshape(len(case.loads), time.size).T
     return RunArrays(
         time=time,
         points=tuple(points),
@@ -214,8 +217,9 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
         base_displacement=base[0],
         base_velocity=base[1],
         base_acceleration=base[2],
-        cavity_force=raw["force"].reshape(by_damper),
-        load=np.array([signal.evaluate(time) for signal in case.loads]).reshape(len(case.loads), time.size).T,
+        cavity_force=force,
+        load=load,
+        **responses(case, q, p, load, base[2], force, shapes),
         mode_frequency=np.sqrt(modes.stiffness) / (2 * np.pi),
         mode_energy=0.5 * (p**2 + modes.stiffness * q**2),
         ball_energy=0.5 * mass * velocity**2,

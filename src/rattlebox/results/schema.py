@@ -145,6 +145,7 @@ GROUPS: tuple[Group, ...] = (
 
 _TIME = ("time",)
 _POINT = ("time", "point")
+_MODE = ("time", "mode")
 _BALL = ("time", "ball")
 _BASE = ("time", "axis")
 _DAMPER = ("time", "damper")
@@ -157,6 +158,11 @@ _EACH_AXIS = ("particle", "axis")
 VARIABLES: tuple[Variable, ...] = (
     Variable("displacement", "motion", _POINT, "m", "displacement of the structure"),
     Variable("velocity", "motion", _POINT, "m/s", "velocity of the structure"),
+    Variable("acceleration", "motion", _POINT, "m/s^2", "acceleration of the structure relative to the base"),
+    Variable("absolute_acceleration", "motion", _POINT, "m/s^2", "absolute acceleration of the structure"),
+    Variable("modal_displacement", "motion", _MODE, "kg^0.5 m", "modal displacement"),
+    Variable("modal_velocity", "motion", _MODE, "kg^0.5 m/s", "modal velocity"),
+    Variable("interface_force", "motion", _BASE, "N", "force of the structure on the base"),
     Variable("ball_position", "motion", _BALL, "m", "ball position from the cavity's rest place", engines=_IMPACT),
     Variable("ball_velocity", "motion", _BALL, "m/s", "ball velocity", engines=_IMPACT),
     Variable("relative_position", "motion", _BALL, "m", "ball position in the cavity", engines=_IMPACT),
@@ -187,7 +193,7 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("clearance", "motion", ("damper",), "m", "total clearance of the cavity", engines=_IMPACT),
     Variable("particle_mass", "motion", ("damper",), "kg", "mass of all particles", engines=_DEM),
     Variable("mode_frequency", "energy", ("mode",), "Hz", "natural frequency of the mode", coordinate=True),
-    Variable("mode_energy", "energy", ("time", "mode"), "J", "energy of the mode"),
+    Variable("mode_energy", "energy", _MODE, "J", "energy of the mode"),
     Variable("ball_energy", "energy", _BALL, "J", "kinetic energy of the ball", engines=_IMPACT),
     Variable("kinetic_energy", "energy", _DAMPER, "J", "translational energy of the particles", engines=_DEM),
     Variable("rotation_energy", "energy", _DAMPER, "J", "rotational energy of the particles", engines=_DEM),

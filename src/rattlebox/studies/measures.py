@@ -50,6 +50,8 @@ MEASURES: dict[str, Measure] = {
     "rms": Measure("m", "RMS displacement", samples=True),
     "peak_velocity": Measure("m/s", "peak velocity", samples=True),
     "rms_velocity": Measure("m/s", "RMS velocity", samples=True),
+    "peak_acceleration": Measure("m/s^2", "peak absolute acceleration, mean over a sample step", samples=True),
+    "rms_acceleration": Measure("m/s^2", "RMS absolute acceleration, mean over a sample step", samples=True),
     "settling_time": Measure("s", "settling time to 5 % of the peak", samples=True),
     "loss_per_cycle": Measure("J", "loss in the damper a cycle", cyclic=True),
     "reduced_loss": Measure("1", "loss a cycle over m V^2", samples=True, cyclic=True),

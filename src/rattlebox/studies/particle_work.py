@@ -17,6 +17,7 @@ from rattlebox.analysis import settling_time, shaken_cavity
 from rattlebox.analysis.shaken import LEAST_SAMPLES, StillCavity
 from rattlebox.engines.dem import objection, settled, simulate_dem
 from rattlebox.engines.dem_step import WARNINGS, warnings_of
+from rattlebox.engines.responses import base_at_points
 from rattlebox.engines.status import REFUSED, STATUSES
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
@@ -47,8 +48,8 @@ class Seen:
         From the begin of the window on; work and losses count from there.
     whole, start
         The whole run, and the begin of the window [s].
-    motion, speed : (T,) float
-        Of the point that is watched [m], [m/s].
+    motion, speed, base_speed : (T,) float
+        Displacement and velocity of the point that is watched, and velocity of the base along it [m], [m/s].
     frequency
         Of the first harmonic load or motion [Hz], NaN without one that acts.
     """
@@ -58,6 +59,7 @@ class Seen:
     start: float
     motion: NDArray[np.float64]
     speed: NDArray[np.float64]
+    base_speed: NDArray[np.float64]
     frequency: float
 
     def value(self, name: str) -> float:
@@ -83,6 +85,11 @@ class Seen:
     def rms(self, values: NDArray[np.float64]) -> float:
         """Return the root of the mean square over the window."""
         return math.sqrt(float(trapezoid(values**2, self.run.arrays.time)) / self.length)
+
+    @property
+    def acceleration(self) -> NDArray[np.float64]:
+        """Absolute acceleration of the point, mean over each step between samples [m/s^2]."""
+        return np.diff(self.speed + self.base_speed) / np.diff(self.run.arrays.time)
 
     @property
     def settled(self) -> float:
@@ -123,6 +130,8 @@ _FOUND: dict[str, Callable[[Seen], float]] = {
     "rms": lambda s: s.rms(s.motion),
     "peak_velocity": lambda s: np.abs(s.speed).max(),
     "rms_velocity": lambda s: s.rms(s.speed),
+    "peak_acceleration": lambda s: np.abs(s.acceleration).max(),
+    "rms_acceleration": lambda s: math.sqrt(np.mean(s.acceleration**2)),
     "settling_time": lambda s: s.settled,
     "loss_per_cycle": lambda s: s.loss / (s.length * s.frequency),
     "reduced_loss": lambda s: (
@@ -320,10 +329,12 @@ class ParticleWork(ImpactWork):
                 start,
                 arrays.cavity_displacement[:, 0] @ along,
                 arrays.cavity_velocity[:, 0] @ along,
+                arrays.base_velocity @ along,
                 frequency,
             )
         column = arrays.points.index(self.point)
-        return Seen(window, run, start, arrays.displacement[:, column], arrays.velocity[:, column], frequency)
+        base = base_at_points(case, arrays.base_velocity)[:, column]
+        return Seen(window, run, start, arrays.displacement[:, column], arrays.velocity[:, column], base, frequency)
 
 
 def since(run: Run, start: float) -> Run:

@@ -1,0 +1,110 @@
+"""Accelerations, modal coordinates and the force on the base, from the modes and the forces at the output times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.model.space import unit_vector
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+    from rattlebox.model.modes import ModalModel
+
+FloatArray = NDArray[np.float64]
+
+
+def responses(
+    case: Case,
+    q: FloatArray,
+    p: FloatArray,
+    load: FloatArray,
+    base: FloatArray,
+    force: FloatArray,
+    shapes: Iterable[FloatArray],
+) -> dict[str, Any]:
+    """Return the responses of a run that follow from its modes and forces.
+
+    Parameters
+    ----------
+    case
+        The case.
+    q, p : (T, M) float
+        Modal displacement and velocity [kg^1/2 m], [kg^1/2 m/s].
+    load : (T, L) float
+        Loads [N].
+    base : (T,) or (T, 3) float
+        Acceleration of the base [m/s^2]; three components in a 3-D run.
+    force : (T, D) or (T, D, 3) float
+        Force of the contacts on each cavity [N].
+    shapes
+        Mode shapes at each cavity, (M,) or (M, 3) [kg^-1/2].
+
+    Returns
+    -------
+    dict of str to (T, ...) float
+        Variables of the group "motion", by name.
+
+    Notes
+    -----
+    q'' = f - D p - k q with the modal forces f of loads, contacts and base. The base carries participation . (D p + k q),
+    the force in springs and dashpots, without the inertia of modes that were left out; or the contacts of a fixed cavity.
+    """
+    modes, in_space = case.modes, base.ndim == 2
+    internal = 2 * modes.decay * p + modes.stiffness * q
+    if modes.coupling is not None:
+        internal = internal + p @ modes.coupling
+    driven = np.zeros_like(q)
+    for index, signal in enumerate(case.loads):
+        driven += np.multiply.outer(load[:, index], modes.shape(signal.point, signal.direction))
+    for index, shape in enumerate(shapes):
+        driven += force[:, index] @ shape.T if in_space else np.multiply.outer(force[:, index], shape)
+    inertia = _inertia(case, modes, in_space)
+    if inertia is not None:
+        driven -= base @ inertia.T if in_space else np.multiply.outer(base, inertia)
+    lines = modes.lines()
+    at_points = np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
+    acceleration = (driven - internal) @ at_points.T
+    return {
+        "acceleration": acceleration,
+        "absolute_acceleration": acceleration + base_at_points(case, base),
+        "modal_displacement": q,
+        "modal_velocity": p,
+        "interface_force": _on_base(modes, internal, inertia, force, base.shape),
+    }
+
+
+def _inertia(case: Case, modes: ModalModel, in_space: bool) -> FloatArray | None:
+    """Return the inertia of the modes per unit of base acceleration, (M,) or (M, 3), if it is known."""
+    if modes.participation is None or not in_space or modes.spatial:
+        return modes.participation
+    return np.multiply.outer(modes.participation, unit_vector(case.particle_dampers[0].direction))
+
+
+def base_at_points(case: Case, base: FloatArray) -> FloatArray:
+    """Return a motion of the base along the motion of each point, (T, P).
+
+    Parameters
+    ----------
+    case
+        The case.
+    base : (T,) or (T, 3) float
+        Displacement, velocity or acceleration of the base; three components in a 3-D run.
+    """
+    modes = case.modes
+    if base.ndim == 1:
+        return np.repeat(base[:, None], len(modes.shapes), axis=1)
+    own = base @ unit_vector(case.particle_dampers[0].direction)
+    parts = [base if name in modes.spatial else own[:, None] for name in modes.shapes]
+    return np.concatenate([*parts, np.zeros((len(base), 0))], axis=1)
+
+
+def _on_base(
+    modes: ModalModel, internal: FloatArray, inertia: FloatArray | None, force: FloatArray, shape: tuple[int, ...]
+) -> FloatArray:
+    if not modes.decay.size:
+        return np.asarray(force.sum(axis=1))
+    return np.full(shape, np.nan) if inertia is None else np.asarray(internal @ inertia)

@@ -1,0 +1,114 @@
+"""Accelerations and the force on the base, against equations of motion and derivatives."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+M, K, C = 4.0, 16e3, 30.0
+
+
+def test_forced_oscillator_on_a_moving_base() -> None:
+    """The absolute acceleration times the mass is the load minus the force on the base, which is K z + C z'."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=M, stiffness=K, damping=C, displacement=1e-3),
+        load=rb.Harmonic(amplitude=3.0, frequency=7.0),
+        base=rb.Harmonic(amplitude=0.5, frequency=9.0),
+        duration=1.0,
+        output=rb.Output(rate=2000.0),
+    )
+    run = rb.simulate(case)
+    motion = run.motion.sel(point="mass")
+    force = K * motion.displacement + C * motion.velocity
+    np.testing.assert_allclose(run.motion.interface_force, force, atol=1e-12)
+    np.testing.assert_allclose(M * motion.absolute_acceleration, run.motion["load"].sum("source") - force, atol=1e-11)
+    np.testing.assert_allclose(
+        motion.absolute_acceleration - motion.acceleration, run.motion.base_acceleration, atol=1e-14
+    )
+    derivative = np.gradient(motion.velocity, motion.time)
+    np.testing.assert_allclose(motion.acceleration[1:-1], derivative[1:-1], atol=1e-3 * np.abs(derivative).max())
+    energy = 0.5 * (run.motion.modal_velocity**2 + K / M * run.motion.modal_displacement**2)
+    np.testing.assert_allclose(energy, run.energy.mode_energy, rtol=1e-13)
+
+
+def test_all_motion_of_a_building_stands_on_its_base() -> None:
+    """Storey masses times absolute accelerations, contacts and a tuned mass included, add up to the force on the base."""
+    mass, stiffness = np.diag([2.0, 1.0]), 1e4 * np.array([[2.0, -1.0], [-1.0, 1.0]])
+    building = rb.Matrices(M=mass, C=[[0, 0], [0, 5]], K=stiffness, points={"first": 0, "second": 1})
+    tuned = rb.TunedMass(mass=0.1, frequency=8.0, damping_ratio=0.1, point="second")
+    ball = rb.ImpactDamper(
+        ball=rb.Sphere(radius="12 mm", material="steel"),
+        gap="0.2 mm",
+        point="second",
+        contact=rb.Tsuji(restitution=0.6),
+    )
+    case = rb.Case(
+        structure=building, tuned_mass=tuned, damper=ball, base=rb.HalfSine(amplitude=30.0, duration=0.05), duration=0.5
+    )
+    run = rb.simulate(case)
+    assert len(run.arrays.impacts) > 5
+    masses = {"first": 2.0, "second": 1.0, "tuned mass": 0.1}
+    inertia = sum(m * run.motion.absolute_acceleration.sel(point=name) for name, m in masses.items())
+    contact = run.motion.cavity_force.sum("damper")
+    expected = contact - inertia
+    np.testing.assert_allclose(run.motion.interface_force, expected, atol=1e-9 * float(abs(contact).max()))
+
+
+@pytest.mark.parametrize("base", [(), rb.Harmonic(amplitude=3.0, frequency=20.0, direction="z")])
+def test_three_dimensions(base: Any) -> None:
+    """In 3-D the same holds along each axis, with particles that rattle in the cavity."""
+    structure = rb.Modal(
+        frequencies=[30.0, 40.0],
+        damping_ratios=[0.01, 0.02],
+        shapes={"box": [[0.5, 0.0, 0.0], [0.0, 0.0, 0.5]]},
+        participation=[[2.0, 0.0, 0.0], [0.0, 0.0, 2.0]],
+        velocity=[0.4, 0.3],
+    )
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="6 mm", count=20),
+        cavity=rb.Box(size=("20 mm",) * 3),
+        contact=rb.Tsuji(restitution=0.6),
+        friction=0.2,
+        packing=rb.Lattice(),
+        softening=1000,
+    )
+    run = rb.simulate(
+        rb.Case(structure=structure, damper=damper, base=base, duration=0.05, output=rb.Output(rate=4000.0))
+    )
+    motion = run.motion
+    for axis in "xz":
+        acceleration = motion.absolute_acceleration.sel(point=f"box {axis}")
+        contact = motion.cavity_force.sel(axis=axis).sum("damper")
+        expected = contact - 4.0 * acceleration
+        np.testing.assert_allclose(motion.interface_force.sel(axis=axis), expected, atol=1e-9)
+    assert float(abs(motion.interface_force.sel(axis="y")).max()) == 0.0
+
+
+def test_a_cavity_that_is_fixed_stands_on_the_base() -> None:
+    """On a fixed structure the particles push the base; without participations the force on the base is not known."""
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="5 mm", material="steel"), gap="1 mm", velocity=1.0, contact=rb.Tsuji(restitution=0.6)
+    )
+    run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration=0.01))
+    np.testing.assert_array_equal(run.motion.interface_force, run.motion.cavity_force.isel(damper=0))
+    modal = rb.Modal(frequencies=[10.0], damping_ratios=[0.1], shapes={"tip": [1.0]}, velocity=[1.0])
+    assert np.isnan(rb.simulate(rb.Case(structure=modal, duration=0.1)).motion.interface_force).all()
+
+
+def test_measures_of_acceleration() -> None:
+    """In studies they are means over a sample step, absolute: those of the velocities of a run at the same times."""
+    case = rb.Case(
+        structure=rb.SDOF(mass=M, stiffness=K, damping=C),
+        base=rb.Harmonic(amplitude=0.5, frequency=9.0),
+        duration=2.0,
+        output=rb.Output(rate=1000.0),
+    )
+    found = rb.sweep(case, {"base.amplitude": [0.5, 1.0]}, ["peak_acceleration", "rms_acceleration"], skip=1.0)
+    run = rb.simulate(case)
+    late = run.motion.absolute_acceleration.sel(point="mass", time=slice(1.0, 2.0))
+    assert float(found.peak_acceleration[0]) == pytest.approx(float(abs(late).max()), rel=5e-3)
+    assert float(found.rms_acceleration[0]) == pytest.approx(math.sqrt(float((late**2).mean())), rel=5e-3)
+    assert float(found.rms_acceleration[1]) == pytest.approx(2 * float(found.rms_acceleration[0]), rel=1e-9)
