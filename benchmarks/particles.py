@@ -211,7 +211,7 @@ def meetings(folder: Path) -> Callable[[], float]:
         "-o",
         folder / "meetings",
     ]
-    subprocess.run([*command, Path(__file__).with_name("meetings.cpp")], check=True)
+    subprocess.run([*command, Path(__file__).with_name("barrier.cpp")], check=True)
     program = subprocess.Popen([folder / "meetings"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def ask() -> float:

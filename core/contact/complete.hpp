@@ -4,8 +4,8 @@
 
 #include <concepts>
 
-#include "base/choice.hpp"
-#include "base/field.hpp"
+#include "util/variant.hpp"
+#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
 
 namespace rattlebox {
@@ -118,8 +118,8 @@ template <class Law> struct RestitutionEntry {
     using type = Law;
 };
 
-template <class... Laws> using NormalLaws = Choice<typename NormalEntry<Laws>::type...>;
-template <class... Laws> using TangentialLaws = Choice<typename TangentialEntry<Laws>::type...>;
-template <class... Laws> using RestitutionLaws = Choice<typename RestitutionEntry<Laws>::type...>;
+template <class... Laws> using NormalLaws = Variant<typename NormalEntry<Laws>::type...>;
+template <class... Laws> using TangentialLaws = Variant<typename TangentialEntry<Laws>::type...>;
+template <class... Laws> using RestitutionLaws = Variant<typename RestitutionEntry<Laws>::type...>;
 
 } // namespace rattlebox

@@ -10,7 +10,7 @@
 // docs, contact laws.
 #pragma once
 
-#include "base/real.hpp"
+#include "math/real.hpp"
 
 namespace rattlebox {
 

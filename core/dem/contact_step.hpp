@@ -2,7 +2,7 @@
 // core/contact; here they get the geometry of two spheres, or of a sphere and a wall.
 #pragma once
 
-#include "base/rows.hpp"
+#include "math/rows.hpp"
 #include "contact/tangential/spring_slider.hpp"
 #include "dem/encounter.hpp"
 

@@ -1,7 +1,7 @@
 // What meets: walls, and what two materials do to each other. Plain data.
 #pragma once
 
-#include "base/rows.hpp"
+#include "math/rows.hpp"
 #include "contact/laws.hpp"
 
 namespace rattlebox::dem {

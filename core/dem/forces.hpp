@@ -1,7 +1,7 @@
 // Which candidates of a chunk touch, and what those do to each other.
 #pragma once
 
-#include "base/masks.hpp"
+#include "math/masks.hpp"
 #include "dem/ahead.hpp"
 #include "dem/contact_step.hpp"
 

@@ -11,7 +11,7 @@
 
 #include <cstdint>
 
-#include "base/masks.hpp"
+#include "math/masks.hpp"
 #include "dem/bed.hpp"
 #include "dem/cells.hpp"
 #include "dem/walls.hpp"

@@ -1,4 +1,4 @@
-// A structure with cavities full of particles, advanced together step by step.
+// A structure with cavities full of particles, advanced run_parallel step by step.
 //
 // The structure is propagated exactly between the steps; at each step it is kicked by the loads and by the
 // forces that the particles of its cavities have at the very same instant: second order, and action equals
@@ -8,7 +8,7 @@
 #include <atomic>
 #include <utility>
 
-#include "base/team.hpp"
+#include "parallel/thread_pool.hpp"
 #include "dem/bed_step.hpp"
 #include "dem/division.hpp"
 #include "dem/records.hpp"
@@ -243,7 +243,7 @@ class Simulation {
         for (int k = part.begin; k < part.end; ++k)
             if (at(known, k - part.begin)) forces(k);
         team.report();
-        team.await_lower([&, k = part.begin]() mutable {
+        team.wait_for_lower([&, k = part.begin]() mutable {
             while (k < part.end && at(known, k - part.begin)) ++k;
             if (k == part.end) return false;
             at(known, k - part.begin) = true;
@@ -364,7 +364,7 @@ class Simulation {
         });
         const auto all_go_on = [&] {
             go_on(team, until, stop, [&] {
-                const bool held_up = team.is_held_up();
+                const bool held_up = team.is_contended();
                 if (held_up) rest_.begin();
                 return held_up;
             });
@@ -373,14 +373,14 @@ class Simulation {
         while (taken_.pause) {
             team.sync([&] { one_goes_on(until, stop, team.size()); });
             division_.look_around(team.rank());
-            team.sync([&] { team.forget_waits(); });
+            team.sync([&] { team.reset_wait_times(); });
             all_go_on();
         }
     }
 
     // For the others, who wait.
     void one_goes_on(long until, const std::atomic<bool>& stop, int members) {
-        Alone alone;
+        SingleThread alone;
         division_.divide(1);
         division_.look_around(0);
         taken_.pause = false;
@@ -418,7 +418,7 @@ public:
         }
     }
 
-    // Beds point into the problem, and steps at beds.
+    // Beds barrier into the problem, and steps at beds.
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
@@ -427,7 +427,7 @@ public:
         until = std::min(until, problem_.steps);
         threads = std::min(threads, division_.chunks());
         division_.divide(threads);
-        together(threads, [&](auto team) { run(team, until, stop); });
+        run_parallel(threads, [&](auto team) { run(team, until, stop); });
     }
 
     // All that the next step needs, in a fixed order: to write it down and to read it back.

@@ -3,7 +3,7 @@
 // Views of arrays that the simulation owns.
 #pragma once
 
-#include "base/rows.hpp"
+#include "math/rows.hpp"
 #include "structure/coupled_modes.hpp"
 #include "structure/signal.hpp"
 

@@ -2,7 +2,7 @@
 // the same bits for any number of threads.
 #pragma once
 
-#include "base/status.hpp"
+#include "util/status.hpp"
 #include "dem/encounter.hpp"
 
 namespace rattlebox::dem {

@@ -2,7 +2,7 @@
 // part.
 #pragma once
 
-#include "base/status.hpp"
+#include "util/status.hpp"
 #include "dem/walls.hpp"
 
 namespace rattlebox::dem {

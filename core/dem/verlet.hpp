@@ -3,7 +3,7 @@
 // u predicted, a the last. Rows carry a fourth number along, which stays as it is.
 #pragma once
 
-#include "base/rows.hpp"
+#include "math/rows.hpp"
 
 namespace rattlebox::dem {
 

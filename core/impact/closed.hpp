@@ -1,7 +1,7 @@
 // Closed contacts integrated step by step, their events, and the peaks of force and overlap.
 #pragma once
 
-#include "base/dop853.hpp"
+#include "math/dop853.hpp"
 #include "impact/touch.hpp"
 
 namespace rattlebox {

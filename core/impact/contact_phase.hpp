@@ -6,7 +6,7 @@
 // holds in it, and find where it ends.
 #pragma once
 
-#include "base/real.hpp"
+#include "math/real.hpp"
 #include "contact/laws.hpp"
 
 namespace rattlebox {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/status.hpp"
+#include "util/status.hpp"
 #include "impact/state.hpp"
 
 namespace rattlebox {

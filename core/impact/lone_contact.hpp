@@ -22,7 +22,7 @@
 #include <array>
 #include <vector>
 
-#include "base/collocation.hpp"
+#include "math/collocation.hpp"
 #include "impact/state.hpp"
 
 namespace rattlebox {

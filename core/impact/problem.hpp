@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/real.hpp"
+#include "math/real.hpp"
 #include "contact/laws.hpp"
 #include "structure/coupled_modes.hpp"
 #include "structure/loads.hpp"

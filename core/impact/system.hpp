@@ -12,7 +12,7 @@
 
 #include <vector>
 
-#include "base/solve.hpp"
+#include "math/linear_system.hpp"
 #include "impact/contact_phase.hpp"
 #include "impact/state.hpp"
 

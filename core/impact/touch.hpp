@@ -3,7 +3,7 @@
 
 #include <iterator>
 
-#include "base/solve.hpp"
+#include "math/linear_system.hpp"
 #include "impact/lone_contact.hpp"
 #include "impact/progress.hpp"
 

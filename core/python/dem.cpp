@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "base/archive.hpp"
+#include "util/archive.hpp"
 #include "dem/simulation.hpp"
 #include "python/crew.hpp"
 #include "python/dem_case.hpp"

@@ -6,7 +6,7 @@
 // with one formula for all.
 #pragma once
 
-#include "base/real.hpp"
+#include "math/real.hpp"
 #include "structure/mode.hpp"
 
 namespace rattlebox {

@@ -7,8 +7,8 @@
 // overdamped modes are all the same formula. Loads are added in structure/cell.hpp.
 #pragma once
 
-#include "base/quadrature.hpp"
-#include "base/real.hpp"
+#include "math/quadrature.hpp"
+#include "math/real.hpp"
 
 namespace rattlebox {
 

@@ -9,8 +9,8 @@
 
 #include <algorithm>
 
-#include "base/field.hpp"
-#include "base/real.hpp"
+#include "util/field.hpp"
+#include "math/real.hpp"
 
 namespace rattlebox {
 

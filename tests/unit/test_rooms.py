@@ -11,11 +11,13 @@ ROOT = Path(__file__).parents[2]
 PACKAGE, CORE = ROOT / "src/rattlebox", ROOT / "core"
 ARROWS = {
     "core/python": {"core/impact", "core/dem"},
-    "core/dem": {"core/contact", "core/structure"},
+    "core/dem": {"core/contact", "core/structure", "core/parallel"},
     "core/impact": {"core/contact", "core/structure"},
-    "core/contact": {"core/base"},
-    "core/structure": {"core/base"},
-    "core/base": set(),
+    "core/contact": {"core/util"},
+    "core/structure": {"core/util"},
+    "core/parallel": set(),
+    "core/util": {"core/math"},
+    "core/math": set(),
 }
 
 

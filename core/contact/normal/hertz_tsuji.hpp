@@ -10,7 +10,7 @@
 // the pair, doi:10.1016/0032-5910(92)88030-L.
 #pragma once
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 #include "contact/damping.hpp"
 #include "contact/normal/normal_force.hpp"
 

@@ -2,7 +2,7 @@
 // engine, a SIMD register of contacts in the 3-D engine.
 #pragma once
 
-#include "base/rows.hpp"
+#include "math/rows.hpp"
 
 namespace rattlebox {
 

@@ -13,7 +13,7 @@
 // With p = (n - 1)/2 restitution is the same at every speed, else it depends on the speed.
 #pragma once
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
 
 namespace rattlebox {

@@ -13,7 +13,7 @@
 
 #include <algorithm>
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
 
 namespace rattlebox {

@@ -13,7 +13,7 @@
 // Technology 99 (1998) 154, doi:10.1016/S0032-5910(98)00099-0.
 #pragma once
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
 
 namespace rattlebox {

@@ -1,7 +1,7 @@
 // Constant restitution.
 #pragma once
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

@@ -10,7 +10,7 @@
 // R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 (2010) 217, doi:10.1007/s11071-009-9591-z.
 #pragma once
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

@@ -8,7 +8,7 @@
 // doi:10.1017/CBO9781139171731.
 #pragma once
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

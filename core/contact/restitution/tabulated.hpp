@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

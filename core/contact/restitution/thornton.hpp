@@ -7,7 +7,7 @@
 // doi:10.1115/1.2787319.
 #pragma once
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

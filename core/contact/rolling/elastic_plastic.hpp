@@ -9,7 +9,7 @@
 // doi:10.1016/j.powtec.2010.09.030.
 #pragma once
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
 
 namespace rattlebox {

@@ -9,7 +9,7 @@
 // R. D. Mindlin, J. Appl. Mech. 16 (1949) 259, doi:10.1115/1.4009973.
 #pragma once
 
-#include "base/field.hpp"
+#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
 
 namespace rattlebox {

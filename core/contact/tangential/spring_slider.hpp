@@ -12,7 +12,7 @@
 // Cummins, P. W. Cleary, Powder Technology 233 (2013) 30, section 3, doi:10.1016/j.powtec.2012.08.012.
 #pragma once
 
-#include "base/rows.hpp"
+#include "math/rows.hpp"
 
 namespace rattlebox {
 

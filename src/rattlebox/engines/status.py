@@ -99,7 +99,7 @@ def describe(
     Parameters
     ----------
     status
-        Number of the core's status (core/base/status.hpp).
+        Number of the core's status (core/util/status.hpp).
     time
         Where the run stopped [s].
     contact

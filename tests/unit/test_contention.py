@@ -1,4 +1,4 @@
-"""How members of a team count what they wait for each other: core/base/waits.hpp alone, without threads."""
+"""How members of a team count what they wait for each other: core/parallel/contention.hpp alone, without threads."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ COMPILER = shutil.which(os.environ.get("CXX", "c++")) or shutil.which("g++") or 
 
 PROGRAM = """
 #include <cstdio>
-#include "base/waits.hpp"
+#include "parallel/contention.hpp"
 
-using rattlebox::Waits;
+using rattlebox::WaitTimes;
 
 int main() {
-    const auto at = [](int ms) { return Waits::Time(std::chrono::milliseconds(1000 + ms)); };
+    const auto at = [](int ms) { return WaitTimes::Time(std::chrono::milliseconds(1000 + ms)); };
     int member, begun, ended, asked;
-    Waits waits(2, at(0));
+    WaitTimes waits(2, at(0));
     while (std::scanf("%d %d %d %d", &member, &begun, &ended, &asked) == 4) {
         waits.add(member, at(begun), at(ended));
-        std::printf("%d", waits.are_a_habit(at(asked)));
+        std::printf("%d", waits.dominate(at(asked)));
     }
 }
 """

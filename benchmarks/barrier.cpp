@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "base/team.hpp"
+#include "parallel/thread_pool.hpp"
 
 int main() {
     using Clock = std::chrono::steady_clock;
     constexpr int meetings = 64;
     while (std::getchar() != EOF) {
         std::vector<double> took;
-        rattlebox::together(2, [&](auto team) {
+        rattlebox::run_parallel(2, [&](auto team) {
             for (int turn = 0; turn < 200; ++turn) {
                 const auto begun = Clock::now();
                 for (int k = 0; k < meetings; ++k) team.sync();

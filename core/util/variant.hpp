@@ -7,7 +7,7 @@
 
 namespace rattlebox {
 
-template <class... Types> class Choice {
+template <class... Types> class Variant {
     static_assert((std::is_trivially_copyable_v<Types> && ...), "laws are plain data");
 
     static constexpr std::size_t largest() {

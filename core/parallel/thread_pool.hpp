@@ -1,7 +1,8 @@
-// Who does the work of a phase: one thread alone, or several that wait for each other between phases.
+// Runs one function on several threads that meet at barriers, or on the calling thread alone.
 //
-// A phase is a loop over items none of which reads what another writes; each member of a team takes a
-// contiguous share.
+// The function gets its worker: rank, number of workers, and what it synchronises with. Phases between
+// barriers are loops over items none of which reads what another writes; each worker takes a contiguous
+// range.
 #pragma once
 
 #include <atomic>
@@ -9,53 +10,53 @@
 #include <thread>
 #include <vector>
 
-#include "base/cores.hpp"
-#include "base/waits.hpp"
+#include "parallel/contention.hpp"
+#include "parallel/core_placement.hpp"
 
 namespace rattlebox {
 
-struct Alone {
+struct SingleThread {
     static constexpr int rank() { return 0; }
     static constexpr int size() { return 1; }
     static void sync() {}
     template <class Last> static void sync(Last&& last) { last(); }
     static void report() {}
-    template <class Other> static void await_lower(Other&&) {}
-    static bool is_held_up() { return false; }
-    static void forget_waits() {}
+    template <class Other> static void wait_for_lower(Other&&) {}
+    static bool is_contended() { return false; }
+    static void reset_wait_times() {}
 };
 
-// Where the members of a team wait for each other.
-class Meetingpoint {
+// A barrier, and counters by which a worker waits for those of lower rank alone. A phase lasts microseconds,
+// so waiting threads spin for about two microseconds, then yield their core, because the thread that they
+// wait for may need it, and sleep at last.
+class Barrier {
     struct alignas(64) Reports {
         std::atomic<unsigned> number{0};
     };
     alignas(64) std::atomic<int> waiting_{0};
     alignas(64) std::atomic<unsigned> round_{0};
     alignas(64) std::vector<Reports> reports_;
-    Waits waits_; // beyond the first moments
+    WaitTimes wait_times_; // after the spinning
 
-    // A phase lasts microseconds, worth spinning for. Who waits longer lets others have the core, since what
-    // it waits for may be among them, and sleeps in the end, to be woken where a core is free.
     static constexpr int spins = 2000, yields = 1000;
 
-    // Until is_over() or sleep() has brought what is waited for.
+    // Returns once is_over() holds; sleep() blocks until it may.
     template <class IsOver, class Sleep> void wait(int rank, IsOver&& is_over, Sleep&& sleep) {
         for (int looks = 0; looks < spins; ++looks)
             if (is_over()) return;
-        const auto begun = Waits::Clock::now();
+        const auto begun = WaitTimes::Clock::now();
         for (int looks = 0; !is_over(); ++looks)
             if (looks < yields)
                 std::this_thread::yield();
             else
                 sleep();
-        waits_.add(rank, begun, Waits::Clock::now());
+        wait_times_.add(rank, begun, WaitTimes::Clock::now());
     }
 
     std::atomic<unsigned>& reports(int rank) { return reports_[static_cast<std::size_t>(rank)].number; }
 
 public:
-    explicit Meetingpoint(int size) : reports_(static_cast<std::size_t>(size)), waits_(size) {}
+    explicit Barrier(int size) : reports_(static_cast<std::size_t>(size)), wait_times_(size) {}
 
     template <class Last> void sync(int rank, Last&& last) {
         const unsigned round = round_.load(std::memory_order_relaxed);
@@ -76,9 +77,9 @@ public:
         own.notify_all();
     }
 
-    // All lower members have reported as often as this one; until then it works on something other, while
-    // there is some.
-    template <class Other> void await_lower(int rank, Other&& other) {
+    // Returns once all workers of lower rank have reported as often as this one. Until then other() does one
+    // piece of work at a time and returns false when none is left.
+    template <class Other> void wait_for_lower(int rank, Other&& other) {
         const unsigned own = reports(rank).load(std::memory_order_relaxed);
         for (int r = 0; r < rank; ++r) {
             const std::atomic<unsigned>& theirs = reports(r);
@@ -93,44 +94,46 @@ public:
         }
     }
 
-    // Whether members have waited so long of late that one alone would have been as fast: other programs have
-    // their cores. For one that all others wait for.
-    bool is_held_up() { return waits_.are_a_habit(Waits::Clock::now()); }
-    void forget_waits() { waits_.forget(Waits::Clock::now()); }
+    // Whether workers have waited so long of late that one alone would have been as fast. For a worker that
+    // all others wait for.
+    bool is_contended() { return wait_times_.dominate(WaitTimes::Clock::now()); }
+    void reset_wait_times() { wait_times_.reset(WaitTimes::Clock::now()); }
 };
 
-class Member {
-    Meetingpoint* point_;
+class Worker {
+    Barrier* barrier_;
     int rank_, size_;
 
 public:
-    Member(Meetingpoint& point, int rank, int size) : point_(&point), rank_(rank), size_(size) {}
+    Worker(Barrier& barrier, int rank, int size) : barrier_(&barrier), rank_(rank), size_(size) {}
     int rank() const { return rank_; }
     int size() const { return size_; }
-    // All have come so far; the last to come does what is to be done before any goes on.
+    // Barrier. The last worker to arrive runs `last` before any continues.
     void sync() const {
         sync([] {});
     }
-    template <class Last> void sync(Last&& last) const { point_->sync(rank_, last); }
-    // Tells those of higher rank, in each round, that they may use what this member has done.
-    void report() const { point_->report(rank_); }
-    template <class Other> void await_lower(Other&& other) const { point_->await_lower(rank_, other); }
-    bool is_held_up() const { return point_->is_held_up(); }
-    void forget_waits() const { point_->forget_waits(); }
+    template <class Last> void sync(Last&& last) const { barrier_->sync(rank_, last); }
+    // Publishes, once in each round, what this worker has done to those of higher rank.
+    void report() const { barrier_->report(rank_); }
+    template <class Other> void wait_for_lower(Other&& other) const {
+        barrier_->wait_for_lower(rank_, other);
+    }
+    bool is_contended() const { return barrier_->is_contended(); }
+    void reset_wait_times() const { barrier_->reset_wait_times(); }
 };
 
-// Calls work(member) on `threads` threads, this one among them.
-template <class Work> void together(int threads, Work&& work) {
-    if (threads <= 1) return work(Alone{});
-    Meetingpoint point(threads);
-    const Cores cores;
+// Calls work(worker) on `threads` threads, the calling one among them.
+template <class Work> void run_parallel(int threads, Work&& work) {
+    if (threads <= 1) return work(SingleThread{});
+    Barrier barrier(threads);
+    const CorePlacement placement;
     std::vector<std::thread> others;
     for (int rank = 1; rank < threads; ++rank)
         others.emplace_back([&, rank] {
-            cores.begin(rank);
-            work(Member(point, rank, threads));
+            placement.place(rank);
+            work(Worker(barrier, rank, threads));
         });
-    work(Member(point, 0, threads));
+    work(Worker(barrier, 0, threads));
     for (std::thread& t : others) t.join();
 }
 

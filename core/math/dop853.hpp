@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/real.hpp"
+#include "math/real.hpp"
 
 namespace rattlebox {
 

@@ -4,7 +4,7 @@
 // not a dozen scattered numbers; turned into lanes, several contacts are computed at once.
 #pragma once
 
-#include "base/lanes.hpp"
+#include "math/lanes.hpp"
 
 namespace rattlebox {
 

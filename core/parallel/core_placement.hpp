@@ -1,5 +1,7 @@
-// Where threads begin. Schedulers may leave a new thread beside its maker for tens of milliseconds, and those
-// that wait for each other in each microsecond get nowhere on one core.
+// Starts each worker on a core of its own, from where the scheduler may move it. Schedulers may leave a new
+// thread on the core of its creator for tens of milliseconds. Measured as the first 100 steps of 1000
+// particles on two idle cores: 25 ms without it, 4 ms with it; where other programs have the cores, it costs time
+// (time without it over time with it, in windows of 250 steps: 0.78 to 0.98).
 #pragma once
 
 #ifdef __linux__
@@ -10,18 +12,18 @@ namespace rattlebox {
 
 #ifdef __linux__
 // The cores that the thread which makes this may use, and the one that it is on.
-class Cores {
+class CorePlacement {
     cpu_set_t allowed_;
     int here_, count_;
 
 public:
-    Cores() : here_(sched_getcpu()), count_(0) {
+    CorePlacement() : here_(sched_getcpu()), count_(0) {
         if (here_ < 0 || sched_getaffinity(0, sizeof(allowed_), &allowed_) != 0) return;
         if (CPU_ISSET(here_, &allowed_)) count_ = CPU_COUNT(&allowed_);
     }
 
     // Moves the calling thread `places` on among these; from there it may be moved like any other.
-    void begin(int places) const {
+    void place(int places) const {
         if (places >= count_) return;
         int core = here_;
         while (places > 0) {
@@ -35,8 +37,8 @@ public:
     }
 };
 #else
-struct Cores {
-    void begin(int) const {}
+struct CorePlacement {
+    void place(int) const {}
 };
 #endif
 

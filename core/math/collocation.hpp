@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "base/lanes.hpp"
+#include "math/lanes.hpp"
 
 namespace rattlebox {
 

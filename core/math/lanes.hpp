@@ -2,7 +2,7 @@
 // of registers: so the compiler keeps them out of memory, and a sum has the same order on every machine.
 #pragma once
 
-#include "base/real.hpp"
+#include "math/real.hpp"
 
 namespace rattlebox {
 

@@ -1,7 +1,7 @@
 // A law lists its coefficients by name, so that they are filled by name and never by position.
 #pragma once
 
-#include "base/real.hpp"
+#include "math/real.hpp"
 
 namespace rattlebox {
 

@@ -1,7 +1,7 @@
 // Gauss-Legendre quadrature on [0, 1].
 #pragma once
 
-#include "base/real.hpp"
+#include "math/real.hpp"
 
 namespace rattlebox {
 

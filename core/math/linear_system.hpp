@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/real.hpp"
+#include "math/real.hpp"
 
 namespace rattlebox {
 

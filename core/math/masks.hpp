@@ -7,7 +7,7 @@
 #include <immintrin.h>
 #endif
 
-#include "base/lanes.hpp"
+#include "math/lanes.hpp"
 
 namespace rattlebox {
 

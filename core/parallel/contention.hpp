@@ -1,0 +1,63 @@
+// Detects contention: how long workers wait at barriers, and whether one thread alone would have been as
+// fast.
+//
+// Where other programs have the cores, each barrier waits for the scheduler. In 20 ms the waiting times of
+// all workers are added; when they reach those of all workers but one, a run continues on one thread for a
+// while (core/dem/simulation.hpp, SerialFallback). Measured with 1000 particles on two cores beside eight
+// busy processes: 1.09 times as long without it (quartiles 0.94 to 1.30); with 100 000, or on idle cores, no
+// difference.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <vector>
+
+namespace rattlebox {
+
+class WaitTimes {
+public:
+    using Clock = std::chrono::steady_clock;
+    using Time = Clock::time_point;
+
+    explicit WaitTimes(int workers, Time now = Clock::now())
+        : waited_(static_cast<std::size_t>(workers)), since_(now) {}
+
+    // Adds one wait of a worker. Time before the last reset does not count: a core may be preempted during a
+    // wait, which then ends only when other waits that it caused have been counted.
+    void add(int rank, Time begun, Time ended) {
+        waited_[static_cast<std::size_t>(rank)].sum.fetch_add((ended - std::max(begun, since_)).count(),
+                                                              std::memory_order_relaxed);
+    }
+
+    // Returns whether waiting dominated since the last reset, and resets after 20 ms. For a worker that all
+    // others wait for.
+    bool dominate(Time now) {
+        constexpr Clock::duration short_term =
+            std::chrono::milliseconds(20); // one preemption is not contention
+        if (now - since_ < short_term) return false;
+        const bool all_the_time = sum() >= static_cast<int>(waited_.size() - 1) * (now - since_);
+        reset(now);
+        return all_the_time;
+    }
+
+    void reset(Time now) {
+        for (Sum& w : waited_) w.sum.store(0, std::memory_order_relaxed);
+        since_ = now;
+    }
+
+private:
+    struct alignas(64) Sum {
+        std::atomic<Clock::rep> sum{0};
+    };
+    std::vector<Sum> waited_;
+    Time since_; // written while all others wait
+
+    Clock::duration sum() const {
+        Clock::rep total = 0;
+        for (const Sum& w : waited_) total += w.sum.load(std::memory_order_relaxed);
+        return Clock::duration(total);
+    }
+};
+
+} // namespace rattlebox
