@@ -1,28 +1,29 @@
-// The particles of one cavity, in the order of the cells they lie in, and their contacts, chunk by chunk.
+// The particles of one cavity, sorted by cell, and their contacts, in chunks.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 
-#include "dem/contacts.hpp"
+#include "dem/contact_begin.hpp"
+#include "dem/contact_list.hpp"
 #include "dem/problem.hpp"
 #include "dem/structure.hpp"
 #include "dem/tally.hpp"
-#include "dem/touch.hpp"
 
 namespace rattlebox::dem {
 
 // Some hundred particles that follow each other, and the contacts whose first partners they are.
 struct Chunk {
     int begin, end;
-    int highest = 0;        // particle that the chunk's particles have as a neighbour
-    real closed = infinity; // how much nearer to each other any two may have come since the build
+    int highest = 0;            // particle that the chunk's particles have as a neighbour
+    real approached = infinity; // how much nearer to each other any two may have come since the build
     std::vector<std::uint8_t> near_first; // neighbours within reach: which of the chunk's particles,
     std::vector<int> near_second;         // and the number of the other
-    Contacts pairs, walls;
+    ContactList pairs, walls;
     Tally tally;
     Stopped stopped;
-    std::vector<std::pair<int, Late>> late; // of contacts that begin in this step, by candidate
+    std::vector<std::pair<int, FirstStepShare>>
+        first_step; // of contacts that begin in this step, by candidate
 
     Chunk(int begin, int end) : begin(begin), end(end) {}
 
@@ -32,18 +33,18 @@ struct Chunk {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(highest, closed, near_first, near_second, tally, stopped);
+        a(highest, approached, near_first, near_second, tally, stopped);
         pairs.keep(a);
         walls.keep(a);
     }
 };
 
 // What all need to know of a chunk in a step: a line of memory.
-struct alignas(64) Brief {
+struct alignas(64) ChunkMotion {
     // On the cavity, and how far any particle has moved beyond the reference: to infinity if one stops the
     // run.
-    real push[3] = {}, moved = 0;
-    real momentum[3] = {}, closed = 0; // the chunk's
+    real force_on_cavity[3] = {}, moved = 0;
+    real momentum[3] = {}, approached = 0; // the chunk's
 };
 
 // How velocity and spin change: a line of memory.
@@ -65,7 +66,7 @@ struct Bed {
     std::vector<char> touched;   // something in the step before
     std::vector<int> name, kind; // number in the case, material
     std::vector<Chunk> chunks;
-    std::vector<Brief> briefs; // of the chunks
+    std::vector<ChunkMotion> chunk_motion; // of the chunks
 
     real smallest = infinity; // radius
     real mass = 0;            // of all
@@ -88,7 +89,7 @@ struct Bed {
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(position, velocity, spin, rates, touched, name, kind, briefs, reach, reference, apart, shown);
+        a(position, velocity, spin, rates, touched, name, kind, chunk_motion, reach, reference, apart, shown);
         for (Chunk& c : chunks) c.keep(a);
     }
 };

@@ -1,4 +1,4 @@
-// A granular damper as the core sees it: modes, signals, and cavities full of spheres.
+// A particle damper as the core sees it: modes, signals, and cavities filled with spheres.
 //
 // Frame: the base. A cavity does not rotate; its centre is displaced by the sum of its mode shapes, three
 // numbers each. Positions count from the place of the centre at rest. A base acceleration b'' acts as -m b''.
@@ -7,7 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dem/encounter.hpp"
+#include "dem/pair_laws.hpp"
+#include "dem/walls.hpp"
 #include "structure/loads.hpp"
 #include "structure/mode.hpp"
 
@@ -37,17 +38,17 @@ struct Problem {
     std::vector<Load> loads;
     std::vector<Row> load_direction;
     std::vector<Cavity> cavities;
-    std::vector<Encounter> encounters;
+    std::vector<PairLaw> pair_laws;
     std::vector<std::vector<real>> tables; // storage of Table views
 };
 
 // How contacts of these entries are computed.
-inline Kind kind_of(const Problem& problem, const std::vector<int>& entries) {
-    Kind k;
+inline ContactLaws contact_laws_of(const Problem& problem, const std::vector<int>& entries) {
+    ContactLaws k;
     k.dt = problem.dt, k.enduring = problem.enduring / problem.dt;
     bool first = true, first_rough = true;
     for (const int entry : entries) {
-        const Encounter& e = problem.encounters.at(static_cast<std::size_t>(entry));
+        const PairLaw& e = problem.pair_laws.at(static_cast<std::size_t>(entry));
         if (first) k.normal = e.normal;
         first = false;
         e.normal.visit([&](const auto& law) {

@@ -1,4 +1,4 @@
-// What is kept of a run: energies, forces and places at the instants of the samples.
+// Samples of a run: energies, forces and positions at the output times.
 #pragma once
 
 #include "dem/bed.hpp"
@@ -27,8 +27,8 @@ inline Losses losses(const Bed& bed) {
 struct Totals {
     Losses before, now; // of the step
     real kinetic = 0, rotation = 0, stored = 0, mass = 0;
-    real slid[2] = {}, rolled[2] = {};        // by then, beyond half of what the step loses
-    Row place{}, momentum{}, push{}, twist{}; // mass times position; on the cavity
+    real slid[2] = {}, rolled[2] = {}; // by then, beyond half of what the step loses
+    Row place{}, momentum{}, force_on_cavity{}, moment_on_cavity{}; // mass times position; on the cavity
     std::int64_t contacts[2] = {};
 };
 
@@ -59,11 +59,12 @@ struct Records {
         for (std::size_t b = 0; b < beds.size(); ++b) {
             const Bed& bed = beds[b];
             Totals sum{.before = before_[b], .now = losses(bed)};
-            for (const Brief& one : bed.briefs) sum.momentum += row(one.momentum), sum.push += row(one.push);
+            for (const ChunkMotion& one : bed.chunk_motion)
+                sum.momentum += row(one.momentum), sum.force_on_cavity += row(one.force_on_cavity);
             for (const Chunk& c : bed.chunks) {
                 const Tally& one = c.tally;
                 sum.kinetic += one.kinetic, sum.rotation += one.rotation, sum.stored += total(one.stored);
-                sum.place += one.mass_moment, sum.twist += one.wall_moment;
+                sum.place += one.mass_moment, sum.moment_on_cavity += one.wall_moment;
                 for (int k = 0; k < 2; ++k) {
                     sum.contacts[k] += one.contacts[k];
                     sum.slid[k] += total(one.slid[k]), sum.rolled[k] += total(one.rolled[k]);
@@ -79,7 +80,7 @@ struct Records {
         potential.push_back(-dot(gravity, sum.place));
         for (int a = 0; a < 3; ++a) {
             centre.push_back(sum.place[a] / sum.mass), momentum.push_back(sum.momentum[a]);
-            force.push_back(sum.push[a]), moment.push_back(sum.twist[a]);
+            force.push_back(sum.force_on_cavity[a]), moment.push_back(sum.moment_on_cavity[a]);
         }
         // What a step loses is half lost at its instant, but for what slips.
         const Losses &then = sum.before, &now = sum.now;

@@ -8,16 +8,18 @@
 #include <atomic>
 #include <utility>
 
-#include "parallel/thread_pool.hpp"
-#include "dem/bed_step.hpp"
-#include "dem/division.hpp"
+#include "dem/contact_loop.hpp"
+#include "dem/integrator.hpp"
+#include "dem/partition.hpp"
 #include "dem/records.hpp"
-#include "dem/restored.hpp"
+#include "dem/restart_check.hpp"
+#include "parallel/thread_pool.hpp"
 
 namespace rattlebox::dem {
 
-// How long one works for a team that others hold up: the longer, the sooner the team is held up again.
-class Rest {
+// How long one worker runs alone where other programs have the cores (parallel/contention.hpp). The time
+// doubles where contention is found again soon after.
+class SerialFallback {
     using Clock = std::chrono::steady_clock;
     static constexpr Clock::duration shortest = std::chrono::milliseconds(20),
                                      longest = std::chrono::seconds(1);
@@ -36,8 +38,9 @@ public:
 class Simulation {
     Problem problem_;
     std::vector<Bed> beds_;
-    std::vector<Neighbours> neighbours_;
-    std::vector<BedStep> steps_;
+    std::vector<NeighbourList> neighbours_;
+    std::vector<ContactLoop> contact_loops_;
+    std::vector<Integrator> integrators_;
     std::vector<ModeState> modes_,
         modes_shown_; // at the next step, and at the last one whose forces are known
     std::vector<Turn> turns_;
@@ -56,14 +59,14 @@ class Simulation {
     struct Break {
         bool halt = false, pause = false;
     } taken_;
-    bool must_build_ = true; // before the next step
-    long told_ = -1;         // the step whose single contacts are still known
+    bool must_build_ = true;    // before the next step
+    long forces_known_at_ = -1; // the step whose single contacts are still known
     long builds_ = 0;
-    Rest rest_;
-    long lone_steps_ = 0; // by one for a team that was held up
+    SerialFallback serial_fallback_;
+    long serial_steps_ = 0; // by one for a team that was held up
     Row body_before_{};
     long steps_since_ = 0;
-    Division division_;
+    Partition partition_;
     Records records_;
 
     real now() const { return static_cast<real>(step_) * problem_.dt; }
@@ -97,7 +100,7 @@ class Simulation {
         bed.chunks.reserve((size + Bed::chunk_size - 1) / Bed::chunk_size);
         for (int from = 0; from < n; from += Bed::chunk_size)
             bed.chunks.emplace_back(from, std::min(from + Bed::chunk_size, n));
-        bed.briefs.assign(bed.chunks.size(), Brief{.closed = infinity});
+        bed.chunk_motion.assign(bed.chunks.size(), ChunkMotion{.approached = infinity});
     }
 
     // ---- the structure
@@ -145,13 +148,13 @@ class Simulation {
 
     Row force_on(const Bed& bed) const {
         Row total{};
-        for (const Brief& brief : bed.briefs) total += row(brief.push);
+        for (const ChunkMotion& motion : bed.chunk_motion) total += row(motion.force_on_cavity);
         return total;
     }
 
     static Row momentum_of(const Bed& bed) {
         Row total{};
-        for (const Brief& brief : bed.briefs) total += row(brief.momentum);
+        for (const ChunkMotion& motion : bed.chunk_motion) total += row(motion.momentum);
         return total;
     }
 
@@ -177,53 +180,56 @@ class Simulation {
 
     template <class Team> void build(Team& team) {
         const auto each_chunk = [&](auto&& f) {
-            division_.each_chunk(team.rank(),
-                                 [&](Place p) { f(at(neighbours_, p.bed), at(beds_, p.bed), p.chunk); });
+            partition_.each_chunk(team.rank(),
+                                  [&](Place p) { f(at(neighbours_, p.bed), at(beds_, p.bed), p.chunk); });
         };
-        each_chunk([](Neighbours& n, Bed& bed, int c) { n.pack_up(bed, at(bed.chunks, c)); });
+        each_chunk([](NeighbourList& n, Bed& bed, int c) { n.collect_contacts(bed, at(bed.chunks, c)); });
         team.sync([&] {
             for (std::size_t b = 0; b < beds_.size(); ++b)
                 choose_reach(beds_[b]), neighbours_[b].lay_cells(beds_[b]);
         });
-        each_chunk([](Neighbours& n, const Bed& bed, int c) { n.find_cells(bed, at(bed.chunks, c)); });
+        each_chunk([](NeighbourList& n, const Bed& bed, int c) { n.find_cells(bed, at(bed.chunks, c)); });
         team.sync([&] {
             for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].find_order(beds_[b]);
         });
-        const Part& part = division_.part(team.rank());
+        const WorkerRange& part = partition_.part(team.rank());
         const auto each_bed = [&](auto&& f) {
             for (int b = 0; b < static_cast<int>(beds_.size()); ++b)
                 f(at(neighbours_, b), at(beds_, b), at(part.first, b), at(part.until, b));
         };
-        for (int turn = 0; turn < Neighbours::turns; ++turn) {
-            each_bed(
-                [turn](Neighbours& n, Bed& bed, int first, int until) { n.sort(bed, turn, first, until); });
+        for (int turn = 0; turn < NeighbourList::turns; ++turn) {
+            each_bed([turn](NeighbourList& n, Bed& bed, int first, int until) {
+                n.sort(bed, turn, first, until);
+            });
             team.sync([&] {
                 for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].exchange(beds_[b], turn);
             });
         }
-        each_chunk([](const Neighbours& n, Bed& bed, int c) {
+        each_chunk([](const NeighbourList& n, Bed& bed, int c) {
             n.search(bed, at(bed.chunks, c));
-            at(bed.briefs, c) = Brief{}, at(bed.chunks, c).closed = 0;
+            at(bed.chunk_motion, c) = ChunkMotion{}, at(bed.chunks, c).approached = 0;
         });
-        each_bed([](Neighbours& n, Bed& bed, int first, int until) { n.unpack(bed, first, until); });
+        each_bed([](NeighbourList& n, Bed& bed, int first, int until) {
+            n.distribute_contacts(bed, first, until);
+        });
         team.sync();
-        each_chunk([](Neighbours& n, Bed& bed, int c) { n.forget(at(bed.chunks, c)); });
+        each_chunk([](NeighbourList& n, Bed& bed, int c) { n.clear_outgoing(at(bed.chunks, c)); });
         team.sync([&] {
-            division_.divide(team.size());
+            partition_.divide(team.size());
             ++builds_;
             steps_since_ = 0;
         });
-        division_.look_around(team.rank());
+        partition_.find_dependencies(team.rank());
     }
 
     // ---- steps
 
     // What to ask memory for at a chunk: for what those after it need, of the same bed and part.
-    Ahead ahead(const Part& part, int k) const {
-        const Place here = division_.place(k);
-        if (!at(steps_, here.bed).is_far()) return {};
+    Prefetch prefetch(const WorkerRange& part, int k) const {
+        const Place here = partition_.place(k);
+        if (!at(integrators_, here.bed).is_far()) return {};
         const auto after = [&](int places) -> const Chunk& {
-            const Place there = division_.place(std::min(k + places, part.end - 1));
+            const Place there = partition_.place(std::min(k + places, part.end - 1));
             return at(at(beds_, here.bed).chunks, there.bed == here.bed ? there.chunk : here.chunk);
         };
         return {at(beds_, here.bed), after(1), after(2), after(3)};
@@ -231,53 +237,53 @@ class Simulation {
 
     // In the last step forces of single contacts are kept; else only what others need.
     template <class Team> void advance(Team& team, bool first, bool sample, bool last) {
-        Part& part = division_.part(team.rank());
+        WorkerRange& part = partition_.part(team.rank());
         const Row all = structure().body();
-        std::vector<char>& known = part.known;
-        known.assign(part.early.begin(), part.early.end());
-        const auto forces = [&](int k, const Ahead& ahead = {}) {
-            const Place p = division_.place(k);
-            at(steps_, p.bed).pair_forces(at(neighbours_, p.bed), chunk(p), sample, ahead);
-            at(steps_, p.bed).wall_forces(at(neighbours_, p.bed), chunk(p), sample);
+        std::vector<char>& computed = part.computed;
+        computed.assign(part.at_border.begin(), part.at_border.end());
+        const auto forces = [&](int k, const Prefetch& prefetch = {}) {
+            const Place p = partition_.place(k);
+            at(contact_loops_, p.bed).pair_forces(at(neighbours_, p.bed), chunk(p), sample, prefetch);
+            at(contact_loops_, p.bed).wall_forces(at(neighbours_, p.bed), chunk(p), sample);
         };
         for (int k = part.begin; k < part.end; ++k)
-            if (at(known, k - part.begin)) forces(k);
+            if (at(computed, k - part.begin)) forces(k);
         team.report();
         team.wait_for_lower([&, k = part.begin]() mutable {
-            while (k < part.end && at(known, k - part.begin)) ++k;
+            while (k < part.end && at(computed, k - part.begin)) ++k;
             if (k == part.end) return false;
-            at(known, k - part.begin) = true;
+            at(computed, k - part.begin) = true;
             forces(k);
             return true;
         });
         for (const Place in : part.incoming)
-            at(steps_, in.bed)
+            at(contact_loops_, in.bed)
                 .add_incoming(at(part.sums, in.bed), chunk(in), at(part.first, in.bed),
                               at(part.until, in.bed));
         for (int k = part.begin; k < part.end; ++k) {
-            const Place p = division_.place(k);
+            const Place p = partition_.place(k);
             Chunk& own = chunk(p);
-            Sums& sums = at(part.sums, p.bed);
-            BedStep& step = at(steps_, p.bed);
-            const bool is_known = at(known, k - part.begin);
-            const auto lend = [&] {
+            ForceSums& sums = at(part.sums, p.bed);
+            ContactLoop& loop = at(contact_loops_, p.bed);
+            const bool is_known = at(computed, k - part.begin);
+            const auto swap_buffers = [&] {
                 if (is_known || last) return;
-                own.walls.actions.swap(part.at_walls);
-                own.pairs.actions.swap(part.at_pairs);
+                own.walls.contact_forces.swap(part.at_walls);
+                own.pairs.contact_forces.swap(part.at_pairs);
             };
-            lend();
-            if (!is_known) forces(k, ahead(part, k));
+            swap_buffers();
+            if (!is_known) forces(k, prefetch(part, k));
             const int until = at(part.until, p.bed);
-            step.add_own(sums, own, until);
-            lend();
-            step.advance(sums, own, until, all, body_before_, first, sample);
+            loop.add_own(sums, own, until);
+            swap_buffers();
+            at(integrators_, p.bed).advance(sums, own, until, all, body_before_, first, sample);
         }
     }
 
     void check() {
         for (std::size_t b = 0; b < beds_.size(); ++b)
             for (const Chunk& c : beds_[b].chunks) {
-                if (at(beds_[b].briefs, c.begin / Bed::chunk_size).moved < infinity) continue;
+                if (at(beds_[b].chunk_motion, c.begin / Bed::chunk_size).moved < infinity) continue;
                 if (c.stopped.status == Status::finished || status_ != Status::finished) continue;
                 status_ = c.stopped.status;
                 stopped_ = c.stopped;
@@ -291,13 +297,13 @@ class Simulation {
     // How much nearer to each other any two particles may have come since the build.
     static real closing(const Bed& bed) {
         real since = 0, moved = 0;
-        for (const Brief& brief : bed.briefs)
-            moved = larger(moved, brief.moved), since = larger(since, brief.closed + brief.moved);
+        for (const ChunkMotion& motion : bed.chunk_motion)
+            moved = larger(moved, motion.moved), since = larger(since, motion.approached + motion.moved);
         return since + moved;
     }
 
     // On to the next step.
-    void move_on() {
+    void advance_structure() {
         structure().kick();
         structure().drift();
         must_build_ = false;
@@ -316,13 +322,13 @@ class Simulation {
     }
 
     // What all need to know of the step to come; done by one.
-    void prepare() {
+    void prepare_step() {
         structure().load_values(now());
         if (sampled(step_)) records_.before(beds_);
     }
 
     // What follows from the forces of this step; done by one.
-    void conclude(bool first, bool sample) {
+    void finish_step(bool first, bool sample) {
         find_modal_force();
         if (!first) structure().kick();
         structure().show();
@@ -337,81 +343,82 @@ class Simulation {
         structure().work_on_particles(momentum);
         check();
         body_before_ = structure().body();
-        move_on();
+        advance_structure();
     }
 
     // Goes on until that step is done, something stops it, or a pause is asked for after a step.
     template <class Team, class Pause>
-    void go_on(Team& team, long until, const std::atomic<bool>& stop, Pause&& pause) {
+    void run_steps(Team& team, long until, const std::atomic<bool>& stop, Pause&& pause) {
         while (step_ <= until && status_ == Status::finished && !taken_.halt && !taken_.pause) {
             if (must_build_) build(team);
             const bool first = step_ == 0, sample = sampled(step_);
             advance(team, first, sample, step_ == until);
             team.sync([&] {
-                if (step_ == until) told_ = step_;
-                conclude(first, sample);
-                prepare();
+                if (step_ == until) forces_known_at_ = step_;
+                finish_step(first, sample);
+                prepare_step();
                 taken_ = {stop, pause()};
             });
         }
     }
 
     template <class Team> void run(Team& team, long until, const std::atomic<bool>& stop) {
-        division_.look_around(team.rank());
+        partition_.find_dependencies(team.rank());
         team.sync([&] {
-            prepare();
-            taken_ = {.pause = team.size() > 1 && !rest_.is_over()};
+            prepare_step();
+            taken_ = {.pause = team.size() > 1 && !serial_fallback_.is_over()};
         });
-        const auto all_go_on = [&] {
-            go_on(team, until, stop, [&] {
-                const bool held_up = team.is_contended();
-                if (held_up) rest_.begin();
-                return held_up;
+        const auto run_all = [&] {
+            run_steps(team, until, stop, [&] {
+                const bool contended = team.is_contended();
+                if (contended) serial_fallback_.begin();
+                return contended;
             });
         };
-        all_go_on();
+        run_all();
         while (taken_.pause) {
-            team.sync([&] { one_goes_on(until, stop, team.size()); });
-            division_.look_around(team.rank());
+            team.sync([&] { run_serially(until, stop, team.size()); });
+            partition_.find_dependencies(team.rank());
             team.sync([&] { team.reset_wait_times(); });
-            all_go_on();
+            run_all();
         }
     }
 
     // For the others, who wait.
-    void one_goes_on(long until, const std::atomic<bool>& stop, int members) {
+    void run_serially(long until, const std::atomic<bool>& stop, int members) {
         SingleThread alone;
-        division_.divide(1);
-        division_.look_around(0);
+        partition_.divide(1);
+        partition_.find_dependencies(0);
         taken_.pause = false;
-        lone_steps_ -= step_;
-        go_on(alone, until, stop, [&] { return rest_.is_over(); });
-        lone_steps_ += step_;
+        serial_steps_ -= step_;
+        run_steps(alone, until, stop, [&] { return serial_fallback_.is_over(); });
+        serial_steps_ += step_;
         taken_.pause = false;
-        division_.divide(members);
+        partition_.divide(members);
     }
 
 public:
     explicit Simulation(Problem&& problem) : problem_(std::move(problem)) {
-        for (Encounter& e : problem_.encounters) e.constant_damping = constant_damping(e);
+        for (PairLaw& e : problem_.pair_laws) e.constant_damping = constant_damping(e);
         prepare_structure();
         const std::size_t count = problem_.cavities.size();
         beds_.reserve(count), neighbours_.resize(count);
         for (std::size_t b = 0; b < count; ++b) {
             Cavity& cavity = problem_.cavities[b];
-            const Kind pair = kind_of(problem_, cavity.particle_entry),
-                       wall = kind_of(problem_, cavity.wall_entry);
+            const ContactLaws pair = contact_laws_of(problem_, cavity.particle_entry),
+                              wall = contact_laws_of(problem_, cavity.wall_entry);
             Bed& bed = beds_.emplace_back();
             fill_bed(bed, cavity, pair.rolls || wall.rolls);
-            const auto prepare = [](Contacts& list, const Kind& kind) {
-                list.memory.rolls = kind.rolls, list.memory.dents = kind.hysteretic;
+            const auto prepare_step = [](ContactList& list, const ContactLaws& kind) {
+                list.memory.rolls = kind.rolls, list.memory.yields = kind.hysteretic;
                 list.resize(0);
             };
-            for (Chunk& chunk : bed.chunks) prepare(chunk.pairs, pair), prepare(chunk.walls, wall);
+            for (Chunk& chunk : bed.chunks) prepare_step(chunk.pairs, pair), prepare_step(chunk.walls, wall);
             neighbours_[b].start(bed);
-            steps_.emplace_back(bed, problem_, pair, wall);
+            const ContactLoop& loop = contact_loops_.emplace_back(bed, problem_, pair, wall);
+            integrators_.emplace_back(bed, problem_.dt, loop.has_friction(), loop.has_rolling());
         }
-        division_.start(beds_);
+        partition_.start(beds_);
         for (Bed& bed : beds_) {
             place(bed);
             bed.shown = bed.motion.displacement;
@@ -425,21 +432,22 @@ public:
     // Goes on until the sample of step `until` is taken, or something stops it.
     void run(long until, int threads, const std::atomic<bool>& stop) {
         until = std::min(until, problem_.steps);
-        threads = std::min(threads, division_.chunks());
-        division_.divide(threads);
+        threads = std::min(threads, partition_.chunks());
+        partition_.divide(threads);
         run_parallel(threads, [&](auto team) { run(team, until, stop); });
     }
 
     // All that the next step needs, in a fixed order: to write it down and to read it back.
     template <class Archive> void keep(Archive& archive) {
-        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, must_build_, told_,
-                steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_, viscous_);
+        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, must_build_,
+                forces_known_at_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_,
+                viscous_);
         for (Bed& bed : beds_) bed.keep(archive);
     }
 
     // Reads a state back. Throws where it is not one of this case; this must then not be used any more.
     template <class Reader> void restore(Reader& reader) {
-        const std::vector<Fixed> fixed(beds_.begin(), beds_.end());
+        const std::vector<RestartCheck> fixed(beds_.begin(), beds_.end());
         keep(reader);
         if (!reader.at_end()) throw std::invalid_argument("the state is of another case");
         const auto require = [](bool holds) {
@@ -448,19 +456,19 @@ public:
         require(step_ >= 0 && step_ <= problem_.steps + 1 && steps_since_ >= 0);
         require(stopped_cavity_ >= 0 && stopped_cavity_ < static_cast<int>(beds_.size()));
         const Bed& where = at(beds_, stopped_cavity_);
-        require(Fixed::is_possible(status_) &&
-                Fixed::is_possible(stopped_, static_cast<int>(where.position.size()),
-                                   static_cast<int>(where.cavity->walls.size())));
+        require(RestartCheck::is_possible(status_) &&
+                RestartCheck::is_possible(stopped_, static_cast<int>(where.position.size()),
+                                          static_cast<int>(where.cavity->walls.size())));
         for (const std::size_t size :
              {modes_.size(), modes_shown_.size(), modal_force_.size(), viscous_.size()})
             require(size == problem_.modes.size());
         require(load_work_.size() == signals_.size() && base_work_.size() == signals_.size());
-        for (std::size_t b = 0; b < beds_.size(); ++b) fixed[b].check(beds_[b], tells_contacts());
+        for (std::size_t b = 0; b < beds_.size(); ++b) fixed[b].check(beds_[b], has_contact_forces());
         for (Bed& bed : beds_) place(bed);
     }
 
     // Are forces of single contacts known, of the last step? They are where a run was asked to end.
-    bool tells_contacts() const { return told_ >= 0 && told_ == step_ - 1; }
+    bool has_contact_forces() const { return forces_known_at_ >= 0 && forces_known_at_ == step_ - 1; }
     const Problem& problem() const { return problem_; }
     const std::vector<ModeState>& modes() const { return modes_shown_; }
     Row body_shown() const { return body_before_; }
@@ -471,13 +479,13 @@ public:
         return bytes;
     }
     long step() const { return __atomic_load_n(&step_, __ATOMIC_RELAXED); } // while it runs, too
-    long lone_steps() const { return lone_steps_; }
+    long serial_steps() const { return serial_steps_; }
     long builds() const { return builds_; }
     long scans() const { // of a chunk, on average
         long sum = 0;
         for (const Bed& bed : beds_)
             for (const Chunk& c : bed.chunks) sum += c.tally.scans;
-        return sum / division_.chunks();
+        return sum / partition_.chunks();
     }
     Status status() const { return status_; }
     const Stopped& stopped() const { return stopped_; }

@@ -1,9 +1,9 @@
-// What one chunk of particles adds up in a step and over a run. Sums over chunks are taken in their order:
+// What a chunk adds up in a step and over a run. Sums over chunks are taken in their order, so that they have
 // the same bits for any number of threads.
 #pragma once
 
+#include "dem/pair_laws.hpp"
 #include "util/status.hpp"
-#include "dem/encounter.hpp"
 
 namespace rattlebox::dem {
 

@@ -1,28 +1,37 @@
-// Exact distances to the walls of a cavity.
+// Walls of a cavity (plane, cylinder, sphere) and exact distances to them.
 #pragma once
 
-#include "dem/encounter.hpp"
+#include "dem/pair_laws.hpp"
 
 namespace rattlebox::dem {
 
-// Of a place seen from the centre of the cavity: the way to the nearest point of the wall, and how far it is.
-struct Near {
+// A wall, seen from the centre of its cavity.
+struct Wall {
+    enum Form : int { plane = 0, cylinder = 1, sphere = 2 };
+    Row axis{}; // outward normal of a plane, axis of a cylinder; the last number is the distance or the
+                // radius
+    Form form = plane;
+    int kind = 0; // of its material
+};
+
+// The nearest point of a wall, seen from a place: outward direction and distance.
+struct WallPoint {
     Row normal;
     real distance;
 };
 
-inline Near nearest(const Wall& wall, Row place) {
+inline WallPoint nearest_wall_point(const Wall& wall, Row place) {
     const real along = dot(wall.axis, place);
     if (wall.form == Wall::plane)
         return {row(wall.axis[0], wall.axis[1], wall.axis[2]), wall.axis[3] - along};
-    const real taken = wall.form == Wall::cylinder ? along : 0;
-    const Row q = row(place[0] - taken * wall.axis[0], place[1] - taken * wall.axis[1],
-                      place[2] - taken * wall.axis[2]);
-    const real out = std::sqrt(dot(q, q));
-    return {q / (out + 1e-290), wall.axis[3] - out};
+    const real axial = wall.form == Wall::cylinder ? along : 0;
+    const Row q = row(place[0] - axial * wall.axis[0], place[1] - axial * wall.axis[1],
+                      place[2] - axial * wall.axis[2]);
+    const real radial = std::sqrt(dot(q, q));
+    return {q / (radial + 1e-290), wall.axis[3] - radial};
 }
 
-// Of many places at once.
+// Distances of several places, in lanes.
 RATTLEBOX_INLINE Group distance(const Wall& wall, const Vector<Group>& place) {
     const Vector<Group> axis = {Group::all(wall.axis[0]), Group::all(wall.axis[1]), Group::all(wall.axis[2])};
     const Group along = dot(axis, place), offset = Group::all(wall.axis[3]);

@@ -1,7 +1,7 @@
 // Starts each worker on a core of its own, from where the scheduler may move it. Schedulers may leave a new
 // thread on the core of its creator for tens of milliseconds. Measured as the first 100 steps of 1000
-// particles on two idle cores: 25 ms without it, 4 ms with it; where other programs have the cores, it costs time
-// (time without it over time with it, in windows of 250 steps: 0.78 to 0.98).
+// particles on two idle cores: 25 ms without it, 4 ms with it; where other programs have the cores, it costs
+// time (time without it over time with it, in windows of 250 steps: 0.78 to 0.98).
 #pragma once
 
 #ifdef __linux__

@@ -31,14 +31,14 @@ public:
         const auto work = [&](std::size_t, int, const std::atomic<bool>& stop) {
             simulation_->run(until, threads_, stop);
         };
-        const auto go_on = [&](std::size_t) {
+        const auto run_steps = [&](std::size_t) {
             return progress.is_none() || !progress(simulation_->step()).is(nb::bool_(false));
         };
         const auto measure = [&] {
             seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
         };
         try {
-            const bool finished = work_off(1, 1, 1, work, go_on);
+            const bool finished = work_off(1, 1, 1, work, run_steps);
             measure();
             return finished;
         } catch (...) {
@@ -67,15 +67,15 @@ public:
     nb::dict contacts(std::size_t number) const {
         const Bed& b = bed(number);
         Touching touching;
-        if (!simulation_->tells_contacts())
+        if (!simulation_->has_contact_forces())
             throw std::logic_error("single contacts are known where a run was asked to end");
         for (const Chunk& chunk : b.chunks)
-            for (const Contacts* list : {&chunk.pairs, &chunk.walls})
-                for (int a = 0; a < list->actives; ++a) {
-                    const int k = at(list->active, a), j = at(list->second, k);
+            for (const ContactList* list : {&chunk.pairs, &chunk.walls})
+                for (int a = 0; a < list->touching_count; ++a) {
+                    const int k = at(list->touching, a), j = at(list->second, k);
                     touching.add(at(b.name, at(list->first, k)),
                                  list == &chunk.pairs ? at(b.name, j) : b.particles() + j,
-                                 at(list->actions.all, a).force);
+                                 at(list->contact_forces.all, a).force);
                 }
         return touching.write();
     }
@@ -130,7 +130,7 @@ public:
         threads_ = n;
     }
     long step() const { return simulation_->step(); }
-    long lone_steps() const { return simulation_->lone_steps(); }
+    long serial_steps() const { return simulation_->serial_steps(); }
 };
 
 } // namespace
@@ -149,7 +149,7 @@ void add_dem(nb::module_& module) {
         .def("restore", &Dem::restore, nb::arg("bytes"))
         .def_prop_ro("status", &Dem::status)
         .def_prop_ro("step", &Dem::step)
-        .def_prop_ro("lone_steps", &Dem::lone_steps, "Of a team that was held up, by one of them.")
+        .def_prop_ro("lone_steps", &Dem::serial_steps, "Of a team that was held up, by one of them.")
         .def_prop_rw("threads", &Dem::threads, &Dem::set_threads);
 }
 

@@ -84,14 +84,14 @@ inline dem::Problem read_dem(rattlebox::Problem& storage, const nb::dict& d) {
     }
     for (nb::handle item : contacts) {
         const auto entry = nb::cast<nb::dict>(item);
-        Encounter e;
+        PairLaw e;
         reader.choose(e.normal, nb::cast<nb::dict>(entry["normal"]));
         reader.choose(e.restitution, nb::cast<nb::dict>(entry["restitution"]));
         reader.choose(e.tangential, nb::cast<nb::dict>(entry["tangential"]));
         reader.fill(e.rolling, nb::cast<nb::dict>(entry["rolling"]));
         reader.number(e.size.radius, entry, "radius");
         reader.number(e.size.mass, entry, "mass");
-        p.encounters.push_back(e);
+        p.pair_laws.push_back(e);
     }
     for (nb::handle item : nb::cast<nb::list>(d["cavities"]))
         p.cavities.push_back(cavity(nb::cast<nb::dict>(item)));
@@ -143,9 +143,9 @@ struct Touching {
     std::vector<std::int64_t> first, second;
     std::vector<real> force;
 
-    void add(int one, int other, Row push) {
+    void add(int one, int other, Row force_on_cavity) {
         first.push_back(one), second.push_back(other);
-        for (int a = 0; a < 3; ++a) force.push_back(push[a]);
+        for (int a = 0; a < 3; ++a) force.push_back(force_on_cavity[a]);
     }
 
     nb::dict write() {

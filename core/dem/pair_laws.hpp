@@ -1,25 +1,16 @@
-// What meets: walls, and what two materials do to each other. Plain data.
+// The contact laws between two species, or a species and a wall. Plain data.
 #pragma once
 
-#include "math/rows.hpp"
 #include "contact/laws.hpp"
+#include "math/rows.hpp"
 
 namespace rattlebox::dem {
 
 enum Partner : int { particle = 0, wall = 1 };
 
-// A wall, seen from the centre of its cavity.
-struct Wall {
-    enum Form : int { plane = 0, cylinder = 1, sphere = 2 };
-    Row axis{}; // outward normal of a plane, axis of a cylinder; the last number is the distance or the
-                // radius
-    Form form = plane;
-    int kind = 0; // of its material
-};
-
 // The laws between two species, or a species and a wall. They hold for a reference pair and are resized to
 // the pair that touches.
-struct Encounter {
+struct PairLaw {
     NormalLaw normal;
     RestitutionLaw restitution;
     TangentialLaw tangential;
@@ -39,7 +30,7 @@ template <class T> RATTLEBOX_INLINE T overlap(const T& reach, const T& distance)
 }
 
 // How the contacts of a list are computed: all have the same kinds of laws.
-struct Kind {
+struct ContactLaws {
     NormalLaw normal;   // its parameters that do not belong to one contact
     int tangential = 0; // place in the table of laws
     bool rough = false, rolls = false;

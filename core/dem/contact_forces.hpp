@@ -1,9 +1,15 @@
-// Which candidates of a chunk touch, and what those do to each other.
+// Which candidates touch, and the forces of those that do, in SIMD lanes.
+//
+// The loops take as many contacts at once as a register holds, four at most: rows of positions, velocities
+// and spins are transposed into lanes, and the laws of core/contact are evaluated for all lanes. Sums have
+// the order of eight lanes on every machine. Measured on one core as time without lanes (one contact at a
+// time) over time with them: 1.75 with 1000 particles shaken, 2.6 at rest, 1.95 and 2.15 with 100 000; eight
+// lanes are no faster than four.
 #pragma once
 
+#include "dem/contact_geometry.hpp"
+#include "dem/prefetch.hpp"
 #include "math/masks.hpp"
-#include "dem/ahead.hpp"
-#include "dem/contact_step.hpp"
 
 namespace rattlebox::dem {
 
@@ -17,7 +23,7 @@ template <class Entry> RATTLEBOX_INLINE Group of_kinds(const std::vector<real>& 
 // A pair of particles, and a particle at a wall, as many at once as a register holds.
 struct PairView {
     const Bed& bed;
-    const Contacts& list;
+    const ContactList& list;
     const std::vector<real>& mu; // by kinds
 
     RATTLEBOX_INLINE Group friction(const int* k) const {
@@ -49,7 +55,7 @@ struct PairView {
         return apart.w * apart.w - dot(apart.vector(), apart.vector());
     }
 
-    template <bool spins> RATTLEBOX_INLINE Meeting<Group> meeting(const int* k) const {
+    template <bool spins> RATTLEBOX_INLINE Approach<Group> approach(const int* k) const {
         const auto apart = way(k);
         const auto place = [&](int i) __attribute__((always_inline)) { return at(bed.position, i); };
         // With the smaller radius as the fourth number.
@@ -59,20 +65,22 @@ struct PairView {
                 return __builtin_shufflevector(a - b, p < q ? p : q, 0, 1, 2, 7);
             });
         if constexpr (!spins)
-            return meet<false>(Facing<Group>{apart.vector(), moving.vector(), {}, {}, apart.w, moving.w});
-        const auto swirl = both(bed.spin, k, [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
-            return row(place(i)[3]) * a + row(place(j)[3]) * b;
-        });
+            return approach_of<false>(
+                RelativeMotion<Group>{apart.vector(), moving.vector(), {}, {}, apart.w, moving.w});
+        const auto surface_spin =
+            both(bed.spin, k, [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
+                return row(place(i)[3]) * a + row(place(j)[3]) * b;
+            });
         const auto spin =
             both(bed.spin, k, [](Row a, Row b, int, int) __attribute__((always_inline)) { return a - b; });
-        return meet<true>(
-            Facing<Group>{apart.vector(), moving.vector(), spin.vector(), swirl.vector(), apart.w, moving.w});
+        return approach_of<true>(RelativeMotion<Group>{apart.vector(), moving.vector(), spin.vector(),
+                                                       surface_spin.vector(), apart.w, moving.w});
     }
 };
 
 struct WallView {
     const Bed& bed;
-    const Contacts& list;
+    const ContactList& list;
     const std::vector<real>& mu;
     bool curved;
 
@@ -116,102 +124,104 @@ struct WallView {
         return a.w - distance;
     }
 
-    template <bool spins> RATTLEBOX_INLINE Meeting<Group> meeting(const int* k) const {
+    template <bool spins> RATTLEBOX_INLINE Approach<Group> approach(const int* k) const {
         Vector<Group> normal;
         Group distance;
         const auto a = first(bed.position, k);
         near(k, a, normal, distance);
         Ball<Group> ball{a.vector(), first(bed.velocity, k).vector(), {}, a.w};
         if constexpr (spins) ball.spin = first(bed.spin, k).vector();
-        return meet<spins>(ball, normal, distance, same(bed.motion.velocity));
+        return approach_of<spins>(ball, normal, distance, same(bed.motion.velocity));
     }
 };
 
 RATTLEBOX_INLINE Columns lay(const Four<Group>& f) { return {f.x, f.y, f.z, f.w}; }
 
-// Lists the candidates that touch; calls begun(k) and ended(k) for those that have just begun or
-// ended to.
+// Lists the candidates that touch; calls begun(k) and ended(k) for contacts that have just begun or ended.
 template <class View, class Begun, class Ended>
-void find_touching(Contacts& list, const View& view, Begun&& begun, Ended&& ended, const Ahead& ahead) {
+void find_touching(ContactList& list, const View& view, Begun&& begun, Ended&& ended,
+                   const Prefetch& prefetch) {
     const int to = list.size();
-    int* active = list.active.data();
+    int* touching = list.touching.data();
     const int* slot = list.slot.data();
     int count = 0;
     for (int base = 0; base < to; base += lane_count) {
-        ahead.looking(base);
+        prefetch.for_candidates(base);
         const int used = std::min(lane_count, to - base);
-        unsigned touching = 0;
+        unsigned overlapping = 0;
         for (int part = 0; part < used; part += group) {
             int k[group];
             for (int l = 0; l < group; ++l) k[l] = base + part + l;
-            touching |= positive(view.room(k)) << part;
+            overlapping |= positive(view.room(k)) << part;
         }
-        touching &= first_lanes(used);
-        count += list_lanes(touching, base, active + count);
+        overlapping &= first_lanes(used);
+        count += list_lanes(overlapping, base, touching + count);
         const unsigned touched = ~negative(slot + base) & first_lanes(used);
-        each_lane(touching ^ touched, [&](int l) { touching >> l & 1 ? begun(base + l) : ended(base + l); });
+        each_lane(overlapping ^ touched,
+                  [&](int l) { overlapping >> l & 1 ? begun(base + l) : ended(base + l); });
     }
-    list.actives = count;
+    list.touching_count = count;
 }
 
 // Losses of enduring contacts are sampled in every such step, which costs next to nothing.
 constexpr int probe = 32;
 
 template <bool rough, bool rolls, class Law, class View, class Settle>
-void collide(const Law& normal_law, Contacts& list, const View& view, const Kind& how, bool sampled,
-             Partner partner, Tally& tally, Settle&& settle, const Ahead& ahead) {
-    const int count = list.actives;
-    const int* active = list.active.data();
-    const Group zero = Group::all(0), dt = Group::all(how.dt);
-    const bool probing = list.steps % probe == 0 && how.enduring < infinity;
-    const Group latest = Group::all(static_cast<real>(list.steps) - how.enduring);
-    Actions& actions = list.actions;
-    actions.all.resize(static_cast<std::size_t>(count));
-    if constexpr (rolls) actions.torque.resize(static_cast<std::size_t>(count));
+void compute_contact_forces(const Law& normal_law, ContactList& list, const View& view,
+                            const ContactLaws& laws, bool sampled, Partner partner, Tally& tally,
+                            Settle&& update_unloading_curve, const Prefetch& prefetch) {
+    const int count = list.touching_count;
+    const int* touching = list.touching.data();
+    const Group zero = Group::all(0), dt = Group::all(laws.dt);
+    const bool probing = list.steps % probe == 0 && laws.enduring < infinity;
+    const Group latest = Group::all(static_cast<real>(list.steps) - laws.enduring);
+    ContactForces& contact_forces = list.contact_forces;
+    contact_forces.all.resize(static_cast<std::size_t>(count));
+    if constexpr (rolls) contact_forces.torque.resize(static_cast<std::size_t>(count));
     const int* const slot = list.slot.data();
-    Kept* const remembered = list.memory.kept.data();
-    Action* const acts = actions.all.data();
+    ContactState* const states = list.memory.state.data();
+    ContactForce* const acts = contact_forces.all.data();
     alignas(64) real used[group];
     for (int base = 0; base < count; base += group) {
         const int part = base % lane_count; // of the sums, which have the same order on every machine
-        if (part == 0) ahead.colliding(base);
+        if (part == 0) prefetch.for_contacts(base);
         int a[group], k[group], s[group];
         for (int l = 0; l < group; ++l) {
             a[l] = std::min(base + l, count - 1);
-            k[l] = active[a[l]];
+            k[l] = touching[a[l]];
             s[l] = slot[k[l]];
             used[l] = base + l < count;
         }
-        const auto kept = [&](Row Kept::* part) {
-            return [&, part](int l) { return &(remembered[s[l]].*part); };
+        const auto state = [&](Row ContactState::* part) {
+            return [&, part](int l) { return &(states[s[l]].*part); };
         };
-        const auto rolling = [&](Row KeptRolling::* part) {
+        const auto rolling = [&](Row RollingState::* part) {
             return [&, part](int l) { return &(at(list.memory.rolling, s[l]).*part); };
         };
-        const auto acting = [&](Row Action::* part) {
+        const auto acting = [&](Row ContactForce::* part) {
             return [&, part](int l) { return &(acts[a[l]].*part); };
         };
-        const auto dents = [&](int l) { return &at(list.memory.dent, s[l]); };
+        const auto yields = [&](int l) { return &at(list.memory.yield_history, s[l]); };
         const Group weight = pack<group>(used);
-        const auto m = view.template meeting<rough>(k);
-        const auto law = columns(kept(&Kept::law));
-        Columns dent{};
+        const auto m = view.template approach<rough>(k);
+        const auto law = columns(state(&ContactState::law));
+        Columns yield_history{};
         if constexpr (Law::hysteretic) {
             alignas(64) real overlap[group];
             pack<group>(overlap) = m.overlap;
             for (int l = 0; l < group; ++l) {
-                Row& d = at(list.memory.dent, s[l]);
+                Row& d = at(list.memory.yield_history, s[l]);
                 if (sampled) d[0] = std::fmax(d[0], overlap[l]);
-                if (d[3] != d[0] && (overlap[l] < d[0] || sampled)) settle(k[l]);
+                if (d[3] != d[0] && (overlap[l] < d[0] || sampled)) update_unloading_curve(k[l]);
             }
-            dent = columns(dents);
+            yield_history = columns(yields);
         }
         const Group rate = dot(m.velocity, m.normal);
         const Depth<Group> depth = depth_from_overlap(m.overlap);
         const Coefficients<Group> k_normal{law.x, law.y};
-        const History<Group> history{dent.x, dent.y, dent.z};
+        const History<Group> history{yield_history.x, yield_history.y, yield_history.z};
         auto normal = normal_force(normal_law, k_normal, depth, rate, history);
-        if (how.never_pulls) normal.total = larger(normal.total, zero);
+        if (laws.never_pulls) normal.total = larger(normal.total, zero);
         Group lost = weight * dt * (normal.total - normal.elastic) * rate;
         group_of(tally.normal[partner], part) += lost;
         tally.deepest.see(m.overlap, m.radius, part);
@@ -219,28 +229,28 @@ void collide(const Law& normal_law, Contacts& list, const View& view, const Kind
         if (sampled)
             group_of(tally.stored, part) += weight * stored_energy(normal_law, k_normal, depth, history);
         if constexpr (Law::hysteretic) {
-            dent.x = larger(dent.x, m.overlap);
-            store(dent, dents);
+            yield_history.x = larger(yield_history.x, m.overlap);
+            store(yield_history, yields);
         }
         if constexpr (rough) {
             const auto h = tangential_force(m, normal.total, rate, law.z, law.w, view.friction(k), depth,
-                                            columns(kept(&Kept::friction)), how.tangential, dt);
-            store(lay(h.spring), kept(&Kept::friction));
+                                            columns(state(&ContactState::friction)), laws.tangential, dt);
+            store(lay(h.spring), state(&ContactState::friction));
             const Group slid = weight * h.loss;
             group_of(tally.sliding[partner], part) += slid, lost += slid;
             force = force + h.force;
-            store(Columns{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&Action::couple));
+            store(Columns{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&ContactForce::couple));
             if (sampled) {
                 group_of(tally.stored, part) += weight * h.stored;
                 group_of(tally.slid[partner], part) += weight * h.excess;
             }
             if constexpr (rolls) {
                 const auto r =
-                    rolling_torque(m, normal.total, h.stiffness, columns(rolling(&KeptRolling::law)), depth,
-                                   columns(rolling(&KeptRolling::spring)), how.tangential, dt);
-                store(lay(r.spring), rolling(&KeptRolling::spring));
+                    rolling_torque(m, normal.total, h.stiffness, columns(rolling(&RollingState::law)), depth,
+                                   columns(rolling(&RollingState::spring)), laws.tangential, dt);
+                store(lay(r.spring), rolling(&RollingState::spring));
                 store(Columns{r.torque.x, r.torque.y, r.torque.z, zero},
-                      [&](int l) { return &at(actions.torque, a[l]); });
+                      [&](int l) { return &at(contact_forces.torque, a[l]); });
                 const Group rolled = weight * r.loss;
                 group_of(tally.rolling[partner], part) += rolled, lost += rolled;
                 if (sampled) {
@@ -249,14 +259,14 @@ void collide(const Law& normal_law, Contacts& list, const View& view, const Kind
                 }
             }
         } else
-            store(Columns{zero, zero, zero, zero}, acting(&Action::couple));
+            store(Columns{zero, zero, zero, zero}, acting(&ContactForce::couple));
         if (probing) {
             alignas(64) real since[group];
             for (int l = 0; l < group; ++l) since[l] = at(list.memory.since, s[l]);
             group_of(tally.enduring[partner], part) +=
                 Group::all(probe) * choose(latest - pack<group>(since), lost, zero);
         }
-        store(Columns{force.x, force.y, force.z, Group::all(1)}, acting(&Action::force));
+        store(Columns{force.x, force.y, force.z, Group::all(1)}, acting(&ContactForce::force));
     }
     if (sampled) tally.contacts[partner] += count;
 }

@@ -1,22 +1,22 @@
-// The forces of contacts: of one, or of as many as a SIMD register holds. The formulas are those of
-// core/contact; here they get the geometry of two spheres, or of a sphere and a wall.
+// The geometry of contacts between two spheres, or a sphere and a wall, and the laws of core/contact applied
+// to it: for one number, or for as many contacts as a SIMD register holds.
 #pragma once
 
-#include "math/rows.hpp"
 #include "contact/tangential/spring_slider.hpp"
-#include "dem/encounter.hpp"
+#include "dem/pair_laws.hpp"
+#include "math/rows.hpp"
 
 namespace rattlebox::dem {
 
 // How two partners meet. `normal` points from the first to the second.
-template <class T> struct Meeting {
+template <class T> struct Approach {
     Vector<T> normal;
     T overlap;
-    Vector<T> velocity; // of the first relative to the second, centres
-    Vector<T> swirl;    // sum of spin times lever
-    Vector<T> spin;     // of the first relative to the second
-    T lever;            // of the first over its radius, and of the second over its own
-    T radius;           // of the first
+    Vector<T> velocity;     // of the first relative to the second, centres
+    Vector<T> surface_spin; // sum of spin times lever
+    Vector<T> spin;         // of the first relative to the second
+    T lever;                // of the first over its radius, and of the second over its own
+    T radius;               // of the first
 };
 
 // A sphere: where its centre is, and how it moves and turns.
@@ -26,24 +26,24 @@ template <class T> struct Ball {
 };
 
 // Two spheres, seen from each other.
-template <class T> struct Facing {
+template <class T> struct RelativeMotion {
     Vector<T> way;            // from the first centre to the second
     Vector<T> velocity, spin; // of the first relative to the second
-    Vector<T> swirl;          // sum of spin times radius
+    Vector<T> surface_spin;   // sum of spin times radius
     T near, radius;           // sum of the radii, and the smaller of them
 };
 
-template <bool spins, class T> RATTLEBOX_INLINE Meeting<T> meet(const Facing<T>& f) {
+template <bool spins, class T> RATTLEBOX_INLINE Approach<T> approach_of(const RelativeMotion<T>& f) {
     const T distance = root(dot(f.way, f.way));
     const T per_both = all(distance, 1) / (distance * f.near); // one division for two
-    Meeting<T> m;
+    Approach<T> m;
     m.normal = (f.near * per_both) * f.way;
     m.overlap = overlap(f.near, distance);
     m.radius = f.radius;
     m.velocity = f.velocity;
     if constexpr (spins) {
         m.lever = distance * distance * per_both;
-        m.swirl = m.lever * f.swirl;
+        m.surface_spin = m.lever * f.surface_spin;
         m.spin = f.spin;
     }
     return m;
@@ -51,9 +51,9 @@ template <bool spins, class T> RATTLEBOX_INLINE Meeting<T> meet(const Facing<T>&
 
 // A sphere and a wall in the direction `normal`.
 template <bool spins, class T>
-RATTLEBOX_INLINE Meeting<T> meet(const Ball<T>& a, const Vector<T>& normal, const T& distance,
-                                 const Vector<T>& velocity) {
-    Meeting<T> m;
+RATTLEBOX_INLINE Approach<T> approach_of(const Ball<T>& a, const Vector<T>& normal, const T& distance,
+                                         const Vector<T>& velocity) {
+    Approach<T> m;
     m.normal = normal;
     m.overlap = overlap(a.radius, distance);
     m.velocity = a.velocity - velocity;
@@ -61,7 +61,7 @@ RATTLEBOX_INLINE Meeting<T> meet(const Ball<T>& a, const Vector<T>& normal, cons
     if constexpr (spins) {
         m.lever = distance / a.radius;
         m.spin = a.spin;
-        m.swirl = distance * m.spin;
+        m.surface_spin = distance * m.spin;
     }
     return m;
 }
@@ -126,12 +126,13 @@ template <class T> struct Tangential {
 
 // `coefficients` are those of the tangential spring and dashpot of the contact.
 template <class T, class Row>
-RATTLEBOX_INLINE Tangential<T>
-tangential_force(const Meeting<T>& m, const T& normal_force, const T& rate, const T& spring, const T& dashpot,
-                 const T& friction, const Depth<T>& depth, const Row& history, int law, const T& dt) {
+RATTLEBOX_INLINE Tangential<T> tangential_force(const Approach<T>& m, const T& normal_force, const T& rate,
+                                                const T& spring, const T& dashpot, const T& friction,
+                                                const Depth<T>& depth, const Row& history, int law,
+                                                const T& dt) {
     const T zero = all(rate, 0);
     const T pressed = larger(normal_force, zero), stiffness = tangential_stiffness(law, spring, depth);
-    const Vector<T> slip = m.velocity - rate * m.normal + cross(m.swirl, m.normal);
+    const Vector<T> slip = m.velocity - rate * m.normal + cross(m.surface_spin, m.normal);
     const auto s =
         advance_spring_slider(history.vector(), history.w, m.normal, stiffness,
                               tangential_dashpot(law, dashpot, depth), slip, friction * pressed, dt);
@@ -152,7 +153,7 @@ template <class T> struct Rolling {
 
 // `coefficients` holds mu_r R*, k_r / k_t, c_r.
 template <class T, class Row>
-RATTLEBOX_INLINE Rolling<T> rolling_torque(const Meeting<T>& m, const T& normal_force,
+RATTLEBOX_INLINE Rolling<T> rolling_torque(const Approach<T>& m, const T& normal_force,
                                            const T& tangential_stiffness, const Row& coefficients,
                                            const Depth<T>& depth, const Row& history, int law, const T& dt) {
     const T zero = all(normal_force, 0), pressed = larger(normal_force, zero);

@@ -1,12 +1,11 @@
-// Those of a chunk of particles that touch or may touch soon, others or walls, and what each contact
-// remembers.
+// The contact list of a chunk: candidates, which of them touch, and the history of each contact.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
-#include "dem/touch.hpp"
+#include "dem/contact_begin.hpp"
 
 namespace rattlebox::dem {
 
@@ -16,16 +15,16 @@ template <class T, class A> const T& at(const std::vector<T, A>& v, int i) {
 }
 
 // What contacts remember, by slot.
-struct Memory {
-    std::vector<Kept> kept;
-    std::vector<KeptRolling> rolling; // with rolling resistance only
-    std::vector<Row> dent;   // of a plastic law: deepest overlap, stiffness and origin of the curve that
-                             // unloads, and the deepest overlap that this curve is for
+struct ContactHistory {
+    std::vector<ContactState> state;
+    std::vector<RollingState> rolling; // with rolling resistance only
+    std::vector<Row> yield_history;    // of a plastic law: deepest overlap, stiffness and origin of the curve
+                                    // that unloads, and the deepest overlap that this curve is for
     std::vector<real> since; // the step in which the contact began
     std::vector<int> free;
-    bool rolls = false, dents = false;
+    bool rolls = false, yields = false;
 
-    int used() const { return static_cast<int>(kept.size() - free.size()); }
+    int used() const { return static_cast<int>(state.size() - free.size()); }
 
     int take() {
         if (!free.empty()) {
@@ -33,56 +32,56 @@ struct Memory {
             free.pop_back();
             return s;
         }
-        if (kept.size() == kept.capacity()) reserve(kept.size() + kept.size() / 8 + 4);
-        kept.emplace_back(), since.emplace_back();
+        if (state.size() == state.capacity()) reserve(state.size() + state.size() / 8 + 4);
+        state.emplace_back(), since.emplace_back();
         if (rolls) rolling.emplace_back();
-        if (dents) dent.emplace_back();
-        return static_cast<int>(kept.size()) - 1;
+        if (yields) yield_history.emplace_back();
+        return static_cast<int>(state.size()) - 1;
     }
 
     void reserve(std::size_t slots) {
-        kept.reserve(slots), since.reserve(slots);
+        state.reserve(slots), since.reserve(slots);
         if (rolls) rolling.reserve(slots);
-        if (dents) dent.reserve(slots);
+        if (yields) yield_history.reserve(slots);
     }
 
-    int begin(const Begun& b, real step) {
+    int begin(const ContactStart& b, real step) {
         const int s = take();
-        at(kept, s) = b.kept, at(since, s) = step;
+        at(state, s) = b.state, at(since, s) = step;
         if (rolls) at(rolling, s) = b.rolling;
-        if (dents) at(dent, s) = b.dent;
+        if (yields) at(yield_history, s) = b.yield_history;
         return s;
     }
 
     // `sign` is -1 where the partners have changed places.
-    int begin(const Memory& old, int slot, real sign) {
+    int begin(const ContactHistory& old, int slot, real sign) {
         const int s = take();
         const Row turn = row(sign, sign, sign, 1);
-        at(kept, s) = {turn * at(old.kept, slot).friction, at(old.kept, slot).law};
+        at(state, s) = {turn * at(old.state, slot).friction, at(old.state, slot).law};
         at(since, s) = at(old.since, slot);
         if (rolls) at(rolling, s) = {turn * at(old.rolling, slot).spring, at(old.rolling, slot).law};
-        if (dents) at(dent, s) = at(old.dent, slot);
+        if (yields) at(yield_history, s) = at(old.yield_history, slot);
         return s;
     }
 
     std::size_t bytes() const {
-        return kept.capacity() * sizeof(Kept) + rolling.capacity() * sizeof(KeptRolling) +
-               dent.capacity() * sizeof(Row) + since.capacity() * sizeof(real) +
+        return state.capacity() * sizeof(ContactState) + rolling.capacity() * sizeof(RollingState) +
+               yield_history.capacity() * sizeof(Row) + since.capacity() * sizeof(real) +
                free.capacity() * sizeof(int);
     }
 
-    template <class Archive> void keep(Archive& a) { a(kept, rolling, dent, since, free); }
+    template <class Archive> void keep(Archive& a) { a(state, rolling, yield_history, since, free); }
 };
 
 // What those that touch do in a step, in the order in which they are listed.
-struct Actions {
-    std::vector<Action> all;
+struct ContactForces {
+    std::vector<ContactForce> all;
     std::vector<Row> torque; // of rolling, on the first
 
-    void swap(Actions& other) { all.swap(other.all), torque.swap(other.torque); }
+    void swap(ContactForces& other) { all.swap(other.all), torque.swap(other.torque); }
 };
 
-struct Contacts {
+struct ContactList {
     static constexpr int none = -1;
 
     real skin = 0;          // candidates were closer than that at the scan,
@@ -96,11 +95,11 @@ struct Contacts {
     std::vector<int> origin;        // which of the neighbours it is
     std::vector<int> slot;          // where its memory is, or none
     int listed = 0;                 // candidates
-    std::vector<int> active;        // candidates that touch
-    int actives = 0;
-    Actions actions;
+    std::vector<int> touching;      // candidates that touch
+    int touching_count = 0;
+    ContactForces contact_forces;
 
-    Memory memory;
+    ContactHistory memory;
 
     int size() const { return listed; }
     bool is_stale() const { return !(since < skin); }
@@ -109,11 +108,11 @@ struct Contacts {
         listed = candidates;
         const auto n = static_cast<std::size_t>(candidates);
         if (n > origin.capacity())
-            for (auto* numbers : {&first, &second, &slot, &origin, &active})
+            for (auto* numbers : {&first, &second, &slot, &origin, &touching})
                 numbers->reserve(n + n / 8 + lane_count);
         for (auto* numbers : {&first, &second}) numbers->resize(n + lane_count);
         slot.resize(n + lane_count, none);
-        origin.resize(n), active.resize(n + lane_count); // more are written than touch
+        origin.resize(n), touching.resize(n + lane_count); // more are written than touch
     }
 
     void put(int k, int one, int other, int from, int memory) {
@@ -128,34 +127,34 @@ struct Contacts {
 
     // A contact that comes with its memory, before there are any candidates.
     void arrive(int one, int other, int from, int memory) {
-        const int k = actives++;
-        resize(actives);
+        const int k = touching_count++;
+        resize(touching_count);
         put(k, one, other, from, memory);
-        at(active, k) = k;
+        at(touching, k) = k;
     }
 
     // Nobody is a candidate any more; what they remember goes to `leaving`.
-    void leave(Memory& leaving) {
-        const bool rolls = memory.rolls, dents = memory.dents;
-        leaving = std::move(memory);
-        memory = Memory();
-        memory.rolls = rolls, memory.dents = dents;
-        memory.reserve(static_cast<std::size_t>(leaving.used()));
-        actives = 0, since = infinity;
-        actions.all.clear(), actions.torque.clear();
+    void leave(ContactHistory& outgoing) {
+        const bool rolls = memory.rolls, yields = memory.yields;
+        outgoing = std::move(memory);
+        memory = ContactHistory();
+        memory.rolls = rolls, memory.yields = yields;
+        memory.reserve(static_cast<std::size_t>(outgoing.used()));
+        touching_count = 0, since = infinity;
+        contact_forces.all.clear(), contact_forces.torque.clear();
         resize(0);
     }
 
     std::size_t bytes() const {
-        std::size_t sum = memory.bytes() + static_cast<std::size_t>(actives) *
-                                               (sizeof(Action) + (memory.rolls ? sizeof(Row) : 0));
-        for (const auto* v : {&first, &second, &origin, &slot, &active}) sum += v->capacity() * sizeof(int);
+        std::size_t sum = memory.bytes() + static_cast<std::size_t>(touching_count) *
+                                               (sizeof(ContactForce) + (memory.rolls ? sizeof(Row) : 0));
+        for (const auto* v : {&first, &second, &origin, &slot, &touching}) sum += v->capacity() * sizeof(int);
         return sum;
     }
 
     template <class Archive> void keep(Archive& a) {
-        a(skin, since, age, rate, steps, first, second, origin, slot, listed, active, actives, actions.all,
-          actions.torque);
+        a(skin, since, age, rate, steps, first, second, origin, slot, listed, touching, touching_count,
+          contact_forces.all, contact_forces.torque);
         memory.keep(a);
     }
 };

@@ -1,6 +1,5 @@
-// Checks of a bed that was read back: every number, count and index that the engine uses without looking must
-// be one that it can have written. A state that was made or changed by others must not make it read
-// elsewhere.
+// Validates a bed that was read back: every number, count and index that the engine uses without a check must
+// be one that it can have written, so that a damaged or altered state cannot make it read elsewhere.
 #pragma once
 
 #include <array>
@@ -12,7 +11,7 @@
 namespace rattlebox::dem {
 
 // What a run never changes, by number in the case.
-class Fixed {
+class RestartCheck {
     std::vector<std::array<real, 3>> numbers_; // radius, 1 / mass, radius / inertia
     std::vector<int> kind_;
     std::size_t chunks_;
@@ -26,10 +25,10 @@ class Fixed {
         return {at(bed.position, i)[3], at(bed.velocity, i)[3], at(bed.spin, i)[3]};
     }
 
-    static void check(const Memory& memory) {
-        const std::size_t slots = memory.kept.size();
+    static void check(const ContactHistory& memory) {
+        const std::size_t slots = memory.state.size();
         require(memory.rolling.size() == (memory.rolls ? slots : 0));
-        require(memory.dent.size() == (memory.dents ? slots : 0));
+        require(memory.yield_history.size() == (memory.yields ? slots : 0));
         require(memory.since.size() == slots);
         require(memory.free.size() <= slots);
         for (const int slot : memory.free) require(is_within(slot, 0, static_cast<int>(slots)));
@@ -38,36 +37,36 @@ class Fixed {
     // Candidates of particles `begin` to `end` with numbers below `partners`; `origin(k)` is where one comes
     // from, of so many.
     template <class Origin>
-    static void check(const Contacts& list, const Chunk& chunk, int partners, int origins, bool told,
+    static void check(const ContactList& list, const Chunk& chunk, int partners, int origins, bool told,
                       Origin&& agrees) {
         require(!(list.since < 0) && !(list.skin < 0) && list.listed >= 0);
         const auto listed = static_cast<std::size_t>(list.size()), padded = listed + lane_count;
-        for (const auto* numbers : {&list.first, &list.second, &list.slot, &list.active})
+        for (const auto* numbers : {&list.first, &list.second, &list.slot, &list.touching})
             require(numbers->size() == padded);
-        require(list.origin.size() == listed && is_within(list.actives, 0, list.size() + 1));
+        require(list.origin.size() == listed && is_within(list.touching_count, 0, list.size() + 1));
         check(list.memory);
         std::vector<char> touches(listed, false);
-        for (int a = 0, last = -1; a < list.actives; ++a) {
-            const int k = at(list.active, a);
+        for (int a = 0, last = -1; a < list.touching_count; ++a) {
+            const int k = at(list.touching, a);
             require(is_within(k, last + 1, list.size()));
             at(touches, last = k) = true;
         }
-        const int slots = static_cast<int>(list.memory.kept.size());
+        const int slots = static_cast<int>(list.memory.state.size());
         for (int k = 0; k < list.size(); ++k) {
             require(is_within(at(list.first, k), chunk.begin, chunk.end));
             require(is_within(at(list.second, k), 0, partners));
             require(is_within(at(list.origin, k), 0, origins) && agrees(k));
             require(at(touches, k) ? is_within(at(list.slot, k), 0, slots)
-                                   : at(list.slot, k) == Contacts::none);
+                                   : at(list.slot, k) == ContactList::none);
         }
         for (std::size_t k = listed; k < padded; ++k) { // lanes past the end
             const int i = static_cast<int>(k);
             require(is_within(at(list.first, i), 0, chunk.end) && is_within(at(list.second, i), 0, partners));
         }
-        const auto acting = static_cast<std::size_t>(list.actives);
+        const auto acting = static_cast<std::size_t>(list.touching_count);
         if (told)
-            require(list.actions.all.size() >= acting &&
-                    (!list.memory.rolls || list.actions.torque.size() >= acting));
+            require(list.contact_forces.all.size() >= acting &&
+                    (!list.memory.rolls || list.contact_forces.torque.size() >= acting));
     }
 
     static void check(const Bed& bed, const Chunk& chunk, bool told) {
@@ -79,7 +78,7 @@ class Fixed {
             require(chunk.begin + at(chunk.near_first, p) < chunk.end &&
                     is_within(at(chunk.near_second, p), 0, n));
         require(is_possible(chunk.stopped, n, walls));
-        const Contacts &pairs = chunk.pairs, &at_walls = chunk.walls;
+        const ContactList &pairs = chunk.pairs, &at_walls = chunk.walls;
         check(pairs, chunk, n, near, told, [&](int k) {
             const int p = at(pairs.origin, k);
             return chunk.begin + at(chunk.near_first, p) == at(pairs.first, k) &&
@@ -92,7 +91,7 @@ class Fixed {
     }
 
 public:
-    explicit Fixed(const Bed& bed) : chunks_(bed.briefs.size()) {
+    explicit RestartCheck(const Bed& bed) : chunks_(bed.chunk_motion.size()) {
         const auto n = static_cast<std::size_t>(bed.particles());
         numbers_.resize(n), kind_.resize(n);
         for (int i = 0; i < bed.particles(); ++i)
@@ -112,7 +111,7 @@ public:
         const std::size_t n = numbers_.size();
         require(bed.position.size() == n && bed.velocity.size() == n && bed.spin.size() == n);
         require(bed.rates.size() == n && bed.touched.size() == n);
-        require(bed.name.size() == n && bed.kind.size() == n && bed.briefs.size() == chunks_);
+        require(bed.name.size() == n && bed.kind.size() == n && bed.chunk_motion.size() == chunks_);
         std::vector<char> named(n, false);
         for (int i = 0; i < bed.particles(); ++i) {
             const int name = at(bed.name, i);
@@ -124,7 +123,8 @@ public:
             for (int a = 0; a < 3; ++a) require(std::fabs(at(bed.position, i)[a]) < 1e30);
         }
         require(bed.reach >= 0 && bed.reach < infinity && !(bed.apart < 0));
-        for (const Brief& brief : bed.briefs) require(!(brief.moved < 0) && !(brief.closed < 0));
+        for (const ChunkMotion& motion : bed.chunk_motion)
+            require(!(motion.moved < 0) && !(motion.approached < 0));
         for (const Chunk& chunk : bed.chunks) check(bed, chunk, told);
     }
 };
