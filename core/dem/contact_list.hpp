@@ -19,8 +19,8 @@ struct ContactHistory {
     std::vector<ContactState> state;
     std::vector<RollingState> rolling; // with rolling resistance only
     std::vector<Row> yield_history;    // of a plastic law: deepest overlap, stiffness and origin of the curve
-                                    // that unloads, and the deepest overlap that this curve is for
-    std::vector<real> since; // the step in which the contact began
+                                       // that unloads, and the deepest overlap that this curve is for
+    std::vector<real> since;           // the step in which the contact began
     std::vector<int> free;
     bool rolls = false, yields = false;
 
