@@ -4,9 +4,9 @@
 
 #include <concepts>
 
-#include "util/variant.hpp"
-#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
+#include "util/field.hpp"
+#include "util/variant.hpp"
 
 namespace rattlebox {
 

@@ -1,8 +1,8 @@
 // Closed contacts integrated step by step, their events, and the peaks of force and overlap.
 #pragma once
 
-#include "math/dop853.hpp"
 #include "impact/touch.hpp"
+#include "math/dop853.hpp"
 
 namespace rattlebox {
 

@@ -6,8 +6,8 @@
 // holds in it, and find where it ends.
 #pragma once
 
-#include "math/real.hpp"
 #include "contact/laws.hpp"
+#include "math/real.hpp"
 
 namespace rattlebox {
 

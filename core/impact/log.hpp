@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "util/status.hpp"
 #include "impact/state.hpp"
+#include "util/status.hpp"
 
 namespace rattlebox {
 

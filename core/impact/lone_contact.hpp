@@ -22,8 +22,8 @@
 #include <array>
 #include <vector>
 
-#include "math/collocation.hpp"
 #include "impact/state.hpp"
+#include "math/collocation.hpp"
 
 namespace rattlebox {
 

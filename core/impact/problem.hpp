@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "math/real.hpp"
 #include "contact/laws.hpp"
+#include "math/real.hpp"
 #include "structure/coupled_modes.hpp"
 #include "structure/loads.hpp"
 

@@ -12,9 +12,9 @@
 
 #include <vector>
 
-#include "math/linear_system.hpp"
 #include "impact/contact_phase.hpp"
 #include "impact/state.hpp"
+#include "math/linear_system.hpp"
 
 namespace rattlebox {
 

@@ -3,9 +3,9 @@
 
 #include <iterator>
 
-#include "math/linear_system.hpp"
 #include "impact/lone_contact.hpp"
 #include "impact/progress.hpp"
+#include "math/linear_system.hpp"
 
 namespace rattlebox {
 

@@ -9,8 +9,8 @@
 
 #include <algorithm>
 
-#include "util/field.hpp"
 #include "math/real.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

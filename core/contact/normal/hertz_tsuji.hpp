@@ -10,9 +10,9 @@
 // the pair, doi:10.1016/0032-5910(92)88030-L.
 #pragma once
 
-#include "util/field.hpp"
 #include "contact/damping.hpp"
 #include "contact/normal/normal_force.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

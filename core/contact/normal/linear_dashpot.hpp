@@ -9,9 +9,9 @@
 // P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.
 #pragma once
 
-#include "util/field.hpp"
 #include "contact/damping.hpp"
 #include "contact/normal/normal_force.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

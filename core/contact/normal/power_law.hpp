@@ -13,8 +13,8 @@
 // With p = (n - 1)/2 restitution is the same at every speed, else it depends on the speed.
 #pragma once
 
-#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

@@ -13,8 +13,8 @@
 
 #include <algorithm>
 
-#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

@@ -13,8 +13,8 @@
 // Technology 99 (1998) 154, doi:10.1016/S0032-5910(98)00099-0.
 #pragma once
 
-#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

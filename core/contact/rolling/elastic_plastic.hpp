@@ -9,8 +9,8 @@
 // doi:10.1016/j.powtec.2010.09.030.
 #pragma once
 
-#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 

@@ -9,8 +9,8 @@
 // R. D. Mindlin, J. Appl. Mech. 16 (1949) 259, doi:10.1115/1.4009973.
 #pragma once
 
-#include "util/field.hpp"
 #include "contact/normal/normal_force.hpp"
+#include "util/field.hpp"
 
 namespace rattlebox {
 
