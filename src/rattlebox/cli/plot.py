@@ -13,8 +13,8 @@ from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.maps import plot_map, select, taken_instead
 from rattlebox.plots.style import WIDTHS
+from rattlebox.studies.kinds import KINDS
 from rattlebox.studies.stored import open_study
-from rattlebox.studies.studytables import KINDS
 
 if TYPE_CHECKING:
     import xarray as xr

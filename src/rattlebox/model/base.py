@@ -147,9 +147,10 @@ def vocabulary() -> dict[str, dict[str, dict[str, str]]]:
     return known
 
 
-def examples(part: type[BaseModel]) -> dict[str, str]:
+def examples(part: type[Any]) -> dict[str, str]:
     """Return the names of fields as they are written, each with an example as a file would hold it, or ""."""
-    return {field.alias or name: _example(field) for name, field in part.model_fields.items()}
+    fields: dict[str, FieldInfo] = getattr(part, "model_fields", None) or part.__pydantic_fields__
+    return {field.alias or name: _example(field) for name, field in fields.items()}
 
 
 def _example(field: FieldInfo) -> str:

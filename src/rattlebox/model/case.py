@@ -372,7 +372,26 @@ class Case(Part):
         CaseError
             When the case does not fit.
         """
-        given = read_toml(content, source)
+        return cls.from_dict(read_toml(content, source), source=source, folder=folder)
+
+    @classmethod
+    def from_dict(cls, given: dict[str, Any], *, source: str = "case", folder: Path | None = None) -> Case:
+        """Return the case of the parsed content of a case file.
+
+        Parameters
+        ----------
+        given
+            Tables of the file.
+        source
+            Name of the file in messages.
+        folder
+            Folder of files named in it; default the current folder.
+
+        Raises
+        ------
+        CaseError
+            If a value is not allowed.
+        """
         if not given:
             raise CaseError(f"{source}: there is nothing in it\n  try: rattlebox demo, which writes two case files")
         if "case" in given and "structure" not in given:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,48 +111,25 @@ def follow(
     is found, balls are put to the wall that they touch.
     """
     axes: list[Any] = [*(beside if isinstance(beside, (list, tuple)) else [beside] if beside else []), {path: values}]
-    paths = path if isinstance(path, tuple) else (path,)
-    for name in paths:
-        if isinstance(name, str) and place_of(case, name)[-1] in _STARTS:
-            raise CaseError(
-                f"{name} is a start, which only the first value would have\n  try: it as an axis of a sweep"
-            )
-    task = ContinuationWork(
+    work = ContinuationWork.along(
         case,
-        _there_and_back(read_axes(case, axes), ways),
-        measures=_named(measure),
+        read_axes(case, axes),
+        measures=[measure] if isinstance(measure, str) else list(measure),
         cycles=cycles,
         samples=samples,
         point=point,
         motion=motion,
         last=last,
-        state=True,
-        ways=tuple(ways),
+        ways=ways,
         turning=turning,
     )
-    task.validate()
-    found = run_work(task, store=store, backend=backend, workers=workers, progress=progress)
-    return found.drop_dims("component").drop_vars("early")
+    work.validate()
+    return without_states(run_work(work, store=store, backend=backend, workers=workers, progress=progress))
 
 
-def _there_and_back(design: Grid, ways: Sequence[str]) -> Grid:
-    """The same variants, once for each direction."""
-    directions = "direction", np.array(ways), {"long_name": "direction"}
-    return Grid(
-        ("direction", *design.dims),
-        (len(ways), *design.shape),
-        {path: column[None] for path, column in design.columns.items()},
-        {"direction": directions, **design.coords()},
-    )
-
-
-def _named(measure: Sequence[str]) -> list[str]:
-    names = [measure] if isinstance(measure, str) else list(measure)
-    for name in names:
-        if name not in MEASURES:
-            raise Hint(f"there is no measure {name!r} of a run that is followed", nearest(str(name), MEASURES))
-    check_names(names)
-    return names
+def without_states(runs: xarray.Dataset) -> xarray.Dataset:
+    """Return the results of a continuation without the states from which it resumes."""
+    return runs.drop_dims("component").drop_vars("early")
 
 
 @dataclass
@@ -167,6 +144,30 @@ class ContinuationWork(ImpactWork):
 
     ways: tuple[str, ...] = ("up",)
     turning: bool = False
+
+    @classmethod
+    def along(cls, case: Case, grid: Grid, *, ways: Sequence[str], turning: bool = False, **options: Any) -> Self:
+        """Return the continuation along the last dimension of a grid.
+
+        Parameters
+        ----------
+        case
+            The case.
+        grid
+            Variants, once for each direction in the result.
+        ways, turning
+            Directions, see `follow`.
+        **options
+            Further attributes, see `ImpactWork`.
+        """
+        directions = "direction", np.array(ways), {"long_name": "direction"}
+        both = Grid(
+            ("direction", *grid.dims),
+            (len(ways), *grid.shape),
+            {path: column[None] for path, column in grid.columns.items()},
+            {"direction": directions, **grid.coords()},
+        )
+        return cls(case, both, state=True, ways=tuple(ways), turning=turning, **options)
 
     @property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:
@@ -186,6 +187,16 @@ class ContinuationWork(ImpactWork):
         CaseError
             With what to try.
         """
+        for name in self.measures:
+            if name not in MEASURES:
+                raise Hint(f"there is no measure {name!r} of a run that is followed", nearest(str(name), MEASURES))
+        check_names(self.measures)
+        along = (path for path, column in self.grid.columns.items() if column.shape[-1] > 1)
+        for path in along:
+            if place_of(self.case, path)[-1] in _STARTS:
+                raise CaseError(
+                    f"{path} is a start, which only the first value would have\n  try: it as an axis of a sweep"
+                )
         period = np.asarray(self.look.period)
         for load in self.packed["loads"]:
             forever = load["kind"] == "harmonic" and np.all(load["start"] == 0) and np.all(np.isinf(load["stop"]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -94,3 +94,8 @@ def check_names(measures: Iterable[Any]) -> None:
     for name in names:
         if names.count(name) > 1:
             raise Hint(f"two measures are called {name}", "each once, functions with names of their own")
+
+
+def with_required(required: Sequence[str], measures: Any) -> list[Any]:
+    """Return the measures that a study needs, and those that are asked for besides."""
+    return [*required, *(name for name in measures if name not in required)]

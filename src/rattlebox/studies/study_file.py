@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Annotated, Any
 
-from pydantic import ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.model.base import examples
@@ -17,60 +18,14 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.files import existing, read_toml
 from rattlebox.model.materials import Material
+from rattlebox.model.units import Whole
 
 from . import sampling
-from .axes import read_axes
-from .studytables import INSIDE, KINDS, Range, Spaced, shape_of
-from .studytables import Study as Content
-
-if TYPE_CHECKING:
-    import xarray
+from .kinds import KINDS
+from .study import Axes, SpacedTable, Study, Table, make_study, table_shape
 
 _EXAMPLE = '[axes]\n       "damper.gap" = { from = "0.1 mm", to = "2 mm", count = 20 }'
 _ROOTS = {*Case.model_fields, *Case.spellings}
-
-
-class Study(NamedTuple):
-    """What a study file says.
-
-    Attributes
-    ----------
-    case
-        The case that varies.
-    axes
-        Axes as `rb.sweep` takes them.
-    options
-        Other arguments of the function, those that the file gives.
-    kind
-        Name of the function: "sweep", "bifurcation", "frequency_response", "basins", "lyapunov", "loss_map", "design" or
-        "sensitivity".
-    """
-
-    case: Case
-    axes: list[Any]
-    options: dict[str, Any]
-    kind: str = "sweep"
-
-    def run(self, **where: Any) -> xarray.Dataset:
-        """Run the study.
-
-        Parameters
-        ----------
-        **where
-            Arguments of the function that the file does not give: store, workers, backend, progress.
-
-        Raises
-        ------
-        CaseError
-            When something does not fit the case.
-        """
-        given: tuple[Any, ...] = (self.axes,) if self.axes else ()
-        if self.kind == "bifurcation":
-            ((name, values),) = self.axes[0].items()
-            given = (tuple(values), tuple(values.values())) if isinstance(values, Mapping) else (name, values)
-        study = getattr(import_module(f"rattlebox.studies.kinds.{self.kind}"), self.kind)
-        found: xarray.Dataset = study(self.case, *given, **{**self.options, **where})
-        return found
 
 
 def read_study(path: str | os.PathLike[str]) -> Study:
@@ -83,7 +38,7 @@ def read_study(path: str | os.PathLike[str]) -> Study:
 
         case
             `file = "case.toml"`, or all that a case file holds.
-        axes
+        axes, or starts of basins
             One dimension a line, `"damper.gap" = values`: a list, or `{ from = "0.1 mm", to = "2 mm", count = 20 }`, with
             `spacing = "log"` if they grow by a factor. A table of such lines, `[axes.level]`, is one dimension along
             which they vary together. The quotes around a path keep the lines in their order.
@@ -93,13 +48,16 @@ def read_study(path: str | os.PathLike[str]) -> Study:
         replicas
             `count` replicas of each variant, moved by at most what the table `reach` says by path; `seed`.
 
-        Above them the other arguments of `rb.sweep`: measure, skip, cycles, samples, point, motion, last, threads.
-
-        With `kind = "bifurcation"` or the name of another ready map, the file holds the arguments of that function instead:
-        `axes` is the one parameter of a bifurcation, the starts of basins, the axes of lyapunov; `frequencies`, `levels` and
-        `amplitudes` are values; `parameters` of a design and `bounds` of a sensitivity are tables of
+        Above them the other fields of the kind of study, `kind = "sweep"` without that line, under the names that the
+        arguments of its function have. Values of a field (`values`, `frequencies`, `amplitudes`, `levels`) are lists or
+        tables as above; `parameters` of a design and `bounds` of a sensitivity are tables of
         `"damper.gap" = { from = "0.1 mm", to = "2 mm" }`, with `spacing = "log"` for a search in the logarithm, or of lists
-        to choose from; their `levels` is a table like `axes`.
+        to choose from.
+
+    Returns
+    -------
+    Study
+        The study; `run()` runs it.
 
     Raises
     ------
@@ -127,33 +85,35 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
     CaseError
         When something in it does not fit.
     """
+    given = _read(content, source)
     try:
-        given = _read(content, source)
         if "structure" in given and "case" not in given:
             raise Hint(
                 "this is a case, not a study of one", f'rattlebox run {source}, or a study with case.file = "{source}"'
             )
-        kind = given.get("kind", "sweep")
+        kind = given.pop("kind", "sweep")
         if not isinstance(kind, str) or kind not in KINDS:
             raise Hint(f"kind = {kind!r}: there is no such kind of study", nearest(str(kind), KINDS))
+        cls = kind_of(kind)
         given = {name: _NESTED.get(name, _as_it_is)(value) for name, value in given.items()}
-        study = KINDS[kind].model_validate(given)
-        case, own = _case(study.case, source, folder or Path())
-        axes = _axes(study, own)
-        options = _options(study, own)
-    except ValidationError as error:
-        raise translate(error, source, {"": {"": examples(KINDS[kind])}, **INSIDE}, given) from None
+        if "case" in given:
+            given["case"], own = _case(given["case"], source, folder or Path())
+            given = {name: _with_materials(value, own) if name in _NESTED else value for name, value in given.items()}
+        given = _with_samples(cls, given, source)
+        study = make_study(cls, given, source, {"": {"": examples(cls)}, "spaced": {"": examples(SpacedTable)}})
+        study.validate()
     except Hint as hint:
         raise CaseError(f"{source}: {hint}") from None
-    if study.axes_needed and not axes:
-        raise CaseError(f"{source}: nothing varies\n  try: {_EXAMPLE}")
-    if kind == "bifurcation" and len(axes[0]) > 1:
-        raise CaseError(
-            f"{source}: axes\n  a bifurcation diagram has one\n  try: a table [axes.together] that links them"
-        )
-    if axes:
-        read_axes(case, axes, source=source)
-    return Study(case, axes, options, kind)
+    except CaseError as error:
+        raise error if str(error).startswith(source) else CaseError(f"{source}: {error}") from None
+    return study
+
+
+def kind_of(name: str) -> type[Study]:
+    """Return the class of a kind of study."""
+    module = import_module(f"rattlebox.studies.kinds.{name}")
+    found: type[Study] = getattr(module, name.title().replace("_", ""))
+    return found
 
 
 def _read(content: str, source: str) -> dict[str, Any]:
@@ -170,7 +130,7 @@ def _read(content: str, source: str) -> dict[str, Any]:
 
 def _walk(table: dict[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
     for name, value in table.items():
-        if shape_of(value) == "linked":
+        if table_shape(value) == "linked":
             yield from _walk(value, f"{above}{name}.")
         else:
             yield above + name, value
@@ -188,12 +148,12 @@ def _flat(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
 def _flat_axes(table: Any) -> Any:
     def lines() -> Iterator[tuple[str, Any]]:
         for name, value in table.items():
-            if name not in _ROOTS and shape_of(value) == "linked":
+            if name not in _ROOTS and table_shape(value) == "linked":
                 yield name, _flat(_walk(value))
             else:
                 yield from _walk({name: value})
 
-    return _flat(lines()) if shape_of(table) == "linked" else table
+    return _flat(lines()) if table_shape(table) == "linked" else table
 
 
 def _flat_table(table: Any) -> Any:
@@ -215,6 +175,7 @@ def _as_it_is(value: Any) -> Any:
 _NESTED = {
     "axes": _flat_axes,
     "levels": _flat_axes,
+    "starts": _flat_axes,
     "parameters": _flat_table,
     "bounds": _flat_table,
     "design": _flat_inside("ranges"),
@@ -237,12 +198,10 @@ def _case(given: Any, source: str, folder: Path) -> tuple[Case, dict[str, Materi
             file = existing(folder / name)
         except DataError as error:
             raise CaseError(f"{source}: case.file = {name!r}\n  {error}") from None
-        case = Case.from_file(file)
         content = read_toml(_text(file), str(file))
+        case = Case.from_dict(content, source=str(file), folder=file.parent)
     else:
-        import tomli_w
-
-        case = Case.from_toml(tomli_w.dumps(content), source=f"{source}: case", folder=folder)
+        case = Case.from_dict(content, source=f"{source}: case", folder=folder)
     own = content.get("materials", {})
     return case, {name: Material(**{"name": name, **values}) for name, values in own.items()}
 
@@ -258,47 +217,64 @@ def _text(file: Path) -> str:
         raise CaseError(f"{file}: not text in UTF-8\n  try: a TOML file, saved as UTF-8") from None
 
 
-def _read_values(path: str, values: Any, own: Mapping[str, Material]) -> Any:
-    """Values of a parameter as the functions take them."""
-    if isinstance(values, Spaced):
-        return sampling.Spaced(values.start, values.to, values.count, values.spacing == "log", ("from", "to"))
-    if isinstance(values, Range):
-        return values.start, values.to
-    if isinstance(values, list) and path.rpartition(".")[2] in ("material", "wall"):
-        return [own.get(value, value) if isinstance(value, str) else value for value in values]
-    return values
+def _with_materials(table: Any, own: Mapping[str, Material]) -> Any:
+    """Return a table of values by path in which names of materials of the case are these materials."""
+    if not isinstance(table, dict):
+        return table
+
+    def read(path: str, values: Any) -> Any:
+        if isinstance(values, list) and path.rpartition(".")[2] in ("material", "wall"):
+            return [own.get(value, value) if isinstance(value, str) else value for value in values]
+        return _with_materials(values, own)
+
+    return {path: read(path, values) for path, values in table.items()}
 
 
-def _read_axes(axes: Mapping[str, Any], own: Mapping[str, Material]) -> dict[str, Any]:
-    return {
-        name: {path: _read_values(path, inner, own) for path, inner in values.items()}
-        if isinstance(values, dict)
-        else _read_values(name, values, own)
-        for name, values in axes.items()
-    }
-
-
-def _axes(study: Content, own: Mapping[str, Material]) -> list[Any]:
-    given = {name: getattr(study, name, None) for name in ("axes", "design", "replicas")}
-    axes: list[Any] = [_read_axes(given["axes"], own)] if given["axes"] else []
-    if random := given["design"]:
-        ranges = {path: _read_values(path, values, own) for path, values in random.ranges.items()}
-        axes.append(
-            sampling.random_design(ranges, random.count, method=random.method, seed=random.seed, log=random.log)
+def _with_samples(cls: type[Study], given: dict[str, Any], source: str) -> dict[str, Any]:
+    """Return the fields with the tables `design` and `replicas` added to the axes of the study."""
+    name = next((name for name in ("axes", "starts") if name in inspect.signature(cls).parameters), None)
+    if cls.kind in ("design", "sensitivity") or name is None:
+        return given
+    tables = {table: given.pop(table) for table in ("design", "replicas") if table in given}
+    try:
+        samples = _Samples.model_validate(tables)
+    except ValidationError as error:
+        vocabulary = {"": {"": examples(_Samples)}, "design": {"": examples(RandomTable)}}
+        raise translate(error, source, {**vocabulary, "replicas": {"": examples(ReplicasTable)}}, tables) from None
+    more: list[Any] = []
+    if points := samples.design:
+        more.append(
+            sampling.random_design(points.ranges, points.count, method=points.method, seed=points.seed, log=points.log)
         )
-    if copies := given["replicas"]:
-        axes.append(sampling.replicas(copies.reach, copies.count, seed=copies.seed))
-    return axes
+    if copies := samples.replicas:
+        more.append(sampling.replicas(copies.reach, copies.count, seed=copies.seed))
+    if name not in given and not more and "case" in given and cls.kind != "lyapunov":
+        raise Hint("nothing varies", _EXAMPLE)
+    if more:
+        axes = given.get(name)
+        checked = TypeAdapter(Axes).validate_python(axes) if axes else None
+        given[name] = [*([checked] if checked else []), *more]
+    return given
 
 
-def _options(study: Content, own: Mapping[str, Material]) -> dict[str, Any]:
-    """What else the file gives."""
-    options = {}
-    for name in sorted(study.model_fields_set - {"axes", "design", "replicas", "case", "kind"}):
-        value = getattr(study, name)
-        several = isinstance(value, dict) and name in _NESTED
-        options[name] = _read_axes(value, own) if several else _read_values(name, value, own)
-        log = [path for path, one in value.items() if getattr(one, "spacing", "") == "log"] if several else []
-        if log and name != "levels":
-            options["log"] = log
-    return options
+class RandomTable(Table):
+    """A random design."""
+
+    ranges: dict[str, list[Any]] = Field(examples=[{"damper.gap": ["0.1 mm", "2 mm"]}])
+    count: Annotated[Whole, Field(ge=1, examples=[1000])]
+    method: sampling.Method = "sobol"
+    seed: Annotated[Whole, Field(ge=0)] = 0
+    log: list[str] = Field(default=[])
+
+
+class ReplicasTable(Table):
+    """Replicas of each variant."""
+
+    reach: dict[str, Any] = Field(examples=[{"load.amplitude": "50 N"}])
+    count: Annotated[Whole, Field(ge=1, examples=[50])]
+    seed: Annotated[Whole, Field(ge=0)] = 0
+
+
+class _Samples(Table):
+    design: RandomTable | None = None
+    replicas: ReplicasTable | None = None

@@ -32,14 +32,10 @@ file = "{EXAMPLE}"
 "load.amplitude" = ["2 kN", "5 kN"]
 """
 SMALL_BLOCKS = """\
-from rattlebox.studies.axes import read_axes
 from rattlebox.studies.runner import run_work
 from rattlebox.studies.study_file import read_study
-from rattlebox.studies.impact_work import ImpactWork
 study = read_study("study.toml")
-design = read_axes(study.case, study.axes)
-task = ImpactWork(study.case, design, study.options["measure"])
-run_work(task, store="study.zarr", workers=1, block=100)
+run_work(study.work, store="study.zarr", workers=1, block=100)
 """
 
 
@@ -58,7 +54,7 @@ def test_a_killed_study_goes_on(tmp_path: Path) -> None:
     told = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     assert told == "2,000 variants: 2,000 finished\nwritten to study.zarr\n"
     study = read_study(tmp_path / "study.toml")
-    whole = rb.sweep(study.case, study.axes, workers=2, **study.options)
+    whole = study.run(workers=2)
     found = open_study(store)
     assert {name: found[name].values.tobytes() for name in found} == {
         name: whole[name].values.tobytes() for name in whole

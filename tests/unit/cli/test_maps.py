@@ -52,7 +52,8 @@ QUIET: dict[str, Any] = {"progress": False}
 STUDIES: dict[str, tuple[str, str, Callable[[rb.Case], xr.Dataset]]] = {
     "bifurcation": (
         "shaken.toml",
-        f'cycles = [40, 16]\nshow = "impacts"\n[axes]\n"{AMPLITUDE}" = {{ from = "0.5 mm", to = "2 mm", count = 9 }}',
+        f'cycles = [40, 16]\nshow = "impacts"\npath = "{AMPLITUDE}"\n'
+        'values = { from = "0.5 mm", to = "2 mm", count = 9 }',
         lambda case: rb.bifurcation(
             case, AMPLITUDE, rb.linspace("0.5 mm", "2 mm", 9), cycles=(40, 16), show="impacts", **QUIET
         ),
@@ -66,7 +67,7 @@ STUDIES: dict[str, tuple[str, str, Callable[[rb.Case], xr.Dataset]]] = {
     ),
     "basins": (
         "shaken.toml",
-        "cycles = [40, 8]\n[axes]\n"
+        "cycles = [40, 8]\n[starts]\n"
         '"damper.start" = { from = -1, to = 1, count = 5 }\n"damper.velocity" = ["-0.1 m/s", "0.1 m/s"]',
         lambda case: rb.basins(
             case,
@@ -230,8 +231,8 @@ def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer)
     [
         (study("bifurcation").replace("bifurcation", "bifurcations"), "did you mean 'bifurcation'"),
         (study("bifurcation").replace("show", "shown"), "did you mean 'show'"),
-        (study("bifurcation") + '"damper.gap" = ["1 mm"]', "a bifurcation diagram has one"),
-        (study("bifurcation").split("[axes]")[0], "nothing varies"),
+        (study("bifurcation") + '[axes]\n"damper.gap" = ["1 mm"]', "there is no such field"),
+        (study("bifurcation").split("path")[0], "path"),
         (study("bifurcation").replace("[40, 16]", "[40.5, 16]"), "whole numbers of cycles are needed"),
         (study("bifurcation").replace('"0.5 mm"', '"0.5 kg"'), "not a mass"),
         (study("frequency_response").replace("frequencies", "frequency"), "did you mean 'frequencies'"),

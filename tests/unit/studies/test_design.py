@@ -254,7 +254,7 @@ def test_a_store_opens_as_what_was_found(tmp_path: Path) -> None:
         ({GAP: (1e-3, 1e-4)}, {}, "the first must be the smaller one"),
         ({GAP: ("1 mm", "1 kg")}, {}, "a length"),
         ({GAP: (1e-4, 1e-3, 1e-2)}, {}, "a pair"),
-        ({GAP: 1e-3}, {}, "a list of values is needed"),
+        ({GAP: 1e-3}, {}, "a list is needed"),
         ({"damper.start": ("0.1 mm", "0.2 mm")}, {}, "fractions of the gap"),
         ({"damper.ball.material": ("steel", "brass")}, {}, "a list to choose from"),
         ({"damper.ball.material": ["steel", "bras"]}, {}, "brass"),

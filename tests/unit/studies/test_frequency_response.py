@@ -104,7 +104,7 @@ def test_a_run_that_fails_is_told():
 @pytest.mark.parametrize(
     ("changes", "options", "said"),
     [
-        ({}, {"direction": "left"}, '"up", "down", "both" or "fresh"'),
+        ({}, {"direction": "left"}, "must be 'up', 'down', 'both' or 'fresh'"),
         ({}, {"samples": 3}, "at least 8"),
         ({}, {"cycles": (10.5, 8)}, "whole numbers of cycles"),
         ({}, {"frequencies": [31, 30]}, "must rise"),

@@ -107,12 +107,12 @@ def test_points_without_a_value_are_left_out() -> None:
         ({"damper.gap": ("1 mm", "0.1 mm")}, {}, "the first value must be the smaller one"),
         (BOUNDS, {"n": 100}, "a power of two"),
         (BOUNDS, {"n": 4}, "at least 8"),
-        (BOUNDS, {"measure": "shares"}, "there is no measure 'shares'"),
+        (BOUNDS, {"measure": "shares"}, "measure = 'shares'"),
         (BOUNDS, {"confidence": 95}, "must be less than 1"),
         (BOUNDS, {"log": ["gap"]}, "there is no range of that name"),
         (BOUNDS, {"measure": "settling_time"}, "have a run without a value"),
         ({"damper.gap": ("50 mm", "60 mm")}, {}, "nothing depends on anything"),
-        ({}, {}, "bounds: paths with bounds or choices are needed"),
+        ({}, {}, "paths with bounds or choices are needed"),
     ],
 )
 def test_clear_refusals(bounds: Any, options: dict[str, Any], said: str) -> None:

@@ -2,42 +2,38 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import KW_ONLY
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
-from rattlebox.studies.axes import Axes, read_axes
+from rattlebox.model.case import Case
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.kinds.sweep import beside, sweep
+from rattlebox.studies.measures import with_required
 from rattlebox.studies.orbits import attractors, period_of, reduced_strobes
 from rattlebox.studies.store import keep_map
-from rattlebox.studies.studytables import checked
+from rattlebox.studies.study import (
+    CONFIG,
+    Axes,
+    CyclesToCompare,
+    Fraction,
+    Measures,
+    Study,
+    study_function,
+)
 
 if TYPE_CHECKING:
     import xarray
 
-    from rattlebox.model.case import Case
-
 NO_PERIOD, NOT_FINISHED = 0, -1
 
 
-def basins(
-    case: Case,
-    starts: Axes,
-    *,
-    cycles: tuple[int, int] = (400, 48),
-    measure: str | Sequence[str] = (),
-    tolerance: float = 1e-4,
-    apart: float = 1e-2,
-    point: str | None = None,
-    workers: int | None = None,
-    backend: Any = "threads",
-    store: str | os.PathLike[str] | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
-) -> xarray.Dataset:
+@dataclass(frozen=True, config=CONFIG)
+class Basins(Study):
     """Find the steady motion under a harmonic load that each start leads to.
 
     Motions are told apart by their strobes, the state once a cycle: two are one attractor when one repeats after as many
@@ -63,7 +59,7 @@ def basins(
     point
         Of the structure, that is watched; default the first damper's.
     workers, backend, store, progress
-        Where it runs, what is kept and told, as of `rb.sweep`.
+        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
@@ -94,37 +90,57 @@ def basins(
     >>> rb.basins(case, starts, cycles=(50, 8)).attractor.dims
     ('damper.start', 'damper.velocity')
     """
-    if not case.dampers:
-        raise CaseError("without a damper the motion is linear, and all starts lead to the same one")
-    given = checked("basins", cycles=cycles, tolerance=tolerance, apart=apart, workers=workers)
-    cycles, tolerance, apart, workers = given.values()
-    look = cycles[1]
-    design = read_axes(case, starts, source="basins")
-    task = ImpactWork(case, design, cycles=cycles, point=point)
-    task.require_alike()
-    basic = ("impacts", "impacts_per_cycle")
-    maps = sweep(
-        case,
-        starts,
-        beside(basic, measure),
-        cycles=cycles,
-        samples=look + 1,
-        point=point,
-        motion=True,
-        workers=workers,
-        backend=backend,
-        store=store,
-        progress=progress,
-    ).load()
-    maps = maps.isel(instant=slice(1, None)).rename(instant="strobe")
-    reduced = reduced_strobes(maps, task.packed, task.look.period)
-    period, residual = period_of(reduced, tolerance)
-    flat = reduced.reshape(design.size, look, -1)
-    label, best = attractors(flat, period.ravel(), residual.ravel(), apart)
-    label[maps.status.values.ravel() != 0] = NOT_FINISHED
-    about = {"title": "Basins of attraction", "case": case.to_toml(), "cycles": list(cycles), "tolerance": tolerance}
-    found = _with_orbits(maps, label.reshape(design.shape), period, best).assign_attrs(about, **_plane(case))
-    return keep_map(found, "basins", store)
+
+    kind: ClassVar[str] = "basins"
+
+    starts: Axes
+    _: KW_ONLY
+    cycles: CyclesToCompare = (400, 48)
+    measure: Measures = ()
+    tolerance: Fraction = 1e-4
+    apart: Fraction = 1e-2
+    point: str | None = None
+
+    @cached_property
+    def work(self) -> ImpactWork:
+        """Runs of all starts, with the state of each once a cycle."""
+        return ImpactWork(
+            self.case,
+            read_axes(self.case, self.starts, source="basins"),
+            measures=with_required(("impacts", "impacts_per_cycle"), self.measure),
+            cycles=self.cycles,
+            samples=self.cycles[1] + 1,
+            point=self.point,
+            motion=True,
+        )
+
+    def validate(self) -> None:
+        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        if not self.case.dampers:
+            raise CaseError("without a damper the motion is linear, and all starts lead to the same one")
+        self.work.require_alike()
+
+    def compute(self) -> xarray.Dataset:
+        """Run all starts and find their attractors; see `Study.compute`."""
+        work, grid = self.work, self.work.grid
+        runs = self.run_work(work).load().isel(instant=slice(1, None)).rename(instant="strobe")
+        strobes = reduced_strobes(runs, work.packed, work.look.period)
+        period, residual = period_of(strobes, self.tolerance)
+        flat = strobes.reshape(grid.size, self.cycles[1], -1)
+        label, best = attractors(flat, period.ravel(), residual.ravel(), self.apart)
+        label[runs.status.values.ravel() != 0] = NOT_FINISHED
+        about = {
+            "title": "Basins of attraction",
+            "case": self.case.to_toml(),
+            "cycles": list(self.cycles),
+            "tolerance": self.tolerance,
+        }
+        found = _with_orbits(runs, label.reshape(grid.shape), period, best).assign_attrs(about, **_plane(self.case))
+        return keep_map(found, self.kind, self.store)
+
+
+basins = study_function(Basins)
+"""Run a study of this kind: see `Basins`."""
 
 
 def _plane(case: Case) -> dict[str, float]:

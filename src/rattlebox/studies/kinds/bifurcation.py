@@ -2,51 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from dataclasses import KW_ONLY
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
+from pydantic import BeforeValidator
+from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox.model.errors import Hint
 from rattlebox.studies.axes import read_axes
-from rattlebox.studies.continuation import follow
+from rattlebox.studies.continuation import ContinuationWork, without_states
 from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.kinds.sweep import beside, sweep
+from rattlebox.studies.measures import with_required
 from rattlebox.studies.orbits import period_of, reduced_strobes
 from rattlebox.studies.store import keep_map
-from rattlebox.studies.studytables import checked
+from rattlebox.studies.study import (
+    CONFIG,
+    CyclesToCompare,
+    Fraction,
+    Measures,
+    Study,
+    Values,
+    study_function,
+)
 
 if TYPE_CHECKING:
-    import os
-
     import xarray
 
-    from rattlebox.model.case import Case
+    Path = str | tuple[str, ...]
+else:
+    Path = Annotated[
+        Any, BeforeValidator(lambda path: tuple(map(str, path)) if isinstance(path, (list, tuple)) else str(path))
+    ]
 
-Show = Literal["strobe", "impacts"]
-Direction = Literal["up", "down", "both", "fresh"]
 
 _IMPACTS = 8  # kept, for each cycle looked at
 
 
-def bifurcation(
-    case: Case,
-    path: Any,
-    values: Any,
-    *,
-    cycles: tuple[int, int] = (400, 48),
-    show: Show = "strobe",
-    direction: Direction = "both",
-    measure: str | Sequence[str] = (),
-    tolerance: float = 1e-4,
-    point: str | None = None,
-    workers: int | None = None,
-    backend: Any = "threads",
-    store: str | os.PathLike[str] | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
-) -> xarray.Dataset:
+@dataclass(frozen=True, config=CONFIG)
+class Bifurcation(Study):
     """Follow the motion under a harmonic load over a parameter, and look at it once a cycle or at each impact.
 
     Parameters
@@ -56,7 +53,7 @@ def bifurcation(
     path
         What varies, or a tuple of paths that vary together.
     values
-        Rising: a list, an array, linspace or geomspace.
+        Rising: a list, an array, linspace or geomspace; with several paths, one such for each.
     cycles
         How many cycles of each value to skip until the motion is steady, and how many to look at.
     show
@@ -72,8 +69,7 @@ def bifurcation(
     point
         Of the structure, that is watched; default the first damper's.
     workers, backend, store, progress
-        Where it runs, what is kept and told, as of `rb.sweep`. Only "fresh" has work for several threads or workers; what
-        follows the motion goes on from the last value in the store.
+        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
@@ -103,38 +99,72 @@ def bifurcation(
     >>> maps.ball_place.dims
     ('direction', 'structure.motion.amplitude', 'cycle', 'ball')
     """
-    for name, given, known in (("show", show, Show), ("direction", direction, Direction)):
-        if given not in get_args(known):
-            raise Hint(f"{name} = {given!r} is unknown", ", ".join(f'"{one}"' for one in get_args(known)))
-    if not case.dampers:
-        raise CaseError("without a damper the motion is linear, and nothing bifurcates")
-    cycles, tolerance, workers = checked("bifurcation", cycles=cycles, tolerance=tolerance, workers=workers).values()
-    look = cycles[1]
-    path = tuple(map(str, path)) if isinstance(path, (list, tuple)) else str(path)
-    design = read_axes(case, {path: values}, source="bifurcation")
-    task = ImpactWork(case, design, cycles=cycles, point=point)
-    task.require_alike()
-    _check_order(design, direction)
-    basic = ("impacts", "impacts_per_cycle")
-    options: dict[str, Any] = {
-        "cycles": cycles,
-        "measure": beside(basic, measure),
-        "samples": look + 1,
-        "motion": True,
-        "last": _IMPACTS * look if show == "impacts" else 0,
-        "point": point,
-        "workers": workers,
-        "backend": backend,
-        "store": store,
-        "progress": progress,
-    }
-    if direction == "fresh":
-        maps = sweep(case, {path: values}, **options).expand_dims(direction=["fresh"])
-    else:
-        both = direction == "both"
-        maps = follow(case, path, values, ways=("up", "down") if both else (direction,), turning=both, **options)
-    about = {"title": "Bifurcation diagram", "case": case.to_toml(), "cycles": list(cycles), "tolerance": tolerance}
-    return keep_map(_looked_at(maps.load(), task, tolerance).assign_attrs(about), "bifurcation", store)
+
+    kind: ClassVar[str] = "bifurcation"
+
+    path: Path
+    values: Values
+    _: KW_ONLY
+    cycles: CyclesToCompare = (400, 48)
+    show: Literal["strobe", "impacts"] = "strobe"
+    direction: Literal["up", "down", "both", "fresh"] = "both"
+    measure: Measures = ()
+    tolerance: Fraction = 1e-4
+    point: str | None = None
+
+    @cached_property
+    def grid(self) -> Grid:
+        """Values of the parameter."""
+        return read_axes(self.case, {self.path: self.values}, source="bifurcation")
+
+    @cached_property
+    def work(self) -> ImpactWork:
+        """Runs of all values."""
+        look = self.cycles[1]
+        options: dict[str, Any] = {
+            "measures": with_required(("impacts", "impacts_per_cycle"), self.measure),
+            "cycles": self.cycles,
+            "samples": look + 1,
+            "motion": True,
+            "last": _IMPACTS * look if self.show == "impacts" else 0,
+            "point": self.point,
+        }
+        if self.direction == "fresh":
+            return ImpactWork(self.case, self.grid, **options)
+        both = self.direction == "both"
+        return ContinuationWork.along(
+            self.case, self.grid, ways=("up", "down") if both else (self.direction,), turning=both, **options
+        )
+
+    def validate(self) -> None:
+        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        if not self.case.dampers:
+            raise CaseError("without a damper the motion is linear, and nothing bifurcates")
+        self._values.require_alike()
+        _check_order(self.grid, self.direction)
+        self.work.validate()
+
+    @property
+    def _values(self) -> ImpactWork:
+        """The values, packed once, for the evaluation."""
+        return ImpactWork(self.case, self.grid, cycles=self.cycles, point=self.point)
+
+    def compute(self) -> xarray.Dataset:
+        """Run all values and find the periods; see `Study.compute`."""
+        runs = self.run_work(self.work)
+        runs = runs.expand_dims(direction=["fresh"]) if self.direction == "fresh" else without_states(runs)
+        about = {
+            "title": "Bifurcation diagram",
+            "case": self.case.to_toml(),
+            "cycles": list(self.cycles),
+            "tolerance": self.tolerance,
+        }
+        found = _looked_at(runs.load(), self._values, self.tolerance).assign_attrs(about)
+        return keep_map(found, self.kind, self.store)
+
+
+bifurcation = study_function(Bifurcation)
+"""Run a study of this kind: see `Bifurcation`."""
 
 
 def _check_order(design: Grid, direction: str) -> None:

@@ -7,18 +7,20 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic.dataclasses import dataclass as pydantic_dataclass
 
 from rattlebox._util.exceptions import CaseError, StoreError
 from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.owned_folder import read_marker
 from rattlebox._util.progress import progress_bar
+from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import replaced
 from rattlebox.studies.axes import materials_in, read_axes
@@ -26,18 +28,31 @@ from rattlebox.studies.case_digest import describe_case
 from rattlebox.studies.fingerprint import fingerprint
 from rattlebox.studies.grid import Grid, labels
 from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.kinds.sweep import known, sweep
+from rattlebox.studies.kinds.sweep import Sweep
 from rattlebox.studies.measures import check_names
 from rattlebox.studies.parameter import Parameter
 from rattlebox.studies.robust import robust_axes
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.store import JOURNAL, exclusive_writer, keep_map
-from rattlebox.studies.studytables import checked
+from rattlebox.studies.study import (
+    CONFIG,
+    Axes,
+    Bounds,
+    Count,
+    Cycles,
+    Kilograms,
+    Samples,
+    Seconds,
+    Seed,
+    Study,
+    known_measures,
+    split_bounds,
+    study_function,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rattlebox.model.case import Case
     from rattlebox.results import Run
 
 Robust = Literal["worst", "mean", "median"]
@@ -46,27 +61,8 @@ Vector = NDArray[np.float64]
 _MASS = "added_mass"
 
 
-def design(
-    case: Case,
-    parameters: Mapping[str, Any],
-    objective: Any = "settling_time",
-    *,
-    levels: Any = None,
-    starts: int | Sequence[Any] | None = None,
-    robust: Robust = "worst",
-    max_added_mass: float | str | None = None,
-    log: Sequence[str] = (),
-    trials: int = 100,
-    seed: int = 0,
-    skip: float | str = 0.0,
-    cycles: tuple[int, int] | None = None,
-    samples: int | None = None,
-    point: str | None = None,
-    workers: int | None = None,
-    backend: Any = "threads",
-    store: str | os.PathLike[str] | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
-) -> xr.Dataset:
+@pydantic_dataclass(frozen=True, config=CONFIG)
+class Design(Study):
     """Find parameters of a case that make a measure small, or a trade-off between several.
 
     Each trial is a sweep over all levels and starts, of which the worst counts. Optuna's tree of Parzen estimators proposes
@@ -97,7 +93,7 @@ def design(
     seed
         The same seed gives the same trials.
     skip, cycles, samples, point, workers, backend
-        As in `rb.sweep`. Trials follow each other; what a cluster shares are the levels and starts of each.
+        See `rb.sweep`. Trials run one after the other; workers share the levels and starts of each.
     store
         Folder that keeps all trials: the same call goes on after a stop, and one with more trials goes further.
     progress
@@ -124,45 +120,74 @@ def design(
     >>> found = rb.design(case, {"damper.gap": ("0.1 mm", "2 mm")}, starts=3, trials=5)
     >>> best = rb.Case.from_toml(found.case.item(0))
     """
-    optuna = optional_import("optuna", "design")
-    trials, seed, robust, limit = checked(
-        "design", trials=trials, seed=seed, robust=robust, max_added_mass=max_added_mass
-    ).values()
-    given = checked("design", skip=skip, cycles=cycles, samples=samples, workers=workers)
-    where = {"workers": given.pop("workers"), "backend": backend}
-    search = _Search(
-        case=case,
-        parameters=[_Parameter.of(case, path, given, path in log) for path, given in _some(parameters).items()],
-        goals=_goals(objective),
-        axes=robust_axes(case, levels, starts),
-        robust=robust,
-        limit=limit,
-        options={**given, "point": point},
-        where=where,
-    )
-    search.check(log)
-    done = 0
-    try:
-        with _quiet(optuna), _storage(optuna, store) as storage, progress_bar(progress, trials, "trials") as tell:
-            study = _study(optuna, storage, search, seed, store)
-            while (done := len(_told(optuna, study))) < trials:
-                tell(done)
-                study.sampler = optuna.samplers.TPESampler(seed=_seed(seed, done))
-                search.run_trial(optuna, study)
-            tell(trials)
-            found = search.result(_told(optuna, study)[:trials])
-        return keep_map(found, "design", store)
-    except KeyboardInterrupt:
-        kept = "which are lost; a store would have kept them"
-        if store is not None:
-            kept = f"which are in {os.fspath(store)}, and the same command resumes from there"
-        raise Stopped(f"stopped after {done} of {trials} trials, {kept}") from None
+
+    kind: ClassVar[str] = "design"
+
+    parameters: Bounds
+    objective: Any = "settling_time"
+    _: KW_ONLY
+    levels: Axes | None = None
+    starts: Any = None
+    robust: Robust = "worst"
+    max_added_mass: Kilograms | None = None
+    log: Any = ()
+    trials: Count = 100
+    seed: Seed = 0
+    skip: Seconds = 0.0
+    cycles: Cycles | None = None
+    samples: Samples | None = None
+    point: str | None = None
+
+    @cached_property
+    def _search(self) -> _Search:
+        parameters, log = split_bounds(self.parameters, self.log)
+        return _Search(
+            case=self.case,
+            parameters=[_Parameter.of(self.case, path, given, path in log) for path, given in parameters.items()],
+            goals=_goals(self.objective),
+            axes=robust_axes(self.case, self.levels, self.starts),
+            robust=self.robust,
+            limit=None if self.max_added_mass is None else float(self.max_added_mass),
+            options={
+                "skip": float(self.skip),
+                "cycles": self.cycles,
+                "samples": self.samples,
+                "point": self.point,
+            },
+        )
+
+    def validate(self) -> None:
+        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        self._search.check(self.log)
+
+    def compute(self) -> xr.Dataset:
+        """Run the trials; see `Study.compute`."""
+        done, store = 0, self.store
+        search = replace(self._search, where={**self.where, "store": None, "progress": False})
+        try:
+            optuna = optional_import("optuna", "design")
+            with (
+                _quiet(optuna),
+                _storage(optuna, store) as storage,
+                progress_bar(self.progress, self.trials, "trials") as report,
+            ):
+                trials = _study(optuna, storage, search, self.seed, store)
+                while (done := len(_told(optuna, trials))) < self.trials:
+                    report(done)
+                    trials.sampler = optuna.samplers.TPESampler(seed=_seed(self.seed, done))
+                    search.run_trial(optuna, trials)
+                report(self.trials)
+                found = search.result(_told(optuna, trials)[: self.trials])
+            return keep_map(found, self.kind, store)
+        except KeyboardInterrupt:
+            kept = "which are lost; a store would have kept them"
+            if store is not None:
+                kept = f"which are in {os.fspath(store)}, and the same command resumes from there"
+            raise Stopped(f"stopped after {done} of {self.trials} trials, {kept}") from None
 
 
-def _some(parameters: Any) -> Mapping[str, Any]:
-    if not isinstance(parameters, Mapping) or not parameters:
-        raise Hint("parameters: paths with bounds or choices are needed", '{"damper.gap": ("0.1 mm", "2 mm")}')
-    return parameters
+design = study_function(Design)
+"""Run a study of this kind: see `Design`."""
 
 
 @dataclass(frozen=True)
@@ -252,7 +277,7 @@ class _Search:
     robust: Robust
     limit: float | None
     options: dict[str, Any]
-    where: dict[str, Any]
+    where: dict[str, Any] = field(default_factory=dict)
 
     def check(self, log: Sequence[str]) -> None:
         """Refuse what no trial could use."""
@@ -266,7 +291,7 @@ class _Search:
             new.check_beside(together)
             together.append(new)
         check_names(goal.measure for goal in self.goals)
-        measures = known([goal.measure for goal in self.measured])
+        measures = known_measures([goal.measure for goal in self.measured])
         ImpactWork(self.case, self.members, measures=measures, **self.options).validate()
 
     @cached_property
@@ -325,14 +350,12 @@ class _Search:
 
     def judge(self, case: Case) -> tuple[Vector, float]:
         """What counts of all runs of a design, and the share of the runs that have no value."""
-        runs = sweep(
+        runs = Sweep(
             case,
             self.axes_of(case),
             [goal.measure for goal in self.measured],
-            progress=False,
-            **self.where,
             **self.options,
-        )
+        ).run(**self.where)
         values = np.array([runs[goal.name].values.ravel() for goal in self.measured])
         gone = ~np.isfinite(values).all(axis=0) | (runs["status"].values.ravel() != 0)
         if gone.any():

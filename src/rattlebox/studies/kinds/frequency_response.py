@@ -2,49 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from dataclasses import KW_ONLY
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
+from pydantic.dataclasses import dataclass
 
+from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
+from rattlebox.model.units import Whole
 from rattlebox.studies.axes import read_axes
-from rattlebox.studies.continuation import follow
+from rattlebox.studies.continuation import ContinuationWork, without_states
+from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.kinds.sweep import beside, sweep
+from rattlebox.studies.measures import with_required
 from rattlebox.studies.orbits import period_of
 from rattlebox.studies.store import keep_map
-from rattlebox.studies.studytables import checked
+from rattlebox.studies.study import (
+    CONFIG,
+    Cycles,
+    Fraction,
+    Measures,
+    Study,
+    Values,
+    study_function,
+)
 
 if TYPE_CHECKING:
-    import os
-
     import xarray
 
-    from rattlebox.model.case import Case
-
-Direction = Literal["up", "down", "fresh"]
 _MEASURES = "peak", "rms", "impacts_per_cycle"
 
 
-def frequency_response(
-    case: Case,
-    frequencies: Any,
-    *,
-    levels: Any = None,
-    direction: Direction | Literal["both"] = "both",
-    cycles: tuple[int, int] = (200, 32),
-    measure: str | Sequence[str] = (),
-    point: str | None = None,
-    samples: int = 64,
-    tolerance: float = 1e-3,
-    workers: int | None = None,
-    backend: Any = "threads",
-    store: str | os.PathLike[str] | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
-) -> xarray.Dataset:
+@dataclass(frozen=True, config=CONFIG)
+class FrequencyResponse(Study):
     """Measure the steady motion under a harmonic load at each frequency, at one or several levels of the load.
 
     Where two steady motions exist at one frequency, a sweep upwards and one downwards often find both: each begins as the
@@ -73,8 +68,7 @@ def frequency_response(
         A motion is held to repeat when positions of structure and balls a number of cycles apart differ by less than
         this part of their range.
     workers, backend, store, progress
-        Where it runs, what is kept and told, as of `rb.sweep`. Each sweep upwards or downwards at one level is work for one
-        thread or worker.
+        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
@@ -105,42 +99,72 @@ def frequency_response(
     >>> response.amplitude.dims
     ('direction', 'level', 'frequency')
     """
-    if direction not in (*get_args(Direction), "both"):
-        raise Hint(f"direction = {direction!r} is unknown", '"up", "down", "both" or "fresh"')
-    given = checked("frequency_response", cycles=cycles, samples=samples, tolerance=tolerance, workers=workers)
-    cycles, samples, tolerance, workers = given.values()
-    look = cycles[1]
-    place, driver = _driver(case)
-    at, strength = f"{place}.frequency", f"{place}.amplitude"
-    level = {strength: [f"{driver.amplitude!r} {driver.unit}"] if levels is None else levels}
-    design = read_axes(case, [level, {at: frequencies}], source="frequency_response")
-    hertz = design.coords()[at][1]
-    if np.any(np.diff(hertz) <= 0):
-        raise Hint("frequencies must rise from each to the next", "each once, in order")
-    bare = _bare(ImpactWork(case, design, cycles=(0, 1), point=point))
-    options: dict[str, Any] = {
-        "measure": beside(_MEASURES, measure),
-        "cycles": cycles,
-        "samples": samples * look + 1,
-        "point": point,
-        "motion": True,
-        "workers": workers,
-        "backend": backend,
-        "store": store,
-        "progress": progress,
-    }
-    if direction == "fresh":
-        maps = sweep(case, [level, {at: hertz}], **options).expand_dims(direction=["fresh"])
-    else:
-        ways = ("up", "down") if direction == "both" else (direction,)
-        maps = follow(case, at, hertz, beside=level, ways=ways, **options)
-    maps = maps.rename({at: "frequency", strength: "level"}).load()
-    whole = _steady(maps, driver.phase, samples, tolerance)
-    whole["bare_amplitude"] = ("level", "frequency"), bare, {"units": "m", "long_name": "amplitude without dampers"}
-    whole.frequency.attrs["long_name"] = "frequency"
-    whole.level.attrs["long_name"] = "amplitude of the load" if place.startswith("load") else "amplitude of the base"
-    whole.attrs = {"title": "Frequency response", "case": case.to_toml(), "cycles": list(cycles)}
-    return keep_map(whole, "frequency_response", store)
+
+    kind: ClassVar[str] = "frequency_response"
+
+    frequencies: Annotated[Values, Field(examples=[{"from": "9 Hz", "to": "11 Hz", "count": 50}])]
+    _: KW_ONLY
+    levels: Values | None = None
+    direction: Literal["up", "down", "both", "fresh"] = "both"
+    cycles: Cycles = (200, 32)
+    measure: Measures = ()
+    point: str | None = None
+    samples: Annotated[Whole, Field(ge=8)] = 64
+    tolerance: Fraction = 1e-3
+
+    @cached_property
+    def _driver(self) -> tuple[str, Harmonic]:
+        """Path and signal of the harmonic load or base motion."""
+        return _driver(self.case)
+
+    @cached_property
+    def grid(self) -> Grid:
+        """Levels by frequencies."""
+        place, driver = self._driver
+        levels = [f"{driver.amplitude!r} {driver.unit}"] if self.levels is None else self.levels
+        axes = [{f"{place}.amplitude": levels}, {f"{place}.frequency": self.frequencies}]
+        return read_axes(self.case, axes, source="frequency_response")
+
+    @cached_property
+    def work(self) -> ImpactWork:
+        """Runs of all frequencies and levels, with samples of their motion."""
+        options: dict[str, Any] = {
+            "measures": with_required(_MEASURES, self.measure),
+            "cycles": self.cycles,
+            "samples": self.samples * self.cycles[1] + 1,
+            "point": self.point,
+            "motion": True,
+        }
+        if self.direction == "fresh":
+            return ImpactWork(self.case, self.grid, **options)
+        ways = ("up", "down") if self.direction == "both" else (self.direction,)
+        return ContinuationWork.along(self.case, self.grid, ways=ways, **options)
+
+    def validate(self) -> None:
+        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        hertz = self.grid.coords()[f"{self._driver[0]}.frequency"][1]
+        if np.any(np.diff(hertz) <= 0):
+            raise Hint("frequencies must rise from each to the next", "each once, in order")
+        self.work.validate()
+
+    def compute(self) -> xarray.Dataset:
+        """Run all frequencies and evaluate their steady motion; see `Study.compute`."""
+        place, driver = self._driver
+        bare = _bare(ImpactWork(self.case, self.grid, cycles=(0, 1), point=self.point))
+        runs = self.run_work(self.work)
+        runs = runs.expand_dims(direction=["fresh"]) if self.direction == "fresh" else without_states(runs)
+        runs = runs.rename({f"{place}.frequency": "frequency", f"{place}.amplitude": "level"}).load()
+        found = _steady(runs, driver.phase, self.samples, self.tolerance)
+        found["bare_amplitude"] = ("level", "frequency"), bare, {"units": "m", "long_name": "amplitude without dampers"}
+        found.frequency.attrs["long_name"] = "frequency"
+        load = "load" if place.startswith("load") else "base"
+        found.level.attrs["long_name"] = f"amplitude of the {load}"
+        found.attrs = {"title": "Frequency response", "case": self.case.to_toml(), "cycles": list(self.cycles)}
+        return keep_map(found, self.kind, self.store)
+
+
+frequency_response = study_function(FrequencyResponse)
+"""Run a study of this kind: see `FrequencyResponse`."""
 
 
 def _driver(case: Case) -> tuple[str, Harmonic]:

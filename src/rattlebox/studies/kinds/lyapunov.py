@@ -3,46 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY
+from dataclasses import dataclass as plain_dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
+from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
-from rattlebox.studies.axes import Axes, read_axes
+from rattlebox.model.case import Case
+from rattlebox.model.units import Number, Whole
+from rattlebox.studies.axes import read_axes
 from rattlebox.studies.case_digest import describe_case
 from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import Extra, ImpactWork
 from rattlebox.studies.neighbour_pairs import Pairs
-from rattlebox.studies.runner import run_work
-from rattlebox.studies.studytables import checked
+from rattlebox.studies.study import (
+    CONFIG,
+    Axes,
+    Count,
+    Cycles,
+    Seconds,
+    Seed,
+    Study,
+    study_function,
+)
 
 if TYPE_CHECKING:
-    import os
-
     import xarray
 
-    from rattlebox.model.case import Case
 
-
-def lyapunov(
-    case: Case,
-    axes: Axes | None = None,
-    *,
-    cycles: tuple[int, int] | None = None,
-    skip: float | str = 0.0,
-    steps: int | None = None,
-    pairs: int = 8,
-    distance: float = 1e-7,
-    reach: float = 1e-3,
-    seed: int = 0,
-    workers: int | None = None,
-    backend: Any = "threads",
-    store: str | os.PathLike[str] | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
-) -> xarray.Dataset:
+@dataclass(frozen=True, config=CONFIG)
+class Lyapunov(Study):
     """Find the largest finite-time Lyapunov exponent of a case, or of each variant along some axes.
 
     Parameters
@@ -67,7 +62,7 @@ def lyapunov(
     seed
         Of the directions in which neighbours lie at first, and of the differences of the starts.
     workers, backend, store, progress
-        As of `rb.sweep`.
+        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
@@ -110,34 +105,48 @@ def lyapunov(
     >>> rb.lyapunov(case, cycles=(50, 20), pairs=4).running_exponent.dims
     ('cycle',)
     """
-    given = checked(
-        "lyapunov",
-        cycles=cycles,
-        skip=skip,
-        steps=steps,
-        pairs=pairs,
-        distance=distance,
-        reach=reach,
-        seed=seed,
-        workers=workers,
-    )
-    workers = given.pop("workers")
-    task = LyapunovWork(
-        case,
-        Grid((), (), {}, {}) if axes is None else read_axes(case, axes),
-        **given,
-    )
-    task.validate()
-    return run_work(
-        task,
-        backend=backend,
-        store=store,
-        workers=workers,
-        progress=progress,
-    )
+
+    kind: ClassVar[str] = "lyapunov"
+
+    axes: Axes | None = None
+    _: KW_ONLY
+    cycles: Cycles | None = None
+    skip: Seconds = 0.0
+    steps: Annotated[Whole, Field(ge=2)] | None = None
+    pairs: Count = 8
+    distance: Annotated[Number, Field(ge=1e-12, le=1e-4)] = 1e-7
+    reach: Annotated[Number, Field(ge=0, le=1)] = 1e-3
+    seed: Seed = 0
+
+    @cached_property
+    def work(self) -> LyapunovWork:
+        """Pairs of neighbouring motions of all variants."""
+        return LyapunovWork(
+            self.case,
+            Grid((), (), {}, {}) if self.axes is None else read_axes(self.case, self.axes),
+            cycles=self.cycles,
+            skip=float(self.skip),
+            steps=self.steps,
+            pairs=self.pairs,
+            distance=self.distance,
+            reach=self.reach,
+            seed=self.seed,
+        )
+
+    def validate(self) -> None:
+        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        self.work.validate()
+
+    def compute(self) -> xarray.Dataset:
+        """Run the pairs of all variants; see `Study.compute`."""
+        return self.run_work(self.work)
 
 
-@dataclass
+lyapunov = study_function(Lyapunov)
+"""Run a study of this kind: see `Lyapunov`."""
+
+
+@plain_dataclass
 class LyapunovWork:
     """A case, its variants, and how their neighbours are watched; attributes as of `lyapunov`."""
 

@@ -2,36 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import KW_ONLY
+from dataclasses import dataclass as plain_dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
+from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox._util.optional_imports import optional_import
 from rattlebox.model.errors import Hint
+from rattlebox.model.units import Whole
 from rattlebox.results.schema import HOW_ENDED
 from rattlebox.studies.axes import read_axes
-from rattlebox.studies.kinds.sweep import sweep
+from rattlebox.studies.kinds.sweep import Sweep
 from rattlebox.studies.robust import robust_axes
 from rattlebox.studies.sampling import RandomDesign, random_design
 from rattlebox.studies.store import keep_map
-from rattlebox.studies.studytables import checked
+from rattlebox.studies.study import (
+    CONFIG,
+    Axes,
+    Bounds,
+    Cycles,
+    Fraction,
+    Measures,
+    Samples,
+    Seconds,
+    Seed,
+    Study,
+    split_bounds,
+    study_function,
+)
 
 if TYPE_CHECKING:
-    import os
-
     import xarray as xr
-
-    from rattlebox.model.case import Case
-    from rattlebox.results import Run
 
 _LEAST = 0.5  # of the points, that must have a value
 
 
-@dataclass(frozen=True)
+@plain_dataclass(frozen=True)
 class _Crossed(RandomDesign):
     """Points that differ in one parameter at a time, as Sobol indices need them."""
 
@@ -44,26 +56,8 @@ class _Crossed(RandomDesign):
         return sample
 
 
-def sensitivity(
-    case: Case,
-    bounds: Mapping[str, Any],
-    measure: str | Callable[[Run], float] | Sequence[str | Callable[[Run], float]] = "impact_share",
-    n: int = 256,
-    *,
-    levels: Any = None,
-    starts: int | Sequence[Any] | None = None,
-    log: Sequence[str] = (),
-    confidence: float = 0.95,
-    seed: int = 0,
-    skip: float | str = 0.0,
-    cycles: tuple[int, int] | None = None,
-    samples: int | None = None,
-    point: str | None = None,
-    workers: int | None = None,
-    backend: Any = "threads",
-    store: str | os.PathLike[str] | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
-) -> xr.Dataset:
+@dataclass(frozen=True, config=CONFIG)
+class Sensitivity(Study):
     """Find how much of the variance of a measure comes from each of some parameters.
 
     The parameters vary independently within their bounds. The first-order index of one is the share of the variance that
@@ -114,28 +108,57 @@ def sensitivity(
     >>> found.total.dims
     ('measure', 'parameter')
     """
-    n, confidence = checked("sensitivity", n=n, confidence=confidence).values()
-    if n & (n - 1):
-        raise Hint(f"n = {n}: a power of two is needed", f"{2 ** n.bit_length()}")
-    if not isinstance(bounds, Mapping) or not bounds:
-        raise Hint("bounds: paths with bounds or choices are needed", '{"damper.gap": ("0.1 mm", "2 mm")}')
-    ranges = random_design(bounds, n * (len(bounds) + 2), seed=seed, log=log)
-    points = _Crossed(ranges.ranges, ranges.count, ranges.method, ranges.seed, ranges.log)
-    read_axes(case, points, source="bounds")  # for messages, in the words of this study
-    runs = sweep(
-        case,
-        [points, *robust_axes(case, levels, starts)],
-        measure,  # type: ignore[arg-type]
-        skip=skip,
-        cycles=cycles,
-        samples=samples,
-        point=point,
-        workers=workers,
-        backend=backend,
-        store=store,
-        progress=progress,
-    )
-    return keep_map(_indices(runs, list(bounds), n, confidence, seed), "sensitivity", store)
+
+    kind: ClassVar[str] = "sensitivity"
+
+    bounds: Bounds
+    measure: Measures = ("impact_share",)
+    n: Annotated[Whole, Field(ge=8)] = 256
+    _: KW_ONLY
+    levels: Axes | None = None
+    starts: Any = None
+    log: Any = ()
+    confidence: Fraction = 0.95
+    seed: Seed = 0
+    skip: Seconds = 0.0
+    cycles: Cycles | None = None
+    samples: Samples | None = None
+    point: str | None = None
+
+    @cached_property
+    def _points(self) -> _Crossed:
+        bounds, log = split_bounds(self.bounds, self.log)
+        ranges = random_design(bounds, self.n * (len(bounds) + 2), seed=self.seed, log=log)
+        return _Crossed(ranges.ranges, ranges.count, ranges.method, ranges.seed, ranges.log)
+
+    @cached_property
+    def _sweep(self) -> Sweep:
+        """Sweep over the points, levels and starts."""
+        return Sweep(
+            self.case,
+            [self._points, *robust_axes(self.case, self.levels, self.starts)],
+            self.measure,
+            skip=self.skip,
+            cycles=self.cycles,
+            samples=self.samples,
+            point=self.point,
+        )
+
+    def validate(self) -> None:
+        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        if self.n & (self.n - 1):
+            raise Hint(f"n = {self.n}: a power of two is needed", f"{2 ** self.n.bit_length()}")
+        read_axes(self.case, self._points, source="bounds")  # for messages in the words of this study
+        self._sweep.validate()
+
+    def compute(self) -> xr.Dataset:
+        """Run the points and compute the indices; see `Study.compute`."""
+        runs = self._sweep.run(**self.where)
+        return keep_map(_indices(runs, list(self.bounds), self.n, self.confidence, self.seed), self.kind, self.store)
+
+
+sensitivity = study_function(Sensitivity)
+"""Run a study of this kind: see `Sensitivity`."""
 
 
 def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed: int) -> xr.Dataset:

@@ -2,46 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import KW_ONLY
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
+from pydantic import Field
+from pydantic.dataclasses import dataclass
 
 from rattlebox.engines.status import REFUSED
-from rattlebox.model.errors import Hint, nearest
+from rattlebox.model.errors import Hint
+from rattlebox.model.units import Whole
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.measures import MEASURES, check_names
+from rattlebox.studies.measures import MEASURES
 from rattlebox.studies.particle_work import ParticleWork
-from rattlebox.studies.runner import run_work
 from rattlebox.studies.store import add_attributes
-from rattlebox.studies.studytables import checked
+from rattlebox.studies.study import (
+    CONFIG,
+    Axes,
+    Cycles,
+    Measures,
+    Samples,
+    Seconds,
+    Study,
+    study_function,
+)
 
 if TYPE_CHECKING:
-    import os
-
     import xarray
 
-    from rattlebox.model.case import Case
-    from rattlebox.results import Run
 
-
-def sweep(
-    case: Case,
-    axes: Any,
-    measure: Sequence[str | Callable[[Run], float]] = ("impact_share",),
-    *,
-    skip: float | str = 0.0,
-    cycles: tuple[int, int] | None = None,
-    samples: int | None = None,
-    point: str | None = None,
-    motion: bool = False,
-    last: int = 0,
-    workers: int | None = None,
-    backend: Any = "threads",
-    store: str | os.PathLike[str] | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
-) -> xarray.Dataset:
+@dataclass(frozen=True, config=CONFIG)
+class Sweep(Study):
     """Run a case for every combination of values along some axes.
 
     Parameters
@@ -70,15 +63,8 @@ def sweep(
         Keep the samples of each variant.
     last
         Keep the last so many impacts of each variant.
-    workers
-        Number of threads or processes; default as many as there are cores. Results do not depend on it, to the last bit.
-    backend
-        "threads" of this process; "processes", for measures in Python, which run one at a time in threads; or the client of
-        a Dask cluster (`dask.distributed.Client`).
-    store
-        Folder of a Zarr store for results: what is finished is on disk, and the same call goes on after a stop.
-    progress
-        True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
+    workers, backend, store, progress
+        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
@@ -101,75 +87,60 @@ def sweep(
     >>> maps.impacts.dims
     ('damper.gap',)
     """
-    given = checked("sweep", skip=skip, cycles=cycles, samples=samples, last=last, workers=workers)
-    workers = given.pop("workers")
-    measures = known(measure)
-    if not (measures or motion or given["last"]):
-        raise Hint("there is no measure", ", ".join(MEASURES))
-    design = read_axes(case, axes)
-    kind = ParticleWork if case.particle_dampers else ImpactWork
-    task = kind(
-        case,
-        design,
-        measures=measures,
-        point=point,
-        motion=motion,
-        **given,
-    )
-    task.validate()
-    found = run_work(task, store=store, backend=backend, workers=workers, progress=progress)
-    if not isinstance(task, ParticleWork):
-        return found
-    refused = _refused(task, found)
-    if store is not None:
-        add_attributes(store, refused)
-    return found.assign_attrs(refused)
+
+    kind: ClassVar[str] = "sweep"
+
+    axes: Axes
+    measure: Measures = ("impact_share",)
+    _: KW_ONLY
+    skip: Seconds = 0.0
+    cycles: Cycles | None = None
+    samples: Samples | None = None
+    point: str | None = None
+    motion: bool = False
+    last: Annotated[Whole, Field(ge=0)] = 0
+
+    @cached_property
+    def work(self) -> ImpactWork:
+        """Runs of all variants."""
+        kind = ParticleWork if self.case.particle_dampers else ImpactWork
+        return kind(
+            self.case,
+            read_axes(self.case, self.axes),
+            measures=list(self.measure),  # type: ignore[arg-type]
+            skip=float(self.skip),
+            cycles=self.cycles,
+            samples=self.samples,
+            point=self.point,
+            motion=self.motion,
+            last=self.last,
+        )
+
+    def validate(self) -> None:
+        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        if not (self.measure or self.motion or self.last):
+            raise Hint("there is no measure", ", ".join(MEASURES))
+        self.work.validate()
+
+    def compute(self) -> xarray.Dataset:
+        """Run the variants; see `Study.compute`."""
+        result = self.run_work(self.work)
+        if not isinstance(self.work, ParticleWork):
+            return result
+        refused = _first_refused(self.work, result)
+        if self.store is not None:
+            add_attributes(self.store, refused)
+        return result.assign_attrs(refused)
 
 
-def _refused(task: ParticleWork, found: xarray.Dataset) -> dict[str, str]:
-    """Tell of the first variant that cannot be run why."""
-    refused = np.flatnonzero(found.status.values == REFUSED)
-    if not refused.size or not (why := task.why_refused(int(refused[0]))):
+sweep = study_function(Sweep)
+"""Run a study of this kind: see `Sweep`."""
+
+
+def _first_refused(work: ParticleWork, result: xarray.Dataset) -> dict[str, str]:
+    """Return the first variant that could not run, and the reason, as an attribute."""
+    refused = np.flatnonzero(result.status.values == REFUSED)
+    if not refused.size or not (why := work.why_refused(int(refused[0]))):
         return {}
-    said = why.replace("\n", "\n  ")
-    return {"refused": f"{task.grid.told(task.case, int(refused[0]))}\n  {said}"}
-
-
-def beside(needed: Sequence[str], measure: str | Sequence[str]) -> list[str]:
-    """Return the measures that a map needs, and those that it is asked for besides.
-
-    Parameters
-    ----------
-    needed
-        Names.
-    measure
-        One name or several.
-    """
-    return [*needed, *(name for name in _several(measure) if name not in needed)]
-
-
-def _several(measure: Any) -> list[Any]:
-    return list(measure) if hasattr(measure, "__iter__") and not isinstance(measure, str) else [measure]
-
-
-def known(measure: Any) -> list[Any]:
-    """Return measures as a list.
-
-    Parameters
-    ----------
-    measure
-        One or several: names, functions of a Run.
-
-    Raises
-    ------
-    CaseError
-        When there is no such measure, with the nearest name, or two have one name.
-    """
-    asked = _several(measure)
-    check_names(asked)
-    for name in asked:
-        if isinstance(name, str) and name not in MEASURES:
-            raise Hint(f"there is no measure {name!r}", nearest(name, MEASURES))
-        if not isinstance(name, str) and not callable(name):
-            raise Hint(f"{name!r} is neither the name of a measure nor a function of a Run", '"impact_share"')
-    return asked
+    reason = why.replace("\n", "\n  ")
+    return {"refused": f"{work.grid.told(work.case, int(refused[0]))}\n  {reason}"}

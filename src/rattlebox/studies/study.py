@@ -1,0 +1,325 @@
+"""Base class of the kinds of studies, and the types of their fields.
+
+A kind of study is one dataclass in `rattlebox.studies.kinds`. Its fields are the arguments of the function of its name, the
+keys of its study file, and the parameters that its docstring describes.
+"""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import inspect
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import KW_ONLY
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, ParamSpec, cast
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    InstanceOf,
+    Tag,
+    ValidationError,
+    WrapValidator,
+)
+from pydantic.dataclasses import dataclass
+
+from rattlebox._util.exceptions import CaseError
+from rattlebox.model.case import Case
+from rattlebox.model.errors import Hint, nearest, translate
+from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, Whole
+
+from .measures import MEASURES, check_names
+from .runner import run_work
+from .sampling import RandomDesign, Replicas, Spaced
+from .work import Work
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rattlebox.results.run import Run
+
+CONFIG = ConfigDict(extra="forbid", allow_inf_nan=False, arbitrary_types_allowed=True)
+"""Configuration of the dataclasses of all kinds."""
+
+Parameters = ParamSpec("Parameters")
+
+
+@dataclass(frozen=True, config=CONFIG)
+class Study:
+    """A study of a case: the fields that all kinds share.
+
+    Parameters
+    ----------
+    case
+        The case that varies.
+    workers
+        Number of threads or processes; default as many as there are cores. Results do not depend on it, to the last bit.
+    backend
+        "threads" of this process; "processes", for measures in Python, which run one at a time in threads; or the client of
+        a Dask cluster (`dask.distributed.Client`).
+    store
+        Folder of a Zarr store for the results. Finished work is in it at all times, and the same call resumes after a stop.
+    progress
+        True or False for a progress bar; default one on a terminal; or a function of the numbers of finished variants and of
+        all.
+    """
+
+    kind: ClassVar[str]
+
+    case: InstanceOf[Case]
+    _: KW_ONLY
+    workers: Annotated[Whole, Field(ge=1)] | None = None
+    backend: Any = "threads"
+    store: Any = None
+    progress: Any = None
+
+    def run(self, **where: Any) -> xr.Dataset:
+        """Run the study.
+
+        Parameters
+        ----------
+        **where
+            Values for `workers`, `backend`, `store` and `progress` in place of those of the study.
+
+        Returns
+        -------
+        xarray.Dataset
+            See the kind.
+
+        Raises
+        ------
+        CaseError
+            If a field does not fit the case, before anything runs.
+        """
+        checked = dataclasses.replace(self, **where)
+        study = copy.copy(self)  # keeps the grid and the work that are already computed
+        for name in where:
+            study.__dict__[name] = getattr(checked, name)
+        study.validate()
+        return study.compute()
+
+    def validate(self) -> None:
+        """Raise if the fields do not fit the case or each other.
+
+        Raises
+        ------
+        CaseError
+            With what to try.
+        """
+        raise NotImplementedError
+
+    def compute(self) -> xr.Dataset:
+        """Run the variants and evaluate their results."""
+        raise NotImplementedError
+
+    @property
+    def where(self) -> dict[str, Any]:
+        """Fields that say where the study runs, as arguments of `run`."""
+        return {"workers": self.workers, "backend": self.backend, "store": self.store, "progress": self.progress}
+
+    def run_work(self, work: Work) -> xr.Dataset:
+        """Run work where the study runs."""
+        return run_work(work, **self.where)
+
+
+def study_function(kind: Callable[Parameters, Study]) -> Callable[Parameters, xr.Dataset]:
+    """Return the function that runs a study of a kind; its arguments are the fields of the kind."""
+    cls = cast("type[Study]", kind)
+    shared = [field.name for field in dataclasses.fields(Study) if field.kw_only]
+    arguments = inspect.signature(cls).parameters.values()
+    signature = inspect.Signature(
+        [
+            argument.replace(annotation=_readable(str(argument.annotation)))
+            for argument in sorted(arguments, key=lambda argument: argument.name in shared)
+        ]
+    )
+
+    def function(*args: Parameters.args, **kwargs: Parameters.kwargs) -> xr.Dataset:
+        return make_study(cls, signature.bind(*args, **kwargs).arguments).run()
+
+    function.__name__ = function.__qualname__ = cls.kind
+    function.__module__, function.__doc__ = cls.__module__, cls.__doc__
+    function.__signature__ = signature  # type: ignore[attr-defined]
+    return function
+
+
+def _readable(annotation: str) -> str:
+    """Return the annotation of a field without the checks of its value."""
+    return re.sub(r"InstanceOf\[(\w+)\]|Annotated\[(\w+),.*?\)\]", r"\1\2", annotation)
+
+
+def make_study(cls: type[Study], values: Mapping[str, Any], source: str = "", vocabulary: Any = None) -> Study:
+    """Return a study with the given fields.
+
+    Parameters
+    ----------
+    cls
+        Kind of the study.
+    values
+        Values by the name of the field, as a call or a study file gives them.
+    source
+        Name of the file in messages.
+    vocabulary
+        Names of the fields of tables, with examples, for messages.
+
+    Raises
+    ------
+    CaseError
+        If a value is not allowed, with its name and what is allowed.
+    """
+    names = [field.name for field in dataclasses.fields(cls)]
+    for name in values:
+        if name not in names:
+            raise CaseError(
+                f"{source}: {name} = {values[name]!r:.60}\n  there is no such field\n  {nearest(name, names)}"
+            )
+    try:
+        study = cls(**values)
+    except ValidationError as error:
+        raise CaseError(re.sub("(?m)^: ", "", str(translate(error, source, vocabulary or {}, dict(values))))) from None
+    skip = getattr(study, "skip", 0.0)
+    if skip and getattr(study, "cycles", None) is not None:
+        raise Hint(f"skip = {skip:g} s: with cycles, the first number of them is what is skipped", "one of both")
+    return study
+
+
+# ---- tables of study files
+
+
+class Table(BaseModel):
+    """A table inside a study file."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class Range(Table):
+    """Bounds of a parameter."""
+
+    start: Any = Field(alias="from")
+    to: Any
+    spacing: Literal["linear", "log"] = "linear"
+
+
+class SpacedTable(Range):
+    """Values from one to another."""
+
+    count: Annotated[Whole, Field(ge=1, examples=[20])]
+
+    @property
+    def values(self) -> Spaced:
+        """The values as `linspace` and `geomspace` return them."""
+        return Spaced(self.start, self.to, self.count, self.spacing == "log", ("from", "to"))
+
+
+def table_shape(value: Any) -> str:
+    """Return "spaced" for a table of spaced values, "linked" for a table of several, "value" for text and single numbers."""
+    if isinstance(value, Mapping):
+        return "linked" if value and not value.keys() & {"from", "to", "count", "spacing"} else "spaced"
+    return "value" if isinstance(value, (str, int, float)) or value is None else "other"
+
+
+def _spaced_or_other(value: Any) -> str:
+    shape = table_shape(value)
+    return "spaced" if shape == "linked" else shape
+
+
+def _if_table(value: Any, handler: Callable[[Any], Any]) -> Any:
+    """Read a table; pass on other forms, which only calls in Python have."""
+    if isinstance(value, Mapping) and all(isinstance(name, str) for name in value):
+        return handler(value)
+    if value is None or (isinstance(value, (Sequence, RandomDesign, Replicas)) and not isinstance(value, str)):
+        return value
+    return handler(value) if not isinstance(value, Mapping) else value
+
+
+def _as_measures(value: Any) -> Any:
+    if isinstance(value, str) or callable(value):
+        return [value]
+    if not isinstance(value, Iterable):
+        raise Hint(f"{value!r} is neither the name of a measure nor a function of a Run", '"impact_share"')
+    return list(value)
+
+
+def known_measures(measures: Any) -> list[Any]:
+    """Return measures; raise if one is not known or two have one name."""
+    for index, name in enumerate(measures):
+        if isinstance(name, str) and name not in MEASURES:
+            raise Hint("there is no such measure", nearest(name, MEASURES), [index])
+        if not isinstance(name, str) and not callable(name):
+            raise Hint(f"{name!r} is neither the name of a measure nor a function of a Run", '"impact_share"', [index])
+    check_names(measures)
+    return list(measures)
+
+
+def _whole_cycles(cycles: Any, least: int) -> tuple[int, int]:
+    try:
+        skip, look = (int(number) for number in cycles)
+        whole = (skip, look) == tuple(cycles)
+    except (TypeError, ValueError, OverflowError):
+        whole = False
+    if not whole or skip < 0 or look < least:
+        raise Hint(f"whole numbers of cycles are needed: some to skip, at least {least} to look at", "[200, 50]")
+    return skip, look
+
+
+def _check_bounds(bounds: Any) -> Any:
+    if not isinstance(bounds, Mapping) or not bounds:
+        raise Hint("paths with bounds or choices are needed", '{"damper.gap": ("0.1 mm", "2 mm")}')
+    return bounds
+
+
+def split_bounds(bounds: Mapping[str, Any], log: Any) -> tuple[dict[str, Any], list[str]]:
+    """Return pairs and choices by path, and the paths whose values are spread in the logarithm.
+
+    Parameters
+    ----------
+    bounds
+        By path: pairs, choices, or tables of a study file.
+    log
+        Paths besides those of tables with `spacing = "log"`.
+    """
+    logarithmic = [path for path, given in bounds.items() if isinstance(given, Range) and given.spacing == "log"]
+    pairs = {path: (given.start, given.to) if isinstance(given, Range) else given for path, given in bounds.items()}
+    return pairs, [*logarithmic, *([log] if isinstance(log, str) else log)]
+
+
+if TYPE_CHECKING:  # types of arguments; the validated values are plain
+    Measure = str | Callable[[Run], float]
+    Measures = Measure | Sequence[Measure]
+    Seconds = float | str
+    Kilograms = float | str
+    Axes = Any
+    Values = Any
+    Bounds = Mapping[str, Any]
+else:
+    _SpacedValues = Annotated[SpacedTable, AfterValidator(lambda table: table.values)]
+    _List = Annotated[list[Any], Tag("value")]
+    _Other = Annotated[Any, Tag("other")]
+    Values = Annotated[_List | Annotated[_SpacedValues, Tag("spaced")] | _Other, Discriminator(_spaced_or_other)]
+    _Axis = Annotated[
+        _List | Annotated[_SpacedValues, Tag("spaced")] | Annotated[dict[Any, Values], Tag("linked")] | _Other,
+        Discriminator(table_shape),
+    ]
+    Axes = Annotated[dict[str, _Axis], WrapValidator(_if_table)]
+    _Bound = Annotated[_List | Annotated[Range, Tag("spaced")] | _Other, Discriminator(_spaced_or_other)]
+    Bounds = Annotated[
+        dict[str, _Bound],
+        BeforeValidator(_check_bounds),
+        Field(examples=[{"damper.gap": {"from": "0.1 mm", "to": "2 mm"}}]),
+    ]
+    Measures = Annotated[Any, BeforeValidator(_as_measures), AfterValidator(known_measures)]
+    Seconds = NotNegativeTime
+    Kilograms = PositiveMass
+
+Cycles = Annotated[tuple[int, int], BeforeValidator(partial(_whole_cycles, least=1))]
+CyclesToCompare = Annotated[tuple[int, int], BeforeValidator(partial(_whole_cycles, least=2))]
+Fraction = Annotated[Number, Field(gt=0, lt=1)]
+Count = Annotated[Whole, Field(ge=1)]
+Seed = Annotated[Whole, Field(ge=0)]
+Samples = Annotated[Whole, Field(ge=2)]
