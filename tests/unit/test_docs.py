@@ -17,6 +17,7 @@ PAGES = (
     "bifurcation",
     "design",
     "frequency_response",
+    "loads",
     "loss_map",
     "lyapunov",
     "particle_output",
@@ -24,6 +25,7 @@ PAGES = (
     "results",
     "sensitivity",
     "softening",
+    "structures",
     "sweep",
 )
 

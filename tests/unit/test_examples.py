@@ -2,6 +2,7 @@
 
 import runpy
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -111,3 +112,23 @@ def test_a_measured_contact_gives_back_the_area_below_its_unloading_curve(capsys
     (hit,) = run.arrays.impacts.separation_speed / run.arrays.impacts.approach_speed
     assert run.arrays.impacts.peak_overlap[0] == pytest.approx(100e-6, rel=1e-8)
     assert hit == pytest.approx(np.sqrt(back / work), rel=1e-8)
+
+
+def test_a_table_of_modes_moves_as_the_beam_does() -> None:
+    """A beam and the table of its modes give the same motion with a ball at the tip."""
+    example = runpy.run_path(str(EXAMPLES / "structure_from_modes.py"))
+    assert example["BAR"].frequencies[0] == pytest.approx(187.6, abs=0.05)
+    beam = example["tip_after_hit"](example["BAR"])
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "bar.csv"
+        file.write_text(example["table_of"](example["BAR"]))
+        assert example["tip_after_hit"](rb.Modal.from_file(file)) == pytest.approx(beam, rel=1e-6)
+    assert beam == pytest.approx(1.0218e-3, rel=1e-4)
+
+
+def test_loads_of_standards_give_the_responses_of_formulas() -> None:
+    """The RMS response is that of Miles within its scatter, and the sweep comes within 3 % of the steady resonance."""
+    example = runpy.run_path(str(EXAMPLES / "loads_of_standards.py"))
+    simulated, miles = example["rms_under_gevs"]()
+    assert simulated == pytest.approx(miles, rel=0.1)  # 6 Hz of bandwidth for 20 s: 4.5 % of scatter
+    assert example["gain_in_sweep"]() == pytest.approx(25, rel=0.03)

@@ -360,11 +360,12 @@ def _check_inputs(out: Path, case: Case) -> None:
     signals = (*case.loads, *case.base, *case.shaker_motion)
     packings = [damper.packing for damper in case.particle_dampers]
     for part in (case.structure, *signals, *packings):
-        file = getattr(part, "file", None)
-        if file and Path(file).name in WRITTEN and Path(file).resolve().parent == out.resolve():
-            raise DataError(
-                f"{out / Path(file).name} is read by the case, and results go there\n  try: another -o folder"
-            )
+        named = getattr(part, "file", None) or ()
+        for file in [named] if isinstance(named, str) else [*named.values()] if named else []:
+            if Path(file).name in WRITTEN and Path(file).resolve().parent == out.resolve():
+                raise DataError(
+                    f"{out / Path(file).name} is read by the case, and results go there\n  try: another -o folder"
+                )
 
 
 def _bare(text: str) -> str:

@@ -105,6 +105,10 @@ class Part(BaseModel, metaclass=_Explaining):
             'another one; or a new case with other values, case.replaced({"duration": "2 s", "damper.friction": 0.5})',
         )
 
+    def fields_from_file(self) -> tuple[str, ...]:
+        """Return the fields whose values were read from a file."""
+        return type(self).in_file if getattr(self, "file", None) is not None else ()
+
     @classmethod
     def in_full(cls, values: dict[str, Any]) -> dict[str, Any]:
         """Return the values under the names of the fields.

@@ -499,10 +499,16 @@ def _with_files(node: Any, name_of: Callable[[str], str]) -> Any:
     """The same with other names of files."""
     if isinstance(node, dict):
         return {
-            key: name_of(item) if key == "file" and isinstance(item, str) else _with_files(item, name_of)
-            for key, item in node.items()
+            key: _renamed(item, name_of) if key == "file" else _with_files(item, name_of) for key, item in node.items()
         }
     return [_with_files(item, name_of) for item in node] if isinstance(node, list) else node
+
+
+def _renamed(file: Any, name_of: Callable[[str], str]) -> Any:
+    """The name of a file, or a table of them, with other names."""
+    if isinstance(file, dict):
+        return {key: _renamed(item, name_of) for key, item in file.items()}
+    return name_of(file) if isinstance(file, str) else file
 
 
 def _relative(file: str, folder: Path) -> str:

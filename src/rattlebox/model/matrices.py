@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field, model_serializer, model_validator
 
 from rattlebox._util.exceptions import DataError
+from rattlebox.exchange.read.matrix_market import read_matrix
 
 from .elementwise import Vector
 from .errors import Hint, at, nearest
@@ -37,9 +38,10 @@ class Matrices(DampedModes):
         Named points: number of the degree of freedom, counted from 0, or a vector of n weights; or three of them, along x, y
         and z, for a point that moves in space.
     file
-        Instead of M, C, K: a NPZ or MAT file that holds them under these names, full or sparse, and, if it likes, points as
-        vectors of n weights, or three of them: `point_tip` for a point "tip", or the fields of a struct `points`. Points
-        given beside the file come before those in it.
+        Instead of M, C, K: files in Matrix Market format, `{"M": "M.mtx", "K": "K.mtx"}`, or a NPZ or MAT file that holds
+        them under these names, full or sparse, and, if it likes, points as vectors of n weights, or three of them:
+        `point_tip` for a point "tip", or the fields of a struct `points`. Points given beside the file come before those in
+        it.
     influence
         Motion of each degree of freedom with the base; default 1 for all. Where points move in space three rows, for motion
         of the base along x, y and z, without which there is none.
@@ -59,7 +61,7 @@ class Matrices(DampedModes):
     C: Annotated[Matrix | None, SI("N s/m")] = None
     K: Annotated[Matrix, SI("N/m")] = Field(examples=[[[3e4, -1e4], [-1e4, 1e4]]])
     points: dict[str, Point] = Field(examples=[{"tip": 1}])
-    file: str | None = None
+    file: str | dict[Literal["M", "C", "K"], str] | None = None
     influence: Weights | None = None
     displacement: Annotated[Numbers | None, SI("m")] = None
     velocity: Annotated[Numbers | None, SI("m/s")] = None
@@ -73,8 +75,13 @@ class Matrices(DampedModes):
         if twice:
             raise Hint(f"give {twice[0]} or a file, not both")
         with at("file"):
-            path = absolute(values["file"])
-            matrices, points = _read_matrices(path)
+            path: str | dict[str, str]
+            if isinstance(values["file"], dict):
+                path, matrices = _read_each(values["file"])
+                points: dict[str, Vector] = {}
+            else:
+                path = absolute(values["file"])
+                matrices, points = _read_matrices(path)
         own = values.get("points")
         if own is not None and not isinstance(own, dict):
             return values
@@ -196,6 +203,22 @@ class Matrices(DampedModes):
             spatial=spatial,
             coupling=None if proportional else 0.5 * (coupling + coupling.T),
         )
+
+
+def _read_each(files: dict[str, Any]) -> tuple[dict[str, str], dict[str, Vector]]:
+    """Paths and matrices of Matrix Market files, one for each."""
+    for name in files:
+        if name not in ("M", "C", "K"):
+            raise Hint(f"there is no matrix {name!r} here", nearest(name, ("M", "C", "K")))
+    for name in ("M", "K"):
+        if name not in files:
+            raise Hint(f"a file of {name} is needed", 'file = { M = "M.mtx", K = "K.mtx" }')
+    paths, matrices = {}, {}
+    for name, file in files.items():
+        with at(name):
+            paths[name] = absolute(file)
+            matrices[name] = read_matrix(existing(paths[name]))
+    return paths, matrices
 
 
 def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:

@@ -219,7 +219,7 @@ def places_of(case: Case, values: Mapping[str, Any]) -> dict[Place, Any]:
     for place, path in paths.items():
         for length, step in enumerate(place):
             holder = part_at(case, place[:length])
-            if isinstance(holder, Part) and step in type(holder).in_file and getattr(holder, "file", None):
+            if isinstance(holder, Part) and step in holder.fields_from_file():
                 raise Hint(
                     f"{path}: it comes from {getattr(holder, 'file', None)}", "the numbers themselves instead of a file"
                 )
@@ -245,7 +245,7 @@ def _names_a_unit(value: Any) -> bool:
 
 def _from_file(node: Any) -> tuple[str, ...]:
     """Fields of a part that were read from a file."""
-    return type(node).in_file if isinstance(node, Part) and getattr(node, "file", None) is not None else ()
+    return node.fields_from_file() if isinstance(node, Part) else ()
 
 
 def _with(node: Any, place: Place, value: Any) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -11,6 +12,7 @@ from pydantic import BaseModel, BeforeValidator, PrivateAttr, model_serializer, 
 
 from rattlebox._util.exceptions import DataError
 from rattlebox.exchange.read.ground_motion import read_ground_motion
+from rattlebox.exchange.read.universal import read_functions
 
 from .elementwise import Vector
 from .errors import Hint, at
@@ -73,6 +75,29 @@ def _with_si_unit(values: dict[str, Any]) -> dict[str, Any]:
     return {**values, "unit": known[1], "scale": scale * known[0]}
 
 
+def _time_history(path: Path, columns: Any) -> Columns:
+    """Read a time history of a universal file: the only one, or the one that is called so or has this number.
+
+    Raises
+    ------
+    DataError
+        If there is none, or more than one and none is chosen.
+    """
+    functions = [each for each in read_functions(path) if each.kind in (0, 1) and not np.iscomplexobj(each.values)]
+    names = [each.name for each in functions]
+    if not functions:
+        raise DataError(f"{path} holds no time history", "a function of type 1 in a set 58")
+    if columns is None and len(functions) > 1:
+        raise DataError(f"{path} holds {len(functions)} time histories ({', '.join(names)})", "columns = [1]")
+    wanted = columns[0] if columns else 1
+    place = names.index(wanted) if wanted in names else wanted - 1 if isinstance(wanted, int) else -1
+    if not 0 <= place < len(functions):
+        raise DataError(f"{path} holds no time history {wanted!r}, but {', '.join(names)}", "columns = [1]")
+    found = functions[place]
+    times = found.abscissa - found.abscissa[0]
+    return Columns(times, np.asarray(found.values, dtype=float), ([], [f"a ({found.unit})"] if found.unit else []))
+
+
 def _check_unit(found: Columns, wanted: Any) -> None:
     """Raise if a file states another unit of acceleration, force or displacement than the one that is given."""
     given = factor_of(wanted, UNITS) if isinstance(wanted, str) and wanted not in UNITS else None
@@ -119,7 +144,8 @@ class Record(Sampled):
         Instead of times and values: a CSV, NPY, NPZ, MAT or AT2 file, and its columns of times and values, by number counted
         from 1 or by name: `columns=(1, 3)`, `columns=("t", "a")`; with `dt` that of the values alone. Variables count in the
         order of the file. Columns may be left out where there are only two (with `dt` one), or variables called time and
-        value; an AT2 file of the PEER data base has one record. Units above the columns of a text file, as in "time (ms),
+        value; an AT2 file of the PEER data base has one record, and of a universal file (.uff, .unv) `columns=(2,)` is the
+        second time history. Units above the columns of a text file, as in "time (ms),
         acceleration (g)", are converted; unknown ones are refused. Without them times are in s, and values in `unit`; if
         neither states a unit, the run notes the unit that is assumed, and the peak.
     """
@@ -160,7 +186,8 @@ class Record(Sampled):
                 "give times and values, or a file, not both", 'columns = ["time", "force"] names those of the file'
             )
         with at("columns"):
-            columns = as_columns(values.get("columns"), 2 if step is None else 1)
+            one = step is not None or str(values["file"]).lower().endswith((".uff", ".unv", ".uf"))
+            columns = as_columns(values.get("columns"), 1 if one else 2)
         with at("file"):
             path = absolute(values["file"])
             if path.lower().endswith(".at2"):
@@ -171,6 +198,8 @@ class Record(Sampled):
                 found = Columns(np.arange(motion.values.size, dtype=float) * motion.step, motion.values, ([], heads))
                 if not motion.unit and values.get("unit") is None:
                     raise DataError(f"{path} states no unit", 'unit = "g"')
+            elif path.lower().endswith((".uff", ".unv", ".uf")):
+                found = _time_history(existing(path), values.get("columns"))
             elif step is not None:
                 samples, heads = read_samples(path, columns[0] if columns else None)
                 found = Columns(np.arange(samples.size, dtype=float) * step, samples, ([], heads))

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 import math
 import operator
+import os
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    Field,
+    PrivateAttr,
+    WithJsonSchema,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
 
 from rattlebox._util.narrow import present
 
@@ -16,6 +26,8 @@ from .any_signal import AnySignal
 from .base import AlsoTakes, Part
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of, several
+from .files import absolute
+from .modal_files import fields_of_modes
 from .modes import ModalModel
 from .signals import Signal, Unit, signals_in
 from .units import (
@@ -232,15 +244,15 @@ def _one_each(value: Any) -> Any:
 
 
 class Modal(StructurePart):
-    """A structure given by its modes.
+    """A structure given by its modes, in the case or in a file.
 
     Parameters
     ----------
     frequencies
         Undamped natural frequencies [Hz]; 0 is a rigid-body mode.
-    damping_ratios, damping_matrix
-        One ratio for each mode, or the modal damping matrix D of q'' + D q' + w^2 q = f [1/s], whose diagonal is 2 w times
-        the ratios; one of them.
+    damping_ratios, damping_ratio, damping_matrix
+        One ratio for each mode, one for all, or the modal damping matrix D of q'' + D q' + w^2 q = f [1/s], whose diagonal
+        is 2 w times the ratios; one of them.
     shapes
         Mass-normalised mode shapes at named points, one number for each mode [kg^-1/2]; or three, along x, y and z, for a
         point that moves in space.
@@ -249,18 +261,42 @@ class Modal(StructurePart):
         points move in space.
     displacement, velocity
         Modal amplitudes at the start [kg^1/2 m], [kg^1/2 m/s]; default 0.
+    file
+        Instead of frequencies, shapes and what else it holds: a table of modes (.csv, .toml), a universal file (.uff, .unv),
+        a result (.rst) or the matrices (.full) of Ansys.
+    points
+        Which points of the file are taken, by their new names: `{"tip": 21}` for node 21, which moves in space, or
+        `{"tip": "21 z"}` for its motion along z; left out, all of them, if there are few.
+    mode_count
+        How many modes of the file are taken, the first ones; of a .full file how many are computed, 10 if left out.
+    mass_unit
+        The file's unit of mass, "kg", "t" or "g", where it states none.
+    modal_masses
+        Modal mass of each mode of the file [kg], where it states none; "1 kg" for shapes that are mass-normalised.
     """
 
+    in_file: ClassVar[tuple[str, ...]] = ("frequencies", "damping_ratios", "shapes", "participation")
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("damping_ratios", "damping_ratio"),
+        ("damping_ratios", "damping_matrix"),
+        ("damping_ratio", "damping_matrix"),
+    )
     kind: Literal["modal"] = "modal"
     frequencies: list[Frequency] = Field(examples=[["10 Hz", "62 Hz"]])
     damping_ratios: Annotated[list[Ratio] | None, BeforeValidator(_one_each)] = Field(
         default=None, examples=[[0.01, 0.01]]
     )
+    damping_ratio: Ratio | None = None
     damping_matrix: Annotated[Matrix | None, SI("1/s")] = None
     shapes: Annotated[dict[str, Shape], SI("kg^-0.5")] = Field(examples=[{"tip": [0.7, -0.7]}])
     participation: Annotated[Shape | None, SI("kg^0.5")] = None
     displacement: Annotated[Numbers | None, SI("kg^0.5 m")] = None
     velocity: Annotated[Numbers | None, SI("kg^0.5 m/s")] = None
+    file: str | None = None
+    points: dict[str, int | str] | None = Field(default=None, examples=[{"tip": "21 z"}])
+    mode_count: Annotated[int, Field(ge=1)] | None = None
+    mass_unit: Literal["kg", "g", "t"] | None = None
+    modal_masses: list[PositiveMass] | None = None
 
     @classmethod
     def of(cls, model: ModalModel, **options: Any) -> Modal:
@@ -297,6 +333,64 @@ class Modal(StructurePart):
             }
         )
 
+    _notes: tuple[str, ...] = PrivateAttr(default=())
+    _read: tuple[str, ...] = PrivateAttr(default=())
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _from_file(cls, values: Any, handler: Any) -> Self:
+        if not isinstance(values, dict) or values.get("file") is None:
+            for name in ("points", "mode_count", "mass_unit", "modal_masses"):
+                if isinstance(values, dict) and values.get(name) is not None:
+                    raise Hint(f"{name} are those of a file", 'file = "modes.csv"', [name])
+            made: Self = handler(values)
+            return made
+        for name in ("frequencies", "shapes"):
+            if values.get(name) is not None:
+                raise Hint(f"give {name} or a file, not both", "leave one out", [name])
+        with at("file"):
+            path = absolute(values["file"])
+        fields, notes = fields_of_modes(values, path)
+        made = handler({**values, **fields, "file": path})
+        BaseModel.__setattr__(made, "_notes", tuple(notes))
+        BaseModel.__setattr__(made, "_read", tuple(fields))
+        return made
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str], **options: Any) -> Modal:
+        """Read modes from a file.
+
+        Parameters
+        ----------
+        path
+            A table of modes (.csv, .toml), a universal file (.uff, .unv), a result (.rst) or matrices (.full) of Ansys.
+        **options
+            points, mode_count, damping_ratio, mass_unit, modal_masses, participation.
+
+        Raises
+        ------
+        DataError
+            If the file cannot be read.
+        MissingDependency
+            If the library that reads it is not installed; the message names the extra, `uff` or `fe`.
+        """
+        return cls(**{"file": os.fspath(path), **options})
+
+    def notes(self) -> Iterator[str]:
+        """Return what was assumed about the units of the file."""
+        return iter(self._notes)
+
+    def fields_from_file(self) -> tuple[str, ...]:
+        """Return the fields that were read from the file."""
+        return self._read
+
+    @model_serializer(mode="wrap")
+    def _file_stands_for_numbers(self, handler: Any) -> Any:
+        data = handler(self)
+        for name in self._read:
+            data.pop(name, None)
+        return data
+
     @model_validator(mode="after")
     def _same_lengths(self) -> Self:
         count = len(self.frequencies)
@@ -313,12 +407,10 @@ class Modal(StructurePart):
                     "one number for each mode",
                     name.split(".", 1),
                 )
-        if (self.damping_ratios is None) == (self.damping_matrix is None):
-            both = (
-                "damping_ratios and damping_matrix say the same thing twice"
-                if self.damping_ratios
-                else "damping is needed"
-            )
+        kinds = ("damping_ratios", "damping_ratio", "damping_matrix")
+        given = [name for name in kinds if getattr(self, name) is not None]
+        if len(given) != 1:
+            both = f"{' and '.join(given)} say the same thing twice" if given else "damping is needed"
             raise Hint(both, "damping_ratios = [0.01, 0.01], 0 for no damping", ["damping_ratios"])
         if self.damping_matrix is not None:
             check_damping(np.array(self.damping_matrix), count)
@@ -332,9 +424,10 @@ class Modal(StructurePart):
         return self
 
     def _decay(self, omega: list[Any]) -> Vector:
-        if self.damping_ratios is None:
+        if self.damping_matrix is not None:
             return np.diag(np.array(self.damping_matrix)) / 2
-        return stacked([ratio * w for ratio, w in zip(self.damping_ratios, omega, strict=True)])
+        ratios = self.damping_ratios or [present(self.damping_ratio)] * len(omega)
+        return stacked([ratio * w for ratio, w in zip(ratios, omega, strict=True)])
 
     def _coupling(self) -> Vector | None:
         if self.damping_matrix is None:

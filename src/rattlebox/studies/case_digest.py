@@ -52,6 +52,8 @@ def _of_numbers(part: Part) -> str:
     digest = sha256()
     for name in part.in_file:
         value = getattr(part, name)
+        if isinstance(value, dict):
+            value = [row for point in sorted(value) for row in np.ravel(value[point])]
         if value is not None:
             numbers = np.ascontiguousarray(np.asarray(value, dtype=float))
             digest.update(f"{name} {numbers.shape}".encode() + numbers.tobytes())

@@ -1,0 +1,70 @@
+"""Modes as a file states them, before they are mass-normalised."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox._util.exceptions import DataError
+
+FloatArray = NDArray[np.float64]
+_LISTED = 12  # labels in a message
+
+
+@dataclass(frozen=True, eq=False)
+class ModesInFile:
+    """Modes of a structure in the units of a file.
+
+    Attributes
+    ----------
+    frequencies : (m,) float
+        Natural frequencies [Hz].
+    shapes : dict of str to (m,) or (m, 3) float
+        Mode shapes at points, by the name or the node number that the file gives them; with three components for a node.
+    modal_masses : (m,) float or None
+        Modal masses in the file's unit of mass; None of shapes that are mass-normalised.
+    damping_ratios : (m,) float or None
+        Damping ratios, if the file states them.
+    participation : (m,) or (m, 3) float or None
+        Participation phi^T M r in the file's unit of mass, or of its root for shapes that are mass-normalised.
+    mass_unit
+        The file's unit of mass [kg]; None if the file does not state it.
+    notes
+        What was assumed, in whole sentences.
+    """
+
+    frequencies: FloatArray
+    shapes: dict[str, FloatArray]
+    modal_masses: FloatArray | None = None
+    damping_ratios: FloatArray | None = None
+    participation: FloatArray | None = None
+    mass_unit: float | None = None
+    notes: tuple[str, ...] = field(default=())
+
+
+def listed(labels: Sequence[str]) -> str:
+    """Return labels for a message, of many only the first."""
+    more = f", ... ({len(labels)} in all)" if len(labels) > _LISTED else ""
+    return ", ".join(labels[:_LISTED]) + more
+
+
+def read_start(path: Path, size: int) -> bytes:
+    """Return the first bytes of a file.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read, or is empty.
+    """
+    try:
+        with path.open("rb") as file:
+            start = file.read(size)
+    except OSError as error:
+        raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
+    if not start.strip():
+        raise DataError(f"{path} is empty")
+    return start

@@ -1,0 +1,216 @@
+"""Universal files (UFF, UNV): mode shapes in the sets 55 and 2414, units in 164, measured functions in 58 and 58b."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rattlebox._util.exceptions import DataError
+from rattlebox._util.optional_imports import optional_import
+
+from .modes_in_file import FloatArray, ModesInFile, read_start
+
+# Factors from SI to the units of a file, by their code: length, force. 9 is for units of the user.
+_CODES = {
+    1: (1.0, 1.0), 2: (3.28084, 0.224809), 3: (1.0, 0.101972), 4: (3.28084, 7.23301), 5: (1e3, 1e3), 6: (1e2, 1e2),
+    7: (39.37008, 0.224809), 8: (1e3, 0.101972), 10: (1e3, 1.0),
+}  # fmt: skip
+_NORMAL_MODES = 2
+_DISPLACEMENT = 8
+_END = 4096  # bytes in which the last line is
+_COMPLEX = 1e-6  # of the largest component: what an imaginary part may be
+
+
+@dataclass(frozen=True, eq=False)
+class Function:
+    """A measured function of a set 58 or 58b.
+
+    Attributes
+    ----------
+    name
+        Its name in the file.
+    kind
+        Type of the function: 1 time response, 4 frequency response, 9 power spectral density.
+    abscissa, values : (n,) float or complex
+        Times [s] or frequencies [Hz], and values, in `unit`.
+    unit
+        Unit of the values as the file states it; "" if it states none.
+    """
+
+    name: str
+    kind: int
+    abscissa: FloatArray
+    values: Any
+    unit: str
+
+
+def _sets(path: Path, kinds: tuple[int, ...]) -> list[dict[str, Any]]:
+    """Return the data sets of some kinds.
+
+    Raises
+    ------
+    DataError
+        If the file is no universal file, or damaged.
+    """
+    read_start(path, 64)
+    with path.open("rb") as stream:
+        stream.seek(-min(path.stat().st_size, _END), 2)
+        end = stream.read().rstrip().rsplit(b"\n", 1)[-1].strip()
+    pyuff = optional_import("pyuff", "uff", "a modal table in CSV")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            file = pyuff.UFF(str(path))
+            types = [int(kind) for kind in file.get_set_types()]
+            found = [file.read_sets(number) for number, kind in enumerate(types) if kind in kinds]
+    except Exception as error:  # pyuff raises whatever its parser meets
+        raise DataError(
+            f"{path} cannot be read as a universal file: {str(error).strip() or type(error).__name__}",
+            "the whole file, as the program wrote it",
+        ) from None
+    if not types:
+        raise DataError(
+            f"{path} holds no whole data set of a universal file", "the whole file, with -1 around each set"
+        )
+    if not end.endswith(b"-1"):
+        raise DataError(
+            f"{path}: the last data set is not closed by -1, as if the file were cut short", "the whole file"
+        )
+    if not found:
+        held = ", ".join(map(str, sorted(set(types))))
+        raise DataError(f"{path} holds no set {' or '.join(map(str, kinds))}, but {held}")
+    return found
+
+
+def read_universal_modes(path: Path) -> ModesInFile:
+    """Read the normal modes of a universal file.
+
+    Parameters
+    ----------
+    path
+        An existing file with sets 55 or 2414 of normal modes and, for the units, 164.
+
+    Raises
+    ------
+    DataError
+        If there are no normal modes, modes are complex or cover different nodes, or the units contradict their code.
+    """
+    sets = _sets(path, (55, 2414, 164))
+    modes = [_mode(path, each) for each in sets if each["type"] != 164 and _is_mode(each)]
+    if not modes:
+        kinds = sorted({int(each["analysis_type"]) for each in sets if each["type"] != 164})
+        raise DataError(
+            f"{path} holds no normal modes (analysis type 2), but types {', '.join(map(str, kinds)) or 'none'}",
+            "an export of real normal modes",
+        )
+    nodes = modes[0][3]
+    for number, mode in enumerate(modes, start=1):
+        if not np.array_equal(mode[3], nodes):
+            raise DataError(
+                f"{path}: mode {number} is given at other nodes than mode 1", "one set of nodes for all modes"
+            )
+    frequencies = np.array([mode[0] for mode in modes])
+    shapes = np.array([mode[4] for mode in modes])
+    for what, values in (("frequency", frequencies), ("mode shape", shapes)):
+        if not np.isfinite(values).all() or np.abs(values).max(initial=0.0) > 1e30:
+            raise DataError(f"{path}: a {what} is not finite", "the file as it was written: bytes may be swapped")
+    if (frequencies < 0).any():
+        raise DataError(f"{path}: a frequency is negative")
+    masses = np.array([mode[1] for mode in modes])
+    damping = np.array([mode[2] for mode in modes])
+    return ModesInFile(
+        frequencies=frequencies,
+        shapes={str(int(node)): shapes[:, k] for k, node in enumerate(nodes)},
+        modal_masses=masses,
+        damping_ratios=damping if damping.any() else None,
+        mass_unit=_mass_unit(path, [each for each in sets if each["type"] == 164]),
+    )
+
+
+def _is_mode(each: dict[str, Any]) -> bool:
+    if each["type"] == 55:
+        return int(each["analysis_type"]) == _NORMAL_MODES
+    at_nodes = int(each.get("dataset_location", 1)) == 1
+    return int(each["analysis_type"]) == _NORMAL_MODES and int(each["result_type"]) == _DISPLACEMENT and at_nodes
+
+
+def _mode(path: Path, each: dict[str, Any]) -> tuple[float, float, float, Any, Any]:
+    """Return frequency, modal mass, damping ratio, nodes and shape of a set."""
+    if each["type"] == 55:
+        nodes = np.asarray(each["node_nums"])
+        shape = np.array([each[f"r{k}"] for k in (1, 2, 3)]).T
+        values = each["freq"], each["modal_m"], each["modal_damp_vis"]
+    else:
+        nodes = np.asarray(each["node_nums"])
+        table = np.atleast_2d(np.asarray(each["data_at_node"], dtype=complex))
+        if int(each["data_type"]) in (5, 6) and not np.iscomplexobj(each["data_at_node"]):
+            table = table[:, 0::2] + 1j * table[:, 1::2]
+        shape = table[:, :3]
+        values = each["record12_field2"], each["record12_field4"], each["record12_field5"]
+    if shape.shape != (len(nodes), 3):
+        raise DataError(f"{path}: a mode has {shape.shape} components for {len(nodes)} nodes", "the whole file")
+    if np.abs(np.imag(shape)).max(initial=0.0) > _COMPLEX * np.abs(shape).max(initial=0.0):
+        raise DataError(f"{path}: the mode at {float(values[0]):.6g} Hz is complex", "an export of real normal modes")
+    frequency, mass, damping = (float(value) for value in values)
+    return frequency, mass, damping, nodes, np.real(shape)
+
+
+def _mass_unit(path: Path, sets: list[dict[str, Any]]) -> float | None:
+    """Return the unit of mass of a file [kg], None if it states none."""
+    if not sets:
+        return None
+    length, force, code = float(sets[0]["length"]), float(sets[0]["force"]), int(sets[0]["units_code"])
+    if not (1e-9 < length < 1e9 and 1e-9 < force < 1e9):
+        raise DataError(f"{path}: set 164 states factors of {length:g} for lengths and {force:g} for forces")
+    if code in _CODES:
+        for what, value, known in zip(("lengths", "forces"), (length, force), _CODES[code], strict=True):
+            if abs(value / known - 1) > 1e-2:
+                raise DataError(
+                    f"{path}: set 164 states a factor of {value:g} for {what}, but its code {code} means {known:g}",
+                    "mass_unit, the unit of mass of the file",
+                )
+    return length / force
+
+
+def read_functions(path: Path) -> list[Function]:
+    """Read the functions of the sets 58 and 58b of a universal file.
+
+    Parameters
+    ----------
+    path
+        An existing file.
+
+    Raises
+    ------
+    DataError
+        If there is none, one holds another number of points than it states, or values that no measurement has.
+    """
+    functions = []
+    for number, each in enumerate(_sets(path, (58,)), start=1):
+        values = np.asarray(each["data"])
+        stated = int(each["num_pts"])
+        if values.size != stated:
+            raise DataError(
+                f"{path}: function {number} states {stated} points, but holds {values.size}", "the whole file"
+            )
+        size = np.abs(values)
+        if not np.isfinite(size).all() or size.max(initial=0.0) > 1e30 or 0 < size.max(initial=0.0) < 1e-30:
+            raise DataError(
+                f"{path}: function {number} has values that no measurement has, up to {size.max(initial=0.0):.3g}",
+                "the other order of bytes: the header may state the wrong one",
+            )
+        unit = str(each.get("ordinate_axis_units_lab", "")).strip()
+        functions.append(
+            Function(
+                name=str(each.get("rsp_ent_name") or each.get("id1", "")).strip(),
+                kind=int(each["func_type"]),
+                abscissa=np.asarray(each["x"], dtype=float),
+                values=values,
+                unit="" if unit.upper() == "NONE" else unit,
+            )
+        )
+    return functions

@@ -1,0 +1,289 @@
+"""Modes and matrices of other programs: real files, units, mass normalisation, and files that are damaged."""
+
+from __future__ import annotations
+
+import math
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.io
+from ansys.mapdl.reader import examples
+
+import rattlebox as rb
+from rattlebox.exchange.read.universal import read_functions
+from rattlebox.model.doubts import doubts
+
+UFF = Path(__file__).parents[2] / "data/uff"
+RST, FULL = Path(examples.rstfile), Path(examples.fullfile)
+
+HEAD = "frequency (Hz), damping (%), modal mass (kg), tip, root x, root y, root z"
+TABLE = f"""{HEAD}, participation x, participation y, participation z
+10, 1, 4, 2, 1, 0, 0.5, 3, 0, 1
+25, 2, 1, -1, 0, 1, 0, 0, 2, 0
+"""  # fmt: skip
+
+
+def test_modes_of_an_ansys_result() -> None:
+    """The frequencies are those of the file's analysis; the shapes are one column of nodes in three directions."""
+    modal = rb.Modal.from_file(RST, points={"a": 100, "b": "100 y", "c": "100 -y"}, damping_ratio=0.01)
+    known = [7366.495, 7366.495, 11504.895, 17285.705, 17285.705, 20137.193]
+    np.testing.assert_allclose(modal.frequencies, known, atol=6e-4)
+    modes = modal.modes()
+    np.testing.assert_array_equal(modes.shapes["b"], modes.shapes["a"][:, 1])
+    np.testing.assert_array_equal(modes.shapes["c"], -modes.shapes["a"][:, 1])
+    notes = list(modal.notes())
+    assert any("states no unit of mass; kg is assumed" in note for note in notes)
+    largest = max(np.abs(row).max() for row in modes.shapes.values())
+    assert all(f"{largest:.4g} kg^-0.5" in note for note in notes)
+    tonnes = rb.Modal.from_file(RST, points={"a": 100}, damping_ratio=0.01, mass_unit="t")
+    np.testing.assert_allclose(tonnes.modes().shapes["a"], modes.shapes["a"] / math.sqrt(1e3), rtol=1e-12)
+
+
+def test_modes_of_ansys_matrices() -> None:
+    """The modes of K and M are those that Ansys documents, mass-normalised, with exact participation."""
+    modal = rb.Modal.from_file(FULL, points={"a": 100}, mode_count=4, damping_ratio=0)
+    np.testing.assert_allclose(modal.frequencies, [1283.200, 1283.200, 5781.975, 6919.399], atol=6e-4)
+    many = rb.Modal.from_file(FULL, points={"a": 100}, mode_count=120, damping_ratio=0)
+    np.testing.assert_allclose(many.frequencies[:4], modal.frequencies, rtol=1e-9)
+    # The effective masses of all modes come to the mass of the free nodes; 120 of 900 modes leave a part of it.
+    from ansys.mapdl import reader
+
+    file = reader.read_binary(str(FULL))
+    numbers, _, upper = file.load_km(sort=False)
+    mass = (upper + upper.T).toarray() - np.diag(upper.diagonal())
+    held = {tuple(map(int, row[:2])) for row in file.const}
+    free = np.array([tuple(map(int, row)) not in held for row in numbers])
+    for axis in range(3):
+        r = (numbers[:, 1] == axis) * free * 1.0
+        effective = np.sum(np.array(many.participation)[:, axis] ** 2)
+        assert 0.9 < effective / (r @ mass @ r) <= 1 + 1e-9
+
+
+def test_modes_in_millimetres_and_millinewtons() -> None:
+    """A universal file of a Siemens program: set 164 gives the unit of mass, mN s^2/mm, which is the kilogram."""
+    modal = rb.Modal.from_file(UFF / "modes_mm_mN_2414.uff", points={"a": 9581}, damping_ratio=0.01)
+    np.testing.assert_allclose(modal.frequencies, [23383.2, 23384.1, 37317.1, 54308.9, 54313.4])
+    np.testing.assert_allclose(modal.modes().shapes["a"][0], [0.156530, 13.1011, -3.2994e-05], rtol=1e-5)
+    assert not list(modal.notes())
+
+
+def test_modes_of_set_55_need_modal_masses() -> None:
+    """A file whose modal masses are zero has shapes without a scale; with masses it has one."""
+    file = UFF / "normal_modes_55.uff"
+    with pytest.raises(rb.DataError, match="mode 1 has a modal mass of 0, so that its shape has no scale"):
+        rb.Modal.from_file(file, damping_ratio=0.01)
+    one = rb.Modal.from_file(file, damping_ratio=0.01, modal_masses=["1 kg"] * 3)
+    four = rb.Modal.from_file(file, damping_ratio=0.01, modal_masses=[4.0] * 3)
+    assert len(one.frequencies) == 3 and one.frequencies[0] == 10.0
+    for name, shape in one.shapes.items():
+        np.testing.assert_allclose(four.shapes[name], np.array(shape) / 2, rtol=1e-12)
+
+
+def test_tables_of_modes(tmp_path: Path) -> None:
+    """Modal masses, damping in per cent and participation of a table become those of mass-normalised modes."""
+    (tmp_path / "modes.csv").write_text(TABLE)
+    modal = rb.Modal.from_file(tmp_path / "modes.csv")
+    assert modal.frequencies == [10, 25]
+    assert modal.damping_ratios == [0.01, 0.02]
+    np.testing.assert_allclose(modal.shapes["tip"], [1, -1])
+    np.testing.assert_allclose(modal.shapes["root"], [[0.5, 0, 0.25], [0, 1, 0]])
+    np.testing.assert_allclose(modal.participation, [[1.5, 0, 0.5], [0, 2, 0]])
+    assert not list(modal.notes())
+    grams = TABLE.replace("(kg)", "(g)").replace("10, 1, 4", "10, 1, 4000").replace("25, 2, 1,", "25, 2, 1000,")
+    grams = grams.replace("0.5, 3, 0, 1", "0.5, 3000, 0, 1000").replace("0, 0, 2, 0", "0, 0, 2000, 0")
+    (tmp_path / "grams.csv").write_text(grams)
+    same = rb.Modal.from_file(tmp_path / "grams.csv")
+    np.testing.assert_allclose(same.participation, modal.participation)
+    np.testing.assert_allclose(same.shapes["tip"], modal.shapes["tip"])
+    case = rb.Case(structure=modal, load=rb.HalfSine(amplitude="1 N", duration="1 ms", point="tip"), duration="0.1 s")
+    again = rb.Case.from_toml(case.to_toml())
+    assert again == case and 'file = "' in case.to_toml() and "frequencies" not in case.to_toml()
+    assert rb.simulate(case).ok
+    fewer = case.replaced({"structure.mode_count": 1, "structure.damping_ratio": 0.05})
+    assert fewer.structure.frequencies == [10] and fewer.modes.decay[0] == pytest.approx(0.05 * 2 * math.pi * 10)
+    with pytest.raises(rb.CaseError, match="it comes from"):
+        case.replaced({"structure.frequencies[0]": 3})
+
+
+def test_a_table_without_units_is_told(tmp_path: Path) -> None:
+    """Shapes without a unit or a modal mass count as kg^-1/2, and a run says so with the largest."""
+    (tmp_path / "modes.csv").write_text("frequency,damping,tip\n10,0.01,2\n25,0.01,-3\n")
+    case = rb.Case(structure=rb.Modal.from_file(tmp_path / "modes.csv"), duration=1.0)
+    (told,) = [note for note in doubts(case) if "kg is assumed" in note]
+    assert "the largest mass-normalised shape is 3 kg^-0.5, at tip" in told
+
+
+def test_toml_tables(tmp_path: Path) -> None:
+    """A TOML table has the fields of Modal, with modal masses if it likes."""
+    (tmp_path / "modes.toml").write_text(
+        'frequencies = ["10 Hz", 25]\ndamping_ratios = [0.01, 0.02]\nmodal_masses = ["4 kg", 1]\n[shapes]\ntip = [2, -1]\n'
+    )
+    modal = rb.Modal.from_file(tmp_path / "modes.toml")
+    np.testing.assert_allclose(modal.shapes["tip"], [1, -1])
+    assert modal.frequencies == [10, 25] and modal.damping_ratios == [0.01, 0.02]
+
+
+def test_matrices_in_matrix_market_files(tmp_path: Path) -> None:
+    """K and M in files of their own are the matrices that were written, whole or as one triangle."""
+    K, M = np.array([[3e4, -1e4], [-1e4, 1e4]]), np.diag([2.0, 1.0])
+    scipy.io.mmwrite(tmp_path / "K.mtx", K, symmetry="symmetric")
+    scipy.io.mmwrite(tmp_path / "M.mtx", scipy.sparse.coo_array(M))
+    (tmp_path / "case.toml").write_text(
+        'duration = 1.0\n[structure]\nkind = "matrices"\nfile = { M = "M.mtx", K = "K.mtx" }\npoints = { tip = 1 }\n'
+        'damping_ratio = 0.01\n[load]\nkind = "half_sine"\namplitude = "1 N"\nduration = "1 ms"\n'
+    )
+    case = rb.Case.from_file(tmp_path / "case.toml")
+    same = rb.Matrices(M=M, K=K, points={"tip": 1}, damping_ratio=0.01).modes()
+    np.testing.assert_allclose(case.modes.stiffness, same.stiffness, rtol=1e-14)
+    assert rb.Case.from_toml(case.to_toml()) == case
+    case.to_file(tmp_path / "again.toml")
+    assert 'K = "K.mtx"' in (tmp_path / "again.toml").read_text()
+    assert rb.Case.from_file(tmp_path / "again.toml") == case
+
+
+def test_records_of_universal_files() -> None:
+    """Time histories in text and in binary become records in the unit that the file states."""
+    binary = rb.Record.from_file(UFF / "time_history_58b.uff")
+    assert binary.unit == "m/s^2" and len(binary.times) == 250
+    np.testing.assert_allclose(
+        binary.evaluate(binary.times), 9.80665 * np.sin(2 * np.pi * 5 * np.array(binary.times)), atol=1e-4
+    )
+    text = rb.Record.from_file(UFF / "time_history_58.uff")
+    assert text.unit == "m/s^2" and len(text.times) == 13
+    with pytest.raises(rb.DataError, match="holds no time history 3"):
+        rb.Record.from_file(UFF / "time_history_58b.uff", columns=[3])
+    with pytest.raises(rb.DataError, match="holds no time history"):
+        rb.Record.from_file(UFF / "frf_58.uff")
+    assert np.iscomplexobj(read_functions(UFF / "frf_58.uff")[0].values)
+
+
+def changed(content: bytes, old: bytes, new: bytes) -> bytes:
+    """Return a file with other content, which must have been there."""
+    assert old in content
+    return content.replace(old, new, 1)
+
+
+MODES = (UFF / "modes_mm_mN_2414.uff").read_bytes()
+BINARY = (UFF / "time_history_58b.uff").read_bytes()
+RESULT, MATRICES = RST.read_bytes(), FULL.read_bytes()
+MTX = b"%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n"
+
+
+def swapped(content: bytes) -> bytes:
+    """Return a file of 4-byte words in the other order of bytes."""
+    whole = len(content) // 4 * 4
+    return np.frombuffer(content[:whole], "<u4").byteswap().tobytes()
+
+
+DAMAGED: list[tuple[str, str, bytes, str]] = [
+    ("empty table", "a.csv", b"", "is empty"),
+    ("table of text", "a.csv", b"hello\nworld\n", "no column is called frequency"),
+    ("header alone", "a.csv", b"frequency,tip\n", "no mode below it"),
+    ("cut table", "a.csv", TABLE.encode()[:-12], "its last line is cut short"),
+    ("no shapes", "a.csv", b"frequency,damping\n10,0.1\n", "no mode shape at any point"),
+    ("unknown unit", "a.csv", b"frequency (rpm),damping,tip\n10,0.1,1\n", "'rpm', the unit of the column 'frequency'"),
+    ("text in a table", "a.csv", b"frequency,damping,tip\n10,0.1,one\n", "column 'tip': 'one' is not a number"),
+    ("nan in a table", "a.csv", b"frequency,damping,tip\n10,0.1,nan\n", "is not finite"),
+    ("per cent without sign", "a.csv", b"frequency,tip\n10,0\n", "states no damping"),
+    ("nothing moves", "a.csv", b"frequency,damping,tip\n10,0.1,0\n", "no point of tip moves"),
+    ("negative mass", "a.csv", b"frequency,damping,modal mass,tip\n10,0.1,-1,1\n", "modal mass of -1"),
+    ("bytes as a table", "a.csv", bytes(range(128, 256)), "is not text"),
+    ("empty toml", "a.toml", b"", "is empty"),
+    ("foreign toml", "a.toml", b"[shape]\ntip = [1]\n", "no field 'shape'"),
+    ("empty universal file", "a.uff", b"", "is empty"),
+    ("no universal file", "a.uff", b"hello\nworld\n" * 10, "holds no whole data set"),
+    ("cut universal file", "a.uff", MODES[: len(MODES) * 2 // 3], "is not closed by -1"),
+    ("mis-scaled units", "a.uff", changed(MODES, b"1.00000000000000000D+03", b"1.00000000000000000D-03"),
+     "set 164 states a factor of 0.001 for lengths, but its code 5 means 1000"),
+    ("complex mode", "a.uff", (UFF / "complex_mode_55.uff").read_bytes(), "no normal modes"),
+    ("temperatures", "a.uff", (UFF / "temperatures_2414.uff").read_bytes(), "no normal modes"),
+    ("measurement", "a.uff", BINARY, "holds no set 55 or 2414 or 164, but 58"),
+    ("empty result", "a.rst", b"", "is empty"),
+    ("text as a result", "a.rst", b"hello world " * 1000, "is no binary file of Ansys"),
+    ("swapped result", "a.rst", swapped(RESULT), "bytes in the order of other machines"),
+    ("cut header", "a.rst", RESULT[:2000], "ends within its header"),
+    ("cut result", "a.rst", RESULT[: len(RESULT) // 2], "but its header states"),
+    ("matrices as a result", "a.rst", MATRICES, "is no .rst file"),
+    ("swapped matrices", "a.full", swapped(MATRICES), "bytes in the order of other machines"),
+    ("cut matrices", "a.full", MATRICES[: len(MATRICES) // 2], "but its header states"),
+    ("unknown ending", "a.op2", b"abc", "hold no modes that are read here"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "content", "said"), [row[1:] for row in DAMAGED], ids=[row[0] for row in DAMAGED])
+def test_damaged_files_of_modes(tmp_path: Path, name: str, content: bytes, said: str) -> None:
+    """Truncated, mis-scaled, swapped, unit-less and empty files are refused with the reason."""
+    (tmp_path / name).write_bytes(content)
+    options: dict[str, Any] = {} if name.endswith(("csv", "toml")) else {"damping_ratio": 0.01, "points": {"a": 9581}}
+    with pytest.raises(rb.RattleboxError, match=said):
+        rb.Modal.from_file(tmp_path / name, **options)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "is empty"),
+        (b"1 0\n0 1\n", "does not begin with %%MatrixMarket"),
+        (MTX[:-9], "cannot be read"),
+        (MTX.replace(b"real", b"complex").replace(b"1.0\n", b"1.0 0.0\n"), "complex numbers"),
+        (MTX.replace(b"2 2 2", b"2 3 2").replace(b"symmetric", b"general"), "2 rows and 3 columns"),
+        (MTX.replace(b"2 2 2", b"9000 9000 2"), "9000 degrees of freedom; at most 3000"),
+        (MTX.replace(b"1 1 1.0", b"1 1 nan"), "not finite"),
+    ],
+)
+def test_damaged_matrices(tmp_path: Path, content: bytes, said: str) -> None:
+    """Damaged, complex, rectangular and large matrices are refused with the reason."""
+    (tmp_path / "M.mtx").write_bytes(MTX)
+    (tmp_path / "K.mtx").write_bytes(content)
+    with pytest.raises(rb.RattleboxError, match=said):
+        rb.Matrices(file={"M": str(tmp_path / "M.mtx"), "K": str(tmp_path / "K.mtx")}, points={"tip": 0})
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (BINARY[: len(BINARY) // 2], "holds no whole data set of a universal file"),
+        ((UFF / "cut_58.uff").read_bytes(), "states 2508876 points, but holds 42"),
+        (
+            changed(BINARY, b"58b     1     2", b"58b     2     2"),
+            "no measurement has|cannot be read as a universal file",
+        ),
+        (
+            changed(BINARY, struct.pack("<d", math.sin(2 * math.pi * 5 * 0.05)), struct.pack("<d", math.nan)),
+            "no measurement",
+        ),
+    ],
+)
+def test_damaged_measurements(tmp_path: Path, content: bytes, said: str) -> None:
+    """Cut functions, a wrong order of bytes and values that are none are refused."""
+    (tmp_path / "a.uff").write_bytes(content)
+    with pytest.raises(rb.DataError, match=said):
+        rb.Record.from_file(tmp_path / "a.uff")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"points": {"a": 1}}, "states no damping\n  try: damping_ratio"),
+        ({"damping_ratio": 0.01}, "has 321 points; which of them are needed"),
+        ({"damping_ratio": 0.01, "points": {"a": 99999}}, "has no point '99999'"),
+        ({"damping_ratio": 0.01, "points": {"a": 1}, "mode_count": 7}, "has 6 modes"),
+        ({"damping_ratio": 0.01, "points": {"a": 1}, "mode_count": 0}, "at least 1"),
+        ({"damping_ratio": 0.01, "points": {"a": 1}, "modal_masses": [1.0]}, "1 modal masses for 6 modes"),
+        ({"damping_ratio": 0.01, "points": {"a": 1}, "frequencies": [1.0]}, "give frequencies or a file"),
+        ({"damping_ratio": 0.01, "damping_ratios": [0.1] * 6, "points": {"a": 1}}, "twice"),
+    ],
+)
+def test_what_does_not_fit_the_file(options: dict[str, Any], said: str) -> None:
+    """Fields beside a file that contradict it are refused with what there is."""
+    with pytest.raises(rb.RattleboxError, match=said):
+        rb.Modal.from_file(RST, **options)
+
+
+def test_fields_of_files_need_a_file() -> None:
+    """Points, counts and masses of files are refused where there is none."""
+    with pytest.raises(rb.CaseError, match="points are those of a file"):
+        rb.Modal(frequencies=[1.0], damping_ratio=0.0, shapes={"tip": [1.0]}, points={"tip": 1})
