@@ -79,6 +79,8 @@ def responses(
 
 def _inertia(case: Case, modes: ModalModel, in_space: bool) -> FloatArray | None:
     """Return the inertia of the modes per unit of base acceleration, (M,) or (M, 3), if it is known."""
+    if not in_space and modes.spatial:
+        return None  # the base of a 1-D run has no direction, and does not move
     if modes.participation is None or not in_space or modes.spatial:
         return modes.participation
     return np.multiply.outer(modes.participation, unit_vector(case.particle_dampers[0].direction))
@@ -96,7 +98,7 @@ def base_at_points(case: Case, base: FloatArray) -> FloatArray:
     """
     modes = case.modes
     if base.ndim == 1:
-        return np.repeat(base[:, None], len(modes.shapes), axis=1)
+        return np.repeat(base[:, None], len(modes.lines()), axis=1)
     own = base @ unit_vector(case.particle_dampers[0].direction)
     parts = [base if name in modes.spatial else own[:, None] for name in modes.shapes]
     return np.concatenate([*parts, np.zeros((len(base), 0))], axis=1)

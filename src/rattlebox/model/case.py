@@ -188,6 +188,13 @@ class Case(Part):
                 if signal.direction is not None:
                     place = (*(("structure",) if field == "motion" else ()), field, index, "direction")
                     raise Hint("without particle dampers all motion is along one line", "leave direction out", place)
+        if self.base and self.modes.spatial:
+            raise Hint(
+                f"the point {min(self.modes.spatial)!r} moves in space, where the base of a case without particle dampers"
+                " has no direction",
+                "points that move along one line, with one participation for each mode",
+                ["base"],
+            )
 
     def _check_snapshots(self) -> None:
         """Refuse snapshots after the end."""

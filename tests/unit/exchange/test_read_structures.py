@@ -287,3 +287,12 @@ def test_fields_of_files_need_a_file() -> None:
     """Points, counts and masses of files are refused where there is none."""
     with pytest.raises(rb.CaseError, match="points are those of a file"):
         rb.Modal(frequencies=[1.0], damping_ratio=0.0, shapes={"tip": [1.0]}, points={"tip": 1})
+
+
+def test_a_base_without_direction_moves_no_point_in_space() -> None:
+    """Base motion of a structure whose points move in space is refused where no damper holds particles; loads are not."""
+    modal = rb.Modal(frequencies=[10.0], damping_ratio=0.01, shapes={"a": [[1, 0, 0.5]]}, participation=[[1, 0, 0.5]])
+    with pytest.raises(rb.CaseError, match="has no direction"):
+        rb.Case(structure=modal, base=rb.HalfSine(amplitude="1 g", duration="1 ms"), duration=0.1)
+    load = rb.HalfSine(amplitude="1 N", duration="1 ms", direction="z")
+    assert rb.simulate(rb.Case(structure=modal, load=load, duration=0.1)).ok
