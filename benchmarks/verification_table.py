@@ -1,4 +1,4 @@
-"""Write docs/verification_table.md: exact values, ours and the differences, one line a comparison.
+"""Write docs/validation/verification_table.md: exact values, ours and the differences, one line a comparison.
 
 python benchmarks/verification_table.py [target]
 """
@@ -73,6 +73,6 @@ def table() -> str:
 
 
 if __name__ == "__main__":
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "verification_table.md"
+    target = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "validation" / "verification_table.md"
     target.write_text(table(), encoding="utf-8")
     print(f"wrote {target}")

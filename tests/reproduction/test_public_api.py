@@ -13,7 +13,7 @@ import pytest
 import rattlebox as rb
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs/api.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/reference/api.md").read_text(encoding="utf-8")
 PUBLIC = {"rattlebox"} | set(re.findall(r"`(rattlebox\.\w+)`", PAGE.partition("```")[0]))
 """Modules whose names are public: the package, and the subpackages that the introduction of the API page names."""
 SOURCES = sorted((ROOT / "reproduction").rglob("*.py"))

@@ -1,4 +1,4 @@
-"""The steps of docs/add_a_law.md, carried out on a copy of the sources, which is then built and run."""
+"""The steps of docs/developing/add_a_law.md, carried out on a copy of the sources, which is then built and run."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ needs_compiler = pytest.mark.skipif(COMPILER is None, reason="no C++ compiler")
 
 def steps() -> list[tuple[str, str, str, str]]:
     """Return the steps of the page: file, what the step says about it, language and block."""
-    page = (ROOT / "docs" / "add_a_law.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "developing" / "add_a_law.md").read_text(encoding="utf-8")
     return re.findall(r"^\*\*\d\. `(\S+)`\*\*(.*?)\n\n```(\w+)\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
 
 
@@ -58,8 +58,8 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("copy")
     for name in ("core", "src"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"))
-    (folder / "docs").mkdir()
-    shutil.copy(ROOT / "docs" / "case_file.md", folder / "docs")
+    (folder / "docs" / "reference").mkdir(parents=True)
+    shutil.copy(ROOT / "docs" / "reference" / "case_file.md", folder / "docs" / "reference")
     shutil.copy(ROOT / "CMakeLists.txt", folder)
     carry_out(folder)
     return folder

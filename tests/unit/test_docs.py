@@ -1,4 +1,4 @@
-"""The examples of the how-to pages print what the pages say."""
+"""The examples of the pages print what the pages say."""
 
 import contextlib
 import io
@@ -12,22 +12,23 @@ from rattlebox.model.base import Part
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = (
-    "analysis",
-    "basins",
-    "bifurcation",
-    "design",
-    "frequency_response",
-    "loads",
-    "loss_map",
-    "lyapunov",
-    "particle_output",
-    "particle_dampers",
-    "results",
-    "sensitivity",
-    "softening",
-    "structures",
-    "sweep",
+    "how-to/analysis",
+    "how-to/basins",
+    "how-to/bifurcation",
+    "how-to/design",
+    "how-to/frequency_response",
+    "how-to/loads",
+    "how-to/loss_map",
+    "how-to/lyapunov",
+    "how-to/particle_output",
+    "how-to/results",
+    "how-to/sensitivity",
+    "how-to/softening",
+    "how-to/structures",
+    "how-to/sweep",
+    "tutorials/particle_dampers",
 )
+FIELDS = DOCS / "reference" / "case_file.md"
 
 
 def examples(page):
@@ -54,22 +55,21 @@ def test_examples_of_the_first_page_run(tmp_path, monkeypatch, capsys):
     """The examples of the first page run from top to bottom; what they print tells times that differ."""
     monkeypatch.chdir(tmp_path)
     names = {}
-    for code, _ in examples(DOCS / "start.md"):
+    for code, _ in examples(DOCS / "tutorials" / "start.md"):
         exec(code, names)
     assert "energy supplied" in capsys.readouterr().out and (tmp_path / "run.nc").is_file()
 
 
 def test_every_public_name_has_a_page():
     """Each name of the package is on the page of the API, of the fields of a case, or of analysis."""
-    pages = "".join((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in ("api", "case_file", "analysis"))
+    names = ("reference/api", "reference/case_file", "how-to/analysis")
+    pages = "".join((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in names)
     assert [name for name in rb.__all__ if not re.search(rf"\b{name}\b", pages)] == []
 
 
 def test_every_field_of_a_case_is_described():
     """What the page of fields shows of a part, its docstring, names all its fields in the list of parameters."""
-    shown = re.findall(
-        r"autoclass:: rattlebox\.(\w+)$", (DOCS / "case_file.md").read_text(encoding="utf-8"), re.MULTILINE
-    )
+    shown = re.findall(r"autoclass:: rattlebox\.(\w+)$", FIELDS.read_text(encoding="utf-8"), re.MULTILINE)
     parts = [getattr(rb, name) for name in shown]
     public = [getattr(rb, name) for name in rb.__all__]
     assert {part for part in public if isinstance(part, type) and issubclass(part, Part)} <= set(parts)
@@ -81,9 +81,7 @@ def test_every_field_of_a_case_is_described():
 
 def test_cases_on_the_page_of_fields_run(tmp_path):
     """The case files that the page shows are whole, and run to their end."""
-    files = re.findall(
-        r"^```toml\n(.*?)^```$", (DOCS / "case_file.md").read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
-    )
+    files = re.findall(r"^```toml\n(.*?)^```$", FIELDS.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
     assert len(files) == 3
     for number, content in enumerate(files):
         case = rb.Case.from_toml(content)

@@ -39,6 +39,8 @@ def test_rooms_are_drawn_and_described() -> None:
         f"core/{d.name}" for d in CORE.iterdir() if d.is_dir()
     }
     drawn = re.findall(r"<text[^>]*>([^<]*)</text>", (ROOT / "docs/_static/rooms.svg").read_text(encoding="utf-8"))
-    described = re.findall(r"^\| `(.*?)` \|", (ROOT / "docs/architecture.md").read_text(encoding="utf-8"), re.M)
+    described = re.findall(
+        r"^\| `(.*?)` \|", (ROOT / "docs/developing/architecture.md").read_text(encoding="utf-8"), re.M
+    )
     assert found <= set(drawn)
     assert found == set(described)

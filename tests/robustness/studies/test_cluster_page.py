@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[3]
 
 def block(language: str, number: int = 0) -> str:
     """Return what the page shows in a language."""
-    found = re.findall(rf"```{language}\n(.*?)```", (ROOT / "docs" / "cluster.md").read_text(), re.DOTALL)
+    found = re.findall(rf"```{language}\n(.*?)```", (ROOT / "docs" / "how-to" / "cluster.md").read_text(), re.DOTALL)
     assert len(found) == {"toml": 2}.get(language, 1)
     return str(found[number])
 

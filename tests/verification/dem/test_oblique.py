@@ -17,7 +17,7 @@ from . import cases
 from .cases import Ball
 from .measures import ALUMINA, OBLIQUE_E, OBLIQUE_FRICTION, OBLIQUE_SPEED, oblique_impact, oblique_law
 
-VERIFICATION = Path(__file__).parents[3] / "docs" / "verification.md"
+VERIFICATION = Path(__file__).parents[3] / "docs" / "validation" / "verification.md"
 
 BALL, SPEED, FRICTION, E = ALUMINA, OBLIQUE_SPEED, OBLIQUE_FRICTION, OBLIQUE_E
 RADIUS = BALL.radius
