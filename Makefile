@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*.hpp' -o -name '*.cpp')
 
-.PHONY: setup demo test verify lint docs bench format clean
+.PHONY: setup demo test verify lint stub docs bench format clean
 
 setup: $(VENV)/.installed
 
@@ -38,6 +38,10 @@ format: setup
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 	$(BIN)/clang-format -i $(shell git ls-files 'core/*.hpp' 'core/*.cpp')
+
+# The types of the compiled core, after a change of core/bindings or of the table of laws.
+stub: setup
+	cd src && ../$(BIN)/python -m nanobind.stubgen -q -m $$(../$(BIN)/python -c "from rattlebox.engines.core import core; print(core().__name__)") -o rattlebox/engines/_core.pyi
 
 docs: setup
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html

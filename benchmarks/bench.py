@@ -18,7 +18,8 @@ import numpy as np
 import peers
 
 import rattlebox as rb
-from rattlebox.engines.core import choice, core
+from rattlebox.engines import _core
+from rattlebox.engines.core import choice
 from rattlebox.engines.pack import pack
 
 REFERENCE = json.loads(
@@ -56,7 +57,7 @@ def ours(name: str, method: object, repeat: int) -> dict[str, object]:
     """Time one method of ours inside the core."""
     case = single_ball(method)
     packed = pack(case)
-    seconds = min(core().simulate([packed], 1)[0]["seconds"] for _ in range(repeat))
+    seconds = min(_core.simulate([packed], 1)[0].seconds for _ in range(repeat))
     run = rb.simulate(case)
     dt, dz = errors(run.arrays.impacts.time, float(run.arrays.displacement[1, 0]))
     return {"name": name, "seconds": seconds, "impacts": len(run.arrays.impacts), "dt30": dt, "dz1": dz}

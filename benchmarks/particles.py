@@ -38,7 +38,7 @@ import numpy as np
 from particle_peers import PROGRAMS, Program, another_lammps, set_out
 
 import rattlebox as rb
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
 from rattlebox.engines.dem import pack_dem
 from rattlebox.engines.dem_settle import insert
 
@@ -108,23 +108,23 @@ def steps_of(periods: float) -> int:
     return round(periods * PERIOD / DT)
 
 
-def timed(packed: dict[str, Any], warm: int, steps: int, threads: int) -> dict[str, float]:
+def timed(packed: _core.DemProblem, warm: int, steps: int, threads: int) -> dict[str, float]:
     """Return particle-steps a second of a run of some steps after others; and of a particle, bytes, contacts, candidates."""
-    dem = core().Dem(packed)
+    dem = _core.Dem(packed)
     dem.threads = threads
     dem.run(warm)
-    begun, before = dem.save(), dem.counters()["seconds"]
+    begun, before = dem.save(), dem.counts().seconds
     dem.run(warm + steps)
-    after = dem.counters()
+    after = dem.counts()
     dem.restore(begun)  # the same once more, to look at it without the clock
     looks = []
     for look in range(1, LOOKS + 1):
         dem.run(warm + look * steps // LOOKS)
-        looks.append((len(dem.contacts(0)["first"]), dem.counters()["candidates"]))
-    count = len(packed["cavities"][0]["radius"])
+        looks.append((len(dem.contacts(0).first), dem.counts().candidates))
+    count = len(packed.cavities[0].radius)
     contacts, candidates = np.mean(looks, axis=0) / count
-    rate = count * steps / (after["seconds"] - before)
-    return {"rate": rate, "bytes": after["memory_bytes"] / count, "contacts": contacts, "candidates": candidates}
+    rate = count * steps / (after.seconds - before)
+    return {"rate": rate, "bytes": after.memory_bytes / count, "contacts": contacts, "candidates": candidates}
 
 
 def apart(job: str, *arguments: str, cores: int) -> dict[str, float]:
@@ -136,10 +136,11 @@ def apart(job: str, *arguments: str, cores: int) -> dict[str, float]:
     return result
 
 
-def put(packed: dict[str, Any], columns: np.ndarray) -> None:
+def put(packed: _core.DemProblem, columns: np.ndarray) -> _core.DemProblem:
     """Replace places, velocities and spins: a bed in motion has contacts that are pressed in."""
-    for name, part in zip(("position", "velocity", "spin"), np.split(columns, 3, axis=1), strict=True):
-        packed["cavities"][0][name] = np.ascontiguousarray(part)
+    position, velocity, spin = np.split(columns, 3, axis=1)
+    (cavity,) = packed.cavities
+    return packed.replace(cavities=[cavity.replace(position=position, velocity=velocity, spin=spin)])
 
 
 def one(kind: str, count: str, cores: str, start: str = "") -> None:
@@ -148,7 +149,7 @@ def one(kind: str, count: str, cores: str, start: str = "") -> None:
     warm, window = window_of(n)
     packed, _, _ = pack_dem(shaken(n, amplitude=AMPLITUDES[kind]))
     if start:
-        put(packed, np.loadtxt(start, delimiter=",", ndmin=2))
+        packed = put(packed, np.loadtxt(start, delimiter=",", ndmin=2))
     elif kind == "rest":  # a lattice that falls
         print(json.dumps(timed(packed, steps_of(25), max(1, 2_000_000 // n), int(cores))))
         return
@@ -173,7 +174,7 @@ def one_wide(kind: str, bed: str, across: str, window: str) -> None:
         part[:, :2] += (np.array([i, j]) - (n - 1) / 2) * edge
         parts.append(part)
     packed, _, _ = pack_dem(shaken(len(columns) * n**2, AMPLITUDES[kind], n))
-    put(packed, np.concatenate(parts))
+    packed = put(packed, np.concatenate(parts))
     warm, steps = (steps_of(periods) for periods in WIDE[kind][int(window)])
     print(json.dumps(timed(packed, warm, steps, threads=1)))
 
@@ -233,16 +234,16 @@ def cores(kind: str, counts: list[int], seconds: float) -> Iterator[tuple[str, s
 
 def _in_turns(kind: str, count: int, seconds: float, meeting: Callable[[], float]) -> Iterator[tuple[str, str]]:
     packed, _, _ = pack_dem(shaken(count, amplitude=AMPLITUDES[kind]))
-    pair = core().Dem(packed), core().Dem(packed)
+    pair = _core.Dem(packed), _core.Dem(packed)
     step = steps_of(25 if kind == "rest" else window_of(count)[0])
     for threads, dem in enumerate(pair, 1):
         dem.threads = threads
         dem.run(step)
 
     def took(dem: Any) -> float:
-        before = dem.counters()["seconds"]
+        before = dem.counts().seconds
         dem.run(step)
-        return float(dem.counters()["seconds"] - before)
+        return float(dem.counts().seconds - before)
 
     step += 100
     steps = max(1, round(100 * WINDOW / took(pair[0])))

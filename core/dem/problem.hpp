@@ -39,7 +39,6 @@ struct Problem {
     std::vector<Row> load_direction;
     std::vector<Cavity> cavities;
     std::vector<PairLaw> pair_laws;
-    std::vector<std::vector<real>> tables; // storage of Table views
 };
 
 // How contacts of these entries are computed.

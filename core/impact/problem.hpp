@@ -71,7 +71,6 @@ struct Problem {
     std::vector<Contact> contacts;
     std::vector<real> ball_mass, ball_position, ball_velocity;
     std::vector<int> ball_damper;
-    std::vector<std::vector<real>> tables; // storage of Table views
     std::vector<real> sample_times;        // increasing, within [0, duration]
     Settings settings;
 

@@ -5,7 +5,7 @@
 
 namespace rattlebox {
 
-// A read-only array owned by the problem that the law belongs to.
+// A read-only array that must outlive the law it belongs to.
 struct Table {
     const real* data = nullptr;
     int size = 0;

@@ -1,4 +1,4 @@
-// How a trajectory ended. The sentences that say what to try are in rattlebox/engines/status.py.
+// How a trajectory ended. The messages, with advice, are in rattlebox/engines/status.py.
 #pragma once
 
 namespace rattlebox {
@@ -13,6 +13,7 @@ enum class Status : int {
     energy_error = 6,    // the end was reached, but the energy residual exceeds its bound
     escaped = 7,         // a particle has left its cavity
     no_rebound = 8,      // a dashpot was asked for a restitution of zero
+    refused = 9,         // a study's variant that cannot be run; no run of the core ends so
 };
 
 } // namespace rattlebox

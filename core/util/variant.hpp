@@ -55,9 +55,6 @@ public:
         int place = 0;
         (f.template operator()<Types>(place++), ...);
     }
-
-    // Calls f with a null pointer of each type in turn: how the doors build a law from its name.
-    template <class F> static void each_type(F&& f) { (f(static_cast<const Types*>(nullptr)), ...); }
 };
 
 } // namespace rattlebox

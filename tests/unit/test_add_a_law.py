@@ -239,9 +239,9 @@ def test_the_laws_of_the_page_run_in_both_engines(copy: Path) -> None:
 
 def test_the_engines_refuse_unknown_laws() -> None:
     """A law that the core does not have is refused by its name."""
-    from rattlebox.engines.core import core
+    from rattlebox.engines import _core
 
     with pytest.raises(ValueError, match="hunt_crossley"):
-        core().NormalLaw({"law": "hunt_crossley", "stiffness": 1.0, "mass": 1.0})
+        _core.normal_law("hunt_crossley", {"stiffness": 1.0, "mass": 1.0})
     with pytest.raises(ValueError, match="hertz_ratio"):
-        core().TangentialLaw({"law": "hertz_ratio", "friction": 0.3})
+        _core.tangential_law("hertz_ratio", {"friction": 0.3})

@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PACKAGE, CORE = ROOT / "src/rattlebox", ROOT / "core"
 ARROWS = {
-    "core/python": {"core/impact", "core/dem"},
+    "core/bindings": {"core/impact", "core/dem"},
     "core/dem": {"core/contact", "core/structure", "core/parallel"},
     "core/impact": {"core/contact", "core/structure"},
     "core/contact": {"core/util"},

@@ -1,16 +1,15 @@
-"""Packed variants of a case -> core -> measures of each."""
+"""Run packed variants of a case and return measures of each."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.engines.core import core
-from rattlebox.engines.pack import Packed
+from rattlebox.engines import _core
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class Look:
 
 
 def run_block(
-    packed: Packed,
+    packed: _core.Problem,
     shape: Sequence[int],
     start: int,
     stop: int,
@@ -54,54 +53,58 @@ def run_block(
     *,
     threads: int = 1,
     progress: Callable[[int], bool | None] | None = None,
-) -> Mapping[str, NDArray[Any]] | None:
-    """Run some members of a batch.
+) -> dict[str, NDArray[Any]] | None:
+    """Run some variants of a batch.
 
     Parameters
     ----------
     packed
-        From `pack_batch`.
+        The batch, from `pack_batch`.
     shape
-        Of the grid.
+        Shape of the grid.
     start, stop
-        Members, counted along the grid with its last axis fastest.
+        Variants, counted along the grid with its last axis fastest.
     look
         What is kept.
     threads
-        How many work at once. The results do not depend on it, to the last bit.
+        Number of threads. The results do not depend on it, to the last bit.
     progress
-        Called some fifty times a second with the number of members done; False stops.
+        Called some fifty times a second with the number of variants done; False stops.
 
     Returns
     -------
     dict of str to array, or None
-        By name, members first: `status`, the measures; `displacement` and `velocity` (n, samples), `ball_place` and
+        By name, variants first: `status`, the measures; `displacement` and `velocity` (n, samples), `ball_place` and
         `ball_speed` (n, samples, balls) of the motion; `last_time`, `last_approach_speed`, `last_contact` (n, last);
         `state` (n, 2 (modes + balls)). All but the status is NaN where a run did not finish. None when it was stopped.
     """
     grid = list(shape) or [1]
-    window = {
-        "from": _number(look.start, grid),
-        "period": _number(look.period, grid),
-        "shape": np.ascontiguousarray(look.shape, dtype=float),
-        "samples": look.samples,
-    }
-    result: Mapping[str, NDArray[Any]] | None = core().sweep(
+    window = _core.Window(
+        start=_number(look.start, grid),
+        period=_number(look.period, grid),
+        shape=np.asarray(look.shape, dtype=float),
+        samples=look.samples,
+    )
+    block = _core.sweep(
         packed,
         grid,
         start,
         stop,
-        measures=list(look.measures),
-        window=window,
+        window,
+        list(look.measures),
         motion=look.motion,
         state=look.state,
         last=look.last,
         threads=max(1, min(threads, stop - start)),
         progress=progress,
     )
-    return result
+    if block is None:
+        return None
+    arrays = {name: getattr(block, name) for name in block.fields() if name != "measures"}
+    measures = dict(zip(look.measures, block.measures, strict=True))
+    return {name: values for name, values in arrays.items() if values is not None} | measures
 
 
-def _number(value: Any, grid: list[int]) -> Any:
-    array = np.ascontiguousarray(value, dtype=float)
+def _number(value: Any, grid: list[int]) -> float | NDArray[np.float64]:
+    array = np.asarray(value, dtype=float)
     return float(array) if array.ndim == 0 else array.reshape((1,) * (len(grid) - array.ndim) + array.shape)

@@ -28,6 +28,7 @@ from rattlebox._util.atomic_io import (
 )
 from rattlebox._util.digests import array_digest
 from rattlebox._util.exceptions import DataError
+from rattlebox.engines import _core
 from rattlebox.engines.core import instructions
 from rattlebox.model.differences import differences
 from rattlebox.results.provenance import Provenance
@@ -63,7 +64,7 @@ class Kept:
     positions
         Of the particles at the start, in each damper, (n, 3) [m].
     records
-        Samples so far, as the core gives them.
+        Samples so far.
     state : (bytes,) uint8
         Of the core.
     """
@@ -72,7 +73,7 @@ class Kept:
     time: float
     seconds: float
     positions: tuple[NDArray[np.float64], ...]
-    records: Mapping[str, NDArray[Any]]
+    records: _core.Records
     state: NDArray[np.uint8]
 
 
@@ -166,9 +167,8 @@ class Checkpoint:
                 if own:
                     groups[group][own] = array
             positions = tuple(groups["position"][str(k)] for k in range(len(groups["position"])))
-            kept = Kept(
-                about["numbers"], about["time"], about["seconds"], positions, groups["records"], arrays["state"]
-            )
+            records = _core.Records(**groups["records"])
+            kept = Kept(about["numbers"], about["time"], about["seconds"], positions, records, arrays["state"])
         except (DataError, MemoryError):
             raise
         except Exception:
@@ -178,7 +178,7 @@ class Checkpoint:
         self.time = kept.time
         return kept
 
-    def check(self, kept: Kept, packed: Mapping[str, Any]) -> None:
+    def check(self, kept: Kept, packed: _core.DemProblem) -> None:
         """Refuse a checkpoint of a case that reads the same but has other numbers."""
         if kept.numbers != self._fingerprint(packed):
             raise AnotherRun(
@@ -187,7 +187,7 @@ class Checkpoint:
                 "another file, or remove this one",
             )
 
-    def write(self, dem: Any, packed: Mapping[str, Any], records: Mapping[str, NDArray[Any]], seconds: float) -> None:
+    def write(self, dem: _core.Dem, packed: _core.DemProblem, records: _core.Records, seconds: float) -> None:
         """Put a state in the place of the one in the file.
 
         Raises
@@ -197,18 +197,18 @@ class Checkpoint:
         ResourceError
             If no space is left on the disk; likewise.
         """
-        time = dem.step * packed["dt"]
+        time = dem.step * packed.dt
         told = {"format": FORMAT, "time": time, "seconds": seconds, "numbers": self._fingerprint(packed), **self._about}
-        arrays = {f"records.{name}": values for name, values in records.items()}
-        arrays |= {f"position.{k}": cavity["position"] for k, cavity in enumerate(packed["cavities"])}
-        arrays["state"] = np.asarray(dem.save())
+        arrays = {f"records.{name}": getattr(records, name) for name in records.fields()}
+        arrays |= {f"position.{k}": cavity.position for k, cavity in enumerate(packed.cavities)}
+        arrays["state"] = dem.save()
         digests = {name: array_digest([array]).hex() for name, array in arrays.items()}
         about = np.frombuffer(json.dumps({**told, "digests": digests}).encode(), np.uint8)
         with atomic_write(self.path, _LOST) as name, name.open("wb") as file:
             np.savez(file, allow_pickle=False, about=about, **arrays)
         self.time = time
 
-    def _fingerprint(self, packed: Mapping[str, Any]) -> str:
+    def _fingerprint(self, packed: _core.DemProblem) -> str:
         self._numbers = self._numbers or fingerprint(packed)  # which do not change
         return self._numbers
 
@@ -227,15 +227,17 @@ def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
     return array
 
 
-def joined(pieces: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+def joined(pieces: Sequence[_core.Records]) -> _core.Records:
     """Return samples that were taken one piece after another as one.
 
     Parameters
     ----------
     pieces
-        As the core gives them, time first.
+        Samples, earliest first.
     """
-    return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+    return _core.Records(
+        **{name: np.concatenate([getattr(piece, name) for piece in pieces]) for name in _core.Records.fields()}
+    )
 
 
 def bare(case: Case) -> str:
@@ -251,12 +253,16 @@ def bare(case: Case) -> str:
     return case.model_copy(update={name: part.model_copy(update=free[name]) for name, part in parts.items()}).to_toml()
 
 
-def fingerprint(packed: Mapping[str, Any]) -> str:
+def fingerprint(packed: _core.Node | Mapping[str, Any]) -> str:
     """Return a short text that differs when any number that the core is given differs."""
     digest = hashlib.sha256()
 
     def add(value: Any) -> None:
-        if isinstance(value, Mapping):
+        if isinstance(value, _core.Node):
+            for name in sorted(value.fields()):
+                digest.update(name.encode())
+                add(getattr(value, name))
+        elif isinstance(value, Mapping):
             for name in sorted(value):
                 digest.update(name.encode())
                 add(value[name])

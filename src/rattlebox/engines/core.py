@@ -8,7 +8,7 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from types import ModuleType
 
 from rattlebox._util.exceptions import MissingDependency, ResourceError
 
@@ -79,6 +79,6 @@ def instructions() -> str:
 
 
 @cache
-def core() -> Any:
-    """Return the compiled core."""
+def core() -> ModuleType:
+    """Return the compiled core. Modules that use it import `rattlebox.engines._core`, whose types mypy knows."""
     return import_module(f"rattlebox.engines._core_{choice()[0]}")

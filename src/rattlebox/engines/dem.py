@@ -14,11 +14,12 @@ import numpy as np
 from rattlebox._util.atomic_io import check_suffix
 from rattlebox._util.exceptions import DataError, RattleboxError
 from rattlebox._util.narrow import instance
+from rattlebox.engines import _core
+from rattlebox.engines._core import Partner, Status
 from rattlebox.engines.base_motion import base_motion
 from rattlebox.engines.checkpoint import Checkpoint
-from rattlebox.engines.core import core
 from rattlebox.engines.dem_follow import Journey
-from rattlebox.engines.dem_settle import settle
+from rattlebox.engines.dem_settle import packed_walls, settle
 from rattlebox.engines.dem_snapshots import snapshots_of
 from rattlebox.engines.dem_step import (
     Step,
@@ -27,13 +28,15 @@ from rattlebox.engines.dem_step import (
     instants,
     largest_softening,
     outcome,
+    packed_friction,
     packed_normal,
 )
-from rattlebox.engines.pack import pack, restitution
+from rattlebox.engines.laws import packed_restitution
+from rattlebox.engines.pack import mode_coupling, pack, packed_signal
 from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolated, particle_notes, table_notes
 from rattlebox.engines.softening import ENDURING, choose_softening, effects, shaking
-from rattlebox.engines.status import FINISHED, INTERRUPTED, describe, end_of
+from rattlebox.engines.status import describe, end_of
 from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import at
 from rattlebox.model.in_space import direction_of_base, inertia_along
@@ -52,7 +55,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-Packed = dict[str, Any]
 Progress = Callable[[int, int], object]
 
 PARTICLES_EACH = 1000
@@ -127,7 +129,7 @@ def _simulated(
     method = instance(case.method, Dem)
     kept = None if file is None else file.read()
     packed, step, tables = pack_dem(case, None if kept is None else kept.positions)
-    dem = core().Dem(packed)
+    dem = _core.Dem(packed)
     dem.threads = threads or method.threads or useful_threads(packed)
     journey = Journey(dem, packed, file, method)
     if file is not None and kept is not None:
@@ -174,16 +176,16 @@ def objection(case: Case) -> str:
     return ""
 
 
-def useful_threads(packed: Packed) -> int:
+def useful_threads(packed: _core.DemProblem) -> int:
     """Return how many threads have enough to do, at most as many as there are cores."""
-    particles: int = sum(cavity["radius"].size for cavity in packed["cavities"])
+    particles = sum(cavity.radius.size for cavity in packed.cavities)
     return max(1, min(os.cpu_count() or 1, particles // PARTICLES_EACH))
 
 
 # ---- packing
 
 
-def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[Packed, Step, list[ContactTable]]:
+def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[_core.DemProblem, Step, list[ContactTable]]:
     """Pack a case with particle dampers for the core.
 
     Parameters
@@ -195,8 +197,8 @@ def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[Packed,
 
     Returns
     -------
-    dict
-        Modes, loads, cavities with their particles, and contacts, as core/python/dem.hpp reads them.
+    DemProblem
+        Modes, loads, cavities with their particles, and the laws of pairs.
     Step
         The time step, and what limits it.
     list of ContactTable
@@ -211,35 +213,36 @@ def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[Packed,
     modes = case.modes
     shapes = [modes.space_shape(damper.point, damper.direction) for damper in case.particle_dampers]
     tables = [damper.contact_table for damper in case.particle_dampers]
-    loads = _loads(case)
+    loads, directions = _loads(case)
     state = _without_particles(case, loads)
     speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
     with at("method", "dt"):
         step = choose_step(case, tables, speeds)
     step = replace(step, motions=tuple(shaking(case, shape, state) for shape in shapes))
     slowest = min((motion.main for motion in step.motions if motion.main), default=0.0)
-    contacts: list[Packed] = []
+    pairs: list[_core.PairLaws] = []
     cavities = []
     for index, (damper, shape, table) in enumerate(zip(case.particle_dampers, shapes, tables, strict=True)):
         with at(*(("dampers", index) if len(shapes) > 1 else ("damper",))):
             start = None if starts is None else starts[index]
-            cavities.append(_cavity(damper, shape, modes.q0 @ shape, table, len(contacts), start))
-        contacts += [_contact(damper, entry) for entry in table.entries]
-    packed = {
-        "dt": step.dt,
-        "enduring": ENDURING / slowest if slowest else math.inf,
-        "steps": step.count,
-        "every": step.every,
-        "gravity": np.array(case.particle_dampers[0].gravity),
-        "mode_decay": _array(modes.decay),
-        "mode_stiffness": _array(modes.stiffness),
-        **({} if modes.coupling is None else {"mode_coupling": _array(modes.coupling.ravel())}),
-        "mode_displacement": _array(modes.q0),
-        "mode_velocity": _array(modes.p0),
-        "loads": loads,
-        "cavities": cavities,
-        "contacts": contacts,
-    }
+            cavities.append(_cavity(damper, shape, modes.q0 @ shape, table, len(pairs), start))
+        pairs += [_pair_laws(damper, entry) for entry in table.entries]
+    packed = _core.DemProblem(
+        dt=step.dt,
+        enduring=ENDURING / slowest if slowest else math.inf,
+        steps=step.count,
+        every=step.every,
+        gravity=_array(case.particle_dampers[0].gravity),
+        mode_decay=_array(modes.decay),
+        mode_stiffness=_array(modes.stiffness),
+        mode_coupling=mode_coupling(modes),
+        mode_displacement=_array(modes.q0),
+        mode_velocity=_array(modes.p0),
+        loads=loads,
+        load_directions=directions,
+        cavities=cavities,
+        pairs=pairs,
+    )
     return packed, step, tables
 
 
@@ -249,7 +252,7 @@ def resolved(case: Case) -> tuple[Case, tuple[str, ...]]:
     if all(damper.softening != "auto" for damper in dampers):
         return case, ()
     shapes = [case.modes.space_shape(damper.point, damper.direction) for damper in dampers]
-    state = _without_particles(case, _loads(case))
+    state = _without_particles(case, _loads(case)[0])
     speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
     made: list[Any] = list(case.dampers)
     notes = []
@@ -266,89 +269,93 @@ def _array(values: Any) -> Array:
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
-def _loads(case: Case) -> list[Packed]:
+def _loads(case: Case) -> tuple[list[_core.Load], Array]:
+    """Loads and accelerations of the base, and the direction of each, zero for a load."""
     loads = [
-        {
-            **signal.coefficients(),
-            "shape": _array(case.modes.shape(signal.point, signal.direction)),
-            "base": False,
-            "direction": np.zeros(3),
-        }
+        _core.Load(
+            signal=packed_signal(signal),
+            shape=_array(case.modes.shape(signal.point, signal.direction)),
+            base=False,
+        )
         for signal in case.loads
     ]
+    directions = [np.zeros(3) for _ in loads]
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         direction = direction_of_base(case, signal)
         shape = _array(-inertia_along(case, direction))
-        loads.append({**acceleration.coefficients(), "shape": shape, "base": True, "direction": direction})
-    return loads
+        loads.append(_core.Load(signal=packed_signal(acceleration), shape=shape, base=True))
+        directions.append(direction)
+    return loads, _array(directions).reshape(-1, 3)
 
 
-def _without_particles(case: Case, loads: list[Packed]) -> Array:
+def _without_particles(case: Case, loads: list[_core.Load]) -> Array:
     """Modal displacements and velocities of the structure alone at the instants, (T, m, 2)."""
     if not case.modes.decay.size:
         return np.zeros((0, 0, 2))
     alone = case.model_copy(
         update={"dampers": (), "base": (), "loads": (), "method": EventDriven(), "output": Output()}
     )
-    plain = [{key: value for key, value in load.items() if key != "direction"} for load in loads]
-    (raw,) = core().simulate([{**pack(alone), "loads": plain, "sample_times": _array(instants(case))}], 1)
-    return _array(raw["state"].reshape(raw["time"].size, -1, 2))
+    (raw,) = _core.simulate([pack(alone).replace(loads=loads, sample_times=_array(instants(case)))], 1)
+    return raw.state.reshape(raw.time.size, -1, 2)
 
 
 def _cavity(
     damper: ParticleDamper, shape: Array, displacement: Array, table: ContactTable, first: int, settled: Array | None
-) -> Packed:
-    """A cavity and what is in it; its entries begin at a number in the list of contacts."""
-    walls, contents, start = damper.cavity.walls(), damper.contents, damper.start
+) -> _core.Cavity:
+    """A cavity and its particles; the laws of its pairs begin at a number in the list of all."""
+    contents, start = damper.contents, damper.start
     position = start.position + displacement
     if isinstance(damper.packing, Settled):
         with at("packing"):
             position = settle(damper) + displacement if settled is None else settled
-    return {
-        "shape": _array(shape),
-        "wall_axis": _array(walls.axis),
-        "wall_offset": _array(walls.offset),
-        "wall_curved": _array(walls.curved),
-        "wall_kind": np.ascontiguousarray(table.wall_kind, dtype=np.int64),
-        "position": _array(position),
-        "velocity": _array(start.velocity),
-        "spin": _array(start.spin),
-        "radius": _array(contents.radius),
-        "mass": _array(contents.mass),
-        "inertia": _array(contents.inertia),
-        "kind": np.ascontiguousarray(contents.species, dtype=np.int64),
-        "particle_entry": np.ascontiguousarray(table.particle_entry + first, dtype=np.int64),
-        "wall_entry": np.ascontiguousarray(table.wall_entry + first, dtype=np.int64),
-    }
+    return _core.Cavity(
+        shape=_array(shape),
+        walls=packed_walls(damper.cavity.walls(), table.wall_kind),
+        position=_array(position),
+        velocity=_array(start.velocity),
+        spin=_array(start.spin),
+        radius=_array(contents.radius),
+        mass=_array(contents.mass),
+        inertia=_array(contents.inertia),
+        species=np.asarray(contents.species, dtype=np.int64),
+        particle_pair=np.asarray(table.particle_entry + first, dtype=np.int64),
+        wall_pair=np.asarray(table.wall_entry + first, dtype=np.int64),
+    )
 
 
-def _contact(damper: ParticleDamper, entry: Entry) -> Packed:
-    friction, rolling = damper.softened_friction(entry)
-    return {
-        "normal": packed_normal(damper, entry),
-        "restitution": restitution(entry.contact.impact_restitution, entry.pair),
-        "tangential": friction,
-        "rolling": rolling,
-        "radius": float(entry.pair.radius),
-        "mass": float(entry.pair.mass),
-    }
+def _pair_laws(damper: ParticleDamper, entry: Entry) -> _core.PairLaws:
+    return _core.PairLaws(
+        normal=packed_normal(damper, entry),
+        restitution=packed_restitution(entry.contact.impact_restitution, entry.pair),
+        tangential=packed_friction(damper, entry),
+        rolling=_core.RollingResistance(**damper.rolling_of(entry).coefficients()),
+        radius=float(entry.pair.radius),
+        mass=float(entry.pair.mass),
+    )
 
 
 # ---- results
 
 
 def _run(
-    case: Case, packed: Packed, dem: Any, status: int, step: Step, tables: list[ContactTable], journey: Journey
+    case: Case,
+    packed: _core.DemProblem,
+    dem: _core.Dem,
+    status: Status,
+    step: Step,
+    tables: list[ContactTable],
+    journey: Journey,
 ) -> Run:
     resolved_case, chosen = resolved(case)
-    raw, counters = journey.records(), dem.counters()
+    raw, totals = journey.records(), dem.counts()
     arrays = _arrays(resolved_case, packed, raw, dem)
-    overlaps, speeds = (counters[name].tolist() for name in ("largest_overlap", "largest_approach_speed"))
-    lost = sum(raw[f"{channel}_loss"][-1].sum(axis=1) for channel in ("normal", "plastic", "sliding", "rolling"))
+    overlaps, speeds = totals.largest_overlap.tolist(), totals.largest_approach_speed.tolist()
+    losses = (raw.normal_loss, raw.plastic_loss, raw.sliding_loss, raw.rolling_loss)
+    lost = sum((loss[-1].sum(axis=1) for loss in losses), np.zeros(len(arrays.dampers)))
     moves = arrays.base_velocity[:, None] + arrays.cavity_velocity
-    softened = effects(resolved_case, step.motions, moves, lost, counters["enduring_loss"])
+    softened = effects(resolved_case, step.motions, moves, lost, totals.enduring_loss)
     diagnostics, notes = outcome(resolved_case, tables, step, overlaps, speeds, softened)
-    touches = np.asarray(counters["first_touches"])
+    touches = totals.first_touches
     name, message = _ended(resolved_case, arrays, dem, status, step, journey.checkpoint)
     return Run(
         arrays,
@@ -362,38 +369,38 @@ def _run(
             *doubts(resolved_case),
             *(
                 particle_notes(resolved_case, touches, arrays.contacts, arrays.centre_of_mass, overlaps)
-                if status == FINISHED
+                if status == Status.finished
                 else ()
             ),
             *table_notes(resolved_case, speeds),
-            *extrapolated(counters["extrapolated"]),
+            *extrapolated(totals.extrapolated),
         ),
         counts={
-            "steps": counters["steps"],
-            "rebuilds": counters["rebuilds"],
-            "refreshes": counters["refreshes"],
-            "first_touches_particle": int(touches[:, 0].sum()),
-            "first_touches_wall": int(touches[:, 1].sum()),
-            "extrapolated": counters["extrapolated"],
-            "memory_bytes": counters["memory_bytes"],
+            "steps": totals.steps,
+            "rebuilds": totals.rebuilds,
+            "refreshes": totals.refreshes,
+            "first_touches_particle": int(touches[:, Partner.particle].sum()),
+            "first_touches_wall": int(touches[:, Partner.wall].sum()),
+            "extrapolated": totals.extrapolated,
+            "memory_bytes": totals.memory_bytes,
         },
         diagnostics=diagnostics,
         wall_time=journey.seconds,
     )
 
 
-def _arrays(case: Case, packed: Packed, raw: dict[str, Any], dem: Any) -> RunArrays:
+def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core.Dem) -> RunArrays:
     modes, dampers = case.modes, case.particle_dampers
-    times, q, p = raw["time"], raw["q"], raw["p"]
+    times, q, p = raw.time, raw.q, raw.p
     lines = modes.lines()
     at_points = np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
-    shapes = [cavity["shape"] for cavity in packed["cavities"]]
+    shapes = [cavity.shape for cavity in packed.cavities]
     displacement = np.stack([q @ shape for shape in shapes], axis=1)
     base = np.zeros((3, times.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         base += np.multiply.outer(base_motion(acceleration, times), direction_of_base(case, signal))
     load = np.array([signal.evaluate(times) for signal in case.loads]).reshape(len(case.loads), times.size).T
-    ends = dem.state()["cavities"]
+    ends = dem.state().cavities
     contents = [damper.contents for damper in dampers]
     return RunArrays(
         engine="dem",
@@ -405,34 +412,34 @@ def _arrays(case: Case, packed: Packed, raw: dict[str, Any], dem: Any) -> RunArr
         velocity=p @ at_points.T,
         cavity_displacement=displacement,
         cavity_velocity=np.stack([p @ shape for shape in shapes], axis=1),
-        cavity_force=raw["force"],
-        cavity_moment=raw["moment"],
-        centre_of_mass=raw["centre"] - displacement,
-        momentum=raw["momentum"],
-        contacts=raw["contacts"],
+        cavity_force=raw.force,
+        cavity_moment=raw.moment,
+        centre_of_mass=raw.centre - displacement,
+        momentum=raw.momentum,
+        contacts=raw.contacts,
         base_displacement=base[0],
         base_velocity=base[1],
         base_acceleration=base[2],
         load=load,
-        **responses(case, q, p, load, base[2], raw["force"], shapes),
+        **responses(case, q, p, load, base[2], raw.force, shapes),
         particle_mass=np.array([each.mass.sum() for each in contents]),
         mode_frequency=np.sqrt(modes.stiffness) / (2 * np.pi),
         mode_energy=0.5 * (p**2 + modes.stiffness * q**2),
-        kinetic_energy=raw["kinetic"],
-        rotation_energy=raw["rotation"],
-        contact_energy=raw["elastic"],
-        gravity_energy=raw["potential"],
-        load_work=raw["load_work"].sum(axis=1),
-        base_work=raw["base_work"].sum(axis=1),
-        viscous_loss=raw["viscous_loss"].sum(axis=1),
-        normal_loss=raw["normal_loss"],
-        plastic_loss=raw["plastic_loss"],
-        sliding_loss=raw["sliding_loss"],
-        rolling_loss=raw["rolling_loss"],
+        kinetic_energy=raw.kinetic,
+        rotation_energy=raw.rotation,
+        contact_energy=raw.elastic,
+        gravity_energy=raw.potential,
+        load_work=raw.load_work.sum(axis=1),
+        base_work=raw.base_work.sum(axis=1),
+        viscous_loss=raw.viscous_loss.sum(axis=1),
+        normal_loss=raw.normal_loss,
+        plastic_loss=raw.plastic_loss,
+        sliding_loss=raw.sliding_loss,
+        rolling_loss=raw.rolling_loss,
         particles={
-            "position": np.concatenate([end["position"] - end["displacement"] for end in ends]),
-            "velocity": np.concatenate([end["velocity"] for end in ends]),
-            "spin": np.concatenate([end["spin"] for end in ends]),
+            "position": np.concatenate([end.position - end.displacement for end in ends]),
+            "velocity": np.concatenate([end.velocity for end in ends]),
+            "spin": np.concatenate([end.spin for end in ends]),
             "radius": np.concatenate([each.radius for each in contents]),
             "mass": np.concatenate([each.mass for each in contents]),
             "damper": np.repeat(np.arange(len(dampers)), [each.radius.size for each in contents]),
@@ -442,20 +449,20 @@ def _arrays(case: Case, packed: Packed, raw: dict[str, Any], dem: Any) -> RunArr
 
 
 def _ended(
-    case: Case, arrays: RunArrays, dem: Any, status: int, step: Step, checkpoint: Checkpoint | None
+    case: Case, arrays: RunArrays, dem: _core.Dem, status: Status, step: Step, checkpoint: Checkpoint | None
 ) -> tuple[str, str]:
     """Return the status and the message of a run."""
-    if status == FINISHED:
+    if status == Status.finished:
         ledger = Ledger(arrays)
-        end = end_of(ledger, core().worst_closure, arrays.particle_mass.sum())
+        end = end_of(ledger, _core.worst_closure, arrays.particle_mass.sum())
         return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
     stopped = dem.stopped()
-    cavity = stopped["cavity"]
-    number = stopped["particle"] + sum(damper.contents.radius.size for damper in case.particle_dampers[:cavity])
+    cavity = stopped.cavity
+    number = stopped.particle + sum(damper.contents.radius.size for damper in case.particle_dampers[:cavity])
     where = f"Particle {number}, in {arrays.dampers[cavity]!r},"
     softened = case.particle_dampers[cavity].softening_factor > 1
-    name, message = describe(status, stopped["time"], where, stopped["speed"], case.method.kind, softened=softened)
-    if status == INTERRUPTED:
+    name, message = describe(status, stopped.time, where, stopped.speed, case.method.kind, softened=softened)
+    if status == Status.interrupted:
         return name, message if checkpoint is None else f"{message} Run again, it goes on from {checkpoint.path}."
     message += f" The step was {step.dt:.4g} s."
     if checkpoint is not None and checkpoint.time is not None:

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
-
-from numpy.typing import NDArray
+from collections.abc import Callable, Sequence
 
 from rattlebox._util.exceptions import DataError
+from rattlebox.engines import _core
+from rattlebox.engines._core import Status
 from rattlebox.engines.checkpoint import Checkpoint, Kept, joined
-from rattlebox.engines.status import INTERRUPTED
 from rattlebox.model.methods import Dem
 from rattlebox.results.snapshots import SnapshotFile
-
-Records = dict[str, NDArray[Any]]
 
 USUAL = 600.0
 """Time between checkpoints [s]."""
@@ -36,14 +32,14 @@ class Journey:
         Tells how often.
     """
 
-    def __init__(self, dem: Any, packed: Mapping[str, Any], checkpoint: Checkpoint | None, method: Dem) -> None:
+    def __init__(self, dem: _core.Dem, packed: _core.DemProblem, checkpoint: Checkpoint | None, method: Dem) -> None:
         self.checkpoint = checkpoint
         self._dem, self._packed = dem, packed
         every = method.checkpoint_every
-        self._steps = None if every is None else max(1, round(every / packed["dt"]))  # between checkpoints
+        self._steps = None if every is None else max(1, round(every / packed.dt))  # between checkpoints
         self._interval = math.inf if every else method.checkpoint or USUAL
         self._due = time.monotonic() + self._interval
-        self._pieces: list[Records] = []
+        self._pieces: list[_core.Records] = []
         self._earlier = 0.0
         self._snapshots: SnapshotFile | None = None
         self._shots: list[int] = []
@@ -64,7 +60,7 @@ class Journey:
                 f"{path} is damaged: {error}; the state of the core must be one that it has written\n"
                 "  try: a copy of it, or remove it and run from the start"
             ) from None
-        self._pieces = [dict(kept.records)]
+        self._pieces = [kept.records]
         self._earlier = kept.seconds
 
     def watch(self, snapshots: SnapshotFile, shots: Sequence[int]) -> None:
@@ -93,14 +89,14 @@ class Journey:
     @property
     def seconds(self) -> float:
         """Computing time so far [s], that before a restart included."""
-        return self._earlier + float(self._dem.counters()["seconds"])
+        return self._earlier + self._dem.counts().seconds
 
-    def records(self) -> Records:
+    def records(self) -> _core.Records:
         """Samples so far."""
         self._pieces = [joined([*self._pieces, self._dem.records()])]
         return self._pieces[0]
 
-    def go(self, progress: Callable[[int, int], object] | None = None) -> int:
+    def go(self, progress: Callable[[int, int], object] | None = None) -> Status:
         """Run to the end; Ctrl-C ends the run with a status.
 
         Parameters
@@ -110,10 +106,10 @@ class Journey:
 
         Returns
         -------
-        int
-            Status.
+        Status
+            How the run ended.
         """
-        last = int(self._packed["steps"])
+        last = self._packed.steps
         try:
             if self._dem.step == 0:
                 self._keep()
@@ -123,7 +119,7 @@ class Journey:
         if self._dem.step == 0:  # a run shows at least how it began, however early it was stopped
             self._dem.run(0)
         self._keep()
-        return int(self._dem.status) if finished or self._dem.status else INTERRUPTED
+        return self._dem.status if finished or self._dem.status else Status.interrupted
 
     def _through(self, shots: Sequence[int], last: int, progress: Callable[[int, int], object] | None) -> bool:
         """Run to each snapshot and to the end."""
@@ -131,9 +127,9 @@ class Journey:
             if not self._run(last if shot is None else shot, last, progress):
                 return False
             if shot is not None and self._snapshots is not None and not self._dem.status:
-                state = self._dem.state()
-                contacts = [self._dem.contacts(k) for k in range(len(state["cavities"]))]
-                self._snapshots.take(self._shots.index(shot), state, contacts)
+                cavities = self._dem.state().cavities
+                contacts = [self._dem.contacts(k) for k in range(len(cavities))]
+                self._snapshots.take(self._shots.index(shot), cavities, contacts)
         return True
 
     def _run(self, until: int, last: int, progress: Callable[[int, int], object] | None) -> bool:

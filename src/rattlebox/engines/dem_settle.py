@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rattlebox._util.narrow import instance
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
 from rattlebox.model.errors import Hint
 from rattlebox.model.packing import TOUCHING, Crowd, Settled, check_packing, fewer_at_random, overlapping
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rattlebox.model.cavities import AnyCavity
+    from rattlebox.model.cavities import AnyCavity, Walls
     from rattlebox.model.particle_damper import ParticleDamper
 
     Array = NDArray[np.float64]
@@ -196,9 +196,9 @@ def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> 
 def _off_walls(walls: Any, places: Array, depth: Array) -> Array:
     """Moves that take spheres out of walls."""
     move = np.zeros_like(places)
-    for k, (axis, curved) in enumerate(zip(walls.axis, walls.curved, strict=True)):
+    for k, (axis, form) in enumerate(zip(walls.axis, walls.form, strict=True)):
         deep = np.minimum(depth[:, k], 0.0)[:, None]
-        if curved:
+        if form != "plane":
             outward = places - (places @ axis)[:, None] * axis
             outward /= np.maximum(np.linalg.norm(outward, axis=1), 1e-300)[:, None]
         else:
@@ -222,20 +222,14 @@ class _Bed:
         self._lasts = math.pi * SINK * small / (self._pull * self._fall)
         mass = float(self._contents.mass.min()) / 2
         stiffness = mass * (math.pi / self._lasts) ** 2
-        self._contact = {
-            "normal": {
-                "law": "linear",
-                "stiffness": stiffness,
-                "mass": mass,
-                "zero_overlap": 0.0,
-                "fixed_contact_time": 1.0,
-            },
-            "restitution": {"law": "constant", "e": RESTITUTION, "maximum": 1.0},
-            "tangential": {"law": "spring", "friction": _friction(damper), "ratio": 2 / 7, "damping": 1.0},
-            "rolling": {"coefficient": 0.0, "stiffness": 1.0, "damping": 0.0},
-            "radius": small / 2,
-            "mass": mass,
-        }
+        self._laws = _core.PairLaws(
+            normal=_core.LinearForce(stiffness=stiffness, mass=mass, zero_overlap=0.0, fixed_contact_time=1.0),
+            restitution=_core.ConstantRestitution(e=RESTITUTION, maximum=1.0),
+            tangential=_core.SpringFriction(friction=_friction(damper), stiffness=0.0, ratio=2 / 7, damping=1.0),
+            rolling=_core.RollingResistance(coefficient=0.0, stiffness=1.0, damping=0.0),
+            radius=small / 2,
+            mass=mass,
+        )
 
     def fall(self, places: Array, at_rest: float) -> Array:
         """Let particles fall until they rest."""
@@ -269,35 +263,51 @@ class _Bed:
     def _followed(self, places: Array, weight: float, rounds: int) -> Iterator[tuple[Array, float]]:
         """Places and kinetic energy every twenty contact times, under a part of the weight."""
         every, none, count = 20 * STEPS, np.zeros(0), self._contents.radius.size
-        cavity = {
-            "shape": np.zeros((0, 3)),
-            "wall_axis": np.ascontiguousarray(self._walls.axis),
-            "wall_offset": self._walls.offset,
-            "wall_curved": np.array(self._walls.curved, dtype=float),
-            "wall_kind": np.zeros(self._walls.offset.size, np.int64),
-            "position": np.ascontiguousarray(places),
-            "velocity": np.zeros_like(places),
-            "spin": np.zeros_like(places),
-            "radius": self._contents.radius * (1 + GROWN),
-            "mass": self._contents.mass,
-            "inertia": self._contents.inertia,
-            "kind": np.zeros(count, np.int64),
-            "particle_entry": np.zeros((1, 1), np.int64),
-            "wall_entry": np.zeros((1, 1), np.int64),
-        }
-        modes = dict.fromkeys(("mode_decay", "mode_stiffness", "mode_displacement", "mode_velocity"), none)
-        steps = {"dt": self._lasts / STEPS, "steps": rounds * every, "every": every}
-        gravity = self._gravity * weight
-        parts = {"gravity": gravity, "loads": [], "contacts": [self._contact], "cavities": [cavity]}
-        dem = core().Dem(steps | modes | parts)
+        cavity = _core.Cavity(
+            shape=np.zeros((0, 3)),
+            walls=packed_walls(self._walls, np.zeros(self._walls.offset.size, int)),
+            position=places,
+            velocity=np.zeros_like(places),
+            spin=np.zeros_like(places),
+            radius=self._contents.radius * (1 + GROWN),
+            mass=self._contents.mass,
+            inertia=self._contents.inertia,
+            species=np.zeros(count, np.int64),
+            particle_pair=np.zeros((1, 1), np.int64),
+            wall_pair=np.zeros((1, 1), np.int64),
+        )
+        problem = _core.DemProblem(
+            dt=self._lasts / STEPS,
+            steps=rounds * every,
+            every=every,
+            gravity=self._gravity * weight,
+            mode_decay=none,
+            mode_stiffness=none,
+            mode_coupling=none,
+            mode_displacement=none,
+            mode_velocity=none,
+            loads=[],
+            load_directions=np.zeros((0, 3)),
+            cavities=[cavity],
+            pairs=[self._laws],
+        )
+        dem = _core.Dem(problem)
         dem.threads = max(1, min(os.cpu_count() or 1, count // 4000))
         for sample in range(1, rounds + 1):
             dem.run(sample * every, None)
             if not self._go_on():
                 raise _Stopped
             if dem.status:
-                raise Hint(f"particles do not settle: the run ended with status {dem.status}")
-            yield np.asarray(dem.state()["cavities"][0]["position"]), float(dem.records()["kinetic"][-1].sum())
+                raise Hint(f"particles do not settle: the run ended with status {dem.status.name}")
+            yield dem.state().cavities[0].position, float(dem.records().kinetic[-1].sum())
+
+
+def packed_walls(walls: Walls, material: NDArray[np.int_]) -> list[_core.Wall]:
+    """Return walls as the core reads them, each with the number of its material."""
+    return [
+        _core.Wall(form=_core.WallForm[form], axis=axis, offset=float(offset), material=int(number))
+        for form, axis, offset, number in zip(walls.form, walls.axis, walls.offset, material, strict=True)
+    ]
 
 
 def _friction(damper: ParticleDamper) -> float:

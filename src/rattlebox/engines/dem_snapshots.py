@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox.engines import _core
 from rattlebox.engines.checkpoint import fingerprint
 from rattlebox.model.errors import Hint
 from rattlebox.results.snapshots import SnapshotFile
@@ -21,7 +21,7 @@ APART = 1.25
 """Between the centres of cavities side by side, over half the sum of their lengths along x."""
 
 
-def snapshots_of(case: Case, packed: Mapping[str, Any], path: Path) -> tuple[SnapshotFile, list[int]]:
+def snapshots_of(case: Case, packed: _core.DemProblem, path: Path) -> tuple[SnapshotFile, list[int]]:
     """Plan the snapshots of a run.
 
     Parameters
@@ -45,7 +45,7 @@ def snapshots_of(case: Case, packed: Mapping[str, Any], path: Path) -> tuple[Sna
     Hint
         When there are more than steps.
     """
-    dt, last = packed["dt"], packed["steps"]
+    dt, last = packed.dt, packed.steps
     asked = case.output.snapshots
     if isinstance(asked, int) and asked > last + 1:
         place = ("output", "snapshots")
@@ -59,7 +59,9 @@ def snapshots_of(case: Case, packed: Mapping[str, Any], path: Path) -> tuple[Sna
         "cavity": np.repeat(np.arange(len(contents)), [each.radius.size for each in contents]),
         "species": np.concatenate([each.species for each in contents]),
     }
-    return SnapshotFile(path, shots * dt, _places(case), fixed, case.to_toml(), fingerprint(packed)), shots.tolist()
+    return SnapshotFile(
+        path, np.asarray(shots * dt, dtype=float), _places(case), fixed, case.to_toml(), fingerprint(packed)
+    ), shots.tolist()
 
 
 def _places(case: Case) -> NDArray[np.float64]:

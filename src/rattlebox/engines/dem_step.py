@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.narrow import instance
+from rattlebox.engines import _core
 from rattlebox.engines.base_motion import base_motion
-from rattlebox.engines.core import core
 from rattlebox.engines.run_notes import MOST_OVERLAP
 from rattlebox.engines.softening import MOST_CHANGE, MOST_ENDURING, Effect, Shaking, exponent_of_force
 from rattlebox.model.contacts import Linear
@@ -176,7 +176,7 @@ def contact_limits(
     for entry in table.entries:
         if entry.names[0] == entry.names[1] and numbers[labels.index(entry.names[0])] < 2:
             continue  # nothing to meet
-        reference = core().NormalLaw(packed_normal(damper, entry))
+        reference = packed_normal(damper, entry)
         damped = max(1.0, 2 * _damping_ratio(entry, reference, speed))
         duration, bound, sizes = math.inf, math.inf, ""
         for pair_radius, pair_mass, told in _sizes(damper, entry, wall_mass):
@@ -191,34 +191,39 @@ def contact_limits(
         yield Limit(duration, min(fraction * duration / damped, 0.5 * bound), bound, what, is_contact=True)
 
 
-def packed_normal(damper: ParticleDamper, entry: Entry) -> dict[str, Any]:
-    """Return the name and the softened coefficients of a pair's normal law, as the core reads them."""
-    name, values = damper.softened(entry)
-    return {"law": name} | {k: v if isinstance(v, np.ndarray) else float(v) for k, v in values.items()}
+def packed_normal(damper: ParticleDamper, entry: Entry) -> _core.NormalForce:
+    """Return the softened normal law of a pair."""
+    return _core.normal_law(*damper.softened(entry))
 
 
-def _sideways(damper: ParticleDamper, entry: Entry, law: Any, radius: float, speed: float, duration: float) -> float:
+def packed_friction(damper: ParticleDamper, entry: Entry) -> _core.TangentialForce:
+    """Return the softened friction law of a pair."""
+    return _core.tangential_law(*damper.softened_friction(entry))
+
+
+def _sideways(
+    damper: ParticleDamper, entry: Entry, law: _core.NormalForce, radius: float, speed: float, duration: float
+) -> float:
     """Return by what factor friction and rolling resistance shorten the longest stable step of a contact.
 
     A spring in the plane of contact swings spheres that are free to turn with 7/2 k_t/m*, against k/m* along the normal; one
     against rolling adds 5/2 of its own part of k_t. Steps up to 1.2 over the frequency were seen to give no energy. Dashpots
     take a velocity predicted from the last two steps, stable up to 1 over their rate: 7/2 c_t/m*, and 5/2 c_r/(m* R*^2).
     """
-    friction, rolling = damper.softened_friction(entry)
-    rubs: float = friction["damping"]
-    if not friction["friction"] or not math.isfinite(duration):
+    tangential = packed_friction(damper, entry)
+    if not tangential.friction_coefficient or not math.isfinite(duration):
         return 1.0
-    tangential = core().TangentialLaw(friction)
-    firm: float = tangential.stiffness(radius, law.mass, law.stiffness, law.largest_overlap(speed))
-    rolls = rolling["stiffness"] if rolling["coefficient"] else 0.0
-    mass: float = law.mass
+    mass = law.effective_mass
+    firm = tangential.stiffness_at(radius, mass, law.elastic_coefficient, law.largest_overlap(speed))
+    rolling = damper.rolling_of(entry)
+    rolls = rolling.stiffness if rolling.coefficient else 0.0
     swing = BOUND * duration * math.sqrt(firm / mass)
     damped = _damping_ratio(entry, law, speed)
     return max(
         1.0,
         swing * math.sqrt(7 / 2 + 5 / 2 * rolls) / 1.2,
-        swing * 7 * math.sqrt(5 / 6) * damped * rubs,
-        swing * 5 * math.sqrt(1.4 * rolls) * rolling["damping"],
+        swing * 7 * math.sqrt(5 / 6) * damped * tangential.damping_share,
+        swing * 5 * math.sqrt(1.4 * rolls) * rolling.damping,
     )
 
 
@@ -246,12 +251,12 @@ def _sizes(damper: ParticleDamper, entry: Entry, wall_mass: float) -> Iterator[t
             yield *pair, "diameter " + " and ".join(dict.fromkeys(told))
 
 
-def _damping_ratio(entry: Entry, law: Any, speed: float) -> float:
+def _damping_ratio(entry: Entry, law: _core.NormalForce, speed: float) -> float:
     """Return the damping ratio of a contact; 0 where its restitution depends on the speed."""
     constant = entry.contact.impact_restitution
     if law.needs_restitution and not isinstance(constant, Constant):
         return 0.0
-    return float(law.damping_ratio(constant.e if isinstance(constant, Constant) else 1.0, speed))
+    return law.damping_ratio(constant.e if isinstance(constant, Constant) else 1.0, speed)
 
 
 def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> list[Limit]:

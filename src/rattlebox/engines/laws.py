@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
 from rattlebox.model.contacts import Ending
 from rattlebox.model.pairs import Pair
 from rattlebox.model.restitutions import Restitution
@@ -33,12 +33,19 @@ def restitution_curve(law: Restitution, pair: Pair, speeds: ArrayLike) -> NDArra
     float, shape of speeds
         NaN where a speed lies beyond the law.
     """
-    name, values = law.coefficients(pair)
-    packed: dict[str, Any] = {"law": name}
-    packed |= {k: v if isinstance(v, (int, float)) else np.array(v, dtype=float) for k, v in values.items()}
     given = np.asarray(speeds, dtype=float)
-    e = core().restitution(packed, np.ascontiguousarray(given.ravel()))
-    return np.asarray(e).reshape(given.shape)
+    return packed_restitution(law, pair).at(given.ravel()).reshape(given.shape)
+
+
+def packed_restitution(law: Restitution | None, pair: Pair) -> _core.Restitution:
+    """Pack a restitution law for a pair of bodies; a contact without one rebounds without loss."""
+    if law is None:
+        return _core.ConstantRestitution(e=1.0, maximum=1.0)
+    name, values = law.coefficients(pair)
+    numbers: dict[str, object] = {
+        key: v if isinstance(v, (int, float)) else np.asarray(v, dtype=float) for key, v in values.items()
+    }
+    return _core.restitution_law(name, numbers)
 
 
 def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDArray[np.float64]:
@@ -72,8 +79,8 @@ def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDA
     0.99117
     """
     given = np.asarray(alpha, dtype=float)
-    ratios = np.ascontiguousarray(given.ravel() / math.sqrt(5))
-    return np.asarray(core().restitution_of_damping(ratios, ending == "zero_overlap")).reshape(given.shape)
+    ratios = given.ravel() / math.sqrt(5)
+    return _core.restitution_of_damping(ratios, ending == "zero_overlap").reshape(given.shape)
 
 
 def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray[np.float64]:
@@ -92,5 +99,5 @@ def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray
         Damping coefficients.
     """
     given = np.asarray(e, dtype=float)
-    ratios = core().damping_of_restitution(np.ascontiguousarray(given.ravel()), ending == "zero_overlap")
-    return math.sqrt(5) * np.asarray(ratios).reshape(given.shape)
+    ratios = _core.damping_of_restitution(given.ravel(), ending == "zero_overlap")
+    return math.sqrt(5) * ratios.reshape(given.shape)

@@ -1,22 +1,23 @@
-"""Case -> the plain numbers that the core reads (core/python/read.hpp). Everything goes by name, in SI units.
+"""Case -> the problem that the 1-D engine runs, in SI units.
 
 Many variants of a case are packed at once: arrays that broadcast against each other stand in place of numbers in a copy of
-the case, which the same formulas pack. What is no number, and what is inside a table, cannot be an array: there each value
-is a case of its own, and the results are put together, or stay apart where they differ in more than numbers.
+the case, which the same formulas pack. Values that are no numbers, and entries of tables, cannot be arrays: each of them
+makes a case of its own. The problems are merged into one batch, or stay apart where they differ in more than numbers.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox._util.narrow import instance
-from rattlebox.engines.laws import restitution_of_alpha
+from rattlebox.engines import _core
+from rattlebox.engines.laws import packed_restitution, restitution_of_alpha
 from rattlebox.engines.variants import (
     Columns,
     Index,
@@ -25,7 +26,6 @@ from rattlebox.engines.variants import (
     alike,
     column,
     compare,
-    contiguous,
     examples,
     is_number,
     misplaced,
@@ -46,28 +46,28 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.model.modes import ModalModel
     from rattlebox.model.restitutions import Restitution
-
-Packed = dict[str, Any]
+    from rattlebox.model.signals import Signal
 
 MOST_EVENTS = 200_000
 """Most events of a run that is sampled at its contacts, too, unless the output times are chosen."""
 
 
-def pack(case: Case) -> Packed:
+def pack(case: Case) -> _core.Problem:
     """Pack a case for the core.
 
     Parameters
     ----------
     case
-        What the user describes.
+        The case.
 
     Returns
     -------
-    dict
-        Modes, loads, dampers, contacts, sample times and settings, as core/python/read.hpp reads them.
+    Problem
+        Modes, loads, dampers, contacts, sample times and settings.
     """
-    contact_samples = 0 if case.output.is_chosen else MOST_EVENTS
-    return {**_numbers(case), "sample_times": _array(case.sample_times()), "contact_samples": contact_samples}
+    problem = _problem(case)
+    settings = problem.settings.replace(contact_samples=0 if case.output.is_chosen else MOST_EVENTS)
+    return problem.replace(settings=settings, sample_times=_array(case.sample_times()))
 
 
 @dataclass(frozen=True)
@@ -77,15 +77,18 @@ class Batch:
     Attributes
     ----------
     packed
-        As `pack_batch` returns it, over the grid of these.
+        The problem, with arrays over the grid of these variants.
     places
-        Which numbers along each dimension of the whole grid it has, rising.
+        Indices along each dimension of the whole grid, rising.
+    points
+        Mode shapes at each point of the structure, (m, ...) over the grid.
     unlike
         Why it is not all of the grid, if it is not.
     """
 
-    packed: Packed
+    packed: _core.Problem
     places: tuple[NDArray[np.intp], ...]
+    points: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     unlike: Unlike | None = None
 
     @property
@@ -108,24 +111,24 @@ class Batch:
         return np.ravel_multi_index(np.ix_(*self.places), tuple(shape)).ravel()
 
 
-def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> Packed:
+def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> _core.Problem:
     """Pack many variants of a case for the core.
 
     Parameters
     ----------
     case
-        What does not vary.
+        The case that the variants are made from.
     columns
         By path, "damper.gap": the values, an array with as many axes as `shape` and broadcastable to it. Numbers in SI;
         anything else, such as names of materials, laws or lists, as objects.
     shape
-        Of the grid of variants.
+        Shape of the grid of variants.
 
     Returns
     -------
-    dict
+    Problem
         As `pack` returns it, but each number may be an array that broadcasts to `shape`, and each vector has these axes
-        after its own, (n, ...). There are no sample times; `points` holds the mode shapes at each point.
+        after its own, (n, ...). There are no sample times.
 
     Raises
     ------
@@ -154,15 +157,15 @@ def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
         When a variant does not fit.
     """
     given = {path: column(path, values, shape) for path, values in columns.items()}
-    parts = [
-        Batch(contiguous(part.packed), part.places, part.unlike) for part in _variants(case, given, tuple(shape), {})
-    ]
+    parts = _variants(case, given, tuple(shape), {})
     tried = examples(given, shape)
     for part in parts:
         wrong = [part.index(inside) for inside in misplaced(part.packed, part.shape)]
         for index in (*wrong, *tried):
             if (inside := part.inside(index)) is not None:
-                compare(_with_points(variant(case, given, index)), part.packed, inside)
+                one = variant(case, given, index)
+                compare(_problem(one), part.packed, inside)
+                compare(_points(one), part.points, inside)
     return parts
 
 
@@ -171,7 +174,8 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
     whole = tuple(np.arange(n) for n in shape)
     path = next((path for path, values in columns.items() if not is_number(case, path, values)), None)
     if path is None:
-        return [Batch(_broadcast(case, columns, len(shape), fixed), whole)]
+        problem, points = _broadcast(case, columns, len(shape), fixed)
+        return [Batch(problem, whole, points)]
     values = columns[path]
     rest = {other: column for other, column in columns.items() if other != path}
     axis = next((k for k, n in enumerate(values.shape) if n > 1), None)
@@ -188,18 +192,24 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
     unlike = next((part.unlike for parts in found for part in parts if part.unlike), None)
     if all(len(parts) == 1 for parts in found):
         try:
-            return [Batch(Joint(path, groups, axis, shape).of([part.packed for (part,) in found]), whole)]
+            joint = Joint(path, groups, axis, shape)
+            problem = joint.of([part.packed for (part,) in found])
+            return [Batch(problem, whole, joint.points([part.points for (part,) in found]))]
         except Unlike as told:
             unlike = told
     return [
-        Batch(part.packed, (*part.places[:axis], group[part.places[axis]], *part.places[axis + 1 :]), unlike)
+        Batch(
+            part.packed, (*part.places[:axis], group[part.places[axis]], *part.places[axis + 1 :]), part.points, unlike
+        )
         for group, parts in zip(groups, found, strict=True)
         for part in parts
     ]
 
 
-def _broadcast(case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]) -> Packed:
-    """The variants over columns of numbers."""
+def _broadcast(
+    case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]
+) -> tuple[_core.Problem, dict[str, NDArray[np.float64]]]:
+    """The variants over columns of numbers, and the mode shapes at their points."""
     first = {path: values.flat[0].item() for path, values in columns.items()}
     batch = replaced(case, {**fixed, **first})  # where each number has its place
     cavities: dict[Place, NDArray[Any]] = {}
@@ -217,57 +227,57 @@ def _broadcast(case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]
     for place, length in cavities.items():
         batch = with_value(batch, (*place, "gap"), (length - part_at(batch, place).row) / 2)
     try:
-        return _with_points(batch, axes)
+        return _problem(batch, axes), _points(batch, axes)
     except (TypeError, ValueError) as error:
         if not isinstance(error, CaseError):
             error.add_note("A formula does not take arrays: see rattlebox.model.elementwise.")
         raise
 
 
-def _with_points(case: Case, axes: int = 0) -> Packed:
-    points = {name: _vector(shape, axes) for name, shape in case.modes.lines().items()}
-    return {**_numbers(case, axes), "points": points}
+def _points(case: Case, axes: int = 0) -> dict[str, NDArray[np.float64]]:
+    return {name: _vector(shape, axes) for name, shape in case.modes.lines().items()}
 
 
-def _numbers(case: Case, axes: int = 0) -> Packed:
-    """All but the sample times; of a batch over some axes, which vectors have after their own."""
+def _problem(case: Case, axes: int = 0) -> _core.Problem:
+    """The problem without sample times; vectors of a batch over some axes have these after their own."""
     if case.particle_dampers:
         raise Hint(
             "this study computes impact dampers, not particles in space",
             "a sweep, a loss map or a sensitivity, or one run after the other",
         )
     modes = case.modes
-    return {
-        "settings": {"duration": case.duration, **_method(case)},
-        "mode_decay": _vector(modes.decay, axes),
-        "mode_stiffness": _vector(modes.stiffness, axes),
-        **_coupling(modes),
-        "mode_displacement": _vector(modes.q0, axes),
-        "mode_velocity": _vector(modes.p0, axes),
-        "loads": _loads(case, modes, axes),
-        "dampers": [
-            {
-                "clearance": damper.clearance,
-                "gravity": damper.gravity,
-                "shape": _vector(modes.shape(damper.point), axes),
-                "mass": _vector(damper.masses, axes),
-                "position": _vector(damper.positions0, axes),
-                "velocity": _vector(damper.velocities0, axes),
-            }
+    return _core.Problem(
+        settings=_settings(case),
+        mode_decay=_vector(modes.decay, axes),
+        mode_stiffness=_vector(modes.stiffness, axes),
+        mode_coupling=mode_coupling(modes, axes),
+        mode_displacement=_vector(modes.q0, axes),
+        mode_velocity=_vector(modes.p0, axes),
+        loads=_loads(case, modes, axes),
+        dampers=[
+            _core.Damper(
+                clearance=damper.clearance,
+                gravity=damper.gravity,
+                shape=_vector(modes.shape(damper.point), axes),
+                mass=_vector(damper.masses, axes),
+                position=_vector(damper.positions0, axes),
+                velocity=_vector(damper.velocities0, axes),
+            )
             for damper in case.impact_dampers
         ],
-        "contacts": [
+        contacts=[
             _contact(case, index, pair, place)
             for index in range(len(case.dampers))
             for place, pair in enumerate(contact_pairs(case, index))
         ],
-    }
+        sample_times=np.zeros(0),
+    )
 
 
-def _coupling(modes: ModalModel) -> Packed:
+def mode_coupling(modes: ModalModel, axes: int = 0) -> NDArray[np.float64]:
     """Return the damping between modes, row by row; empty for proportional damping."""
     matrix = modes.coupling
-    return {} if matrix is None else {"mode_coupling": _array(matrix.reshape(-1, *matrix.shape[2:]))}
+    return _vector(np.zeros(0) if matrix is None else matrix.reshape(-1, *matrix.shape[2:]), axes)
 
 
 def _array(values: Any) -> NDArray[np.float64]:
@@ -279,34 +289,48 @@ def _vector(values: Any, axes: int) -> NDArray[np.float64]:
     return array.reshape(-1, *(1,) * axes) if axes and array.ndim == 1 else array
 
 
-def _loads(case: Case, modes: ModalModel, axes: int) -> list[Packed]:
+def _loads(case: Case, modes: ModalModel, axes: int) -> list[_core.Load]:
     loads = [
-        {**signal.coefficients(), "shape": _vector(modes.shape(signal.point, signal.direction), axes), "base": False}
+        _core.Load(
+            signal=packed_signal(signal), shape=_vector(modes.shape(signal.point, signal.direction), axes), base=False
+        )
         for signal in case.loads
     ]
     base = [
-        {**signal.coefficients(), "shape": _vector(-_participation(modes), axes), "base": True}
+        _core.Load(signal=packed_signal(signal), shape=_vector(-_participation(modes), axes), base=True)
         for signal in case.base_acceleration()
     ]
     return loads + base
 
 
+def packed_signal(signal: Signal) -> _core.HalfSine | _core.Harmonic | _core.Record:
+    """Return a load or an acceleration as the core reads it."""
+    values = signal.coefficients()
+    kind: type[_core.HalfSine | _core.Harmonic | _core.Record] = {
+        "half_sine": _core.HalfSine,
+        "harmonic": _core.Harmonic,
+        "record": _core.Record,
+    }[values.pop("kind")]
+    return kind(**values)
+
+
 def _participation(modes: ModalModel) -> NDArray[np.float64]:
-    return _array(np.zeros(0) if modes.participation is None else modes.participation)
+    return _array(np.zeros(modes.decay.size) if modes.participation is None else modes.participation)
 
 
-def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> Packed:
+def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> _core.Contact:
     damper = case.impact_dampers[damper_index]
     between_balls = 0 < place < len(damper.balls)
     law = damper.ball_contact if between_balls and damper.ball_contact is not None else damper.contact
     if isinstance(case.method, Newton):
         rebound: Restitution | None = case.method.restitution or _hard(law.equivalent_restitution(pair))
-        normal: Packed = {"law": "linear", "stiffness": 1.0, "mass": pair.mass, "damping": 0.0}
+        normal: _core.NormalForce = _core.LinearForce(
+            stiffness=1.0, mass=pair.mass, damping=0.0, zero_overlap=0.0, fixed_contact_time=0.0
+        )
     else:
         rebound = law.impact_restitution
-        name, values = law.coefficients(pair)
-        normal = {"law": name, **values}
-    return {"mass": pair.mass, "normal": normal, "restitution": restitution(rebound, pair)}
+        normal = _core.normal_law(*law.coefficients(pair))
+    return _core.Contact(mass=pair.mass, normal=normal, restitution=packed_restitution(rebound, pair))
 
 
 def _hard(equivalent: Restitution | FixedDamping) -> Restitution:
@@ -317,33 +341,25 @@ def _hard(equivalent: Restitution | FixedDamping) -> Restitution:
     return Constant(float(e)) if e.ndim == 0 else Constant.model_construct(e=e)
 
 
-def restitution(law: Restitution | None, pair: Pair) -> Packed:
-    """Pack a restitution law for a pair of bodies; of a contact without one, a rebound without loss."""
-    if law is None:
-        return {"law": "constant", "e": 1.0}
-    name, values = law.coefficients(pair)
-    return {"law": name, **{key: _value(value) for key, value in values.items()}}
-
-
-def _value(value: Any) -> Any:
-    return value if isinstance(value, (int, float)) else _array(value)
-
-
-def _method(case: Case) -> Packed:
+def _settings(case: Case) -> _core.Settings:
     method = case.method
     if isinstance(method, TwoStep):
-        return {
-            "method": "two_step",
-            "dt_flight": method.dt_flight,
-            "dt_contact": method.dt_contact,
-            "adaptive_inner": method.inner == "dopri5",
-        }
+        return _core.Settings(
+            method=_core.Method.two_step,
+            duration=case.duration,
+            dt_flight=method.dt_flight,
+            dt_contact=method.dt_contact,
+            adaptive_inner=method.inner == "dopri5",
+        )
     if isinstance(method, Newton):
-        return {"method": "newton", "stick": method.stick, "max_events": method.max_events}
+        return _core.Settings(
+            method=_core.Method.newton, duration=case.duration, stick=method.stick, max_events=method.max_events
+        )
     method = instance(method, EventDriven)
-    return {
-        "method": "event_driven",
-        "tolerance": method.tolerance,
-        "max_events": method.max_events,
-        "collocation": method.collocation,
-    }
+    return _core.Settings(
+        method=_core.Method.event_driven,
+        duration=case.duration,
+        tolerance=method.tolerance,
+        max_events=method.max_events,
+        collocation=method.collocation,
+    )

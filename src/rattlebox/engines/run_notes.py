@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
 from rattlebox.model.contacts import Contact, Linear, TabulatedNormal
 from rattlebox.model.pairs import contact_pairs
 from rattlebox.model.restitutions import Tabulated
@@ -124,10 +124,8 @@ def _measured_impacts(case: Case, index: int, name: str, impacts: Table, own: ND
             continue
         overlap = float(np.nanmax(impacts.peak_overlap[mine]))
         if overlap == 0:  # hard impacts: the overlap that the measured curve would have
-            kind, values = law.coefficients(pair)
-            overlap = (
-                core().NormalLaw({"law": kind, **values}).largest_overlap(float(impacts.approach_speed[mine].max()))
-            )
+            force = _core.normal_law(*law.coefficients(pair))
+            overlap = force.largest_overlap(float(impacts.approach_speed[mine].max()))
         deepest.append((overlap, law))
     yield from _beyond_measurement(name, deepest)
 
@@ -153,7 +151,7 @@ def _never_touched(damper: ImpactDamper, name: str, places: NDArray[np.float64])
 def particle_notes(
     case: Case,
     touches: NDArray[np.int_],
-    contacts: NDArray[np.float64],
+    contacts: NDArray[np.int_],
     places: NDArray[np.float64],
     overlaps: Sequence[float],
 ) -> Iterator[str]:

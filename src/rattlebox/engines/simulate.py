@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
+from rattlebox.engines._core import Status
 from rattlebox.engines.pack import MOST_EVENTS, pack
 from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolated, impact_notes
-from rattlebox.engines.status import FINISHED, describe, end_of
+from rattlebox.engines.status import describe, end_of
 from rattlebox.model.case import Case
 from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import Hint
@@ -128,29 +129,39 @@ def _in_space(cases: Sequence[Case], threads: int | None) -> list[Run]:
     return [simulate_dem(case, threads=threads) if case.particle_dampers else next(plain) for case in cases]
 
 
-def _simulated(packed: list[Any], threads: int | None) -> list[dict[str, Any]]:
+def _simulated(packed: list[_core.Problem], threads: int | None) -> list[_core.Result]:
     count = max(1, min(len(packed), threads or os.cpu_count() or 1))
-    return list(core().simulate(packed, count)) if packed else []
+    return _core.simulate(packed, count) if packed else []
 
 
-def _sampled(raw: dict[str, Any]) -> dict[str, Any]:
+def _sampled(raw: _core.Result) -> _core.Result:
     """Drop the samples at contacts of a run that has too many of them."""
-    many = max(raw["counts"]["events"], raw["impacts"]["time"].size) > MOST_EVENTS
-    if not many or raw["given"].all():
+    many = max(raw.counts.events, raw.impacts.time.size) > MOST_EVENTS
+    chosen = raw.chosen
+    if not many or chosen.all():
         return raw
-    given, count = raw["given"].astype(bool), raw["time"].size
-    names = ("time", "state", "load_work", "base_work", "viscous", "normal", "plastic", "stored", "force")
-    return raw | {name: raw[name].reshape(count, -1)[given].ravel() for name in names}
+    return raw.replace(
+        time=raw.time[chosen],
+        state=raw.state[chosen],
+        chosen=chosen[chosen],
+        load_work=raw.load_work[chosen],
+        base_work=raw.base_work[chosen],
+        viscous_loss=raw.viscous_loss[chosen],
+        normal_loss=raw.normal_loss[chosen],
+        plastic_loss=raw.plastic_loss[chosen],
+        contact_energy=raw.contact_energy[chosen],
+        cavity_force=raw.cavity_force[chosen],
+    )
 
 
-def _run(case: Case, raw: dict[str, Any]) -> Run:
+def _run(case: Case, raw: _core.Result) -> Run:
     with np.errstate(over="ignore", invalid="ignore"):  # a solution that became non-finite has a status
         arrays = _arrays(case, raw)
     status, message = _ended(case, arrays, raw)
     notes = doubts(case)
-    if raw["status"] == FINISHED:
+    if raw.status == Status.finished:
         notes += impact_notes(case, arrays.relative_position - arrays.ball_centre, arrays.impacts)
-        notes += tuple(extrapolated(raw["counts"]["extrapolated"]))
+        notes += tuple(extrapolated(raw.counts.extrapolated))
     return Run(
         arrays,
         case,
@@ -158,30 +169,29 @@ def _run(case: Case, raw: dict[str, Any]) -> Run:
         status=status,
         message=message,
         notes=notes,
-        counts={**raw["counts"], "impacts": raw["impacts"]["time"].size},
-        wall_time=raw["seconds"],
+        counts={name: getattr(raw.counts, name) for name in raw.counts.fields()} | {"impacts": raw.impacts.time.size},
+        wall_time=raw.seconds,
     )
 
 
-def _ended(case: Case, arrays: RunArrays, raw: dict[str, Any]) -> tuple[str, str]:
+def _ended(case: Case, arrays: RunArrays, raw: _core.Result) -> tuple[str, str]:
     """Return the status and the message of a run."""
-    if raw["status"] == FINISHED:
+    if raw.status == Status.finished:
         ledger = Ledger(arrays)
         mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
-        end = end_of(ledger, raw["closure_bound"], mass)
+        end = end_of(ledger, raw.closure_bound, mass)
         return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
     counts = [len(damper.balls) for damper in case.impact_dampers]
-    contact = _contact_name(arrays.dampers, counts, raw["stopped_contact"])
-    return describe(raw["status"], raw["stopped_at"], contact, raw["stopped_value"], case.method.kind)
+    contact = _contact_name(arrays.dampers, counts, raw.stopped_contact)
+    return describe(raw.status, raw.stopped_at, contact, raw.stopped_value, case.method.kind)
 
 
-def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
+def _arrays(case: Case, raw: _core.Result) -> RunArrays:
     modes = case.modes
     m, dampers = len(modes.decay), case.impact_dampers
     counts = [len(damper.balls) for damper in dampers]
     b, d = sum(counts), len(dampers)
-    time = raw["time"]
-    state = raw["state"].reshape(time.size, 2 * (m + b))
+    time, state = raw.time, raw.state
     q, p = state[:, 0 : 2 * m : 2], state[:, 1 : 2 * m : 2]
     position, velocity = state[:, 2 * m : 2 * m + b], state[:, 2 * m + b :]
     of = np.repeat(np.arange(d), counts)
@@ -196,8 +206,7 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
     at_points = np.array(list(lines.values())).reshape(len(points), m)
     names = [damper.label(index) for index, damper in enumerate(dampers)]
     base = _base_motion(case, time)
-    by_damper = (time.size, d)
-    force = raw["force"].reshape(by_damper)
+    force = raw.cavity_force
     load = np.array([signal.evaluate(time) for signal in case.loads]).reshape(len(case.loads), time.size).T
     return RunArrays(
         time=time,
@@ -223,14 +232,14 @@ def _arrays(case: Case, raw: dict[str, Any]) -> RunArrays:
         mode_frequency=np.sqrt(modes.stiffness) / (2 * np.pi),
         mode_energy=0.5 * (p**2 + modes.stiffness * q**2),
         ball_energy=0.5 * mass * velocity**2,
-        contact_energy=raw["stored"].reshape(by_damper),
+        contact_energy=raw.contact_energy,
         gravity_energy=pull,
-        load_work=raw["load_work"],
-        base_work=raw["base_work"],
-        viscous_loss=raw["viscous"],
-        normal_loss=raw["normal"].reshape(by_damper),
-        plastic_loss=raw["plastic"].reshape(by_damper),
-        impacts=raw["impacts"],
+        load_work=raw.load_work,
+        base_work=raw.base_work,
+        viscous_loss=raw.viscous_loss,
+        normal_loss=raw.normal_loss,
+        plastic_loss=raw.plastic_loss,
+        impacts={name: getattr(raw.impacts, name) for name in raw.impacts.fields()},
     )
 
 

@@ -1,14 +1,15 @@
-"""Variants of a case: numbers replaced by arrays, what was packed apart put together, members taken out and compared."""
+"""Variants of a case: arrays in place of numbers, problems merged into a batch, a variant compared with its batch."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from rattlebox._util.exceptions import CaseError, RattleboxError
+from rattlebox.engines import _core
 from rattlebox.model.base import Part
 from rattlebox.model.errors import Hint
 from rattlebox.model.paths import Place, get, part_at, place_of, replaced
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
 Columns = Mapping[str, "NDArray[Any]"]
 Index = tuple[int, ...]
+Packed = TypeVar("Packed", bound=_core.Node)
 
-_TABLES = ("times", "values", "speeds")  # of records and laws: the same for all variants
 _ULPS = 4
 _DRAWN = 8  # variants that are compared besides the extreme ones
 _CORNERS = 16
@@ -55,15 +56,6 @@ def with_value(node: Any, place: Place, value: Any) -> Any:
     if isinstance(node, dict):
         return {**node, step: with_value(node[step], tuple(rest), value)}
     return node.model_copy(update={step: with_value(getattr(node, step), tuple(rest), value)})
-
-
-def contiguous(node: Any) -> Any:
-    """Return packed numbers with every array in one piece."""
-    if isinstance(node, dict):
-        return {key: contiguous(item) for key, item in node.items()}
-    if isinstance(node, list):
-        return [contiguous(item) for item in node]
-    return np.asarray(node, dtype=float, order="C") if isinstance(node, np.ndarray) else node
 
 
 # ---- variants that are packed apart
@@ -103,8 +95,8 @@ class Joint:
     def __init__(self, path: str, groups: Sequence[NDArray[np.intp]], axis: int, shape: Sequence[int]) -> None:
         self._path, self._groups, self._axis, self._shape = path, groups, axis, shape
 
-    def of(self, parts: Sequence[Any], *where: str) -> Any:
-        """Return the whole grid of the variants, one part a group.
+    def of(self, parts: Sequence[Packed], *where: str) -> Packed:
+        """Return a part of a problem for the whole grid of the variants, given that of each group.
 
         Raises
         ------
@@ -112,19 +104,37 @@ class Joint:
             When the parts differ in more than numbers.
         """
         first = parts[0]
-        if isinstance(first, dict):
-            if any(part.keys() != first.keys() for part in parts):
+        if any(type(part) is not type(first) for part in parts):
+            raise self._unlike(where)
+        fields = first.fields().items()
+        return first.replace(
+            **{
+                name: self._field([getattr(part, name) for part in parts], varies, (*where, name))
+                for name, varies in fields
+            }
+        )
+
+    def points(self, parts: Sequence[Mapping[str, NDArray[np.float64]]]) -> dict[str, NDArray[np.float64]]:
+        """Return vectors by name for the whole grid of the variants, given those of each group."""
+        if any(part.keys() != parts[0].keys() for part in parts):
+            raise self._unlike(("points",))
+        return {name: self._joined([part[name] for part in parts], (name,)) for name in parts[0]}
+
+    def _field(self, values: Sequence[Any], varies: _core.Varies, where: Sequence[str]) -> Any:
+        first = values[0]
+        if varies is not _core.Varies.never:
+            if any((value is None) != (first is None) for value in values):
                 raise self._unlike(where)
-            return {key: self.of([part[key] for part in parts], *where, key) for key in first}
+            return None if first is None else self._joined(values, where)
+        if isinstance(first, _core.Node):
+            return self.of(values, *where)
         if isinstance(first, list):
-            if any(len(part) != len(first) for part in parts):
+            if any(len(value) != len(first) for value in values):
                 raise self._unlike(where)
-            return [self.of(members, *where) for members in zip(*parts, strict=True)]
-        if isinstance(first, (str, int)) or (where[-1] in _TABLES and isinstance(first, np.ndarray)):
-            if any(not np.array_equal(part, first) for part in parts):
-                raise self._unlike(where)
-            return first
-        return self._joined(parts, where)
+            return [self.of(members, *where) for members in zip(*values, strict=True)]
+        if any(not np.array_equal(value, first) for value in values):
+            raise self._unlike(where)
+        return first
 
     def _joined(self, parts: Sequence[Any], where: Sequence[str]) -> Any:
         axes = len(self._shape)
@@ -153,11 +163,11 @@ class Joint:
 # ---- checks
 
 
-def misplaced(packed: Mapping[str, Any], shape: Sequence[int]) -> Iterator[Index]:
+def misplaced(packed: _core.Problem, shape: Sequence[int]) -> Iterator[Index]:
     """Find a variant of each damper whose balls start in a wall, in each other or in a cavity too short, if there is one."""
-    for damper in packed["dampers"]:
-        position, half = damper["position"], np.asarray(0.5 * damper["clearance"])
-        cavity = np.sum(damper["shape"] * packed["mode_displacement"], axis=0)
+    for damper in packed.dampers:
+        position, half = damper.position, 0.5 * np.asarray(damper.clearance)
+        cavity = np.sum(damper.shape * packed.mode_displacement, axis=0)
         overlap = np.argwhere(np.diff(position, axis=0) < 0)
         if len(overlap):
             yield _member(overlap[0][1:], shape)
@@ -213,30 +223,54 @@ def _inside(shape: Sequence[int], index: Index) -> Index:
 def compare(one: Any, batch: Any, index: Index, *where: str) -> None:
     """Find the numbers of one packed variant in a batch.
 
+    Parameters
+    ----------
+    one, batch
+        Packed problems, parts of them, or mappings, lists or single values of these.
+    index
+        Index of the variant in the grid of the batch.
+
     Raises
     ------
     RuntimeError
         When one is not there: a formula of the model is not elementwise.
     """
-    if isinstance(one, dict):
-        for key in one | batch:
-            compare(one[key], batch[key], index, *where, key)
+    if isinstance(one, _core.Node):
+        if type(one) is not type(batch):
+            raise _absent(one, batch, index, where)
+        for name, varies in one.fields().items():
+            mine, theirs = getattr(one, name), getattr(batch, name)
+            if varies is _core.Varies.never:
+                compare(mine, theirs, index, *where, name)
+            else:
+                _compare_numbers(mine, theirs, index, (*where, name))
+        return
+    if isinstance(one, Mapping):
+        for name in one.keys() | batch.keys():
+            _compare_numbers(one[name], batch[name], index, (*where, name))
         return
     if isinstance(one, list):
         for number, (item, other) in enumerate(zip(one, batch, strict=True)):
             compare(item, other, index, *where, str(number))
         return
-    if isinstance(one, str):
-        same = one == batch
-    else:
-        own = np.ndim(one)
-        one, batch = np.asarray(one, dtype=float), np.asarray(batch, dtype=float)
-        if batch.ndim > own:
-            batch = batch[(slice(None),) * own + _inside(batch.shape[own:], index)]
-        with np.errstate(invalid="ignore"):  # infinite ones, which must be equal
-            near = np.abs(one - batch) <= _ULPS * np.spacing(np.maximum(np.abs(one), np.abs(batch)))
-        same = bool(np.all((one == batch) | near))
-    if not same:
-        raise RuntimeError(
-            f"{'.'.join(where)} of variant {index} is {one}, in the batch {batch}: see model.elementwise"
-        )
+    if not np.array_equal(one, batch):
+        raise _absent(one, batch, index, where)
+
+
+def _compare_numbers(one: Any, batch: Any, index: Index, where: Sequence[str]) -> None:
+    if one is None or batch is None:
+        if one is not batch:
+            raise _absent(one, batch, index, where)
+        return
+    own = np.ndim(one)
+    one, batch = np.asarray(one, dtype=float), np.asarray(batch, dtype=float)
+    if batch.ndim > own:
+        batch = batch[(slice(None),) * own + _inside(batch.shape[own:], index)]
+    with np.errstate(invalid="ignore"):  # infinite ones, which must be equal
+        near = np.abs(one - batch) <= _ULPS * np.spacing(np.maximum(np.abs(one), np.abs(batch)))
+    if not np.all((one == batch) | near):
+        raise _absent(one, batch, index, where)
+
+
+def _absent(one: object, batch: object, index: Index, where: Sequence[str]) -> RuntimeError:
+    return RuntimeError(f"{'.'.join(where)} of variant {index} is {one}, in the batch {batch}: see model.elementwise")

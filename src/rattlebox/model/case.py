@@ -273,8 +273,8 @@ class Case(Part):
         for entry in damper.contact_table.entries:
             with at(*entry.place), _computable():
                 _check_finite(damper.softened(entry)[1])
-                friction, rolling = damper.softened_friction(entry)
-                _check_finite({key: value for key, value in friction.items() if key != "law"} | rolling)
+                _check_finite(damper.softened_friction(entry)[1])
+                _check_finite(damper.rolling_of(entry).coefficients())
                 if entry.contact.impact_restitution is not None:
                     with at("restitution"):
                         _check_finite(entry.contact.impact_restitution.coefficients(entry.pair)[1])

@@ -15,7 +15,7 @@ from .errors import Hint
 from .space import Direction, Lengths, unit_vector
 from .units import PositiveLength, radius_of_diameter
 
-PLANE, CYLINDER, SPHERE = 0, 1, 2
+WallForm = Literal["plane", "cylinder", "sphere"]
 
 
 @dataclass(frozen=True)
@@ -29,22 +29,22 @@ class Walls:
     axis : (w, 3) float
         Outward normal of a plane, axis of a cylinder's side; zeros for a sphere.
     offset : (w,) float
-        Distance of a plane from the centre, radius of what is curved [m].
-    curved : (w,) int
-        0 plane, 1 side of a cylinder, 2 sphere.
+        Distance of a plane from the centre, radius of a cylinder or a sphere [m].
+    form : tuple of str
+        "plane", "cylinder" for the side of one, or "sphere".
     """
 
     names: tuple[str, ...]
     axis: Vector
     offset: Vector
-    curved: Any
+    form: tuple[WallForm, ...]
 
     def distances(self, positions: Vector) -> Vector:
         """Return the distances of points from the walls, (n, w) [m], positive inside."""
         result = np.empty((len(positions), self.offset.size))
-        for k, (axis, offset, curved) in enumerate(zip(self.axis, self.offset, self.curved, strict=True)):
+        for k, (axis, offset, form) in enumerate(zip(self.axis, self.offset, self.form, strict=True)):
             along = positions @ axis
-            if curved != PLANE:
+            if form != "plane":
                 square = np.einsum("ij,ij->i", positions, positions)
                 along = np.sqrt(np.maximum(square - along**2, 0.0))
             result[:, k] = offset - along
@@ -117,7 +117,7 @@ class Box(Cavity):
         """Return six planes."""
         axis = np.concatenate([-np.eye(3), np.eye(3)])
         names = tuple(sign + axis for sign in "-+" for axis in "xyz")
-        return Walls(names, axis, np.tile(self.lengths / 2, 2), np.full(6, PLANE))
+        return Walls(names, axis, np.tile(self.lengths / 2, 2), ("plane",) * 6)
 
     @property
     def volume(self) -> float:
@@ -176,7 +176,7 @@ class Cylinder(_Round):
             ("side", "first end", "last end"),
             np.array([along, -along, along]),
             offset,
-            np.array([CYLINDER, PLANE, PLANE]),
+            ("cylinder", "plane", "plane"),
         )
 
     @property
@@ -222,7 +222,7 @@ class SphericalCavity(_Round):
 
     def walls(self) -> Walls:
         """Return one wall."""
-        return Walls(("sphere",), np.zeros((1, 3)), np.array([self.radius]), np.array([SPHERE]))
+        return Walls(("sphere",), np.zeros((1, 3)), np.array([self.radius]), ("sphere",))
 
     @property
     def volume(self) -> float:

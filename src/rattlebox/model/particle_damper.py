@@ -522,13 +522,13 @@ class ParticleDamper(Part):
         """
         return entry.contact.softened(entry.pair, self.softening_factor)
 
-    def softened_friction(self, entry: Entry) -> tuple[dict[str, Any], dict[str, float]]:
-        """Return the core's coefficients of friction and of rolling resistance, with moduli divided by the softening."""
+    def softened_friction(self, entry: Entry) -> tuple[str, dict[str, Any]]:
+        """Return the core's name of a friction law and its coefficients, with moduli divided by the softening."""
         friction = Mindlin(coefficient=0.0) if entry.friction is None else entry.friction
-        rolling = Rolling(coefficient=0.0) if entry.rolling is None else entry.rolling
         law, values = friction.coefficients(entry.pair)
         soft = dict.fromkeys(("shear_modulus", "stiffness"), self.softening_factor)
-        return {
-            "law": law,
-            **{key: value / soft.get(key, 1.0) for key, value in values.items()},
-        }, rolling.coefficients()
+        return law, {key: value / soft.get(key, 1.0) for key, value in values.items()}
+
+    def rolling_of(self, entry: Entry) -> Rolling:
+        """Return the rolling resistance of a pair, 0 where there is none."""
+        return Rolling(coefficient=0.0) if entry.rolling is None else entry.rolling

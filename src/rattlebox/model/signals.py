@@ -126,7 +126,7 @@ class Signal(Part):
         raise NotImplementedError
 
     def coefficients(self) -> dict[str, Any]:
-        """Return what the core reads (core/structure/signal.hpp)."""
+        """Return the coefficients of the core's signal of this kind, by name."""
         raise NotImplementedError
 
 

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,9 @@ from rattlebox._util.digests import SIZE, array_digest, group_digest
 from rattlebox._util.exceptions import DataError
 
 from .arrays import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from rattlebox.engines import _core
 
 FORMAT = 2
 """Number of the layout beside the VTKHDF; files of another one are refused."""
@@ -254,15 +257,15 @@ class SnapshotFile:
         same = found.numbers == self._numbers and np.array_equal(found.planned, self._times)
         return len(found) if same else 0
 
-    def take(self, number: int, state: Mapping[str, Any], contacts: Sequence[Mapping[str, Any]]) -> None:
+    def take(self, number: int, cavities: Sequence[_core.CavityState], contacts: Sequence[_core.ContactList]) -> None:
         """Add a snapshot.
 
         Parameters
         ----------
         number
             Which one, from 0; those before it are there.
-        state, contacts
-            As the core gives them, contacts for each cavity.
+        cavities, contacts
+            State of the particles and their contacts, for each cavity.
 
         Raises
         ------
@@ -273,16 +276,17 @@ class SnapshotFile:
         """
         import h5py
 
-        cavities = [
-            {**cavity, "push": _pushes(touching, len(cavity["position"]))}
-            for cavity, touching in zip(state["cavities"], contacts, strict=True)
-        ]
-        displacement = np.array([each["displacement"] for each in cavities])
-        placed = [each["position"] + place for each, place in zip(cavities, self._places, strict=True)]
+        displacement = np.array([each.displacement for each in cavities])
+        moving = {
+            "velocity": [each.velocity for each in cavities],
+            "spin": [each.spin for each in cavities],
+            "push": [_pushes(one, len(each.position)) for each, one in zip(cavities, contacts, strict=True)],
+        }
+        placed = [each.position + place for each, place in zip(cavities, self._places, strict=True)]
         # Without a lock, so that others may look at the file during the run.
         with disk_errors(self.path, _LOST), h5py.File(self.path, "r+", locking=False) as file:
             root, blocks = file[ROOT], _blocks(number, self._fixed["radius"].size, len(cavities))
-            fields = {field: np.concatenate([each[field] for each in cavities]) for field in _MOVING}
+            fields = {field: np.concatenate(moving[field]) for field in _MOVING}
             parts = [np.concatenate(placed), *fields.values(), displacement]
             for (name, rows), part in zip(blocks.items(), parts, strict=True):
                 root[name][rows] = part
@@ -301,10 +305,10 @@ def _blocks(number: int, count: int, cavities: int) -> dict[str, slice]:
     return dict.fromkeys(names, rows) | {"FieldData/displacement": slice(number * cavities, (number + 1) * cavities)}
 
 
-def _pushes(touching: Mapping[str, Any], count: int) -> FloatArray:
+def _pushes(touching: _core.ContactList, count: int) -> FloatArray:
     """Sum of the forces on each particle, by magnitude, (count,); walls are numbered after the particles."""
-    force = np.linalg.norm(touching["force"], axis=1)
-    sides = np.concatenate([touching["first"], touching["second"]])
+    force = np.linalg.norm(touching.force, axis=1)
+    sides = np.concatenate([touching.first, touching.second])
     return np.asarray(np.bincount(sides, np.tile(force, 2), minlength=count)[:count])
 
 

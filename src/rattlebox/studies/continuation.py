@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import CaseError
+from rattlebox.engines import _core
+from rattlebox.engines._core import Status
 from rattlebox.engines.batch import Look, run_block
-from rattlebox.engines.pack import Packed
-from rattlebox.engines.status import STATUSES
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import place_of
 
 from .axes import Axes, read_axes
 from .blocks import Blocks
-from .gather_variants import gather_variants
+from .gather_variants import gather_values, gather_variants
 from .grid import Grid
 from .impact_work import Extra, ImpactWork
 from .measures import MEASURES, check_names
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 Vector = NDArray[np.float64]
 Members = NDArray[np.intp]
 
-_FINISHED = [name for name, _ in STATUSES].index("finished")
 _STARTS = ("start", "velocity", "displacement")
 _EARLIER = np.arange(1, 8) / 8  # parts of a cycle
 _CLOSED = -1e-12  # part of the clearance, far above rounding
@@ -198,12 +197,14 @@ class ContinuationWork(ImpactWork):
                     f"{path} is a start, which only the first value would have\n  try: it as an axis of a sweep"
                 )
         period = np.asarray(self.look.period)
-        for load in self.packed["loads"]:
-            forever = load["kind"] == "harmonic" and np.all(load["start"] == 0) and np.all(np.isinf(load["stop"]))
-            if forever:
-                turns = np.asarray(load["frequency"]) * period / (2 * np.pi)
-                forever = np.all(np.abs(turns - np.rint(turns)) < 1e-9)
-            if not forever:
+        for load in self.packed.loads:
+            signal = load.signal
+            repeats = False
+            if isinstance(signal, _core.Harmonic):
+                turns = np.asarray(signal.frequency) * period / (2 * np.pi)
+                acts = np.equal(signal.start, 0) & np.isinf(signal.stop)
+                repeats = bool(np.all(acts) and np.all(np.abs(turns - np.rint(turns)) < 1e-9))
+            if not repeats:
                 raise Hint(
                     "a load or motion does not repeat after a cycle of the first one, so no value can go on from another",
                     "harmonics that act for good, the slowest one first, the others at multiples of its frequency",
@@ -237,7 +238,7 @@ class ContinuationWork(ImpactWork):
         after = at or At(step.own(), np.zeros(len(members)))
         if "last_time" in found:
             found["last_time"] = found["last_time"] - (after.early * step.period)[:, None]
-        finished = found["status"] == _FINISHED
+        finished = found["status"] == Status.finished
         after = At(np.where(finished[:, None], found["state"], after.state), np.where(finished, 0.0, after.early))
         closed = finished & step.closed(after.state)
         after = step.back(after, closed)
@@ -304,10 +305,10 @@ class _Step:
     ) -> None:
         self._cancelled, self._count = cancelled, len(members)
         shape, look = work.grid.shape, work.look
-        self._own: Packed = gather_variants(work.packed, shape, members)
+        self._own = gather_variants(work.packed, shape, members)
 
         def each(number: Any) -> Any:
-            return gather_variants(np.asarray(number, dtype=float), shape, members)
+            return gather_values(number, shape, members)
 
         self.look = replace(look, shape=each(look.shape), start=each(look.start), period=each(look.period))
         self.period = np.asarray(self.look.period)
@@ -317,7 +318,7 @@ class _Step:
         """Return what is found; None when it was stopped."""
         return self._found(self._packed, self.look, self._count)
 
-    def _found(self, packed: Packed, look: Look, count: int) -> dict[str, NDArray[Any]] | None:
+    def _found(self, packed: _core.Problem, look: Look, count: int) -> dict[str, NDArray[Any]] | None:
         found = run_block(
             packed,
             (count,),
@@ -328,50 +329,49 @@ class _Step:
         )
         return None if found is None else dict(found)
 
-    def _begun(self, at: At) -> Packed:
+    def _begun(self, at: At) -> _core.Problem:
         """What the core runs from where the walks are."""
         q, p, _, _ = self._parts(at.state)
         dampers = [
-            {
-                **damper,
-                "position": np.clip(np.maximum.accumulate(place, axis=0), *walls),
-                "velocity": speed,
-            }
+            damper.replace(position=np.clip(np.maximum.accumulate(place, axis=0), *walls), velocity=speed)
             for damper, place, speed, walls in self._rows(at.state)
         ]
-        begun = {**self._own, "mode_displacement": q, "mode_velocity": p, "dampers": dampers}
+        begun = self._own.replace(mode_displacement=q, mode_velocity=p, dampers=dampers)
         if not at.early.any():
             return begun
         wait = at.early * self.period
-        loads = [{**load, "phase": load["phase"] - load["frequency"] * wait} for load in begun["loads"]]
-        settings = {**begun["settings"], "duration": begun["settings"]["duration"] + wait}
+        loads = [load.replace(signal=_earlier(load.signal, wait)) for load in begun.loads]
+        settings = begun.settings.replace(duration=begun.settings.duration + wait)
         self.look = replace(self.look, start=self.look.start + wait)
-        return {**begun, "loads": loads, "settings": settings}
+        return begun.replace(loads=loads, settings=settings)
 
     def own(self) -> Vector:
         """Return the states that the case gives."""
         packed = self._own
-        q, p = packed["mode_displacement"], packed["mode_velocity"]
+        q, p = packed.mode_displacement, packed.mode_velocity
         place, speed = (
-            [np.broadcast_to(damper[name], (len(damper[name]), self._count)) for damper in packed["dampers"]]
-            for name in ("position", "velocity")
+            [np.broadcast_to(values, (len(values), self._count)) for values in parts]
+            for parts in (
+                [damper.position for damper in packed.dampers],
+                [damper.velocity for damper in packed.dampers],
+            )
         )
         modes = [np.broadcast_to(part, (self._count,)) for pair in zip(q, p, strict=True) for part in pair]
         return np.concatenate([np.reshape(modes, (-1, self._count)), *place, *speed]).T
 
-    def _rows(self, state: Vector) -> Iterator[tuple[Packed, Vector, Vector, tuple[Vector, Vector]]]:
+    def _rows(self, state: Vector) -> Iterator[tuple[_core.Damper, Vector, Vector, tuple[Vector, Vector]]]:
         """Each damper with places and velocities of its balls, (balls, walks), and its walls."""
         q, _, place, speed = self._parts(state)
         first = 0
-        for damper in self._own["dampers"]:
-            balls = slice(first, first := first + len(damper["mass"]))
-            centre = np.sum(damper["shape"] * q, axis=0)
-            half = 0.5 * np.asarray(damper["clearance"])
+        for damper in self._own.dampers:
+            balls = slice(first, first := first + len(damper.mass))
+            centre = np.sum(damper.shape * q, axis=0)
+            half = 0.5 * np.asarray(damper.clearance)
             yield damper, place[balls], speed[balls], (centre - half, centre + half)
 
     def _parts(self, state: Vector) -> tuple[Vector, Vector, Vector, Vector]:
         """Displacements and velocities of modes, places and velocities of balls, each (components, walks)."""
-        modes = len(self._own["mode_decay"])
+        modes = len(self._own.mode_decay)
         rows = np.ascontiguousarray(state.T)
         place, speed = np.split(rows[2 * modes :], 2)
         parts = rows[0 : 2 * modes : 2], rows[1 : 2 * modes : 2], place, speed
@@ -381,7 +381,7 @@ class _Step:
     def closed(self, state: Vector) -> NDArray[np.bool_]:
         """Tell of each walk whether a soft contact is closed."""
         found = np.zeros(self._count, bool)
-        if self._own["settings"]["method"] != "newton":
+        if self._own.settings.method is not _core.Method.newton:
             for _, place, _, (left, right) in self._rows(state):
                 row = np.concatenate([left[None], place, right[None]])
                 found |= (np.diff(row, axis=0) < _CLOSED * (right - left)).any(axis=0)
@@ -397,22 +397,29 @@ class _Step:
         closed
             For which an earlier moment is needed, (walks,).
         """
-        settings, waiting = self._packed["settings"], closed
+        settings, waiting = self._packed.settings, closed
         bare = replace(self.look, measures=(), start=0.0, samples=2, motion=False, last=0)
         for early in _EARLIER:
             if not waiting.any():
                 break
-            duration = np.asarray(settings["duration"] - early * self.period)
-            sooner = {**self._packed, "settings": {**settings, "duration": duration}}
+            sooner = self._packed.replace(settings=settings.replace(duration=settings.duration - early * self.period))
             members = np.flatnonzero(waiting)
-            there = [gather_variants(part, (self._count,), members) for part in (sooner, self.look.shape, self.period)]
-            found = self._found(there[0], replace(bare, shape=there[1], period=there[2]), len(members))
+            shape, period = (gather_values(part, (self._count,), members) for part in (self.look.shape, self.period))
+            there = gather_variants(sooner, (self._count,), members)
+            found = self._found(there, replace(bare, shape=shape, period=period), len(members))
             if found is None:
                 break
             state = end.state.copy()
             state[members] = found["state"]
             taken = waiting & ~self.closed(state)
-            taken[members] &= found["status"] == _FINISHED
+            taken[members] &= found["status"] == Status.finished
             end = At(np.where(taken[:, None], state, end.state), np.where(taken, early, end.early))
             waiting = waiting & ~taken
         return end
+
+
+def _earlier(signal: _core.HalfSine | _core.Harmonic | _core.Record, wait: Vector) -> _core.Harmonic:
+    """A harmonic as it is seen when time begins earlier."""
+    if not isinstance(signal, _core.Harmonic):
+        raise TypeError("a load that does not repeat does not begin earlier")
+    return signal.replace(phase=signal.phase - signal.frequency * wait)

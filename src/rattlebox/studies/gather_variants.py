@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-_TABLES = "times", "values", "speeds"
+from rattlebox.engines import _core
+
+Packed = TypeVar("Packed", bound=_core.Node)
 
 
-def gather_variants(node: Any, shape: Sequence[int], members: NDArray[np.intp], further: int = 0) -> Any:
-    """Return what some variants have of packed variants, or of a number or vector among them.
+def gather_variants(node: Packed, shape: Sequence[int], members: NDArray[np.intp], further: int = 0) -> Packed:
+    """Return the same part of a batch for some variants.
 
     Parameters
     ----------
     node
-        From `rattlebox.engines.pack.pack_batch`; numbers and vectors have the axes of the grid after their own.
+        Batch from `rattlebox.engines.pack.pack_batch`, or a part of it.
     shape
-        Of the grid.
+        Shape of the grid.
     members
         Variants, counted along the grid with its last axis fastest.
     further
@@ -27,22 +29,41 @@ def gather_variants(node: Any, shape: Sequence[int], members: NDArray[np.intp], 
 
     Returns
     -------
-    Any
+    Node
         The same with one axis for the variants, and the further ones, in place of the grid's.
     """
-    return _gather(node, np.unravel_index(members, tuple(shape)) if shape else (), (1,) * further)
+    changes: dict[str, object] = {}
+    for name, varies in node.fields().items():
+        value = getattr(node, name)
+        if varies is not _core.Varies.never:
+            changes[name] = None if value is None else gather_values(value, shape, members, further)
+        elif isinstance(value, _core.Node):
+            changes[name] = gather_variants(value, shape, members, further)
+        elif isinstance(value, list):
+            changes[name] = [gather_variants(item, shape, members, further) for item in value]
+    return node.replace(**changes)
 
 
-def _gather(node: Any, places: tuple[NDArray[np.intp], ...], further: tuple[int, ...], key: str = "") -> Any:
-    if isinstance(node, dict):
-        return {name: _gather(item, places, further, name) for name, item in node.items()}
-    if isinstance(node, list):
-        return [_gather(item, places, further) for item in node]
-    if not isinstance(node, np.ndarray) or key in _TABLES or node.ndim == 0:
-        return node
-    own = node.ndim - len(places)  # axes of a vector
-    if all(n == 1 for n in node.shape[own:]):
-        return node.reshape(*node.shape[:own], 1, *further)
-    there = tuple(place if n > 1 else 0 * place for place, n in zip(places, node.shape[own:], strict=True))
-    found = node[(slice(None),) * own + there]
-    return np.ascontiguousarray(found, dtype=float).reshape(*found.shape, *further)
+def gather_values(
+    values: ArrayLike, shape: Sequence[int], members: NDArray[np.intp], further: int = 0
+) -> NDArray[np.float64]:
+    """Return some variants of a number, or of a vector with the axes of the grid after its own.
+
+    Parameters
+    ----------
+    values
+        A number, or an array over the grid.
+    shape, members, further
+        As of `gather_variants`.
+    """
+    found = np.asarray(values, dtype=float)
+    if found.ndim == 0:
+        return found
+    places = np.unravel_index(members, tuple(shape)) if shape else ()
+    own = found.ndim - len(places)  # axes of a vector
+    ones = (1,) * further
+    if all(n == 1 for n in found.shape[own:]):
+        return found.reshape(*found.shape[:own], 1, *ones)
+    there = tuple(place if n > 1 else 0 * place for place, n in zip(places, found.shape[own:], strict=True))
+    chosen = found[(slice(None),) * own + there]
+    return np.ascontiguousarray(chosen).reshape(*chosen.shape, *ones)

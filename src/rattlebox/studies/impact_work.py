@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.analysis.shaken import LEAST_SAMPLES
+from rattlebox.engines import _core
 from rattlebox.engines.batch import Look, run_block
-from rattlebox.engines.pack import Batch, Packed, pack_parts
+from rattlebox.engines.pack import Batch, pack_parts
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
 
@@ -93,10 +94,8 @@ class ImpactWork:
     @cached_property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:
         """Further dimensions, number type and attributes of each output."""
-        from rattlebox.engines.status import STATUSES
-
-        names = [name for name, _ in STATUSES]
-        flags = {"long_name": "how the run ended", "flag_meanings": " ".join(names)}
+        names = " ".join(status.name for status in _core.Status)
+        flags = {"long_name": "how the run ended", "flag_meanings": names}
         found: dict[str, tuple[Extra, str, dict[str, str]]] = {"status": ((), "int8", flags)}
         for name in self.named:
             measure = MEASURES[name]
@@ -125,7 +124,7 @@ class ImpactWork:
     def coords(self) -> dict[str, Any]:
         """Return the coordinates of the further dimensions."""
         found: dict[str, tuple[NDArray[Any], str, str]] = {}
-        durations = np.unique(np.concatenate([np.ravel(p.packed["settings"]["duration"]) for p, *_ in self._prepared]))
+        durations = np.unique(np.concatenate([np.ravel(p.packed.settings.duration) for p, *_ in self._prepared]))
         lengths = {name: length for extra, _, _ in self.outputs.values() for name, length in extra}
         if self.motion:
             found["ball"] = np.arange(1, lengths["ball"] + 1), "1", "number of the ball"
@@ -256,7 +255,7 @@ class ImpactWork:
     # ---- what the core needs
 
     @property
-    def packed(self) -> Packed:
+    def packed(self) -> _core.Problem:
         """All variants, packed.
 
         Raises
@@ -280,8 +279,8 @@ class ImpactWork:
         parts = pack_parts(self.case, self.grid.columns, self.grid.shape)
         found = []
         for part in parts:
-            balls = sum(len(damper["mass"]) for damper in part.packed["dampers"])
-            modes = len(part.packed["mode_decay"])
+            balls = sum(len(damper.mass) for damper in part.packed.dampers)
+            modes = len(part.packed.mode_decay)
             if (
                 part.unlike
                 and (self.motion or self.state)
@@ -295,23 +294,23 @@ class ImpactWork:
     def _seen(self, part: Batch) -> tuple[Batch, Look]:
         """A part as it is run, and what is kept of it."""
         packed = part.packed
-        settings = packed["settings"]
+        settings = packed.settings
         period = _period(packed)
         if self.cycles is not None:
             if period is None:
                 raise Hint("cycles need a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
-            settings = {**settings, "duration": np.asarray(sum(self.cycles) * period)}
+            settings = settings.replace(duration=sum(self.cycles) * period)
         for name in self.named:
             if MEASURES[name].cyclic and period is None:
                 raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "kind harmonic")
         start = self.skip if self.cycles is None else self.cycles[0] * period
-        if np.any(np.asarray(start) >= settings["duration"]):
+        if np.any(np.asarray(start) >= settings.duration):
             raise Hint(f"skip = {np.max(start):.6g} s leaves nothing of the run to look at", "a longer duration")
         dense = self.motion or any(MEASURES[name].samples for name in self.named)
         usual = 2001 if self.cycles is None else 1 + int(np.ceil(64 * self.cycles[1]))
         harmonic = [name for name in self.named if MEASURES[name].samples and MEASURES[name].cyclic]
         if harmonic:
-            seen = (settings["duration"] - np.asarray(start)) / period
+            seen = (settings.duration - np.asarray(start)) / period
             usual = max(usual, 1 + int(np.ceil(20 * np.max(seen))))
             each = ((self.samples or usual) - 1) / float(np.max(seen))
             if each < LEAST_SAMPLES * (1 - 1e-6):
@@ -321,7 +320,7 @@ class ImpactWork:
                 )
         look = Look(
             measures=self.named,
-            shape=packed["points"][self._point],
+            shape=part.points[self._point],
             start=start,
             period=np.nan if period is None else period,
             samples=self.samples or (usual if dense else 2),
@@ -329,7 +328,7 @@ class ImpactWork:
             last=self.last,
             state=self.state,
         )
-        return replace(part, packed={**packed, "settings": settings}), look
+        return replace(part, packed=packed.replace(settings=settings)), look
 
     @property
     def _balls(self) -> int:
@@ -342,9 +341,9 @@ class ImpactWork:
         return self.case.modes.point(self.point)
 
 
-def _period(packed: Packed) -> Any:
+def _period(packed: _core.Problem) -> Any:
     """Of the first harmonic load or motion [s]; None when there is none."""
-    for load in packed["loads"]:
-        if load["kind"] == "harmonic":
-            return 2 * np.pi / np.asarray(load["frequency"])
+    for load in packed.loads:
+        if isinstance(load.signal, _core.Harmonic):
+            return 2 * np.pi / np.asarray(load.signal.frequency)
     return None

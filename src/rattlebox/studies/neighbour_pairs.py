@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rattlebox.engines import _core
+from rattlebox.engines._core import Status
 from rattlebox.engines.batch import Look, run_block
-from rattlebox.engines.pack import Packed
-from rattlebox.engines.status import ENERGY_ERROR, STATUSES
 
-from .gather_variants import gather_variants
+from .gather_variants import gather_values, gather_variants
 
 if TYPE_CHECKING:
     from rattlebox.studies.kinds.lyapunov import LyapunovWork
 
 Array = NDArray[np.float64]
 
-_FINISHED = [name for name, _ in STATUSES].index("finished")
 _ALIGNING = 20  # legs in which a neighbour turns into the direction that grows most
 _TURN = 0.6180339887498949  # of a leg, on: contacts that are closed at one moment are open at another
 _PATIENCE = 8
@@ -52,16 +51,16 @@ class Pairs:
         self._count = stop - start
         shape = task.grid.shape
         members = np.arange(start, stop)
-        self._packed: Packed = gather_variants(task.sweep.packed, shape, members, 2)
-        self._modes = len(self._packed["mode_decay"])
-        self.status = np.full((self._count, task.pairs), _FINISHED)
-        self.period = self._each(gather_variants(np.asarray(task.sweep.look.period), shape, members, 2))
-        duration = self._each(self._packed["settings"]["duration"])
+        self._packed = gather_variants(task.sweep.packed, shape, members, 2)
+        self._modes = len(self._packed.mode_decay)
+        self.status = np.full((self._count, task.pairs), Status.finished)
+        self.period = self._each(gather_values(task.sweep.look.period, shape, members, 2))
+        duration = self._each(self._packed.settings.duration)
         length = duration - task.skip if task.cycles is None else task.cycles[1] * self.period
         self.leg = length / task.count
         self._skip = duration - length
         self._end = duration
-        stiffness = self._each(np.max(self._packed["mode_stiffness"], axis=0, initial=0.0))
+        stiffness = self._each(np.max(self._packed.mode_stiffness, axis=0, initial=0.0))
         slowest = np.where(stiffness > 0, np.sqrt(stiffness), 2 * np.pi / length)
         rate = 2 * np.pi / self.period if task.cycles else slowest
         self._rng = np.random.default_rng(task.seed)
@@ -78,14 +77,15 @@ class Pairs:
         """Set the states at the start, what a component weighs in a distance, and the scale of distances."""
         packed, pairs = self._packed, self._task.pairs
 
-        def rows(name: str, of: Sequence[Packed]) -> Array:
-            found = [np.broadcast_to(part[name], (len(part[name]), self._count, 1, 1)) for part in of]
+        def rows(parts: Sequence[Array]) -> Array:
+            found = [np.broadcast_to(part, (len(part), self._count, 1, 1)) for part in parts]
             return np.concatenate([np.zeros((0, self._count, 1, 1)), *found])
 
-        q, p = rows("mode_displacement", [packed]), rows("mode_velocity", [packed])
-        dampers = packed["dampers"]
-        mass, place, speed = (rows(name, dampers) for name in ("mass", "position", "velocity"))
-        clearance = [np.broadcast_to(d["clearance"], (len(d["mass"]), self._count, 1, 1)) for d in dampers]
+        q, p = rows([packed.mode_displacement]), rows([packed.mode_velocity])
+        dampers = packed.dampers
+        mass = rows([damper.mass for damper in dampers])
+        place, speed = rows([damper.position for damper in dampers]), rows([damper.velocity for damper in dampers])
+        clearance = [np.broadcast_to(d.clearance, (len(d.mass), self._count, 1, 1)) for d in dampers]
         reach = 0.5 * np.concatenate([np.zeros((0, self._count, 1, 1)), *clearance])
         slow = 1 / rate[None, :, :, None]
         offsets = self._task.reach * self._rng.uniform(-1, 1, pairs)[:, None] * (pairs > 1)
@@ -113,7 +113,7 @@ class Pairs:
     @property
     def _whole(self) -> NDArray[np.bool_]:
         """Pairs of which no run has failed."""
-        return np.isin(self.status, (_FINISHED, ENERGY_ERROR))
+        return np.isin(self.status, (Status.finished, Status.energy_error))
 
     def _sums(self) -> tuple[Array, Array]:
         """Times at which neighbours were brought back, and growth until then, (times, variants, pairs)."""
@@ -185,18 +185,17 @@ class Pairs:
         rows = np.moveaxis(state, -1, 0)
         first, dampers, wait = 2 * self._modes, [], time[..., None]
         balls = (len(rows) - first) // 2
-        for damper in self._packed["dampers"]:
-            own = slice(first, first := first + len(damper["mass"]))
+        for damper in self._packed.dampers:
+            own = slice(first, first := first + len(damper.mass))
             speeds = slice(own.start + balls, own.stop + balls)
-            dampers.append({**damper, "position": _flat(rows[own]), "velocity": _flat(rows[speeds])})
-        packed = {
-            **self._packed,
-            "mode_displacement": _flat(rows[0 : 2 * self._modes : 2]),
-            "mode_velocity": _flat(rows[1 : 2 * self._modes : 2]),
-            "dampers": dampers,
-            "loads": [_later(load, wait) for load in self._packed["loads"]],
-            "settings": {**self._packed["settings"], "duration": _flat(length[..., None])},
-        }
+            dampers.append(damper.replace(position=rows[own], velocity=rows[speeds]))
+        packed = self._packed.replace(
+            mode_displacement=rows[0 : 2 * self._modes : 2],
+            mode_velocity=rows[1 : 2 * self._modes : 2],
+            dampers=dampers,
+            loads=[_later(load, wait) for load in self._packed.loads],
+            settings=self._packed.settings.replace(duration=length[..., None]),
+        )
         shape = state.shape[:-1]
         look, size = Look(state=True), int(np.prod(shape))
         result = run_block(
@@ -211,8 +210,8 @@ class Pairs:
         if result is None or self._cancelled():
             raise _Stopped
         status = result["status"].reshape(shape).max(axis=-1)
-        self.status = np.where(going & (status != _FINISHED), status, self.status)
-        alive = alive & ~(going & ~np.isin(status, (_FINISHED, ENERGY_ERROR)))
+        self.status = np.where(going & (status != Status.finished), status, self.status)
+        alive = alive & ~(going & ~np.isin(status, (Status.finished, Status.energy_error)))
         return result["state"].reshape(state.shape), alive
 
     # ---- states
@@ -234,10 +233,10 @@ class Pairs:
         """Narrowest gap of each state over its clearance."""
         found = np.full(state.shape[:-1], np.inf)
         first = 2 * self._modes
-        for damper in self._packed["dampers"]:
-            places = state[..., first : (first := first + len(damper["mass"]))]
-            centre = np.sum(np.moveaxis(damper["shape"], 0, -1) * state[..., 0 : 2 * self._modes : 2], axis=-1)
-            clearance = np.asarray(damper["clearance"])
+        for damper in self._packed.dampers:
+            places = state[..., first : (first := first + len(damper.mass))]
+            centre = np.sum(np.moveaxis(damper.shape, 0, -1) * state[..., 0 : 2 * self._modes : 2], axis=-1)
+            clearance = np.asarray(damper.clearance)
             ends = [places[..., 0] - centre + clearance / 2, centre + clearance / 2 - places[..., -1]]
             found = np.minimum(found, np.minimum(*ends) / clearance)
             if places.shape[-1] > 1:
@@ -245,11 +244,11 @@ class Pairs:
         return found
 
 
-def _later(load: Packed, wait: Array) -> Packed:
+def _later(load: _core.Load, wait: Array) -> _core.Load:
     """A load as it is seen when time begins later."""
-    turned = {"phase": load["phase"] + np.asarray(load["frequency"]) * wait} if load["kind"] == "harmonic" else {}
-    return {**load, **turned, "start": _flat(load["start"] - wait), "stop": _flat(load["stop"] - wait)}
-
-
-def _flat(array: Array) -> Array:
-    return np.ascontiguousarray(array, dtype=float)
+    signal = load.signal
+    if isinstance(signal, _core.Record):
+        raise TypeError("a record does not begin later")
+    if isinstance(signal, _core.Harmonic):
+        signal = signal.replace(phase=signal.phase + np.asarray(signal.frequency) * wait)
+    return load.replace(signal=signal.replace(start=signal.start - wait, stop=signal.stop - wait))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     import xarray
 
-    from rattlebox.engines.pack import Packed
+    from rattlebox.engines import _core
 
 Vector = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -18,7 +18,7 @@ Whole = NDArray[np.int64]
 _MOST = 256
 
 
-def reduced_strobes(maps: xarray.Dataset, packed: Packed, period: Any) -> Vector:
+def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) -> Vector:
     """Put strobes in numbers of order one.
 
     Lengths are divided by the gap of the damper (of the first one for the structure), speeds by gap times angular
@@ -40,7 +40,7 @@ def reduced_strobes(maps: xarray.Dataset, packed: Packed, period: Any) -> Vector
         (..., sample, 2 + 2 balls)
     """
     shape = maps.status.shape
-    gaps = [np.broadcast_to(0.5 * np.asarray(d["clearance"]), shape) for d in packed["dampers"] for _ in d["mass"]]
+    gaps = [np.broadcast_to(0.5 * np.asarray(d.clearance), shape) for d in packed.dampers for _ in d.mass]
     omega = np.broadcast_to(2 * np.pi / np.asarray(period), shape)
     hit = (maps.impacts.values > 0)[..., None]
     parts = [maps.displacement.values / gaps[0][..., None], maps.velocity.values / (gaps[0] * omega)[..., None]]

@@ -15,10 +15,10 @@ from scipy.integrate import trapezoid
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox.analysis import settling_time, shaken_cavity
 from rattlebox.analysis.shaken import LEAST_SAMPLES, StillCavity
+from rattlebox.engines._core import Status
 from rattlebox.engines.dem import objection, settled, simulate_dem
 from rattlebox.engines.dem_step import WARNINGS, warnings_of
 from rattlebox.engines.responses import base_at_points
-from rattlebox.engines.status import REFUSED, STATUSES
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     import xarray
 
     from rattlebox.model.case import Case
-
-_NUMBERS = {name: number for number, (name, _) in enumerate(STATUSES)}
 
 
 @dataclass(frozen=True)
@@ -247,7 +245,7 @@ class ParticleWork(ImpactWork):
         """Return what is kept of a run, and of what was run, by name."""
         warned = warnings_of(run.diagnostics)
         row: dict[str, float] = {
-            "status": _NUMBERS[run.status],
+            "status": Status[run.status],
             "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in warned),
         }
         if run.status == "energy_error" and "closure" in self.named:
@@ -265,7 +263,7 @@ class ParticleWork(ImpactWork):
             return np.array([rows.get(index, {}).get(name, missing) for index in range(start, stop)], kind)
 
         values = {name: column(name, np.nan, "float64") for name in (*self.named, *self.own)}
-        return {"status": column("status", REFUSED, "int8"), "warnings": column("warnings", 0, "int8"), **values}
+        return {"status": column("status", Status.refused, "int8"), "warnings": column("warnings", 0, "int8"), **values}
 
     def why_refused(self, index: int) -> str:
         """Return why a variant is refused; nothing where it is not."""

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
 from rattlebox.engines.dem import pack_dem
 
 FLIPS = 1500
@@ -49,7 +49,7 @@ def shaken(kind: str) -> rb.Case:
 def run_flipped(kind: str, seed: int) -> tuple[int, int]:
     """Flip a bit at a time in a state and go on from it; return how many states were refused, and how many ran on."""
     packed, step, _ = pack_dem(shaken(kind))
-    first = core().Dem(packed)
+    first = _core.Dem(packed)
     first.run(step.count // 2)
     state = np.asarray(first.save())
     rng = np.random.default_rng(seed)
@@ -57,14 +57,14 @@ def run_flipped(kind: str, seed: int) -> tuple[int, int]:
     for _ in range(FLIPS):
         changed = state.copy()
         changed[rng.integers(state.size)] ^= np.uint8(1 << int(rng.integers(8)))
-        dem = core().Dem(packed)
+        dem = _core.Dem(packed)
         try:
             dem.restore(changed)
         except ValueError:
             refused += 1
             continue
         dem.run(min(dem.step + 60, step.count))
-        dem.state(), dem.counters(), dem.records()
+        dem.state(), dem.counts(), dem.records()
         if dem.status:
             dem.stopped()
         ran += 1
@@ -97,7 +97,7 @@ def test_a_state_that_was_changed_is_refused_with_its_file(tmp_path: Path) -> No
     packed, _, _ = pack_dem(case)
     members["state"] = members["state"].copy()
     members["state"][-2000:] ^= np.uint8(0x55)
-    assert core().Dem(packed).restore(np.load(path)["state"]) is None
+    assert _core.Dem(packed).restore(np.load(path)["state"]) is None
     with path.open("wb") as content:
         np.savez(content, **members)
     with pytest.raises(rb.DataError, match=r"run\.checkpoint is (damaged|not a whole checkpoint)"):

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.core import core
-from rattlebox.engines.status import ENERGY_ERROR, FINISHED, end_of
+from rattlebox.engines import _core
+from rattlebox.engines._core import Status
+from rattlebox.engines.status import end_of
 
 
 @pytest.mark.parametrize("start", [-1.0, -0.999])
@@ -99,8 +100,8 @@ def test_no_method_finishes_beyond_the_bound(tolerance: float) -> None:
     run = rb.simulate(rb.reference_case(duration=0.3, method=rb.EventDriven(tolerance=tolerance)))
     off = 0.02 * float(run.ledger.supplied[-1])
     astray = rb.Run(run.arrays.replaced(viscous_loss=run.arrays.viscous_loss + off * (run.arrays.time > 0)))
-    assert end_of(run.ledger, core().worst_closure, 1.2) == FINISHED
-    assert end_of(astray.ledger, core().worst_closure, 1.2) == ENERGY_ERROR
+    assert end_of(run.ledger, _core.worst_closure, 1.2) == Status.finished
+    assert end_of(astray.ledger, _core.worst_closure, 1.2) == Status.energy_error
 
 
 @pytest.mark.parametrize("method", [rb.EventDriven(), rb.Newton(), rb.TwoStep()], ids=lambda method: method.kind)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
 from rattlebox.engines.dem import pack_dem
 from rattlebox.model.packing import check_packing
 from rattlebox.results import Run
@@ -476,10 +476,10 @@ def test_particles_may_just_touch_at_the_start(law: str) -> None:
         )
         case = rb.Case(structure=rb.Fixed(), damper=made, duration=1e-3, method=rb.Dem(dt="1 us"))
         packed, _, _ = pack_dem(case)
-        packed["cavities"][0]["velocity"] = kicks
-        dem = core().Dem(packed)
+        (cavity,) = packed.cavities
+        dem = _core.Dem(packed.replace(cavities=[cavity.replace(velocity=kicks)]))
         assert dem.run(300)
-        return dem.state()["cavities"][0]["velocity"]
+        return dem.state().cavities[0].velocity
 
     for diameter in (1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 7e-3, 11e-3):
         touching, apart = moved(diameter, 0.0), moved(diameter, 1e-9)

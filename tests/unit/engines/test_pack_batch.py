@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.engines import _core
 from rattlebox.engines import pack as packing
 from rattlebox.engines.pack import pack, pack_batch
 from rattlebox.engines.variants import compare
@@ -61,7 +62,7 @@ FRAME = rb.Case(
 )
 
 
-def variants(case: rb.Case, columns: Mapping[str, Any]) -> tuple[dict[str, Any], list[tuple[tuple[int, ...], rb.Case]]]:
+def variants(case: rb.Case, columns: Mapping[str, Any]) -> tuple[_core.Problem, list[tuple[tuple[int, ...], rb.Case]]]:
     """Return the batch of a case over columns and all its members, made one by one."""
     shape = np.broadcast_shapes(*(np.shape(values) for values in columns.values()))
     members = [
@@ -84,10 +85,10 @@ def variants(case: rb.Case, columns: Mapping[str, Any]) -> tuple[dict[str, Any],
 
 def differences(one: Any, batch: Any, index: tuple[int, ...], where: str = "") -> Iterator[str]:
     """Find what is not the same, to the last bit, in a packed case and a member of a batch."""
-    if isinstance(one, dict):
-        assert set(one) == set(batch) - {"points"}
-        for key in one:
-            yield from differences(one[key], batch[key], index, f"{where}.{key}")
+    if isinstance(one, _core.Node):
+        assert type(one) is type(batch)
+        for key in one.fields():
+            yield from differences(getattr(one, key), getattr(batch, key), index, f"{where}.{key}")
     elif isinstance(one, list):
         for number, (item, other) in enumerate(zip(one, batch, strict=True)):
             yield from differences(item, other, index, f"{where}[{number}]")
@@ -102,15 +103,20 @@ def differences(one: Any, batch: Any, index: tuple[int, ...], where: str = "") -
             yield f"{where}: {one} {member}"
 
 
-def check(case: rb.Case, columns: Mapping[str, Any]) -> dict[str, Any]:
+def check(case: rb.Case, columns: Mapping[str, Any]) -> _core.Problem:
     """Hold each member of a batch against the case packed alone; the members must not all be the same."""
     packed, members = variants(case, columns)
-    alone = [pack(member) for _, member in members]
+    alone = [without_samples(pack(member)) for _, member in members]
     for (index, _), one in zip(members, alone, strict=True):
-        del one["sample_times"], one["contact_samples"]
         assert list(differences(one, packed, index)) == []
     assert len({repr(one) for one in alone}) > 1
     return packed
+
+
+def without_samples(problem: _core.Problem) -> _core.Problem:
+    """Return a packed case without sample times, which a batch does not have."""
+    settings = problem.settings.replace(contact_samples=0)
+    return problem.replace(settings=settings, sample_times=np.zeros(0))
 
 
 def between(smallest: float, largest: float, count: int = 7) -> np.ndarray:
@@ -267,7 +273,7 @@ def test_linked_columns() -> None:
             "load.amplitude": between(1e3, 5e3, 4).reshape(1, 4),
         },
     )
-    assert packed["dampers"][0]["mass"].shape == (1, n, 1)
+    assert packed.dampers[0].mass.shape == (1, n, 1)
 
 
 def test_a_grid_stays_small() -> None:
@@ -279,21 +285,20 @@ def test_a_grid_stays_small() -> None:
     }
     columns = {path: v.reshape([-1 if k == i else 1 for k in range(3)]) for i, (path, v) in enumerate(axes.items())}
     packed = pack_batch(YIELDING, columns, (30, 20, 10))
-    (damper,) = packed["dampers"]
-    assert damper["clearance"].shape == (30, 1, 1)
-    assert damper["position"].shape == (1, 30, 1, 10)
-    assert packed["loads"][0]["amplitude"].shape == (1, 20, 1)
-    assert packed["mode_decay"].shape == (1, 1, 1, 1)
-    assert isinstance(packed["contacts"][0]["normal"]["stiffness"], float)
-    assert packed["points"]["mass"].shape == (1, 1, 1, 1)
+    (damper,) = packed.dampers
+    assert damper.clearance.shape == (30, 1, 1)
+    assert damper.position.shape == (1, 30, 1, 10)
+    assert packed.loads[0].signal.amplitude.shape == (1, 20, 1)
+    assert packed.mode_decay.shape == (1, 1, 1, 1)
+    assert isinstance(packed.contacts[0].normal.stiffness, float)
+    (part,) = packing.pack_parts(YIELDING, columns, (30, 20, 10))
+    assert part.points["mass"].shape == (1, 1, 1, 1)
 
 
 def test_no_axes() -> None:
     """A grid without axes is the case itself."""
     packed = pack_batch(YIELDING, {}, ())
-    one = pack(YIELDING)
-    del one["sample_times"], one["contact_samples"]
-    assert list(differences(one, packed, ())) == []
+    assert list(differences(without_samples(pack(YIELDING)), packed, ())) == []
 
 
 @pytest.mark.parametrize(
@@ -386,5 +391,5 @@ def test_the_same_axis_may_be_a_view() -> None:
     """A column that repeats its values without storing them is taken."""
     gap = np.broadcast_to(between(1e-4, 1e-3, 3)[:, None], (3, 4))
     packed = pack_batch(YIELDING, {"damper.gap": gap}, (3, 4))
-    assert np.array_equal(packed["dampers"][0]["clearance"], 2 * gap)
-    assert packing.pack(YIELDING)["dampers"][0]["clearance"] == 8e-4
+    assert np.array_equal(packed.dampers[0].clearance, 2 * gap)
+    assert packing.pack(YIELDING).dampers[0].clearance == 8e-4

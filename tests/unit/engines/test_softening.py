@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
 from rattlebox.engines.dem import pack_dem
 from rattlebox.engines.softening import AUTO_CHANGE, MOST_CHANGE, Shaking, bed_resonance, change_of_loss
 from rattlebox.studies.particle_work import WARNINGS
@@ -90,11 +90,11 @@ def test_the_loss_of_contacts_of_any_age_is_all_loss() -> None:
     packed, step, _ = pack_dem(small(12, 80, 100))
     shares = []
     for age in (0.0, 1 / 320, 1.0):
-        dem = core().Dem({**packed, "enduring": age})
+        dem = _core.Dem(packed.replace(enduring=age))
         dem.run(step.count, None)
         records = dem.records()
-        lost = sum(records[f"{name}_loss"][-1].sum() for name in ("normal", "plastic", "sliding", "rolling"))
-        shares.append(float(dem.counters()["enduring_loss"][0] / lost))
+        lost = sum(getattr(records, f"{name}_loss")[-1].sum() for name in ("normal", "plastic", "sliding", "rolling"))
+        shares.append(float(dem.counts().enduring_loss[0] / lost))
     assert shares[0] == pytest.approx(1, abs=0.02)
     assert 0 < shares[1] < 0.9 and shares[2] == 0
 

@@ -3,7 +3,8 @@
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.status import STATUSES, describe
+from rattlebox.engines._core import Status
+from rattlebox.engines.status import MESSAGES, describe
 
 LACKS = {
     "event_driven": ("EventDriven", "dt_flight", "stick,"),
@@ -15,11 +16,11 @@ OTHERS_NEVER = {"step_too_small": "event_driven", "no_rebound": "two_step"}
 
 
 @pytest.mark.parametrize("method", LACKS)
-@pytest.mark.parametrize("status", range(len(STATUSES)))
-def test_advice_fits_the_method(status: int, method: str) -> None:
+@pytest.mark.parametrize("status", Status)
+def test_advice_fits_the_method(status: Status, method: str) -> None:
     """A run that failed says what to try, and neither to use the method it used nor to set what that method lacks."""
     name, message = describe(status, 0.5, "damper (trailing wall)", 0.1, method)
-    happened = STATUSES[status][1].format(time=0.5, contact="damper (trailing wall)", value=0.1)
+    happened = MESSAGES[status].format(time=0.5, contact="damper (trailing wall)", value=0.1)
     assert message.startswith(happened)
     assert (message == happened) == (name in ("finished", "interrupted"))
     if OTHERS_NEVER.get(name, method) == method:

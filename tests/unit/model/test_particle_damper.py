@@ -204,7 +204,7 @@ def test_walls_are_the_cavity(name: str) -> None:
     depth = cavity.depth(inside.reshape(-1, 3)).reshape(4001, 50)
     assert np.all(np.diff(depth, axis=0) <= 1e-12)
     assert np.all(np.abs(np.diff(depth, axis=0)) <= 1e-5 * (1 + 1e-9))
-    normals = cavity.walls().axis[cavity.walls().curved == 0]
+    normals = cavity.walls().axis[np.array(cavity.walls().form) == "plane"]
     assert np.linalg.norm(normals, axis=1) == pytest.approx(np.ones(len(normals)))
 
 

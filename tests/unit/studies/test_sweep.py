@@ -8,7 +8,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox import analysis
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
 from rattlebox.model.paths import replaced
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork
@@ -83,7 +83,7 @@ def test_settling_is_that_of_the_analysis_however_short_the_window() -> None:
 
 def test_all_measures_of_the_core_are_told() -> None:
     """The table of measures and the core's list are the same, and agree on which need samples."""
-    assert {name: measure.samples for name, measure in MEASURES.items()} == core().measures()
+    assert {name: measure.samples for name, measure in MEASURES.items()} == _core.measures()
 
 
 def shaken(duration: float = 1.0) -> rb.Case:

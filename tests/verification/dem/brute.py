@@ -46,13 +46,13 @@ def look(positions: Array, radii: Array, walls: Any, inside: Array, wall: Array,
         push = stiff * max(overlap[i, j], 0.0) ** 1.5 * apart[i, j] / distance[i, j]
         force[i] += push
         force[j] -= push
-    for k, (axis, offset, curved) in enumerate(zip(walls.axis, walls.offset, walls.curved, strict=True)):
-        across = positions - np.outer(positions @ axis, axis) if curved == 1 else positions
-        reach = np.linalg.norm(across, axis=1) if curved else positions @ axis
+    for k, (axis, offset, form) in enumerate(zip(walls.axis, walls.offset, walls.form, strict=True)):
+        across = positions - np.outer(positions @ axis, axis) if form == "cylinder" else positions
+        reach = np.linalg.norm(across, axis=1) if form != "plane" else positions @ axis
         for i in np.nonzero(reach + radii > offset - doubt)[0]:
             deep = reach[i] + radii[i] - offset
             (doubtful if deep < doubt else pairs).add((int(i), n + k))
-            normal = across[i] / reach[i] if curved else axis
+            normal = across[i] / reach[i] if form != "plane" else axis
             push = wall[i] * np.sqrt(radii[i]) * max(deep, 0.0) ** 1.5 * normal
             force[i] -= push
             on_cavity += push

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import rattlebox as rb
-from rattlebox.engines.core import core
+from rattlebox.engines import _core
 from rattlebox.engines.dem import pack_dem
 
 HERTZ_TIME = 3.2180655
@@ -26,7 +26,7 @@ def run(case: Any, *, closes: bool = True) -> Any:
 def dem_of(case: Any, threads: int = 1) -> Any:
     """Return one of the core's simulations of a case, and the number of its last step."""
     packed, step, _ = pack_dem(case)
-    dem = core().Dem(packed)
+    dem = _core.Dem(packed)
     dem.threads = threads
     return dem, step.count
 
@@ -134,7 +134,6 @@ def rebound(result: Any) -> float:
     return float(-v[0] if v.size == 1 else v[1] - v[0])
 
 
-def particles_start(case: Any) -> dict[str, Any]:
+def particles_start(case: Any) -> Any:
     """Return positions, velocities and spins of the particles of the first damper at the start."""
-    start = case.dampers[0].start
-    return {"position": start.position, "velocity": start.velocity, "spin": start.spin}
+    return case.dampers[0].start

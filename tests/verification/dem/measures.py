@@ -45,13 +45,13 @@ def elastic_impact(ball: Ball, plane: bool, speed: float) -> tuple[float, float,
     forces = []
     for step in range(FINE // 2, FINE // 2 + 12):
         dem.run(step)
-        forces.append(float(np.abs(dem.contacts(0)["force"]).max()))
+        forces.append(float(np.abs(dem.contacts(0).force).max()))
     assert 0 < np.argmax(forces) < 11
     dem.run(last)
-    x = dem.state()["cavities"][0]["position"][:, 0]
+    x = dem.state().cavities[0]["position"][:, 0]
     gap = 0.5 * case.dampers[0].cavity.size[0] - x[0] - ball.radius if plane else x[1] - x[0] - 2 * ball.radius
-    left = dem.state()["time"] - gap / speed
-    return max(forces), dem.counters()["largest_overlap"][0] * ball.radius, left - 5.5 * dt
+    left = dem.state().time - gap / speed
+    return max(forces), dem.counts().largest_overlap[0] * ball.radius, left - 5.5 * dt
 
 
 def elastic_impacts() -> Iterator[Line]:
@@ -88,17 +88,17 @@ def contact_end(case: Any, ball: Ball, ending: str, about: float) -> float:
     dem, last = cases.dem_of(case)
     if ending == "zero_overlap":
         dem.run(last)
-        now = dem.state()["cavities"][0]
-        gap = 0.5 * case.dampers[0].cavity.size[0] - now["position"][0, 0] - ball.radius
-        return float(dem.state()["time"] + gap / now["velocity"][0, 0])
+        now = dem.state().cavities[0]
+        gap = 0.5 * case.dampers[0].cavity.size[0] - now.position[0, 0] - ball.radius
+        return float(dem.state().time + gap / now.velocity[0, 0])
     forces: list[float] = []
     step = math.floor(about / case.method.dt)
     while not forces or forces[-1] > 0:
         dem.run(step)
-        forces.append(float(np.abs(dem.contacts(0)["force"]).max()))
+        forces.append(float(np.abs(dem.contacts(0).force).max()))
         step += 1
     before, least = forces[-3:-1]
-    return float(dem.state()["time"] - case.method.dt * (1 - least / (before - least)))
+    return float(dem.state().time - case.method.dt * (1 - least / (before - least)))
 
 
 def damped() -> Iterator[Line]:
@@ -205,8 +205,8 @@ def first_touch(dt: float = 1e-5) -> float:
     dem, last = cases.dem_of(ball_that_falls(0.9, 2.0, 0.3, dt))
     for step in range(round(0.28 / dt), last):
         dem.run(step)
-        if dem.contacts(0)["first"].size:
-            return float(dem.state()["time"] - 0.5 * dt)
+        if dem.contacts(0).first.size:
+            return float(dem.state().time - 0.5 * dt)
     raise AssertionError("the ball does not touch")
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox.engines import _core
 from rattlebox.engines.dem_settle import insert
 
 from . import cases
@@ -61,9 +62,10 @@ SIZES = rb.Normal(mean="3 mm", deviation="0.3 mm", smallest="2.5 mm", largest="3
 
 
 def flat(value: Any) -> bytes:
-    """Return all bits of arrays in dictionaries and lists."""
-    if isinstance(value, dict):
-        return b"".join(flat(value[key]) for key in sorted(value) if key not in ("seconds", "memory_bytes"))
+    """Return all bits of arrays in results of the core and lists of them."""
+    if isinstance(value, _core.Node):
+        names = sorted(value.fields().keys() - {"seconds", "memory_bytes"})
+        return b"".join(flat(getattr(value, name)) for name in names)
     if isinstance(value, list):
         return b"".join(map(flat, value))
     return np.ascontiguousarray(value).tobytes()
@@ -71,7 +73,7 @@ def flat(value: Any) -> bytes:
 
 def end(dem: Any) -> bytes:
     """Return all bits that tell of a simulation so far, but for its samples."""
-    return flat(dem.state()) + flat(dem.counters()) + flat([dem.contacts(k) for k in range(2)])
+    return flat(dem.state()) + flat(dem.counts()) + flat([dem.contacts(k) for k in range(2)])
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -93,7 +95,7 @@ def test_restart_gives_the_same_bits(law: str) -> None:
     whole, last = cases.dem_of(case)
     for until in (7, 7, last // 3, last // 2):
         whole.run(until)
-    assert sum(len(whole.contacts(k)["first"]) for k in range(2)) > 10
+    assert sum(len(whole.contacts(k).first) for k in range(2)) > 10
     kept, told = whole.save(), end(whole)
     early = whole.records()
     whole.run(last)
@@ -106,7 +108,7 @@ def test_restart_gives_the_same_bits(law: str) -> None:
     unbroken, _ = cases.dem_of(case)
     unbroken.run(last)
     assert end(unbroken) == end(whole)
-    assert len(early["time"]) < len(unbroken.records()["time"])
+    assert len(early.time) < len(unbroken.records().time)
 
 
 def test_very_different_sizes_give_the_same_bits() -> None:
@@ -135,7 +137,7 @@ def test_very_different_sizes_give_the_same_bits() -> None:
             each.run(last)
             assert each.status == 0
             told.append(flat(each.records()) + flat(each.state()) + flat(each.contacts(0)))
-    assert dem.counters()["rebuilds"] > 3 and len(dem.contacts(0)["first"]) > 100
+    assert dem.counts().rebuilds > 3 and len(dem.contacts(0).first) > 100
     assert len(set(told)) == 1
 
 
@@ -188,10 +190,10 @@ def test_large_beds_give_the_same_bits() -> None:
         assert dem.status == 0
     whole, _ = cases.dem_of(case, threads=3)
     whole.run(last)
-    ends = [flat(dem.state()) + flat(dem.contacts(0)) + flat(dem.counters()) for dem in (one, two, whole)]
+    ends = [flat(dem.state()) + flat(dem.contacts(0)) + flat(dem.counts()) for dem in (one, two, whole)]
     assert len(set(ends)) == 1
-    assert whole.counters()["rebuilds"] > 5 and len(whole.contacts(0)["first"]) > 500
-    assert whole.counters()["memory_bytes"] < 1000 * count
+    assert whole.counts().rebuilds > 5 and len(whole.contacts(0).first) > 500
+    assert whole.counts().memory_bytes < 1000 * count
 
 
 @pytest.mark.slow
@@ -236,10 +238,10 @@ def test_output_does_not_change_the_run(law: str) -> None:
     packed, step, _ = cases.pack_dem(case)
     ends = []
     for every in (1, step.count):
-        dem = cases.core().Dem({**packed, "every": every})
+        dem = _core.Dem(packed.replace(every=every))
         dem.run(step.count)
         ends.append(flat(dem.state()) + flat([dem.contacts(k) for k in range(2)]))
-        assert len(dem.records()["time"]) == step.count // every + 1
+        assert len(dem.records().time) == step.count // every + 1
     assert ends[0] == ends[1]
 
 
@@ -266,7 +268,7 @@ def test_contacts_of_a_stopped_run_are_not_told_in_part() -> None:
         with pytest.raises(RuntimeError, match="asked to end"):
             dem.contacts(0)
         dem.run(dem.step + 1)
-        assert len(dem.contacts(0)["first"]) > 50
+        assert len(dem.contacts(0).first) > 50
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
@@ -300,7 +302,7 @@ def test_a_team_that_is_held_up_lets_one_go_on() -> None:
         for _ in range(20):  # whether others hold a team up is up to them
             crowded, _ = cases.dem_of(case, 2)
             crowded.run(last)
-            lone += crowded.lone_steps
+            lone += crowded.serial_steps
             assert flat(crowded.records()) + end(crowded) == flat(alone.records()) + end(alone)
             if lone:
                 break

@@ -48,11 +48,11 @@ def cloud(
     return rb.Case(structure=structure, damper=damper, duration=duration, output=rb.Output(rate=rate), method=method)
 
 
-def momenta(now: dict[str, Any], contents: Any) -> tuple[Any, Any]:
+def momenta(now: Any, contents: Any) -> tuple[Any, Any]:
     """Return momentum and angular momentum about the origin of all particles, each (n, 3)."""
-    momentum = contents.mass[:, None] * now["velocity"]
-    turning = contents.inertia[:, None] * now["spin"]
-    return momentum, np.cross(now["position"], momentum) + turning
+    momentum = contents.mass[:, None] * now.velocity
+    turning = contents.inertia[:, None] * now.spin
+    return momentum, np.cross(now.position, momentum) + turning
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -65,12 +65,12 @@ def test_particles_alone_keep_both_momenta(law: str) -> None:
     (before, turning), kept = momenta(cases.particles_start(case), contents), []
     for k in range(1, 9):
         dem.run(last * k // 8)
-        after, turned = momenta(dem.state()["cavities"][0], contents)
+        after, turned = momenta(dem.state().cavities[0], contents)
         scale = np.abs(before).sum(), np.abs(turning).sum()
         assert np.abs(after.sum(axis=0) - before.sum(axis=0)).max() < 1e-13 * scale[0]
         assert np.abs(turned.sum(axis=0) - turning.sum(axis=0)).max() < 1e-13 * scale[1]
         kept.append(np.abs(after - before).sum() / scale[0])
-    touches = dem.counters()["first_touches"][0]
+    touches = dem.counts().first_touches[0]
     assert touches[0] > 200 and touches[1] == 0
     assert kept[-1] > 0.1
 
@@ -179,13 +179,13 @@ def test_moment_on_the_cavity_is_the_change_of_angular_momentum(law: str, cavity
     moments, turning, weighing = [], [], []
     for k in range(steps):
         dem.run(k)
-        now = dem.state()["cavities"][0]
-        moments.append(dem.records()["moment"][-1, 0])
+        now = dem.state().cavities[0]
+        moments.append(dem.records().moment[-1, 0])
         turning.append(momenta(now, contents)[1].sum(axis=0))
-        weighing.append(np.cross(contents.mass @ now["position"], gravity))
+        weighing.append(np.cross(contents.mass @ now.position, gravity))
     half = [0.5 * (np.array(each)[1:] + np.array(each)[:-1]) for each in (moments, weighing)]
     rate = np.diff(turning, axis=0) / dt
-    assert dem.counters()["first_touches"][0][1] > 10
+    assert dem.counts().first_touches[0][1] > 10
     assert np.abs(half[0]).max() > 1e-3
     assert half[0] == pytest.approx(
         half[1] - rate, abs=1e-8 * np.abs(half[0]).max() + 1e-13 * np.abs(turning).max() / dt

@@ -74,31 +74,29 @@ def follow(case: Any, checks: int = 40) -> dict[str, int]:
         until = every * round(last / every * k / checks)
         dem.run(until)
         assert dem.status == 0
-        now, raw = dem.state()["cavities"][0], dem.records()
-        moved = raw["q"][-1] @ cavity_shape(case)
-        found = brute.look(now["position"] - moved, contents.radius, walls, inside, wall, 1e-12)
+        now, raw = dem.state().cavities[0], dem.records()
+        moved = raw.q[-1] @ cavity_shape(case)
+        found = brute.look(now.position - moved, contents.radius, walls, inside, wall, 1e-12)
         listed = dem.contacts(0)
-        there = {
-            (min(i, j), max(i, j)) for i, j in zip(listed["first"].tolist(), listed["second"].tolist(), strict=True)
-        }
-        assert len(there) == len(listed["first"])
+        there = {(min(i, j), max(i, j)) for i, j in zip(listed.first.tolist(), listed.second.tolist(), strict=True)}
+        assert len(there) == len(listed.first)
         assert found.pairs <= there <= found.pairs | found.doubtful
         force = np.zeros((n, 3))
-        np.add.at(force, listed["first"], listed["force"])
-        between = listed["second"] < n
-        np.subtract.at(force, listed["second"][between], listed["force"][between])
+        np.add.at(force, listed.first, listed.force)
+        between = listed.second < n
+        np.subtract.at(force, listed.second[between], listed.force[between])
         # Of an overlap of micrometres some 1e-10 is lost when places are rounded.
         scale = np.abs(found.force).max() + 1e-30
         assert np.abs(force - found.force).max() < 1e-8 * scale
-        assert np.abs(raw["force"][-1, 0] - found.on_cavity).max() < 1e-8 * scale
-        assert np.abs(raw["moment"][-1, 0] - found.moment).max() < 1e-8 * scale * 0.05
-        assert raw["contacts"][-1, 0].sum() == len(there)
+        assert np.abs(raw.force[-1, 0] - found.on_cavity).max() < 1e-8 * scale
+        assert np.abs(raw.moment[-1, 0] - found.moment).max() < 1e-8 * scale * 0.05
+        assert raw.contacts[-1, 0].sum() == len(there)
         seen |= there
     return {
         "pairs": sum(j < n for _, j in seen),
         "walls": sum(j >= n for _, j in seen),
-        "builds": dem.counters()["rebuilds"],
-        "scans": dem.counters().get("refreshes", 0),
+        "builds": dem.counts().rebuilds,
+        "scans": dem.counts().refreshes,
     }
 
 

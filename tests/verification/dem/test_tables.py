@@ -180,7 +180,7 @@ def test_softening_does_what_is_told(law: str) -> None:
         touching = 0
         for step in range(last + 1):
             dem.run(step)
-            touching += dem.contacts(0)["first"].size > 0
+            touching += dem.contacts(0).first.size > 0
         overlap = result.diagnostics["largest_overlap"]
         found.append((touching * case.method.dt, overlap, cases.rebound(result)))
     (time, overlap, rebound), (longer, larger, after) = found

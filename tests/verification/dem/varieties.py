@@ -67,10 +67,11 @@ def pair(options: dict[str, Any]) -> Any:
 def told(dem: Any) -> dict[str, Any]:
     """Return all that a simulation of either engine tells."""
     state = dem.state()
-    ends = {f"{key} {k}": part[key] for k, part in enumerate(state["cavities"]) for key in part}
-    counters = dem.counters()
-    counts = {name: counters[name] for name in ("first_touches", "largest_overlap", "largest_approach_speed")}
-    return {**dem.records(), **ends, **counts, "end of q": state["q"], "status": dem.status}
+    ends = {f"{key} {k}": getattr(part, key) for k, part in enumerate(state.cavities) for key in part.fields()}
+    counts, records = dem.counts(), dem.records()
+    most = {name: getattr(counts, name) for name in ("first_touches", "largest_overlap", "largest_approach_speed")}
+    samples = {name: getattr(records, name) for name in records.fields()}
+    return {**samples, **ends, **most, "end of q": state.q, "status": dem.status}
 
 
 def agree(one: Any, other: Any, to: float) -> None:

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
+from rattlebox.engines import _core
 from rattlebox.model.errors import Hint
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.continuation import ContinuationWork, without_states
@@ -184,9 +185,9 @@ def _looked_at(maps: xarray.Dataset, task: ImpactWork, tolerance: float) -> xarr
     repeats, _ = period_of(reduced_strobes(maps, task.packed, period), tolerance)
     maps["period"] = over, repeats, {"units": "1", "long_name": "cycles after which the motion repeats"}
     if "last_time" in maps:
-        load = next(load for load in task.packed["loads"] if load["kind"] == "harmonic")
+        load = next(load.signal for load in task.packed.loads if isinstance(load.signal, _core.Harmonic))
         time = maps.last_time.where(maps.last_time >= _column(task.look.start))
-        phase = (_column(load["frequency"]) * time + _column(load["phase"])) % (2 * np.pi)
+        phase = (_column(load.frequency) * time + _column(load.phase)) % (2 * np.pi)
         maps = maps.rename(last="impact", last_approach_speed="approach_speed", last_contact="contact")
         maps["impact_phase"] = (*over, "impact"), phase.values, {"units": "rad", "long_name": "phase of the load"}
         for name in ("approach_speed", "contact"):

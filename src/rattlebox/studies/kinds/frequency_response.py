@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
+from rattlebox.engines import _core
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
@@ -184,19 +185,20 @@ def _driver(case: Case) -> tuple[str, Harmonic]:
 def _bare(task: ImpactWork) -> NDArray[np.float64]:
     """Amplitude of the structure without dampers, (levels, frequencies)."""
     packed = task.packed
-    load = next(load for load in packed["loads"] if load["kind"] == "harmonic")
-    omega = load["frequency"]
-    dynamic = packed["mode_stiffness"] - omega**2 + 2j * packed["mode_decay"] * omega
+    load, signal = next((load, load.signal) for load in packed.loads if isinstance(load.signal, _core.Harmonic))
+    omega = signal.frequency
+    dynamic: NDArray[np.complex128] = packed.mode_stiffness - omega**2 + 2j * packed.mode_decay * omega
     coupling = task.case.modes.coupling
     if coupling is None:
-        motion = load["shape"] / dynamic
+        motion = load.shape / dynamic
     else:
-        matrix = np.moveaxis(1j * omega * coupling[..., None, None], (0, 1), (-2, -1))
+        matrix = np.moveaxis(1j * np.asarray(omega) * coupling[..., None, None], (0, 1), (-2, -1))
         matrix = matrix + np.moveaxis(dynamic, 0, -1)[..., None] * np.eye(len(coupling))
-        force = np.broadcast_to(np.moveaxis(load["shape"], 0, -1), matrix.shape[:-1])
-        motion = np.moveaxis(np.linalg.solve(matrix, force[..., None])[..., 0], -1, 0)
+        force = np.broadcast_to(np.moveaxis(load.shape, 0, -1), matrix.shape[:-1])
+        solution = np.linalg.solve(matrix, force[..., None])[..., 0]
+        motion = np.moveaxis(np.asarray(solution, np.complex128), -1, 0)
     response = np.sum(task.look.shape * motion, axis=0)
-    return np.asarray(np.broadcast_to(np.abs(load["amplitude"] * response), task.grid.shape))
+    return np.asarray(np.broadcast_to(np.abs(signal.amplitude * response), task.grid.shape))
 
 
 def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float) -> xarray.Dataset:

@@ -14,6 +14,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
+from rattlebox.engines import _core
 from rattlebox.model.case import Case
 from rattlebox.model.units import Number, Whole
 from rattlebox.studies.axes import read_axes
@@ -174,9 +175,9 @@ class LyapunovWork:
         packed = self.sweep.packed
         if self.count < 2:
             raise CaseError("to look at one cycle is one step, and at least two are needed\n  try: steps = 100")
-        if np.ndim(packed["settings"]["duration"]) and self.cycles is None:
+        if np.ndim(packed.settings.duration) and self.cycles is None:
             raise CaseError("the duration differs between variants\n  try: cycles, or one duration for all")
-        if any(load["kind"] == "record" for load in packed["loads"]):
+        if any(isinstance(load.signal, _core.Record) for load in packed.loads):
             raise CaseError(
                 "motions under a record cannot be started anew in its middle\n"
                 "  try: rattlebox.analysis.lyapunov_exponent with pairs of runs"
@@ -219,7 +220,7 @@ class LyapunovWork:
         part = np.arange(1, self.count + 1) / self.count
         if self.cycles:
             return {"cycle": ("cycle", self.cycles[1] * part, {"units": "1", "long_name": "cycles looked at"})}
-        seconds = (float(self.sweep.packed["settings"]["duration"]) - self.skip) * part
+        seconds = (float(self.sweep.packed.settings.duration) - self.skip) * part
         return {"time": ("time", seconds, {"units": "s", "long_name": "time looked at"})}
 
     def describe(self) -> dict[str, Any]:

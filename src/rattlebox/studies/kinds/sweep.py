@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rattlebox.engines.status import REFUSED
+from rattlebox.engines._core import Status
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import Whole
 from rattlebox.studies.axes import read_axes
@@ -139,7 +139,7 @@ sweep = study_function(Sweep)
 
 def _first_refused(work: ParticleWork, result: xarray.Dataset) -> dict[str, str]:
     """Return the first variant that could not run, and the reason, as an attribute."""
-    refused = np.flatnonzero(result.status.values == REFUSED)
+    refused = np.flatnonzero(result.status.values == Status.refused)
     if not refused.size or not (why := work.why_refused(int(refused[0]))):
         return {}
     reason = why.replace("\n", "\n  ")

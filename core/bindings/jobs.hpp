@@ -1,4 +1,4 @@
-// Threads that work off numbered jobs without the GIL, while this one listens for Ctrl-C.
+// Numbered jobs on several threads without the GIL, while the calling thread checks for Ctrl-C.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -12,15 +12,15 @@
 #include <thread>
 #include <vector>
 
-namespace rattlebox::door {
+namespace rattlebox::bindings {
 
 namespace nb = nanobind;
 
 // Calls job(i, thread, stop) for i in 0..count, `chunk` at a time on one thread. Every 20 ms go_on(jobs done)
-// is asked with the GIL held; when it says no, or after Ctrl-C, `stop` is set and the rest is left. False
-// when it was stopped.
+// is called with the GIL held; when it returns false, or after Ctrl-C, `stop` is set and the remaining jobs
+// are left out. Returns false when it was stopped.
 template <class Job, class GoOn>
-bool work_off(std::size_t count, int threads, std::size_t chunk, Job&& job, GoOn&& go_on) {
+bool run_jobs(std::size_t count, int threads, std::size_t chunk, Job&& job, GoOn&& go_on) {
     std::atomic<bool> stop{false};
     std::atomic<std::size_t> next{0}, done{0};
     std::mutex mutex;
@@ -66,4 +66,4 @@ bool work_off(std::size_t count, int threads, std::size_t chunk, Job&& job, GoOn
     return !stopped;
 }
 
-} // namespace rattlebox::door
+} // namespace rattlebox::bindings

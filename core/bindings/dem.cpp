@@ -1,0 +1,193 @@
+#include "bindings/dem.hpp"
+
+#include <chrono>
+
+#include "bindings/dem_problem.hpp"
+#include "bindings/jobs.hpp"
+#include "dem/simulation.hpp"
+#include "util/archive.hpp"
+
+namespace rattlebox::bindings {
+
+namespace {
+
+using namespace dem;
+using Bytes = nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using State = nb::ndarray<nb::numpy, const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Progress = std::optional<nb::typed<nb::callable, nb::object(long)>>;
+
+class Dem {
+    DemNumbers packed_; // tables of the simulation point into its arrays
+    std::unique_ptr<Simulation> simulation_;
+    int threads_ = 1;
+    double seconds_ = 0;
+
+    const Bed& bed(std::size_t b) const { return simulation_->beds().at(b); }
+
+    // Positions, velocities and spins at the last step whose forces are known: taken back from where
+    // particles are going to.
+    CavityState cavity_state(const Bed& b) const {
+        const real dt = simulation_->step() > 0 ? simulation_->problem().dt : 0;
+        const auto rates = [&](std::size_t i) {
+            const int k = static_cast<int>(i);
+            return at(b.touched, k) ? at(b.rates, k) : Rates{simulation_->body_shown(), {}};
+        };
+        const std::vector<int> number(b.name.begin(), b.name.end());
+        return {{},
+                in_order(number,
+                         [&](std::size_t i) {
+                             return b.position[i] - (b.velocity[i] - rates(i).velocity * (0.5 * dt)) * dt;
+                         }),
+                in_order(number, [&](std::size_t i) { return b.velocity[i] - rates(i).velocity * dt; }),
+                in_order(number, [&](std::size_t i) { return b.spin[i] - rates(i).spin * dt; }),
+                owned<Doubles<1>>(std::vector<real>{b.shown[0], b.shown[1], b.shown[2]})};
+    }
+
+public:
+    explicit Dem(const DemNumbers& packed)
+        : packed_(packed), simulation_(std::make_unique<Simulation>(dem_problem(packed_))) {}
+
+    bool run(long until, const Progress& progress) {
+        const auto from = std::chrono::steady_clock::now();
+        const auto work = [&](std::size_t, int, const std::atomic<bool>& stop) {
+            simulation_->run(until, threads_, stop);
+        };
+        const auto go_on = [&](std::size_t) {
+            return !progress || !(*progress)(simulation_->step()).is(nb::bool_(false));
+        };
+        const auto measure = [&] {
+            seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
+        };
+        try {
+            const bool finished = run_jobs(1, 1, 1, work, go_on);
+            measure();
+            return finished;
+        } catch (...) {
+            measure();
+            throw;
+        }
+    }
+
+    RecordArrays records() {
+        const dem::Problem& p = simulation_->problem();
+        return {std::move(simulation_->records()), p.modes.size(), p.loads.size(), p.cavities.size()};
+    }
+
+    DemState state() const {
+        DemState s;
+        s.step = std::max(simulation_->step() - 1, 0L);
+        s.time = static_cast<real>(s.step) * simulation_->problem().dt;
+        std::vector<real> q, p;
+        for (const ModeState& m : simulation_->modes()) q.push_back(m.q), p.push_back(m.p);
+        s.q = owned<Doubles<1>>(std::move(q)), s.p = owned<Doubles<1>>(std::move(p));
+        for (const Bed& b : simulation_->beds()) s.cavities.push_back(cavity_state(b));
+        return s;
+    }
+
+    // Contacts at the last instant, where a run was asked to end.
+    TouchingRows contacts(std::size_t cavity) const {
+        const Bed& b = bed(cavity);
+        if (!simulation_->has_contact_forces())
+            throw std::logic_error("single contacts are known where a run was asked to end");
+        std::vector<std::int64_t> first, second;
+        std::vector<real> force;
+        for (const Chunk& chunk : b.chunks)
+            for (const ContactList* list : {&chunk.pairs, &chunk.walls})
+                for (int a = 0; a < list->touching_count; ++a) {
+                    const int k = at(list->touching, a), j = at(list->second, k);
+                    first.push_back(at(b.name, at(list->first, k)));
+                    second.push_back(list == &chunk.pairs ? at(b.name, j) : b.particles() + j);
+                    const Row push = at(list->contact_forces.all, a).force;
+                    for (int x = 0; x < 3; ++x) force.push_back(push[x]);
+                }
+        const std::size_t n = first.size();
+        return {{},
+                owned<Integers<1>>(std::move(first)),
+                owned<Integers<1>>(std::move(second)),
+                owned<Doubles<2>>(std::move(force), {n, 3})};
+    }
+
+    DemCounts counts() const {
+        DemCounts sum;
+        std::vector<std::int64_t> touches;
+        std::vector<real> deepest, fastest, enduring;
+        for (const Bed& b : simulation_->beds()) {
+            std::int64_t own[2] = {};
+            deepest.push_back(0), fastest.push_back(0), enduring.push_back(0);
+            for (const Chunk& c : b.chunks) {
+                sum.candidates += c.pairs.size() + c.walls.size();
+                sum.extrapolated += c.tally.extrapolated;
+                for (int p = 0; p < 2; ++p) own[p] += c.tally.first_touches[p];
+                deepest.back() = std::fmax(deepest.back(), c.tally.deepest.ratio());
+                fastest.back() = std::fmax(fastest.back(), c.tally.fastest);
+                for (const Lanes& lost : c.tally.enduring) enduring.back() += total(lost);
+            }
+            touches.insert(touches.end(), own, own + 2);
+        }
+        sum.steps = simulation_->step(), sum.rebuilds = simulation_->builds();
+        sum.refreshes = simulation_->scans();
+        sum.memory_bytes = simulation_->memory(), sum.seconds = seconds_;
+        sum.first_touches = owned<Integers<2>>(std::move(touches), {simulation_->beds().size(), 2});
+        sum.largest_overlap = owned<Doubles<1>>(std::move(deepest));
+        sum.largest_approach_speed = owned<Doubles<1>>(std::move(fastest));
+        sum.enduring_loss = owned<Doubles<1>>(std::move(enduring));
+        return sum;
+    }
+
+    StoppedAt stopped() const {
+        const Stopped& s = simulation_->stopped();
+        return {{},
+                simulation_->stopped_cavity(),
+                s.particle,
+                s.wall,
+                static_cast<real>(simulation_->step() - 1) * simulation_->problem().dt,
+                s.value};
+    }
+
+    Bytes save() {
+        Sizer size;
+        simulation_->keep(size);
+        Writer writer(size.bytes);
+        simulation_->keep(writer);
+        return owned<Bytes>(std::move(writer.bytes));
+    }
+
+    void restore(const State& bytes) {
+        BackReader reader(reinterpret_cast<const char*>(bytes.data()), bytes.shape(0));
+        simulation_->restore(reader);
+    }
+
+    Status status() const { return simulation_->status(); }
+    int threads() const { return threads_; }
+    void set_threads(int n) {
+        if (n < 1) throw std::invalid_argument("at least one thread is needed");
+        threads_ = n;
+    }
+    long step() const { return simulation_->step(); }
+    long serial_steps() const { return simulation_->serial_steps(); }
+};
+
+} // namespace
+
+void add_dem(nb::module_& module) {
+    add_dem_problem(module);
+    nb::class_<Dem>(module, "Dem", "A simulation of particle dampers, which is run in pieces.")
+        .def(nb::init<const DemNumbers&>(), nb::arg("problem"))
+        .def("run", &Dem::run, nb::arg("until"), nb::arg("progress") = nb::none(),
+             "Run until the sample of step `until` is taken; False when it was stopped before.")
+        .def("records", &Dem::records, "Return the samples taken since the last call.")
+        .def("state", &Dem::state, "Return the state at the last step whose forces are known.")
+        .def("contacts", &Dem::contacts, nb::arg("cavity"),
+             "Return the contacts where a run was asked to end.")
+        .def("counts", &Dem::counts, "Return counts and extremes since the start.")
+        .def("stopped", &Dem::stopped, "Return where the run stopped.")
+        .def("save", &Dem::save, "Return all that a bitwise restart needs.")
+        .def("restore", &Dem::restore, nb::arg("bytes"), "Continue from a saved state.")
+        .def_prop_ro("status", &Dem::status)
+        .def_prop_ro("step", &Dem::step, "The step to come.")
+        .def_prop_ro("serial_steps", &Dem::serial_steps,
+                     "Steps that one thread took alone while others were held up.")
+        .def_prop_rw("threads", &Dem::threads, &Dem::set_threads);
+}
+
+} // namespace rattlebox::bindings

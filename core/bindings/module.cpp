@@ -1,0 +1,61 @@
+// The Python module of the core: problems in, results out.
+
+#include <chrono>
+
+#include "bindings/dem.hpp"
+#include "bindings/sweep.hpp"
+
+namespace {
+
+namespace nb = nanobind;
+using namespace rattlebox;
+
+struct Job {
+    Problem problem;
+    Result result;
+    double seconds = 0;
+    bool begun = false;
+};
+
+// Runs all problems on `threads` threads. Each result is computed by one thread alone: the same bits for any
+// number. Ctrl-C ends the runs in progress with a status of their own.
+std::vector<bindings::RunResult> simulate(const std::vector<bindings::ProblemNumbers>& problems,
+                                          int threads) {
+    std::vector<Job> jobs(problems.size());
+    for (std::size_t i = 0; i < jobs.size(); ++i) bindings::fill_problem(jobs[i].problem, problems[i]);
+    const auto work = [&](std::size_t i, int, const std::atomic<bool>& stop) {
+        const auto from = std::chrono::steady_clock::now();
+        jobs[i].begun = true;
+        jobs[i].result = run(jobs[i].problem, &stop);
+        jobs[i].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
+    };
+    try {
+        bindings::run_jobs(jobs.size(), threads, 1, work, [](std::size_t) { return true; });
+    } catch (nb::python_error& error) {
+        if (!error.matches(PyExc_KeyboardInterrupt)) throw;
+    }
+    std::vector<bindings::RunResult> results;
+    for (Job& job : jobs) {
+        if (!job.begun) job.result.status = Status::interrupted;
+        results.emplace_back(job.problem, std::move(job.result), job.seconds);
+    }
+    return results;
+}
+
+} // namespace
+
+NB_MODULE(RATTLEBOX_MODULE, module) {
+    nb::set_leak_warnings(false); // objects of a traceback or a cache live until the interpreter ends
+    module.doc() = "The compiled core of Rattlebox.";
+    bindings::add_node(module);
+    bindings::add_laws(module);
+    bindings::add_structure(module);
+    bindings::add_problem(module);
+    bindings::add_results(module);
+    bindings::add_sweep(module);
+    bindings::add_dem(module);
+    module.attr("worst_closure") = worst_closure;
+    module.attr("speed_at_rest") = speed_at_rest;
+    module.def("simulate", &simulate, nb::arg("problems"), nb::arg("threads") = 1,
+               "Run problems of the 1-D engine and return their results.");
+}

@@ -1,0 +1,122 @@
+// What a run of the 1-D engine returns.
+#pragma once
+
+#include "bindings/node.hpp"
+#include "impact/log.hpp"
+
+namespace rattlebox::bindings {
+
+using Flags = nb::ndarray<nb::numpy, bool, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+// One row for each impact.
+struct ImpactColumns : Node {
+    Integers<1> damper, contact;
+    Doubles<1> time, approach_speed, restitution, separation_speed, duration, peak_overlap, peak_force,
+        energy_lost;
+    Flags complete;
+
+    ImpactColumns() = default;
+    ImpactColumns(const Problem& problem, const std::vector<Impact>& log)
+        : time(doubles(log, &Impact::time)), approach_speed(doubles(log, &Impact::approach_speed)),
+          restitution(doubles(log, &Impact::restitution)),
+          separation_speed(doubles(log, &Impact::separation_speed)),
+          duration(doubles(log, &Impact::duration)), peak_overlap(doubles(log, &Impact::peak_overlap)),
+          peak_force(doubles(log, &Impact::peak_force)), energy_lost(doubles(log, &Impact::energy_lost)) {
+        std::vector<std::int64_t> dampers, contacts;
+        std::vector<std::int8_t> whole;
+        for (const Impact& impact : log) {
+            const int own = problem.contacts[static_cast<std::size_t>(impact.contact)].damper;
+            dampers.push_back(own);
+            contacts.push_back(impact.contact - problem.dampers[static_cast<std::size_t>(own)].first_contact);
+            whole.push_back(impact.complete);
+        }
+        damper = owned<Integers<1>>(std::move(dampers));
+        contact = owned<Integers<1>>(std::move(contacts));
+        complete = owned<Flags>(std::move(whole));
+    }
+
+private:
+    static Doubles<1> doubles(const std::vector<Impact>& log, real Impact::* member) {
+        std::vector<real> values;
+        values.reserve(log.size());
+        for (const Impact& impact : log) values.push_back(impact.*member);
+        return owned<Doubles<1>>(std::move(values));
+    }
+};
+
+struct RunCounts : Node, Counts {};
+
+struct RunResult : Node {
+    Doubles<1> time;
+    Doubles<2> state;
+    Flags chosen;
+    Doubles<1> load_work, base_work, viscous_loss;
+    Doubles<2> normal_loss, plastic_loss, contact_energy, cavity_force;
+    ImpactColumns impacts;
+    RunCounts counts;
+    Status status{};
+    double closure_bound = 0, stopped_at = 0, stopped_value = 0;
+    int stopped_contact = -1;
+    double seconds = 0;
+
+    RunResult() = default;
+    RunResult(const Problem& problem, Result&& r, double took)
+        : impacts(problem, r.impacts), counts{{}, r.counts}, status(r.status),
+          closure_bound(problem.settings.closure_bound()), stopped_at(r.stopped_at),
+          stopped_value(r.stopped_value), stopped_contact(r.stopped_contact), seconds(took) {
+        Samples& s = r.samples;
+        const std::size_t n = s.time.size(), d = problem.dampers.size();
+        const std::size_t states = 2 * (problem.modes.size() + problem.ball_mass.size());
+        time = owned<Doubles<1>>(std::move(s.time));
+        state = owned<Doubles<2>>(std::move(s.state), {n, states});
+        chosen = owned<Flags>(std::move(s.given));
+        load_work = owned<Doubles<1>>(std::move(s.load_work));
+        base_work = owned<Doubles<1>>(std::move(s.base_work));
+        viscous_loss = owned<Doubles<1>>(std::move(s.viscous));
+        normal_loss = owned<Doubles<2>>(std::move(s.normal), {n, d});
+        plastic_loss = owned<Doubles<2>>(std::move(s.plastic), {n, d});
+        contact_energy = owned<Doubles<2>>(std::move(s.stored), {n, d});
+        cavity_force = owned<Doubles<2>>(std::move(s.force), {n, d});
+    }
+};
+
+inline void add_results(nb::module_& module) {
+    nb::enum_<Status>(module, "Status", nb::is_arithmetic(), "How a run ended.")
+        .value("finished", Status::finished)
+        .value("law_domain", Status::law_domain)
+        .value("too_many_events", Status::too_many_events)
+        .value("step_too_small", Status::step_too_small)
+        .value("interrupted", Status::interrupted)
+        .value("not_finite", Status::not_finite)
+        .value("energy_error", Status::energy_error)
+        .value("escaped", Status::escaped)
+        .value("no_rebound", Status::no_rebound)
+        .value("refused", Status::refused);
+    using I = ImpactColumns;
+    define<I>(module, "Impacts", "The impact log, one row for each impact.", field("damper", &I::damper),
+              field("contact", &I::contact), field("time", &I::time),
+              field("approach_speed", &I::approach_speed), field("restitution", &I::restitution),
+              field("separation_speed", &I::separation_speed), field("duration", &I::duration),
+              field("peak_overlap", &I::peak_overlap), field("peak_force", &I::peak_force),
+              field("energy_lost", &I::energy_lost), field("complete", &I::complete));
+    define<RunCounts>(module, "Counts", "Counts of the work of a run.", field("events", &Counts::events),
+                      field("flights", &Counts::flights), field("contact_steps", &Counts::contact_steps),
+                      field("rejected_steps", &Counts::rejected_steps),
+                      field("collocated", &Counts::collocated), field("extrapolated", &Counts::extrapolated),
+                      field("sticks", &Counts::sticks));
+    using R = RunResult;
+    define<R>(
+        module, "Result",
+        "A run of the 1-D engine. `state` holds displacement and velocity of each mode, then positions and "
+        "velocities of all balls; `chosen` says which samples are at times that the problem asks for.",
+        field("time", &R::time), field("state", &R::state), field("chosen", &R::chosen),
+        field("load_work", &R::load_work), field("base_work", &R::base_work),
+        field("viscous_loss", &R::viscous_loss), field("normal_loss", &R::normal_loss),
+        field("plastic_loss", &R::plastic_loss), field("contact_energy", &R::contact_energy),
+        field("cavity_force", &R::cavity_force), field("impacts", &R::impacts), field("counts", &R::counts),
+        field("status", &R::status), field("closure_bound", &R::closure_bound),
+        field("stopped_at", &R::stopped_at), field("stopped_value", &R::stopped_value),
+        field("stopped_contact", &R::stopped_contact), field("seconds", &R::seconds));
+}
+
+} // namespace rattlebox::bindings

@@ -1,0 +1,151 @@
+// Runs the variants of a batch and returns measures of each, not their trajectories.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+
+#include "bindings/impact.hpp"
+#include "bindings/jobs.hpp"
+#include "bindings/results.hpp"
+#include "impact/member.hpp"
+#include "impact/run.hpp"
+
+namespace rattlebox::bindings {
+
+using Progress = std::optional<nb::typed<nb::callable, nb::object(std::size_t)>>;
+
+struct WindowNumbers : Node {
+    Number start, period;
+    Vector shape;
+    int samples = 0;
+};
+
+// One thread's own problem, which its columns write into.
+struct Worker {
+    Problem problem;
+    Batch batch;
+    Window window;
+
+    Worker(const ProblemNumbers& packed, const std::vector<std::size_t>& grid, const WindowNumbers& look,
+           const Wanted& wanted) {
+        batch.shape = grid;
+        fill_problem(problem, packed, &batch);
+        Filler fill(&batch);
+        fill.number(window.from, look.start);
+        fill.number(window.period, look.period);
+        const std::size_t components = look.shape.ndim() > 0 ? look.shape.shape(0) : 0;
+        if (components > problem.modes.size())
+            throw std::invalid_argument("the point has too many mode shapes");
+        fill.vector(window.shape, look.shape, components);
+        window.samples = look.samples;
+        problem.settings.peaks = std::any_of(wanted.measures.begin(), wanted.measures.end(),
+                                             [](int m) { return measures[m].peaks; });
+    }
+    Worker(const Worker&) = delete; // columns point into it
+};
+
+// What is kept of the variants, one row for each; NaN where a run did not finish.
+struct Block : Node {
+    nb::ndarray<nb::numpy, std::int8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu> status;
+    std::vector<Doubles<1>> measures;
+    std::optional<Doubles<2>> displacement, velocity, state, last_time, last_approach_speed, last_contact;
+    std::optional<Doubles<3>> ball_place, ball_speed;
+};
+
+inline Wanted wanted(const std::vector<std::string>& names, bool motion, bool state, std::size_t last) {
+    Wanted found{{}, motion, state, last};
+    for (const std::string& name : names) {
+        int number = -1;
+        for (int m = 0; m < static_cast<int>(std::size(measures)); ++m)
+            if (name == measures[m].name) number = m;
+        if (number < 0) throw std::invalid_argument("the core has no measure named '" + name + "'");
+        found.measures.push_back(number);
+    }
+    return found;
+}
+
+// Variants start to stop of a batch; none when `progress` has returned False.
+inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vector<std::size_t>& grid,
+                                  std::size_t start, std::size_t stop, const WindowNumbers& window,
+                                  const std::vector<std::string>& names, bool motion, bool state,
+                                  std::size_t last, int threads, const Progress& progress) {
+    const Wanted keep = wanted(names, motion, state, last);
+    std::vector<std::unique_ptr<Worker>> workers;
+    for (int t = 0; t < threads; ++t) workers.push_back(std::make_unique<Worker>(packed, grid, window, keep));
+    Kept kept;
+    const std::size_t n = kept.members = stop - start;
+    std::vector<real> numbers(kept.lay(workers.at(0)->problem, workers[0]->window, keep), not_a_number);
+    std::vector<std::int8_t> status(n, static_cast<std::int8_t>(Status::interrupted));
+    kept.numbers = numbers.data();
+    kept.status = status.data();
+    const bool finished = run_jobs(
+        n, threads, 4,
+        [&](std::size_t i, int thread, const std::atomic<bool>& stopped) {
+            Worker& worker = *workers[static_cast<std::size_t>(thread)];
+            worker.batch.apply(start + i);
+            worker.window.place(worker.problem);
+            kept.keep(i, worker.problem, worker.window, keep, run(worker.problem, &stopped));
+        },
+        [&](std::size_t done) { return !progress || !(*progress)(done).is(nb::bool_(false)); });
+    if (!finished) return {};
+    const auto part = [&]<std::size_t axes>(const std::size_t (&shape)[axes], std::size_t first) {
+        std::size_t size = 1;
+        for (const std::size_t length : shape) size *= length;
+        const auto* from = numbers.data() + first;
+        return owned<Doubles<static_cast<int>(axes)>>(std::vector<real>(from, from + size),
+                                                      {shape, shape + axes});
+    };
+    const std::size_t samples = static_cast<std::size_t>(workers[0]->window.samples),
+                      balls = workers[0]->problem.ball_mass.size(), modes = workers[0]->problem.modes.size();
+    Block block;
+    block.status = owned<decltype(block.status)>(std::move(status));
+    for (std::size_t m = 0; m < keep.measures.size(); ++m)
+        block.measures.push_back(part({n}, kept.measures + m * n));
+    if (motion) {
+        block.displacement = part({n, samples}, kept.displacement);
+        block.velocity = part({n, samples}, kept.velocity);
+        block.ball_place = part({n, samples, balls}, kept.place);
+        block.ball_speed = part({n, samples, balls}, kept.speed);
+    }
+    if (state) block.state = part({n, 2 * (modes + balls)}, kept.state);
+    if (last > 0) {
+        block.last_time = part({n, last}, kept.last_time);
+        block.last_approach_speed = part({n, last}, kept.last_speed);
+        block.last_contact = part({n, last}, kept.last_contact);
+    }
+    return block;
+}
+
+inline void add_sweep(nb::module_& module) {
+    using W = WindowNumbers;
+    define<W>(
+        module, "Window",
+        "Equally spaced samples of each run from `start` to its end, in cycles of `period`, of a point with "
+        "these mode shapes.",
+        field("start", &W::start), field("period", &W::period), field("shape", &W::shape),
+        field("samples", &W::samples));
+    using B = Block;
+    define<B>(module, "Block", "What is kept of the variants of a batch, one row for each.",
+              field("status", &B::status), field("measures", &B::measures),
+              field("displacement", &B::displacement), field("velocity", &B::velocity),
+              field("ball_place", &B::ball_place), field("ball_speed", &B::ball_speed),
+              field("state", &B::state), field("last_time", &B::last_time),
+              field("last_approach_speed", &B::last_approach_speed), field("last_contact", &B::last_contact));
+    module.def("sweep", &sweep, nb::arg("problem"), nb::arg("grid"), nb::arg("start"), nb::arg("stop"),
+               nb::arg("window"), nb::arg("measures"), nb::arg("motion") = false, nb::arg("state") = false,
+               nb::arg("last") = 0, nb::arg("threads") = 1, nb::arg("progress") = nb::none(),
+               "Run variants start to stop of a batch over a grid and return what is kept of them; None when "
+               "`progress` "
+               "has returned False.");
+    module.def(
+        "measures",
+        [] {
+            nb::typed<nb::dict, nb::str, bool> names;
+            for (const Measure& m : measures) names[m.name] = m.samples;
+            return names;
+        },
+        "Return the names of the measures, and whether each needs samples of the motion.");
+}
+
+} // namespace rattlebox::bindings

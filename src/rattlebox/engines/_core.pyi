@@ -1,0 +1,1211 @@
+"""The compiled core of Rattlebox."""
+
+from collections.abc import Callable, Sequence
+import enum
+from typing import Annotated, Self
+
+import numpy
+import numpy.typing
+from numpy.typing import NDArray
+
+
+class Varies(enum.Enum):
+    """How a field depends on the variant of a batch."""
+
+    number = 0
+
+    vector = 1
+
+    never = 2
+
+class Node:
+    """
+    An object with read-only fields that crosses between Python and the core.
+    """
+
+    @staticmethod
+    def fields() -> dict[str, Varies]:
+        """
+        Return the names of the fields, and how each depends on the variant of a batch.
+        """
+
+    def replace(self, **changes: object) -> Self:
+        """Return a copy with other values of some fields."""
+
+    def __repr__(self) -> str: ...
+
+class NormalForce(Node):
+    """A normal contact law for one pair."""
+
+    def resized(self, radius: float, mass: float, new_radius: float, new_mass: float) -> NormalForce:
+        """
+        Return the law of a pair of another size, given R* [m] and m* [kg] of both pairs.
+        """
+
+    def contact_time(self, speed: float) -> float:
+        """Return the duration of an undamped impact at this speed [s]."""
+
+    def largest_overlap(self, speed: float) -> float:
+        """Return an upper bound of the overlap of an impact at this speed [m]."""
+
+    def damping_ratio(self, restitution: float, speed: float) -> float:
+        """
+        Return the damping ratio of an impact with this restitution and speed; 0 for a law that yields.
+        """
+
+    @property
+    def needs_restitution(self) -> bool:
+        """Whether the dashpot follows from a restitution."""
+
+    @property
+    def elastic_coefficient(self) -> float:
+        """The coefficient of the elastic force, in the unit of the law."""
+
+    @property
+    def effective_mass(self) -> float:
+        """Effective mass of the pair [kg]."""
+
+class HertzTsujiForce(NormalForce):
+    """The law 'hertz_tsuji' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, stiffness: float | numpy.typing.NDArray[numpy.float64], mass: float | numpy.typing.NDArray[numpy.float64], alpha: float | numpy.typing.NDArray[numpy.float64] | None = None, zero_overlap: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def stiffness(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def mass(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def alpha(self) -> float | numpy.typing.NDArray[numpy.float64] | None: ...
+
+    @property
+    def zero_overlap(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class LinearForce(NormalForce):
+    """The law 'linear' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, stiffness: float | numpy.typing.NDArray[numpy.float64], mass: float | numpy.typing.NDArray[numpy.float64], damping: float | numpy.typing.NDArray[numpy.float64] | None = None, zero_overlap: float | numpy.typing.NDArray[numpy.float64], fixed_contact_time: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def stiffness(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def mass(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def damping(self) -> float | numpy.typing.NDArray[numpy.float64] | None: ...
+
+    @property
+    def zero_overlap(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def fixed_contact_time(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class ThorntonForce(NormalForce):
+    """The law 'thornton' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, stiffness: float | numpy.typing.NDArray[numpy.float64], mass: float | numpy.typing.NDArray[numpy.float64], radius: float | numpy.typing.NDArray[numpy.float64], modulus: float | numpy.typing.NDArray[numpy.float64], yield_pressure: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def stiffness(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def mass(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def radius(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def modulus(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def yield_pressure(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class PowerForce(NormalForce):
+    """The law 'power' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, stiffness: float | numpy.typing.NDArray[numpy.float64], mass: float | numpy.typing.NDArray[numpy.float64], exponent: float | numpy.typing.NDArray[numpy.float64], damping: float | numpy.typing.NDArray[numpy.float64], damping_exponent: float | numpy.typing.NDArray[numpy.float64], zero_overlap: float | numpy.typing.NDArray[numpy.float64], hertz: float | numpy.typing.NDArray[numpy.float64], fixed_restitution: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def stiffness(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def mass(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def exponent(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def damping(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def damping_exponent(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def zero_overlap(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def hertz(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def fixed_restitution(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class TabulatedForce(NormalForce):
+    """The law 'tabulated' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, stiffness: float | numpy.typing.NDArray[numpy.float64], mass: float | numpy.typing.NDArray[numpy.float64], loading_knots: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], loading_coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], loading_integral: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], unloading_knots: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], unloading_coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], unloading_integral: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    @property
+    def stiffness(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def mass(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def loading_knots(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def loading_coefficients(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def loading_integral(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def unloading_knots(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def unloading_coefficients(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def unloading_integral(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+def normal_law(law: str, coefficients: dict[str, object]) -> NormalForce:
+    """Return a law by its name, with its coefficients by their names."""
+
+class TangentialForce(Node):
+    """A tangential contact law for one pair."""
+
+    def stiffness_at(self, radius: float, mass: float, normal_stiffness: float, overlap: float) -> float:
+        """Return the tangential stiffness of a pair at an overlap [N/m]."""
+
+    @property
+    def friction_coefficient(self) -> float:
+        """Friction over normal force."""
+
+    @property
+    def damping_share(self) -> float:
+        """Damping ratio of the tangential dashpot over that of the normal one."""
+
+class MindlinFriction(TangentialForce):
+    """The law 'mindlin' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, friction: float | numpy.typing.NDArray[numpy.float64], shear_modulus: float | numpy.typing.NDArray[numpy.float64], damping: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def friction(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def shear_modulus(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def damping(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class SpringFriction(TangentialForce):
+    """The law 'spring' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, friction: float | numpy.typing.NDArray[numpy.float64], stiffness: float | numpy.typing.NDArray[numpy.float64], ratio: float | numpy.typing.NDArray[numpy.float64], damping: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def friction(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def stiffness(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def ratio(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def damping(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+def tangential_law(law: str, coefficients: dict[str, object]) -> TangentialForce:
+    """Return a law by its name, with its coefficients by their names."""
+
+class Restitution(Node):
+    """A restitution law for one pair."""
+
+    def at(self, speeds: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]:
+        """Return the restitution at each speed; NaN beyond the law."""
+
+class ConstantRestitution(Restitution):
+    """The law 'constant' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, e: float | numpy.typing.NDArray[numpy.float64], maximum: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def e(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def maximum(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class TableRestitution(Restitution):
+    """The law 'table' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, maximum: float | numpy.typing.NDArray[numpy.float64], speeds: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    @property
+    def maximum(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def speeds(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def values(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class JacksonGreenRestitution(Restitution):
+    """The law 'jackson_green' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, critical_speed: float | numpy.typing.NDArray[numpy.float64], yield_strain: float | numpy.typing.NDArray[numpy.float64], extrapolate: float | numpy.typing.NDArray[numpy.float64], maximum: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def critical_speed(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def yield_strain(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def extrapolate(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def maximum(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class ThorntonRestitution(Restitution):
+    """The law 'thornton' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, yield_speed: float | numpy.typing.NDArray[numpy.float64], maximum: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def yield_speed(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def maximum(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class JohnsonRestitution(Restitution):
+    """The law 'johnson' for one pair; see its header in core/contact."""
+
+    def __init__(self, *, speed_scale: float | numpy.typing.NDArray[numpy.float64], maximum: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def speed_scale(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def maximum(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+def restitution_law(law: str, coefficients: dict[str, object]) -> Restitution:
+    """Return a law by its name, with its coefficients by their names."""
+
+class RollingResistance(Node):
+    """Rolling resistance of one pair."""
+
+    def __init__(self, *, coefficient: float | numpy.typing.NDArray[numpy.float64], stiffness: float | numpy.typing.NDArray[numpy.float64], damping: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def coefficient(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def stiffness(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def damping(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+def restitution_of_damping(damping_ratio: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], zero_overlap: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]:
+    """Return the restitution that each damping ratio gives."""
+
+def damping_of_restitution(restitution: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], zero_overlap: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]:
+    """Return the damping ratio that gives each restitution."""
+
+class HalfSine(Node):
+    """A half-sine pulse: N or m/s^2, rad/s, rad, s, s."""
+
+    def __init__(self, *, amplitude: float | numpy.typing.NDArray[numpy.float64], frequency: float | numpy.typing.NDArray[numpy.float64], phase: float | numpy.typing.NDArray[numpy.float64], start: float | numpy.typing.NDArray[numpy.float64], stop: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def amplitude(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def frequency(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def phase(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def start(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def stop(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Harmonic(Node):
+    """A harmonic: N or m/s^2, rad/s, rad, s, s."""
+
+    def __init__(self, *, amplitude: float | numpy.typing.NDArray[numpy.float64], frequency: float | numpy.typing.NDArray[numpy.float64], phase: float | numpy.typing.NDArray[numpy.float64], start: float | numpy.typing.NDArray[numpy.float64], stop: float | numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    @property
+    def amplitude(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def frequency(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def phase(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def start(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def stop(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Record(Node):
+    """Straight lines through points, zero outside."""
+
+    def __init__(self, *, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    @property
+    def times(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def values(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Load(Node):
+    """
+    A signal and the force on each mode per unit of it; for the acceleration of the base minus the participation.
+    """
+
+    def __init__(self, *, signal: HalfSine | Harmonic | Record, shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], base: bool) -> None: ...
+
+    @property
+    def signal(self) -> HalfSine | Harmonic | Record: ...
+
+    @property
+    def shape(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def base(self) -> bool: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Method(enum.Enum):
+    event_driven = 0
+
+    newton = 1
+
+    two_step = 2
+
+class Settings(Node):
+    """Settings of a run of the 1-D engine."""
+
+    def __init__(self, *, method: Method, duration: float | numpy.typing.NDArray[numpy.float64], tolerance: float | numpy.typing.NDArray[numpy.float64] = 1e-12, max_events: int = 10000000, stick: float | numpy.typing.NDArray[numpy.float64] = 1e-06, dt_flight: float | numpy.typing.NDArray[numpy.float64] = 5e-06, dt_contact: float | numpy.typing.NDArray[numpy.float64] = 3e-08, adaptive_inner: bool = False, collocation: bool = True, contact_samples: int = 0) -> None: ...
+
+    @property
+    def method(self) -> Method: ...
+
+    @property
+    def duration(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def tolerance(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def max_events(self) -> int: ...
+
+    @property
+    def stick(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def dt_flight(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def dt_contact(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def adaptive_inner(self) -> bool: ...
+
+    @property
+    def collocation(self) -> bool: ...
+
+    @property
+    def contact_samples(self) -> int: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Damper(Node):
+    """
+    An impact damper with its balls; positions count from the packed, centred row.
+    """
+
+    def __init__(self, *, clearance: float | numpy.typing.NDArray[numpy.float64], gravity: float | numpy.typing.NDArray[numpy.float64], shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], position: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> None: ...
+
+    @property
+    def clearance(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def gravity(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def shape(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mass(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def position(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def velocity(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Contact(Node):
+    """The contact of two neighbours: their reduced mass and their laws."""
+
+    def __init__(self, *, mass: float | numpy.typing.NDArray[numpy.float64], normal: NormalForce, restitution: Restitution) -> None: ...
+
+    @property
+    def mass(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def normal(self) -> NormalForce: ...
+
+    @property
+    def restitution(self) -> Restitution: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Problem(Node):
+    """
+    A problem of the 1-D engine. Arrays that broadcast over a grid in place of numbers make it a batch.
+    """
+
+    def __init__(self, *, settings: Settings, mode_decay: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_stiffness: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_coupling: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_displacement: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], loads: Sequence[Load], dampers: Sequence[Damper], contacts: Sequence[Contact], sample_times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    @property
+    def settings(self) -> Settings: ...
+
+    @property
+    def mode_decay(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mode_stiffness(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mode_coupling(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mode_displacement(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mode_velocity(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def loads(self) -> list[Load]: ...
+
+    @property
+    def dampers(self) -> list[Damper]: ...
+
+    @property
+    def contacts(self) -> list[Contact]: ...
+
+    @property
+    def sample_times(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Status(enum.IntEnum):
+    """How a run ended."""
+
+    finished = 0
+
+    law_domain = 1
+
+    too_many_events = 2
+
+    step_too_small = 3
+
+    interrupted = 4
+
+    not_finite = 5
+
+    energy_error = 6
+
+    escaped = 7
+
+    no_rebound = 8
+
+    refused = 9
+
+class Impacts(Node):
+    """The impact log, one row for each impact."""
+
+    def __init__(self, *, damper: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], contact: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], approach_speed: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], restitution: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], separation_speed: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], peak_overlap: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], peak_force: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], energy_lost: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], complete: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')]) -> None: ...
+
+    @property
+    def damper(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def contact(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def time(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def approach_speed(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def restitution(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def separation_speed(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def duration(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def peak_overlap(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def peak_force(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def energy_lost(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def complete(self) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Counts(Node):
+    """Counts of the work of a run."""
+
+    def __init__(self, *, events: int, flights: int, contact_steps: int, rejected_steps: int, collocated: int, extrapolated: int, sticks: int) -> None: ...
+
+    @property
+    def events(self) -> int: ...
+
+    @property
+    def flights(self) -> int: ...
+
+    @property
+    def contact_steps(self) -> int: ...
+
+    @property
+    def rejected_steps(self) -> int: ...
+
+    @property
+    def collocated(self) -> int: ...
+
+    @property
+    def extrapolated(self) -> int: ...
+
+    @property
+    def sticks(self) -> int: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Result(Node):
+    """
+    A run of the 1-D engine. `state` holds displacement and velocity of each mode, then positions and velocities of all balls; `chosen` says which samples are at times that the problem asks for.
+    """
+
+    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], chosen: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], contact_energy: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], cavity_force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], impacts: Impacts, counts: Counts, status: Status, closure_bound: float, stopped_at: float, stopped_value: float, stopped_contact: int, seconds: float) -> None: ...
+
+    @property
+    def time(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def chosen(self) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def load_work(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def base_work(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def viscous_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def normal_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def plastic_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def contact_energy(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def cavity_force(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def impacts(self) -> Impacts: ...
+
+    @property
+    def counts(self) -> Counts: ...
+
+    @property
+    def status(self) -> Status: ...
+
+    @property
+    def closure_bound(self) -> float: ...
+
+    @property
+    def stopped_at(self) -> float: ...
+
+    @property
+    def stopped_value(self) -> float: ...
+
+    @property
+    def stopped_contact(self) -> int: ...
+
+    @property
+    def seconds(self) -> float: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Window(Node):
+    """
+    Equally spaced samples of each run from `start` to its end, in cycles of `period`, of a point with these mode shapes.
+    """
+
+    def __init__(self, *, start: float | numpy.typing.NDArray[numpy.float64], period: float | numpy.typing.NDArray[numpy.float64], shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], samples: int) -> None: ...
+
+    @property
+    def start(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def period(self) -> float | numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def shape(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def samples(self) -> int: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Block(Node):
+    """What is kept of the variants of a batch, one row for each."""
+
+    def __init__(self, *, status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')], measures: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]], displacement: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, ball_place: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, ball_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_time: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_approach_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_contact: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None) -> None: ...
+
+    @property
+    def status(self) -> Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def measures(self) -> list[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]]: ...
+
+    @property
+    def displacement(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None: ...
+
+    @property
+    def velocity(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None: ...
+
+    @property
+    def ball_place(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None: ...
+
+    @property
+    def ball_speed(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None: ...
+
+    @property
+    def state(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None: ...
+
+    @property
+    def last_time(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None: ...
+
+    @property
+    def last_approach_speed(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None: ...
+
+    @property
+    def last_contact(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+def sweep(problem: Problem, grid: Sequence[int], start: int, stop: int, window: Window, measures: Sequence[str], motion: bool = False, state: bool = False, last: int = 0, threads: int = 1, progress: Callable[[int], object] | None = None) -> Block | None:
+    """
+    Run variants start to stop of a batch over a grid and return what is kept of them; None when `progress` has returned False.
+    """
+
+def measures() -> dict[str, bool]:
+    """
+    Return the names of the measures, and whether each needs samples of the motion.
+    """
+
+class Partner(enum.IntEnum):
+    """What a particle touches."""
+
+    particle = 0
+
+    wall = 1
+
+class WallForm(enum.Enum):
+    plane = 0
+
+    cylinder = 1
+
+    sphere = 2
+
+class Wall(Node):
+    """
+    A wall around the centre of a cavity: outward normal of a plane or axis of a cylinder, and distance or radius [m].
+    """
+
+    def __init__(self, *, form: WallForm, axis: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], offset: float, material: int) -> None: ...
+
+    @property
+    def form(self) -> WallForm: ...
+
+    @property
+    def axis(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def offset(self) -> float: ...
+
+    @property
+    def material(self) -> int: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Cavity(Node):
+    """
+    A cavity and its particles. `particle_pair` and `wall_pair` say which laws two species, and a species and a wall, have.
+    """
+
+    def __init__(self, *, shape: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], walls: Sequence[Wall], position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], spin: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], radius: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inertia: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], particle_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)], wall_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
+
+    @property
+    def shape(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def walls(self) -> list[Wall]: ...
+
+    @property
+    def position(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def velocity(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def spin(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def radius(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mass(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def inertia(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def species(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def particle_pair(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def wall_pair(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class PairLaws(Node):
+    """
+    The laws of two species, or of a species and a wall, with R* [m] and m* [kg] of the pair that they hold for.
+    """
+
+    def __init__(self, *, normal: NormalForce, restitution: Restitution, tangential: TangentialForce, rolling: RollingResistance, radius: float, mass: float) -> None: ...
+
+    @property
+    def normal(self) -> NormalForce: ...
+
+    @property
+    def restitution(self) -> Restitution: ...
+
+    @property
+    def tangential(self) -> TangentialForce: ...
+
+    @property
+    def rolling(self) -> RollingResistance: ...
+
+    @property
+    def radius(self) -> float: ...
+
+    @property
+    def mass(self) -> float: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class DemProblem(Node):
+    """
+    A problem of the 3-D engine. Contacts older than `enduring` [s] count as enduring.
+    """
+
+    def __init__(self, *, dt: float, steps: int, every: int, enduring: float = float('inf'), gravity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mode_decay: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_stiffness: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_coupling: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_displacement: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mode_velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], loads: Sequence[Load], load_directions: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], cavities: Sequence[Cavity], pairs: Sequence[PairLaws]) -> None: ...
+
+    @property
+    def dt(self) -> float: ...
+
+    @property
+    def steps(self) -> int: ...
+
+    @property
+    def every(self) -> int: ...
+
+    @property
+    def enduring(self) -> float: ...
+
+    @property
+    def gravity(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mode_decay(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mode_stiffness(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mode_coupling(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mode_displacement(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def mode_velocity(self) -> Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def loads(self) -> list[Load]: ...
+
+    @property
+    def load_directions(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]: ...
+
+    @property
+    def cavities(self) -> list[Cavity]: ...
+
+    @property
+    def pairs(self) -> list[PairLaws]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Records(Node):
+    """
+    Samples of a run of the 3-D engine: over samples, then modes, loads or cavities, then components or partners.
+    """
+
+    def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], q: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], p: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], kinetic: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], rotation: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], potential: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], elastic: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], centre: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], momentum: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], force: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], moment: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], sliding_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], rolling_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], contacts: Annotated[NDArray[numpy.int64], dict(shape=(None, None, None), order='C', device='cpu')]) -> None: ...
+
+    @property
+    def time(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def q(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def p(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def load_work(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def base_work(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def viscous_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def kinetic(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def rotation(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def potential(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def elastic(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def centre(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def momentum(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def force(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def normal_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def plastic_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def sliding_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def rolling_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @property
+    def contacts(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None, None), order='C', device='cpu')]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class CavityState(Node):
+    """
+    Particles of a cavity in the order of the case, and the displacement of the cavity.
+    """
+
+    def __init__(self, *, position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], spin: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], displacement: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None: ...
+
+    @property
+    def position(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def velocity(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def spin(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def displacement(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class DemState(Node):
+    """The state at the last step whose forces are known."""
+
+    def __init__(self, *, step: int, time: float, q: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], p: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], cavities: Sequence[CavityState]) -> None: ...
+
+    @property
+    def step(self) -> int: ...
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def q(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def p(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def cavities(self) -> list[CavityState]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class ContactList(Node):
+    """
+    Contacts of a cavity, and the force on the first partner [N]; walls are numbered after the particles.
+    """
+
+    def __init__(self, *, first: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], second: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None: ...
+
+    @property
+    def first(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def second(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def force(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class DemCounts(Node):
+    """Counts and extremes of a run of the 3-D engine; arrays over cavities."""
+
+    def __init__(self, *, steps: int, rebuilds: int, refreshes: int, extrapolated: int, candidates: int, memory_bytes: int, first_touches: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu')], largest_overlap: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], largest_approach_speed: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], enduring_loss: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], seconds: float) -> None: ...
+
+    @property
+    def steps(self) -> int: ...
+
+    @property
+    def rebuilds(self) -> int: ...
+
+    @property
+    def refreshes(self) -> int: ...
+
+    @property
+    def extrapolated(self) -> int: ...
+
+    @property
+    def candidates(self) -> int: ...
+
+    @property
+    def memory_bytes(self) -> int: ...
+
+    @property
+    def first_touches(self) -> Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu')]: ...
+
+    @property
+    def largest_overlap(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def largest_approach_speed(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def enduring_loss(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]: ...
+
+    @property
+    def seconds(self) -> float: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class StoppedAt(Node):
+    """
+    Where a run stopped: particle and wall by their numbers in the case, or -1.
+    """
+
+    def __init__(self, *, cavity: int, particle: int, wall: int, time: float, speed: float) -> None: ...
+
+    @property
+    def cavity(self) -> int: ...
+
+    @property
+    def particle(self) -> int: ...
+
+    @property
+    def wall(self) -> int: ...
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def speed(self) -> float: ...
+
+    @staticmethod
+    def fields() -> dict[str, Varies]: ...
+
+class Dem:
+    """A simulation of particle dampers, which is run in pieces."""
+
+    def __init__(self, problem: DemProblem) -> None: ...
+
+    def run(self, until: int, progress: Callable[[int], object] | None = None) -> bool:
+        """
+        Run until the sample of step `until` is taken; False when it was stopped before.
+        """
+
+    def records(self) -> Records:
+        """Return the samples taken since the last call."""
+
+    def state(self) -> DemState:
+        """Return the state at the last step whose forces are known."""
+
+    def contacts(self, cavity: int) -> ContactList:
+        """Return the contacts where a run was asked to end."""
+
+    def counts(self) -> DemCounts:
+        """Return counts and extremes since the start."""
+
+    def stopped(self) -> StoppedAt:
+        """Return where the run stopped."""
+
+    def save(self) -> Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu')]:
+        """Return all that a bitwise restart needs."""
+
+    def restore(self, bytes: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None:
+        """Continue from a saved state."""
+
+    @property
+    def status(self) -> Status: ...
+
+    @property
+    def step(self) -> int:
+        """The step to come."""
+
+    @property
+    def serial_steps(self) -> int:
+        """Steps that one thread took alone while others were held up."""
+
+    @property
+    def threads(self) -> int: ...
+
+    @threads.setter
+    def threads(self, arg: int, /) -> None: ...
+
+worst_closure: float = 0.01
+
+speed_at_rest: float = 1e-09
+
+def simulate(problems: Sequence[Problem], threads: int = 1) -> list[Result]:
+    """Run problems of the 1-D engine and return their results."""
