@@ -3,11 +3,12 @@ from docutils.parsers.rst import Directive
 from docutils.statemachine import StringList
 from latex2mathml.converter import convert
 
+import rattlebox
 from rattlebox.results.schema import COUNTS, DIAGNOSTICS, VARIABLES
 
 project = "Rattlebox"
 author = "Rattlebox developers"
-release = "0.1.0"
+release = rattlebox.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 myst_enable_extensions = ["dollarmath"]
 exclude_patterns = ["_build", "validation/verification_table.md"]
