@@ -71,6 +71,7 @@ from rattlebox.model.structures import Shaker as Shaker
 from rattlebox.model.tuned_mass import TunedMass as TunedMass
 from rattlebox.plots.basins import plot_basins as plot_basins
 from rattlebox.plots.bifurcation import plot_bifurcation as plot_bifurcation
+from rattlebox.plots.compare import plot_comparison as plot_comparison
 from rattlebox.plots.damping_curve import plot_damping_curve as plot_damping_curve
 from rattlebox.plots.design import plot_design as plot_design
 from rattlebox.plots.loss_map import plot_loss_map as plot_loss_map
@@ -84,6 +85,7 @@ from rattlebox.results import Run as Run
 from rattlebox.results import load as load
 from rattlebox.results.snapshots import Snapshots as Snapshots
 from rattlebox.studies.check_softening import check_softening as check_softening
+from rattlebox.studies.compare import compare as compare
 from rattlebox.studies.damping_curve import damping_curve as damping_curve
 from rattlebox.studies.kinds.basins import basins as basins
 from rattlebox.studies.kinds.bifurcation import bifurcation as bifurcation

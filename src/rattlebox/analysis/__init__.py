@@ -1,5 +1,7 @@
 """Functions of runs and of sampled signals: spectra, portraits, decay, measures, energy, chaos."""
 
+from rattlebox._util.batch_means import Interval, mean_interval
+
 from .chaos import lyapunov_exponent
 from .damping_curve import damping_over_amplitude
 from .decay import damping_ratio, decay_envelope
@@ -16,7 +18,6 @@ from .sections import impacts_per_cycle, phase_portrait, poincare_section
 from .shaken import shaken_cavity
 from .shock import shock_response_spectrum
 from .spectra import amplitude_spectrum
-from .statistics import Interval, mean_interval
 
 __all__ = [
     "Interval",

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
+from rattlebox._util.batch_means import mean_interval
+
 from .quantities import MISSING, digits, quantity
 from .schema import PARTNERS
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from rich.console import Group
 
+    from .arrays import RunArrays
     from .record import Record
 
 Value = float | int | str
@@ -39,15 +42,19 @@ _PARTNER_LABELS = {"particle": "lost among particles", "wall": "lost at walls"}
 class _Row:
     """One line: key of the value, its label, and its unit.
 
-    The unit is "%" for a share, "order" where only the size matters, "" for a count or a text.
+    The unit is "%" for a share, "order" where only the size matters, "" for a count or a text. `error` is the key of half
+    the width of the 95 % interval, if the value has one.
     """
 
     key: str
     label: str
     unit: str
+    error: str = ""
 
     def text(self, values: Mapping[str, Value]) -> str:
         value = values.get(self.key)
+        if self.error and isinstance(value, float):
+            return self._with_error(value, values[self.error])
         if value is None:
             return MISSING
         if isinstance(value, float):
@@ -59,6 +66,12 @@ class _Row:
                 return MISSING
             return quantity(value, self.unit)
         return f"{value:,}".replace(",", " ") if isinstance(value, int) else value
+
+    def _with_error(self, value: float, error: Value) -> str:
+        if not isinstance(error, float) or math.isnan(error):
+            return f"{quantity(value, self.unit)}, run too short for an interval"
+        share = 100 * error / value if value else 0.0
+        return f"{quantity(value, self.unit)} +- {digits(share, 2)} %"
 
 
 def _measure(run: Record) -> dict[str, Value]:
@@ -76,10 +89,18 @@ def _measure(run: Record) -> dict[str, Value]:
         values |= {f"share_in[{damper}]": float(share) for damper, share in shares}
     values["energy_residual"] = run.energy_residual
     if arrays.mode_frequency.size:
+        base = _base_velocity(arrays)
         for k, point in enumerate(arrays.points):
             x = arrays.displacement[:, k]
             values[f"peak_displacement[{point}]"] = _largest(np.abs(x))
             values[f"rms_displacement[{point}]"] = _rms(arrays.time, x)
+            values[f"rms_acceleration[{point}]"] = _rms_of_changes(arrays.time, arrays.velocity[:, k] + base[:, k])
+        if is_driven(arrays):
+            for k, point in enumerate(arrays.points):
+                values |= _steady(arrays.time, arrays.displacement[:, k], point)
+    force = arrays.interface_force.reshape(arrays.time.size, -1)
+    if np.isfinite(force).all() and force.any():
+        values["rms_interface_force"] = _rms(arrays.time, np.linalg.norm(force, axis=1))
     values["computing_time"] = run.wall_time
     return values
 
@@ -130,6 +151,65 @@ def _rms(time: Any, x: Any) -> float:
         return float(np.sqrt(np.trapezoid(x**2, time) / (time[-1] - time[0])))
 
 
+def _rms_of_changes(time: Any, velocity: Any) -> float:
+    """Root mean square of the acceleration, mean over each output step."""
+    if time.size < 2:
+        return float("nan")
+    with np.errstate(over="ignore"):
+        return float(np.sqrt(np.sum(np.diff(velocity) ** 2 / np.diff(time)) / (time[-1] - time[0])))
+
+
+def _base_velocity(arrays: RunArrays) -> Any:
+    """Velocity of the base along the motion of each point, (T, P), up to a constant."""
+    own = arrays.absolute_acceleration - arrays.acceleration
+    if not own.any():
+        return np.zeros_like(own)
+    base = arrays.base_velocity.reshape(arrays.time.size, -1)
+    accelerations = arrays.base_acceleration.reshape(arrays.time.size, -1)
+    # Each point moves along a direction, by which the acceleration of the base was projected.
+    direction, *_ = np.linalg.lstsq(accelerations, own, rcond=None)
+    return base @ direction
+
+
+def is_driven(arrays: RunArrays) -> bool:
+    """Return whether loads or the base still act at the end of a run.
+
+    Parameters
+    ----------
+    arrays
+        Arrays of the run.
+    """
+    late = arrays.time >= arrays.time[0] + 0.9 * (arrays.time[-1] - arrays.time[0])
+    for values in (arrays.load, arrays.base_acceleration.reshape(arrays.time.size, -1)):
+        if values.size and np.abs(values[late]).max() > 1e-3 * np.abs(values).max():
+            return True
+    return False
+
+
+def _reductions(reference: Mapping[str, Value], values: Mapping[str, Value]) -> dict[str, Value]:
+    """Return one minus the ratios of displacements to those of a reference."""
+    found: dict[str, Value] = {}
+    for kind in ("peak", "rms"):
+        for key, value in values.items():
+            before = reference.get(key)
+            if key.startswith(f"{kind}_displacement[") and isinstance(before, float) and before > 0:
+                found[key.replace("displacement", "reduction", 1)] = 1 - float(value) / before
+    return found
+
+
+def _steady(time: Any, x: Any, point: str) -> dict[str, Value]:
+    """RMS displacement over the second half of the run with its 95 % interval."""
+    even = np.linspace(
+        0.5 * (time[0] + time[-1]), time[-1], min(max(int(np.count_nonzero(2 * time >= time[-1])), 2), 20_000)
+    )
+    found = mean_interval(np.interp(even, time, x) ** 2)
+    rms = [math.sqrt(max(square, 0.0)) for square in (found.lower, found.mean, found.upper)]
+    return {
+        f"steady_rms_displacement[{point}]": rms[1],
+        f"steady_rms_displacement_error[{point}]": 0.5 * (rms[2] - rms[0]),
+    }
+
+
 def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
     """Lines that any of the runs needs."""
     rows = [
@@ -161,6 +241,12 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         where = f", {point}" if several else ""
         rows.append(_Row(key, f"peak displacement{where}", "m"))
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
+        steady = f"steady_rms_displacement[{point}]"
+        rows.append(_Row(steady, f"the same, second half{where}", "m", f"steady_rms_displacement_error[{point}]"))
+        rows.append(_Row(f"rms_acceleration[{point}]", f"RMS acceleration{where}", "m/s^2"))
+        rows.append(_Row(f"peak_reduction[{point}]", f"reduction of the peak{where}", "%"))
+        rows.append(_Row(f"rms_reduction[{point}]", f"reduction of the RMS{where}", "%"))
+    rows.append(_Row("rms_interface_force", "RMS force on the base", "N"))
     rows.append(_Row("computing_time", "computing time", "s"))
     rows.append(_Row("particle_steps_per_second", "particle-steps a second", "million"))
     return [row for row in rows if any(row.key in values for values in all_values)]
@@ -274,8 +360,11 @@ class Summary(_Report):
     values : dict
         Numbers in SI units: `status`, `end_time`, `impacts`, `supplied_energy`, `share_viscous`,
         `share_normal`, `share_plastic`, `share_motion` (of the energy supplied, adding to one), `energy_residual`,
-        `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`,
-        `rms_displacement[point]`, `computing_time`. For 3-D runs instead of the impacts: `particles`, `particle_mass`,
+        `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`, `rms_displacement[point]`,
+        `rms_acceleration[point]` (absolute, mean over each output step), `rms_interface_force`, `computing_time`. For runs
+        that are driven to their end `steady_rms_displacement[point]` over the second half, and
+        `steady_rms_displacement_error[point]`, half of its 95 % interval by batch means (NaN: the run is too short).
+        For 3-D runs instead of the impacts: `particles`, `particle_mass`,
         `first_touches`, `contacts`, `step`, `steps_per_contact`, `share_sliding`, `share_rolling`, shares by partner as
         `share_at_particle` and `share_at_wall`, `largest_overlap` (of the smaller radius), `particle_steps_per_second`.
     """
@@ -300,8 +389,11 @@ class Comparison(_Report):
 
     Attributes
     ----------
+    runs : dict
+        The runs.
     values : dict
-        For each name the `values` of that run's summary.
+        For each name the `values` of that run's summary; for all but the first also `peak_reduction[point]` and
+        `rms_reduction[point]`, one minus the ratio to the first.
 
     Raises
     ------
@@ -314,7 +406,11 @@ class Comparison(_Report):
             raise ValueError("there is no run to compare")
         notes = tuple(f"{name}: {note}" for name, run in runs.items() for note in _notes(run))
         super().__init__(title, tuple(runs), notes)
+        self.runs = dict(runs)
         self.values = {name: _measure(run) for name, run in runs.items()}
+        reference, *others = self.values.values()
+        for values in others:
+            values |= _reductions(reference, values)
 
     def _cells(self) -> list[tuple[str, ...]]:
         every = tuple(self.values.values())

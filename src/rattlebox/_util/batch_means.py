@@ -6,9 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from .signals import FloatArray, finite
+FloatArray = NDArray[np.float64]
 
 FEWEST_BATCHES = 10
 """Batches from which an interval is given."""
@@ -53,7 +53,7 @@ def mean_interval(values: ArrayLike) -> Interval:
     Raises
     ------
     ValueError
-        If a sample is not finite.
+        If a sample is not finite, or the values are not one series.
 
     Notes
     -----
@@ -74,7 +74,11 @@ def mean_interval(values: ArrayLike) -> Interval:
     """
     from scipy.special import stdtrit
 
-    x = finite("values", values)
+    x = np.asarray(values, dtype=np.float64)
+    if x.ndim != 1 or not x.size or not np.isfinite(x).all():
+        raise ValueError(
+            f"values must be one series of finite numbers, not an array of shape {x.shape} with gaps or more axes"
+        )
     mean = float(np.mean(x))
     if x.size >= FEWEST_BATCHES and np.ptp(x) <= 1e-12 * abs(mean):
         return Interval(mean, mean, mean, x.size)

@@ -1,0 +1,64 @@
+"""Several cases side by side: one table and one figure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from rattlebox.engines.simulate import simulate_many
+from rattlebox.model.case import Case
+from rattlebox.model.errors import Hint
+from rattlebox.results.run import Run
+from rattlebox.results.summary import Comparison
+
+if TYPE_CHECKING:
+    from typing import Any
+
+
+def compare(cases: Mapping[str, Case | Run], *, threads: int | None = None) -> Comparison:
+    """Simulate several cases and set their results side by side.
+
+    Parameters
+    ----------
+    cases
+        Cases by the name that heads their column, such as "bare", "tuned mass" and "particles"; runs that were simulated
+        before may stand among them. The first one is the reference.
+    threads
+        Number of threads; default all cores.
+
+    Returns
+    -------
+    Comparison
+        The table: `print(found)`, or `found.values` for the numbers in SI units, with the reduction of peak and RMS values
+        from the first case; `found.runs` are the runs, `rb.plot_comparison(found.runs)` is the figure.
+
+    Raises
+    ------
+    CaseError
+        If there is no case, or something else than cases and runs is given.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> structure = rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping_ratio=0.01)
+    >>> common = {"structure": structure, "load": rb.HalfSine(amplitude="5 kN", duration="1 ms"), "duration": "3 s"}
+    >>> found = rb.compare(
+    ...     {
+    ...         "bare": rb.Case(**common),
+    ...         "tuned mass": rb.Case(**common, tuned_mass=rb.TunedMass.den_hartog(structure, mass="1 kg")),
+    ...     }
+    ... )
+    >>> found.values["tuned mass"]["rms_reduction[mass]"] > 0.5
+    True
+    """
+    if not isinstance(cases, Mapping) or not cases:
+        raise Hint("cases by name are needed", 'compare({"bare": case, "damped": other})')
+    for name, each in cases.items():
+        if not isinstance(each, (Case, Run)):
+            raise Hint(f"{name!r} is {each!r:.60}, but a Case or a Run is needed", "rb.Case(...)")
+    new = [each for each in cases.values() if isinstance(each, Case)]
+    simulated = iter(simulate_many(new, threads=threads))
+    runs: dict[str, Any] = {
+        str(name): next(simulated) if isinstance(each, Case) else each for name, each in cases.items()
+    }
+    return Comparison(runs)

@@ -1,0 +1,67 @@
+"""Cases side by side, and the statistical error of steady motion in summaries."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+STRUCTURE = rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping_ratio=0.01)
+
+
+def case(**options: Any) -> rb.Case:
+    """Return a structure under a harmonic force near its resonance."""
+    usual: dict[str, Any] = {
+        "structure": STRUCTURE,
+        "load": rb.Harmonic(amplitude="20 N", frequency="10 Hz"),
+        "duration": "20 s",
+    }
+    return rb.Case(**{**usual, **options})
+
+
+def test_compare_simulates_cases_and_takes_runs() -> None:
+    """Reductions are those of the values; a run that was simulated before gives the same column."""
+    tuned = case(tuned_mass=rb.TunedMass.den_hartog(STRUCTURE, mass="1 kg"))
+    found = rb.compare({"bare": case(), "tuned": tuned, "again": rb.simulate(tuned)})
+    bare, one, again = (found.values[name] for name in ("bare", "tuned", "again"))
+    assert one["rms_displacement[mass]"] == again["rms_displacement[mass]"]
+    assert one["rms_reduction[mass]"] == pytest.approx(
+        1 - one["rms_displacement[mass]"] / bare["rms_displacement[mass]"]
+    )
+    assert one["peak_reduction[mass]"] > 0.8 and "rms_reduction[mass]" not in bare
+    assert list(found.runs) == ["bare", "tuned", "again"]
+    assert "TMD" not in str(found) and "tuned" in str(found)
+    assert rb.plot_comparison(found.runs).axes
+
+
+def test_steady_values_carry_an_interval() -> None:
+    """The RMS of the second half of a driven run lies within its interval of the exact one; a short run has none."""
+    omega, k, m = 20 * math.pi, 80e3, 20.0
+    exact = 20 / math.hypot(k - m * omega**2, 2 * 0.01 * math.sqrt(k * m) * omega) / math.sqrt(2)
+    values = rb.simulate(case()).summary().values
+    error = float(values["steady_rms_displacement_error[mass]"])
+    assert abs(float(values["steady_rms_displacement[mass]"]) - exact) < error < 0.1 * exact
+    short = rb.simulate(case(duration="0.05 s")).summary()
+    assert math.isnan(float(short.values["steady_rms_displacement_error[mass]"]))
+    assert "too short" in str(short)
+    decay = rb.simulate(case(load=rb.HalfSine(amplitude="5 kN", duration="1 ms"))).summary()
+    assert "steady_rms_displacement[mass]" not in decay.values
+
+
+def test_accelerations_and_the_force_on_the_base() -> None:
+    """The summary has the RMS of the absolute acceleration and of the force on a moving base."""
+    moved = case(load=(), base=rb.Harmonic(amplitude="1 m/s^2", frequency="8 Hz"), output=rb.Output(rate="2 kHz"))
+    run = rb.simulate(moved)
+    values, motion = run.summary().values, run.motion
+    absolute = float(np.sqrt((motion.absolute_acceleration.sel(point="mass") ** 2).mean()))
+    assert values["rms_acceleration[mass]"] == pytest.approx(absolute, rel=5e-3)
+    assert values["rms_interface_force"] == pytest.approx(float(np.sqrt((motion.interface_force**2).mean())), rel=1e-3)
+
+
+@pytest.mark.parametrize("cases", [{}, case(), {"bare": 3}])
+def test_bad_input(cases: Any) -> None:
+    """Something else than cases by name is refused."""
+    with pytest.raises(rb.CaseError):
+        rb.compare(cases)
