@@ -10,7 +10,8 @@ import pytest
 import rattlebox as rb
 from rattlebox.model.base import Part
 
-DOCS = Path(__file__).parents[2] / "docs"
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
 PAGES = (
     "how-to/analysis",
     "how-to/basins",
@@ -29,6 +30,20 @@ PAGES = (
     "tutorials/particle_dampers",
 )
 FIELDS = DOCS / "reference" / "case_file.md"
+
+
+SEARCHES = (
+    "contact law",
+    "energy balance",
+    "install",
+    "MATLAB",
+    "ParaView",
+    "restitution of steel",
+    "resume",
+    "softening",
+    "time step",
+    "units",
+)
 
 
 def examples(page):
@@ -87,3 +102,18 @@ def test_cases_on_the_page_of_fields_run(tmp_path):
         case = rb.Case.from_toml(content)
         run = rb.simulate(case, snapshots=tmp_path / f"{number}.vtkhdf" if case.output.snapshots else None)
         assert run.status == "finished"
+
+
+def test_tour_names_files_that_exist():
+    """Every file of the sources that the tour names is there."""
+    named = re.findall(r"`((?:src|core)/\S+)`", (DOCS / "developing" / "tour.md").read_text(encoding="utf-8"))
+    assert len(named) > 20
+    assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+@pytest.mark.parametrize("words", SEARCHES)
+def test_a_search_finds_a_title_or_a_first_paragraph(words):
+    """What users often search for is in the title or in the first paragraph of a page."""
+    pages = (path.read_text(encoding="utf-8") for path in DOCS.rglob("*.md"))
+    beginnings = (" ".join(" ".join(page.split("\n\n")[:2]).split()) for page in pages)
+    assert any(words.lower() in beginning.lower() for beginning in beginnings)
