@@ -31,7 +31,11 @@ class SchemaTable(Directive):
         """Return the table."""
         name = self.arguments[0]
         if name == "counts":
-            lines = ["| name | number of |", "|---|---|", *(f"| `{key}` | {meaning} |" for key, meaning in COUNTS.items())]
+            lines = [
+                "| name | number of |",
+                "|---|---|",
+                *(f"| `{key}` | {meaning} |" for key, meaning in COUNTS.items()),
+            ]
         elif name == "diagnostics":
             rows = (f"| `{key}` | {units} | {meaning} |" for key, (units, meaning) in DIAGNOSTICS.items())
             lines = ["| name | unit | meaning |", "|---|---|---|", *rows]
