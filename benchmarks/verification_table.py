@@ -1,4 +1,4 @@
-"""Write docs/validation/verification_table.md: exact values, ours and the differences, one line a comparison.
+"""Write docs/validation/verification_table.md: exact and computed values and their differences, one line a comparison.
 
 python benchmarks/verification_table.py [target]
 """
@@ -38,7 +38,7 @@ def table() -> str:
     lines = [line for function in (*measures.ALL, *in_space.ALL, *maps.ALL) for line in function()]
     parts = [HEAD]
     for item, title in TITLES.items():
-        parts.append(f"\n## {title}\n\n| case | exact | ours | difference |\n|---|---:|---:|---:|\n")
+        parts.append(f"\n## {title}\n\n| case | exact | computed | difference |\n|---|---:|---:|---:|\n")
         parts += [
             f"| {line.case} | {line.exact:.12g} | {line.ours:.12g} | {line.difference:.1e} |\n"
             for line in lines
@@ -55,8 +55,8 @@ def table() -> str:
                 " shows, at 5, 10, 15, 20 and 25 degrees, a tangential restitution of 0.948, 0.687, 0.624, 0.616 and"
                 " 0.634: those of a spring without dashpot that keeps its stretch (0.948, 0.694, 0.627, 0.618, 0.637),"
                 " read to 0.003 and 0.2 degrees. Such a spring gives energy where contacts are pressed together, up to"
-                " 0.8 % in an impact; ours gives none, and 0.855, 0.710, 0.631, 0.620 and 0.639. From 30 degrees on,"
-                " where contacts slide, all of them and the print agree.\n"
+                " 0.8 % in an impact; the spring used here generates none, and gives 0.855, 0.710, 0.631, 0.620 and 0.639."
+                " From 30 degrees on, where contacts slide, all of them and the print agree.\n"
             )
         if item == "maps":
             parts.append(

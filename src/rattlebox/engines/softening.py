@@ -2,7 +2,7 @@
 
 A softened bed is more compliant: the resonance of its compression under its own weight falls, and comes near the excitation.
 The loss in a cycle then changes by up to K ((f / f_s)^2 - (f / f_1)^2) m V^2, where f is the frequency of the motion and f_s
-the resonance at softening s. The coefficients K are from a table of computed runs, see docs/how-to/softening.md.
+the resonance at softening s. The coefficients K are from a table of computed runs, see docs/theory/softening.md.
 """
 
 from __future__ import annotations

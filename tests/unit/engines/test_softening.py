@@ -201,7 +201,7 @@ def test_studies_and_loss_maps_mark_softened_variants() -> None:
 
 
 def test_the_estimate_covers_computed_changes() -> None:
-    """Changes of the loss in a cycle over m V^2, from long runs (docs/how-to/softening.md)."""
+    """Changes of the loss in a cycle over m V^2, from long runs (docs/theory/softening.md)."""
     carbide, steel = (
         shaken(5, 180, 1).particle_dampers[0],
         shaken(
