@@ -5,6 +5,7 @@ from rattlebox._util.batch_means import Interval, mean_interval
 from .chaos import lyapunov_exponent
 from .damping_curve import damping_over_amplitude
 from .decay import damping_ratio, decay_envelope
+from .drift import drift
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
 from .measures import peak_reduction, rms_reduction, settling_time
 from .power_spectra import (
@@ -27,6 +28,7 @@ __all__ = [
     "damping_over_amplitude",
     "damping_ratio",
     "decay_envelope",
+    "drift",
     "energy_shares",
     "impacts_per_cycle",
     "loss_factor",

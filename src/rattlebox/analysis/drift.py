@@ -1,0 +1,57 @@
+"""Relative displacement between two points of a structure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .signals import labelled
+
+if TYPE_CHECKING:
+    import xarray
+
+    from rattlebox.results import Run
+
+
+def drift(run: Run, upper: str, lower: str | None = None) -> xarray.DataArray:
+    """Compute the relative displacement between two points of the structure, such as two floors of a building.
+
+    Parameters
+    ----------
+    run
+        Run of T output times.
+    upper
+        Name of the point whose displacement is taken.
+    lower
+        Name of the point whose displacement is subtracted; None for the base.
+
+    Returns
+    -------
+    xarray.DataArray
+        Drift over `time` [s], (T,) [m].
+
+    Raises
+    ------
+    ValueError
+        If the structure has no point of such a name.
+
+    Notes
+    -----
+    x_upper(t) - x_lower(t). Displacements of a run are relative to the base already.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> tower = rb.ShearBuilding(masses=["50 t"] * 2, stiffnesses=["60 MN/m"] * 2, damping_ratio=0.02)
+    >>> push = rb.HalfSine(amplitude="0.2 g", duration="0.2 s")
+    >>> run = rb.simulate(rb.Case(structure=tower, base=push, duration="2 s"))
+    >>> float(abs(drift(run, "storey 1")).max()) > float(abs(drift(run, "storey 2", "storey 1")).max())
+    True
+    """
+    points = run.arrays.points
+    for name in (upper,) if lower is None else (upper, lower):
+        if name not in points:
+            raise ValueError(f"there is no point {name!r} in this run; there are {', '.join(points) or 'none'}")
+    moved = run.arrays.displacement[:, points.index(upper)]
+    if lower is not None:
+        moved = moved - run.arrays.displacement[:, points.index(lower)]
+    return labelled("drift", moved, "m", f"drift of {upper} over {lower or 'the base'}", time=run.arrays.time)
