@@ -27,6 +27,8 @@ PAGES = (
     "how-to/softening",
     "how-to/structures",
     "how-to/sweep",
+    "tutorials/boring_bar",
+    "tutorials/building",
     "tutorials/particle_dampers",
 )
 FIELDS = DOCS / "reference" / "case_file.md"

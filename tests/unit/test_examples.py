@@ -132,3 +132,17 @@ def test_loads_of_standards_give_the_responses_of_formulas() -> None:
     simulated, miles = example["rms_under_gevs"]()
     assert simulated == pytest.approx(miles, rel=0.1)  # 6 Hz of bandwidth for 20 s: 4.5 % of scatter
     assert example["gain_in_sweep"]() == pytest.approx(25, rel=0.03)
+
+
+@pytest.mark.parametrize("name", ["boring_bar", "building"])
+def test_tutorials_print_the_numbers_of_their_page(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A script of a tutorial passes its own assertions, writes its figure and prints as many lines as its page shows."""
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
+    page = (EXAMPLES.parent / "docs" / "tutorials" / f"{name}.md").read_text(encoding="utf-8")
+    shown = page.split("```text\n")[1].split("```")[0]
+    printed = capsys.readouterr().out
+    assert [line.split()[0] for line in printed.splitlines()] == [line.split()[0] for line in shown.splitlines()]
+    assert (tmp_path / f"{name}.png").stat().st_size > 10_000

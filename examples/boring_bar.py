@@ -1,0 +1,32 @@
+"""A boring bar of 180 Hz with tungsten carbide balls in its head: damping ratio over amplitude for three fills.
+
+At 180 Hz an amplitude of 40 um is an acceleration of 5 g.
+"""
+
+import rattlebox as rb
+
+AMPLITUDES = ["20 um", "28 um", "40 um", "57 um", "80 um"]
+
+
+def curve(fill, softening=100, amplitudes=AMPLITUDES, packings=2):
+    """Return the damping ratio over amplitude with a fill, as a share of the cavity's volume."""
+    balls = rb.ParticleDamper(
+        particles=rb.Particles(material="tungsten_carbide", diameter="6 mm", fill_ratio=fill),
+        cavity=rb.Cylinder(diameter="40 mm", length="60 mm", axis="x"),
+        contact=rb.Tsuji(restitution=0.8),
+        friction=0.2,
+        direction="z",
+        packing=rb.Settled(seed=1),
+        softening=softening,
+    )
+    bar = rb.SDOF(mass="3 kg", frequency="180 Hz", damping_ratio="1 %")
+    return rb.damping_curve(rb.Case(structure=bar, damper=balls, duration="0.25 s"), amplitudes, packings=packings)
+
+
+if __name__ == "__main__":
+    curves = {f"fill {fill}": curve(fill) for fill in (0.1, 0.2, 0.4)}
+    at_5g = [100 * float(found.damping_ratio.sel(amplitude=40e-6)) for found in curves.values()]
+    print("damping ratio at 5 g:", ", ".join(f"{ratio:.1f} %" for ratio in at_5g))
+    assert 1.1 < at_5g[0] < 1.5 < at_5g[1] < 2.1 < 2.9 < at_5g[2] < 3.6
+    assert all((found.damping_ratio.diff("amplitude") < 0).all() for found in curves.values())
+    rb.plot_damping_curve(curves).savefig("boring_bar.png", dpi=200)
