@@ -29,6 +29,7 @@ PAGES = (
     "how-to/sweep",
     "tutorials/boring_bar",
     "tutorials/building",
+    "tutorials/panel",
     "tutorials/particle_dampers",
 )
 FIELDS = DOCS / "reference" / "case_file.md"

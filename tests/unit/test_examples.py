@@ -134,7 +134,7 @@ def test_loads_of_standards_give_the_responses_of_formulas() -> None:
     assert example["gain_in_sweep"]() == pytest.approx(25, rel=0.03)
 
 
-@pytest.mark.parametrize("name", ["boring_bar", "building"])
+@pytest.mark.parametrize("name", ["boring_bar", "panel", "building"])
 def test_tutorials_print_the_numbers_of_their_page(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

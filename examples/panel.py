@@ -1,0 +1,48 @@
+"""A panel in random vibration without gravity, bare and with a particle damper in its middle.
+
+Its three modes come from a universal file, examples/data/panel.uff, which was computed and not measured.
+"""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import rattlebox as rb
+from rattlebox.analysis import band_levels, power_spectral_density
+
+G, LENGTH = 9.80665, "3 s"
+panel = rb.Modal.from_file(
+    Path(__file__).parent / "data" / "panel.uff",
+    points={"middle": "1 z"},
+    participation=[1.6847, 0.5616, 0.5616],  # phi^T M r [kg^1/2], from the model: a universal file has none
+)
+damper = rb.ParticleDamper(
+    particles=rb.Particles(material="steel", diameter="5 mm", fill_ratio=0.5),
+    cavity=rb.Box(size=("30 mm", "30 mm", "20 mm")),
+    contact=rb.Tsuji(restitution=0.7),
+    friction=0.2,
+    gravity=(0, 0, 0),
+    packing=rb.Lattice(seed=1),
+    direction="z",
+    softening=10,
+)
+shaking = rb.Random("gevs_acceptance", LENGTH, seed=1)
+common = {"structure": panel, "base": shaking, "duration": LENGTH, "output": rb.Output(rate="10 kHz")}
+figure, axes = plt.subplots(figsize=(7, 3), layout="constrained")
+found = {}
+for name, dampers in {"bare": {}, "with particles": {"damper": damper}}.items():
+    motion = rb.simulate(rb.Case(**common, **dampers)).motion
+    along_z = motion.sel(axis="z") if "axis" in motion.dims else motion
+    velocity = along_z.velocity.sel(point="middle") + along_z.base_velocity
+    absolute = velocity.differentiate("time").assign_attrs(units="m/s^2")
+    density = power_spectral_density(motion.time, absolute, resolution=2).density
+    level = band_levels(density.sel(frequency=slice(20, 2000))) / G
+    axes.bar(np.arange(level.size) + 0.4 * len(found), level, width=0.4, label=name)
+    found[name] = float(level.sel(nominal="200")), float(along_z.interface_force.std())
+    print(f"{name:14} {found[name][0]:.1f} g in the band of 200 Hz, {found[name][1]:.0f} N on the base")
+axes.set_xticks(np.arange(level.size) + 0.2, level.nominal.values, rotation=90)
+axes.set(xlabel="Third-octave band (Hz)", ylabel="RMS acceleration ($g_0$)")
+axes.legend()
+figure.savefig("panel.png", dpi=200)
+assert np.allclose(list(found.values()), [(53.5, 964), (29.3, 613)], rtol=0.12)
