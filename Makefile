@@ -41,7 +41,7 @@ format: setup
 
 # The types of the compiled core, after a change of core/bindings or of the table of laws.
 stub: setup
-	cd src && ../$(BIN)/python -m nanobind.stubgen -q -m $$(../$(BIN)/python -c "from rattlebox.engines.core import core; print(core().__name__)") -o rattlebox/engines/_core.pyi
+	cd src && ../$(BIN)/python -m nanobind.stubgen -q -m $$(../$(BIN)/python -c "from rattlebox.core.choose import core; print(core().__name__)") -o rattlebox/core/_core.pyi
 
 docs: setup
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html

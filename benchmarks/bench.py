@@ -18,9 +18,9 @@ import numpy as np
 import peers
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines.core import choice
-from rattlebox.engines.pack import pack
+from rattlebox.core import _core
+from rattlebox.core.choose import choice
+from rattlebox.prepare.pack import pack
 
 REFERENCE = json.loads(
     (Path(__file__).parents[1] / "tests/verification/data/w1_centre.json").read_text(encoding="utf-8")

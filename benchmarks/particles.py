@@ -38,9 +38,9 @@ import numpy as np
 from particle_peers import PROGRAMS, Program, another_lammps, set_out
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines.dem import pack_dem
-from rattlebox.engines.dem_settle import insert
+from rattlebox.core import _core
+from rattlebox.prepare.particles import pack_particles, prepare
+from rattlebox.prepare.settle import insert
 
 DT, PERIOD, LONG = 1.4549e-5, 0.02, 100.0
 DIAMETER, DENSITY, FILL = 3e-3, 7850.0, 0.36
@@ -147,7 +147,7 @@ def one(kind: str, count: str, cores: str, start: str = "") -> None:
     """Print the JSON line of one measurement; what `apart` runs."""
     n = int(count)
     warm, window = window_of(n)
-    packed, _, _ = pack_dem(shaken(n, amplitude=AMPLITUDES[kind]))
+    packed = pack_particles(prepare(shaken(n, amplitude=AMPLITUDES[kind])))
     if start:
         packed = put(packed, np.loadtxt(start, delimiter=",", ndmin=2))
     elif kind == "rest":  # a lattice that falls
@@ -158,7 +158,7 @@ def one(kind: str, count: str, cores: str, start: str = "") -> None:
 
 def one_mixed(larger: str) -> None:
     """Print the JSON line of particles among larger ones; what `apart` runs."""
-    packed, _, _ = pack_dem(shaken(10_000, larger=float(larger)))
+    packed = pack_particles(prepare(shaken(10_000, larger=float(larger))))
     print(json.dumps(timed(packed, steps_of(1), steps_of(4), threads=1)))
 
 
@@ -173,7 +173,7 @@ def one_wide(kind: str, bed: str, across: str, window: str) -> None:
         part[:, [1, 4, 6, 8]] *= (-1) ** j
         part[:, :2] += (np.array([i, j]) - (n - 1) / 2) * edge
         parts.append(part)
-    packed, _, _ = pack_dem(shaken(len(columns) * n**2, AMPLITUDES[kind], n))
+    packed = pack_particles(prepare(shaken(len(columns) * n**2, AMPLITUDES[kind], n)))
     packed = put(packed, np.concatenate(parts))
     warm, steps = (steps_of(periods) for periods in WIDE[kind][int(window)])
     print(json.dumps(timed(packed, warm, steps, threads=1)))
@@ -233,7 +233,7 @@ def cores(kind: str, counts: list[int], seconds: float) -> Iterator[tuple[str, s
 
 
 def _in_turns(kind: str, count: int, seconds: float, meeting: Callable[[], float]) -> Iterator[tuple[str, str]]:
-    packed, _, _ = pack_dem(shaken(count, amplitude=AMPLITUDES[kind]))
+    packed = pack_particles(prepare(shaken(count, amplitude=AMPLITUDES[kind])))
     pair = _core.Dem(packed), _core.Dem(packed)
     step = steps_of(25 if kind == "rest" else window_of(count)[0])
     for threads, dem in enumerate(pair, 1):

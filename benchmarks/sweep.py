@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 
 import rattlebox as rb
-from rattlebox.engines.pack import pack_batch
 from rattlebox.model.case import Case
+from rattlebox.prepare.pack import pack_batch
 
 MILLION = 1_000_000
 

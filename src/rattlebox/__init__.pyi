@@ -8,9 +8,6 @@ from rattlebox._util.exceptions import MissingDependency as MissingDependency
 from rattlebox._util.exceptions import RattleboxError as RattleboxError
 from rattlebox._util.exceptions import ResourceError as ResourceError
 from rattlebox._util.exceptions import StoreError as StoreError
-from rattlebox.engines.laws import alpha_of_restitution as alpha_of_restitution
-from rattlebox.engines.laws import restitution_curve as restitution_curve
-from rattlebox.engines.laws import restitution_of_alpha as restitution_of_alpha
 from rattlebox.engines.simulate import simulate as simulate
 from rattlebox.engines.simulate import simulate_many as simulate_many
 from rattlebox.model.beams import Beam as Beam
@@ -81,6 +78,9 @@ from rattlebox.plots.particles import film_particles as film_particles
 from rattlebox.plots.particles import plot_particles as plot_particles
 from rattlebox.plots.response import plot_frequency_response as plot_frequency_response
 from rattlebox.plots.sensitivity import plot_sensitivity as plot_sensitivity
+from rattlebox.prepare.laws import alpha_of_restitution as alpha_of_restitution
+from rattlebox.prepare.laws import restitution_curve as restitution_curve
+from rattlebox.prepare.laws import restitution_of_alpha as restitution_of_alpha
 from rattlebox.results import Run as Run
 from rattlebox.results import load as load
 from rattlebox.results.snapshots import Snapshots as Snapshots

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.engines import core
+from rattlebox.prepare import core
 
 Quantities = dict[str, NDArray[Any]]
 

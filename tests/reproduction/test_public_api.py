@@ -54,7 +54,7 @@ def test_the_scan_sees_private_names() -> None:
     """Private modules and names are found however they are imported."""
     source = """
 import rattlebox as rb
-import rattlebox.engines.core
+import rattlebox.core.choose
 from rattlebox.plots.style import pen
 from rattlebox.plots import paper, pen
 def late():
@@ -62,7 +62,7 @@ def late():
     return rb.engines, rb.Case
 """
     assert {use for use in uses(source) if not is_public(*use)} == {
-        ("rattlebox.engines.core", ""),
+        ("rattlebox.core.choose", ""),
         ("rattlebox.plots.style", "pen"),
         ("rattlebox.plots", "paper"),
         ("rattlebox.model.case", "Case"),

@@ -239,7 +239,7 @@ def test_the_laws_of_the_page_run_in_both_engines(copy: Path) -> None:
 
 def test_the_engines_refuse_unknown_laws() -> None:
     """A law that the core does not have is refused by its name."""
-    from rattlebox.engines import _core
+    from rattlebox.core import _core
 
     with pytest.raises(ValueError, match="hunt_crossley"):
         _core.normal_law("hunt_crossley", {"stiffness": 1.0, "mass": 1.0})

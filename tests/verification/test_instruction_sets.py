@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines import core
+from rattlebox.prepare import core
 
 HERE = Path(__file__).parent
 V3 = {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"}
@@ -23,7 +23,7 @@ def test_every_build_gives_the_verified_numbers(level: str) -> None:
     if level == core.choice()[0]:
         pytest.skip(f"{level} is what all other tests run with")
     environment = {**os.environ, "RATTLEBOX_SIMD": level}
-    tell = "from rattlebox.engines.core import core; print(core().__name__)"
+    tell = "from rattlebox.core.choose import core; print(core().__name__)"
     name = subprocess.run([sys.executable, "-c", tell], env=environment, capture_output=True, text=True, check=True)
     assert name.stdout.strip() == f"rattlebox.engines._core_{level}"
     files = ["test_reference_w1.py", "test_known_solutions.py::test_run_has_the_exact_value"]

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from rattlebox import __version__
 from rattlebox.cli.terminal import terminal
-from rattlebox.engines.core import built, choice, core, supported
+from rattlebox.core.choose import built, choice, core, supported
 
 _PACKAGES = ("numpy", "scipy", "xarray", "h5netcdf", "h5py", "pydantic", "pint", "matplotlib")
 

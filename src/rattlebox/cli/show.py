@@ -13,7 +13,7 @@ from rich.table import Column, Table
 from rich.text import Text
 
 from rattlebox.cli.terminal import terminal
-from rattlebox.engines.dem_step import WARNINGS
+from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.results.quantities import MISSING, quantity
 from rattlebox.results.schema import HOW_ENDED
 from rattlebox.studies.kinds.design import trials_in

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.engines import _core
+from rattlebox.core import _core
 
 
 @dataclass(frozen=True)

@@ -28,8 +28,8 @@ from rattlebox._util.atomic_io import (
 )
 from rattlebox._util.digests import array_digest
 from rattlebox._util.exceptions import DataError
-from rattlebox.engines import _core
-from rattlebox.engines.core import instructions
+from rattlebox.core import _core
+from rattlebox.core.choose import instructions
 from rattlebox.model.differences import differences
 from rattlebox.results.provenance import Provenance
 

@@ -2,46 +2,34 @@
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rattlebox._util.atomic_io import check_suffix
-from rattlebox._util.exceptions import DataError, RattleboxError
+from rattlebox._util.exceptions import DataError
 from rattlebox._util.narrow import instance
-from rattlebox.engines import _core
-from rattlebox.engines._core import Partner, Status
-from rattlebox.engines.base_motion import base_motion
+from rattlebox.core import _core
+from rattlebox.core._core import Partner, Status
 from rattlebox.engines.checkpoint import Checkpoint
 from rattlebox.engines.dem_follow import Journey
-from rattlebox.engines.dem_settle import packed_walls, settle
 from rattlebox.engines.dem_snapshots import snapshots_of
-from rattlebox.engines.dem_step import (
-    Step,
-    choose_step,
-    expected_speeds,
-    instants,
-    largest_softening,
-    outcome,
-    packed_friction,
-    packed_normal,
-)
-from rattlebox.engines.laws import packed_restitution
-from rattlebox.engines.pack import mode_coupling, pack, packed_signal
 from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolated, particle_notes, table_notes
-from rattlebox.engines.softening import ENDURING, choose_softening, effects, shaking
 from rattlebox.engines.status import describe, end_of
 from rattlebox.model.doubts import doubts
-from rattlebox.model.errors import at
-from rattlebox.model.in_space import direction_of_base, inertia_along
-from rattlebox.model.methods import Dem, EventDriven, Output
-from rattlebox.model.packing import Settled
+from rattlebox.model.in_space import direction_of_base
+from rattlebox.model.methods import Dem
+from rattlebox.prepare.base_motion import base_motion
+from rattlebox.prepare.particles import Prepared, pack_particles, prepare
+from rattlebox.prepare.softening import effects
+from rattlebox.prepare.time_step import (
+    Step,
+    outcome,
+)
 from rattlebox.results.arrays import RunArrays
 from rattlebox.results.ledger import Ledger
 from rattlebox.results.provenance import Provenance
@@ -51,7 +39,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rattlebox.model.case import Case
-    from rattlebox.model.particle_damper import ContactTable, Entry, ParticleDamper
 
     Array = NDArray[np.float64]
 
@@ -128,7 +115,8 @@ def _simulated(
 ) -> Run:
     method = instance(case.method, Dem)
     kept = None if file is None else file.read()
-    packed, step, tables = pack_dem(case, None if kept is None else kept.positions)
+    prepared = prepare(case, None if kept is None else kept.positions)
+    packed = pack_particles(prepared)
     dem = _core.Dem(packed)
     dem.threads = threads or method.threads or useful_threads(packed)
     journey = Journey(dem, packed, file, method)
@@ -138,42 +126,7 @@ def _simulated(
     if snapshots is not None:
         journey.watch(*snapshots_of(case, packed, snapshots))
     status = journey.go(progress)
-    return _run(case, packed, dem, status, step, tables, journey)
-
-
-def settled(case: Case, go_on: Callable[[], bool]) -> bool:
-    """Let all particles of a case settle that are to.
-
-    Parameters
-    ----------
-    case
-        What is to be run.
-    go_on
-        Asked now and then; False stops.
-
-    Returns
-    -------
-    bool
-        Whether they did before it was stopped. The engine remembers the beds.
-
-    Raises
-    ------
-    CaseError
-        When particles cannot be inserted, or do not come to rest.
-    """
-    return all(
-        not isinstance(damper.packing, Settled) or settle(damper, go_on) is not None for damper in case.particle_dampers
-    )
-
-
-def objection(case: Case) -> str:
-    """Return why a case is refused before its first step; nothing where it can be run."""
-    try:
-        settled(case, lambda: True)
-        pack_dem(case)
-    except RattleboxError as error:
-        return str(error)
-    return ""
+    return _run(case, prepared, packed, dem, status, journey)
 
 
 def useful_threads(packed: _core.DemProblem) -> int:
@@ -182,171 +135,18 @@ def useful_threads(packed: _core.DemProblem) -> int:
     return max(1, min(os.cpu_count() or 1, particles // PARTICLES_EACH))
 
 
-# ---- packing
-
-
-def pack_dem(case: Case, starts: Sequence[Array] | None = None) -> tuple[_core.DemProblem, Step, list[ContactTable]]:
-    """Pack a case with particle dampers for the core.
-
-    Parameters
-    ----------
-    case
-        What the user describes.
-    starts
-        Where particles that settle start, as packed before for each damper, (n, 3) [m]; default they are let fall.
-
-    Returns
-    -------
-    DemProblem
-        Modes, loads, cavities with their particles, and the laws of pairs.
-    Step
-        The time step, and what limits it.
-    list of ContactTable
-        Pairs in each damper.
-
-    Raises
-    ------
-    CaseError
-        When the step that is given is too long, or particles do not settle.
-    """
-    case, _ = resolved(case)
-    modes = case.modes
-    shapes = [modes.space_shape(damper.point, damper.direction) for damper in case.particle_dampers]
-    tables = [damper.contact_table for damper in case.particle_dampers]
-    loads, directions = _loads(case)
-    state = _without_particles(case, loads)
-    speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
-    with at("method", "dt"):
-        step = choose_step(case, tables, speeds)
-    step = replace(step, motions=tuple(shaking(case, shape, state) for shape in shapes))
-    slowest = min((motion.main for motion in step.motions if motion.main), default=0.0)
-    pairs: list[_core.PairLaws] = []
-    cavities = []
-    for index, (damper, shape, table) in enumerate(zip(case.particle_dampers, shapes, tables, strict=True)):
-        with at(*(("dampers", index) if len(shapes) > 1 else ("damper",))):
-            start = None if starts is None else starts[index]
-            cavities.append(_cavity(damper, shape, modes.q0 @ shape, table, len(pairs), start))
-        pairs += [_pair_laws(damper, entry) for entry in table.entries]
-    packed = _core.DemProblem(
-        dt=step.dt,
-        enduring=ENDURING / slowest if slowest else math.inf,
-        steps=step.count,
-        every=step.every,
-        gravity=_array(case.particle_dampers[0].gravity),
-        mode_decay=_array(modes.decay),
-        mode_stiffness=_array(modes.stiffness),
-        mode_coupling=mode_coupling(modes),
-        mode_displacement=_array(modes.q0),
-        mode_velocity=_array(modes.p0),
-        loads=loads,
-        load_directions=directions,
-        cavities=cavities,
-        pairs=pairs,
-    )
-    return packed, step, tables
-
-
-def resolved(case: Case) -> tuple[Case, tuple[str, ...]]:
-    """Return a case with a number for each softening that is "auto", and notes on these numbers."""
-    dampers = case.particle_dampers
-    if all(damper.softening != "auto" for damper in dampers):
-        return case, ()
-    shapes = [case.modes.space_shape(damper.point, damper.direction) for damper in dampers]
-    state = _without_particles(case, _loads(case)[0])
-    speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
-    made: list[Any] = list(case.dampers)
-    notes = []
-    for index, (damper, shape, speed) in enumerate(zip(dampers, shapes, speeds, strict=True)):
-        if damper.softening == "auto":
-            choice = choose_softening(damper, shaking(case, shape, state), largest_softening(case, damper, speed))
-            place = next(k for k, each in enumerate(made) if each is damper)
-            made[place] = damper.model_copy(update={"softening": choice.softening})
-            notes.append((f"{damper.label(index)}: " if len(dampers) > 1 else "") + choice.note)
-    return case.model_copy(update={"dampers": tuple(made)}), tuple(notes)
-
-
-def _array(values: Any) -> Array:
-    return np.ascontiguousarray(values, dtype=np.float64)
-
-
-def _loads(case: Case) -> tuple[list[_core.Load], Array]:
-    """Loads and accelerations of the base, and the direction of each, zero for a load."""
-    loads = [
-        _core.Load(
-            signal=packed_signal(signal),
-            shape=_array(case.modes.shape(signal.point, signal.direction)),
-            base=False,
-        )
-        for signal in case.loads
-    ]
-    directions = [np.zeros(3) for _ in loads]
-    for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
-        direction = direction_of_base(case, signal)
-        shape = _array(-inertia_along(case, direction))
-        loads.append(_core.Load(signal=packed_signal(acceleration), shape=shape, base=True))
-        directions.append(direction)
-    return loads, _array(directions).reshape(-1, 3)
-
-
-def _without_particles(case: Case, loads: list[_core.Load]) -> Array:
-    """Modal displacements and velocities of the structure alone at the instants, (T, m, 2)."""
-    if not case.modes.decay.size:
-        return np.zeros((0, 0, 2))
-    alone = case.model_copy(
-        update={"dampers": (), "base": (), "loads": (), "method": EventDriven(), "output": Output()}
-    )
-    (raw,) = _core.simulate([pack(alone).replace(loads=loads, sample_times=_array(instants(case)))], 1)
-    return raw.state.reshape(raw.time.size, -1, 2)
-
-
-def _cavity(
-    damper: ParticleDamper, shape: Array, displacement: Array, table: ContactTable, first: int, settled: Array | None
-) -> _core.Cavity:
-    """A cavity and its particles; the laws of its pairs begin at a number in the list of all."""
-    contents, start = damper.contents, damper.start
-    position = start.position + displacement
-    if isinstance(damper.packing, Settled):
-        with at("packing"):
-            position = settle(damper) + displacement if settled is None else settled
-    return _core.Cavity(
-        shape=_array(shape),
-        walls=packed_walls(damper.cavity.walls(), table.wall_kind),
-        position=_array(position),
-        velocity=_array(start.velocity),
-        spin=_array(start.spin),
-        radius=_array(contents.radius),
-        mass=_array(contents.mass),
-        inertia=_array(contents.inertia),
-        species=np.asarray(contents.species, dtype=np.int64),
-        particle_pair=np.asarray(table.particle_entry + first, dtype=np.int64),
-        wall_pair=np.asarray(table.wall_entry + first, dtype=np.int64),
-    )
-
-
-def _pair_laws(damper: ParticleDamper, entry: Entry) -> _core.PairLaws:
-    return _core.PairLaws(
-        normal=packed_normal(damper, entry),
-        restitution=packed_restitution(entry.contact.impact_restitution, entry.pair),
-        tangential=packed_friction(damper, entry),
-        rolling=_core.RollingResistance(**damper.rolling_of(entry).coefficients()),
-        radius=float(entry.pair.radius),
-        mass=float(entry.pair.mass),
-    )
-
-
 # ---- results
 
 
 def _run(
     case: Case,
+    prepared: Prepared,
     packed: _core.DemProblem,
     dem: _core.Dem,
     status: Status,
-    step: Step,
-    tables: list[ContactTable],
     journey: Journey,
 ) -> Run:
-    resolved_case, chosen = resolved(case)
+    resolved_case, step = prepared.case, prepared.step
     raw, totals = journey.records(), dem.counts()
     arrays = _arrays(resolved_case, packed, raw, dem)
     overlaps, speeds = totals.largest_overlap.tolist(), totals.largest_approach_speed.tolist()
@@ -354,7 +154,7 @@ def _run(
     lost = sum((loss[-1].sum(axis=1) for loss in losses), np.zeros(len(arrays.dampers)))
     moves = arrays.base_velocity[:, None] + arrays.cavity_velocity
     softened = effects(resolved_case, step.motions, moves, lost, totals.enduring_loss)
-    diagnostics, notes = outcome(resolved_case, tables, step, overlaps, speeds, softened)
+    diagnostics, notes = outcome(resolved_case, prepared.tables, step, overlaps, speeds, softened)
     touches = totals.first_touches
     name, message = _ended(resolved_case, arrays, dem, status, step, journey.checkpoint)
     return Run(
@@ -365,7 +165,7 @@ def _run(
         message=message,
         notes=(
             *notes,
-            *chosen,
+            *prepared.notes,
             *doubts(resolved_case),
             *(
                 particle_notes(resolved_case, touches, arrays.contacts, arrays.centre_of_mass, overlaps)

@@ -7,8 +7,8 @@ import time
 from collections.abc import Callable, Sequence
 
 from rattlebox._util.exceptions import DataError
-from rattlebox.engines import _core
-from rattlebox.engines._core import Status
+from rattlebox.core import _core
+from rattlebox.core._core import Status
 from rattlebox.engines.checkpoint import Checkpoint, Kept, joined
 from rattlebox.model.methods import Dem
 from rattlebox.results.snapshots import SnapshotFile

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.engines.checkpoint import fingerprint
 from rattlebox.model.errors import Hint
 from rattlebox.results.snapshots import SnapshotFile

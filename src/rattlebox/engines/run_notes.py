@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.model.contacts import Contact, Linear, TabulatedNormal
 from rattlebox.model.pairs import contact_pairs
 from rattlebox.model.restitutions import Tabulated
+from rattlebox.prepare.time_step import MOST_OVERLAP
 from rattlebox.results.quantities import quantity
 
 if TYPE_CHECKING:
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from rattlebox.model.dampers import ImpactDamper
     from rattlebox.model.particle_damper import ParticleDamper
     from rattlebox.results.arrays import Table
-
-MOST_OVERLAP = 0.01
-"""Largest overlap over the smaller radius: beyond it contacts of spheres are no longer small against them."""
 
 MOST_LINEAR_OVERLAP = 0.1
 """Largest overlap over the radius of a linear spring, which stands for a body softer than the ball, such as a pad."""

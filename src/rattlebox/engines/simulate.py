@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rattlebox.engines import _core
-from rattlebox.engines._core import Status
-from rattlebox.engines.pack import MOST_EVENTS, pack
+from rattlebox.core import _core
+from rattlebox.core._core import Status
 from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolated, impact_notes
 from rattlebox.engines.status import describe, end_of
@@ -19,6 +18,7 @@ from rattlebox.model.case import Case
 from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import whole_number
+from rattlebox.prepare.pack import MOST_EVENTS, pack
 from rattlebox.results.arrays import RunArrays
 from rattlebox.results.ledger import Ledger
 from rattlebox.results.provenance import Provenance
@@ -260,6 +260,6 @@ def _contact_name(names: Sequence[str], counts: list[int], contact: int) -> str:
 
 def _base_motion(case: Case, time: NDArray[np.float64]) -> NDArray[np.float64]:
     """Displacement, velocity and acceleration of the base, (3, T); a harmonic has no drift, others start at rest."""
-    from rattlebox.engines.base_motion import base_motion
+    from rattlebox.prepare.base_motion import base_motion
 
     return sum((base_motion(signal, time) for signal in case.base_acceleration()), np.zeros((3, time.size)))

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rattlebox.engines import _core
-from rattlebox.engines._core import Status
+from rattlebox.core import _core
+from rattlebox.core._core import Status
 
 if TYPE_CHECKING:
     from rattlebox.results.ledger import Ledger

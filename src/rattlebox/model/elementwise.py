@@ -1,6 +1,6 @@
 """Formulas for one number and, to the same bits, for arrays of them.
 
-Parts of a case hold numbers. In a batch (see rattlebox.engines.pack) some of them are arrays that broadcast against each
+Parts of a case hold numbers. In a batch (see rattlebox.prepare.pack) some of them are arrays that broadcast against each
 other, so that one formula serves one case and a million; what is called a number here, `float`, may then be an array.
 Vectors have their components along the first axis.
 """

@@ -33,7 +33,7 @@ from rattlebox._util.exceptions import DataError
 from .arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
-    from rattlebox.engines import _core
+    from rattlebox.core import _core
 
 FORMAT = 2
 """Number of the layout beside the VTKHDF; files of another one are refused."""

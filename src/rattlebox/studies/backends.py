@@ -296,7 +296,7 @@ class DaskCluster:
 def bits() -> str:
     """Return what decides the last bits of results: version and instruction set."""
     from rattlebox import __version__
-    from rattlebox.engines.core import instructions
+    from rattlebox.core.choose import instructions
 
     return f"Rattlebox {__version__} and {instructions()} instructions"
 

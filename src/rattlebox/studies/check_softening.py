@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rattlebox.engines.dem import resolved
 from rattlebox.model.errors import Hint
 from rattlebox.model.packing import Lattice, Settled
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.units import whole_number
+from rattlebox.prepare.particles import resolved
 from rattlebox.studies.kinds.sweep import sweep
 
 if TYPE_CHECKING:

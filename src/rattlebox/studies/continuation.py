@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox._util.exceptions import CaseError
-from rattlebox.engines import _core
-from rattlebox.engines._core import Status
+from rattlebox.core import _core
+from rattlebox.core._core import Status
 from rattlebox.engines.batch import Look, run_block
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import place_of

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rattlebox.engines import _core
+from rattlebox.core import _core
 
 Packed = TypeVar("Packed", bound=_core.Node)
 
@@ -19,7 +19,7 @@ def gather_variants(node: Packed, shape: Sequence[int], members: NDArray[np.intp
     Parameters
     ----------
     node
-        Batch from `rattlebox.engines.pack.pack_batch`, or a part of it.
+        Batch from `rattlebox.prepare.pack.pack_batch`, or a part of it.
     shape
         Shape of the grid.
     members

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.analysis.shaken import LEAST_SAMPLES
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.engines.batch import Look, run_block
-from rattlebox.engines.pack import Batch, pack_parts
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
+from rattlebox.prepare.pack import Batch, pack_parts
 
 from .case_digest import describe_case
 from .fingerprint import fingerprint

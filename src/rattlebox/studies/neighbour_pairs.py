@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.engines import _core
-from rattlebox.engines._core import Status
+from rattlebox.core import _core
+from rattlebox.core._core import Status
 from rattlebox.engines.batch import Look, run_block
 
 from .gather_variants import gather_values, gather_variants

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     import xarray
 
-    from rattlebox.engines import _core
+    from rattlebox.core import _core
 
 Vector = NDArray[np.float64]
 Whole = NDArray[np.int64]

@@ -15,14 +15,15 @@ from scipy.integrate import trapezoid
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox.analysis import settling_time, shaken_cavity
 from rattlebox.analysis.shaken import LEAST_SAMPLES, StillCavity
-from rattlebox.engines._core import Status
-from rattlebox.engines.dem import objection, settled, simulate_dem
-from rattlebox.engines.dem_step import WARNINGS, warnings_of
+from rattlebox.core._core import Status
+from rattlebox.engines.dem import simulate_dem
 from rattlebox.engines.responses import base_at_points
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
 from rattlebox.model.space import unit_vector
+from rattlebox.prepare.particles import objection, settled
+from rattlebox.prepare.time_step import WARNINGS, warnings_of
 from rattlebox.results import Run
 from rattlebox.results.schema import variables
 

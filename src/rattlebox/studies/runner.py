@@ -134,7 +134,7 @@ def _values_of(result: MemoryResult | Store, plan: Plan, variant: int) -> Values
 
 def _core() -> str:
     """Return the name of the instruction set, which decides the last bits."""
-    from rattlebox.engines.core import instructions
+    from rattlebox.core.choose import instructions
 
     return instructions()
 

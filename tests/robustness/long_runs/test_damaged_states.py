@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines.dem import pack_dem
+from rattlebox.core import _core
+from rattlebox.prepare.particles import pack_particles, prepare
 
 FLIPS = 1500
 
@@ -48,7 +48,8 @@ def shaken(kind: str) -> rb.Case:
 
 def run_flipped(kind: str, seed: int) -> tuple[int, int]:
     """Flip a bit at a time in a state and go on from it; return how many states were refused, and how many ran on."""
-    packed, step, _ = pack_dem(shaken(kind))
+    prepared = prepare(shaken(kind))
+    packed, step = pack_particles(prepared), prepared.step
     first = _core.Dem(packed)
     first.run(step.count // 2)
     state = np.asarray(first.save())
@@ -94,7 +95,7 @@ def test_a_state_that_was_changed_is_refused_with_its_file(tmp_path: Path) -> No
     assert whole.ok
     with np.load(path) as file:
         members = {name: file[name] for name in file.files}
-    packed, _, _ = pack_dem(case)
+    packed = pack_particles(prepare(case))
     members["state"] = members["state"].copy()
     members["state"][-2000:] ^= np.uint8(0x55)
     assert _core.Dem(packed).restore(np.load(path)["state"]) is None

@@ -20,7 +20,7 @@ import xarray as xr
 from distributed import Client, LocalCluster
 
 import rattlebox as rb
-from rattlebox.engines.core import choice, supported
+from rattlebox.core.choose import choice, supported
 from rattlebox.studies.runner import Stopped, run_work
 from rattlebox.studies.stored import progress_of
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rattlebox.engines.core import choice
+from rattlebox.core.choose import choice
 from rattlebox.studies.stored import open_study
 from rattlebox.studies.study_file import study_from_toml
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.base_motion import base_motion
+from rattlebox.prepare.base_motion import base_motion
 
 
 @pytest.mark.parametrize(

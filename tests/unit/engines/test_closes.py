@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines._core import Status
+from rattlebox.core import _core
+from rattlebox.core._core import Status
 from rattlebox.engines.status import end_of
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import rattlebox
-from rattlebox.engines import _core
+from rattlebox.core import _core
 
-STUB = Path(rattlebox.__file__).parent / "engines" / "_core.pyi"
+STUB = Path(rattlebox.__file__).parent / "core" / "_core.pyi"
 
 
 @pytest.mark.skipif(importlib.util.find_spec("nanobind") is None, reason="nanobind is not installed")

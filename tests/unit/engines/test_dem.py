@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines.dem import pack_dem
+from rattlebox.core import _core
 from rattlebox.model.packing import check_packing
+from rattlebox.prepare.particles import pack_particles, prepare
 from rattlebox.results import Run
 
 CUBE = rb.Box(size=("24 mm",) * 3)
@@ -105,7 +105,7 @@ def test_a_settled_bed_lies_from_the_first_step(shape: Any, friction: float) -> 
 
 def test_rough_particles_settle() -> None:
     """Particles that cannot slide come to rest as well, in the bed of those that hardly can."""
-    from rattlebox.engines.dem_settle import settle
+    from rattlebox.prepare.settle import settle
 
     many = {"particles": balls(200), "cavity": rb.Box(size=("30 mm",) * 3), "packing": rb.Settled(seed=1)}
     assert np.array_equal(settle(damper(**many, friction=3)), settle(damper(**many, friction=1)))
@@ -124,7 +124,7 @@ def test_a_large_ball_among_many_small_ones_settles() -> None:
 
 def test_settling_is_reproducible() -> None:
     """The same seed gives the same bed, another one another, and no two particles overlap."""
-    from rattlebox.engines.dem_settle import settle
+    from rattlebox.prepare.settle import settle
 
     beds = [settle(damper(packing=rb.Settled(seed=seed))) for seed in (1, 1, 2)]
     assert np.array_equal(beds[0], beds[1])
@@ -139,7 +139,7 @@ def test_settling_is_reproducible() -> None:
 )
 def test_one_ball_settles_in_a_round_cavity(cavity: Any, friction: float) -> None:
     """A ball that rolls, or slides without friction, in a round cavity comes to rest at its lowest point all the same."""
-    from rattlebox.engines.dem_settle import settle
+    from rattlebox.prepare.settle import settle
 
     (place,) = settle(damper(particles=balls(1), packing=rb.Settled(seed=1), cavity=cavity, friction=friction))
     assert place[2] == pytest.approx(-0.010, abs=2e-6)
@@ -475,7 +475,7 @@ def test_particles_may_just_touch_at_the_start(law: str) -> None:
             **JUST_TOUCHING[law],
         )
         case = rb.Case(structure=rb.Fixed(), damper=made, duration=1e-3, method=rb.Dem(dt="1 us"))
-        packed, _, _ = pack_dem(case)
+        packed = pack_particles(prepare(case))
         (cavity,) = packed.cavities
         dem = _core.Dem(packed.replace(cavities=[cavity.replace(velocity=kicks)]))
         assert dem.run(300)

@@ -10,11 +10,11 @@ import pytest
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines.dem import pack_dem
-from rattlebox.engines.dem_settle import insert, push_apart
-from rattlebox.engines.dem_step import choose_step, expected_speeds, limits, outcome
+from rattlebox.core import _core
 from rattlebox.model.packing import check_packing
+from rattlebox.prepare.particles import prepare
+from rattlebox.prepare.settle import insert, push_apart
+from rattlebox.prepare.time_step import choose_step, expected_speeds, limits, outcome
 
 STEEL = rb.materials()["steel"]
 
@@ -165,7 +165,7 @@ def test_a_cavity_that_moves_on_is_expected_to_meet_its_particles() -> None:
         moving = case(
             {"velocity": (0, 0, 0)}, structure=rb.SDOF(mass=10, stiffness=stiffness, velocity=5), duration=0.01
         )
-        assert pack_dem(moving)[1].speeds[0] == pytest.approx(5, rel=1e-3)
+        assert prepare(moving).step.speeds[0] == pytest.approx(5, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -192,7 +192,7 @@ def test_samples_a_period_apart_hide_no_speed(on: str) -> None:
         },
     }
     rare, frequent = (
-        pack_dem(case({"velocity": (0, 0, 0)}, output=rb.Output(rate=rate), duration=0.2, **where[on]))[1]
+        prepare(case({"velocity": (0, 0, 0)}, output=rb.Output(rate=rate), duration=0.2, **where[on])).step
         for rate in ("50 Hz", "5 kHz")
     )
     assert frequent.speeds[0] > 5

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.dem_settle import insert
+from rattlebox.prepare.settle import insert
 
 CAVITIES = {
     "can": rb.Cylinder(diameter="40 mm", length="60 mm", axis="x"),

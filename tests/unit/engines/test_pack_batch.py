@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines import pack as packing
-from rattlebox.engines.pack import pack, pack_batch
-from rattlebox.engines.variants import compare
+from rattlebox.core import _core
 from rattlebox.model.paths import replaced
+from rattlebox.prepare import pack as packing
+from rattlebox.prepare.pack import pack, pack_batch
+from rattlebox.prepare.variants import compare
 
 CONSTANT = rb.Tsuji(alpha=0.006313, ending="zero_overlap")
 PLASTIC = rb.Tsuji(restitution=rb.JacksonGreen(), ending="zero_overlap")

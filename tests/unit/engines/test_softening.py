@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines.dem import pack_dem
-from rattlebox.engines.softening import AUTO_CHANGE, MOST_CHANGE, Shaking, bed_resonance, change_of_loss
+from rattlebox.core import _core
+from rattlebox.prepare.particles import pack_particles, prepare
+from rattlebox.prepare.softening import AUTO_CHANGE, MOST_CHANGE, Shaking, bed_resonance, change_of_loss
 from rattlebox.studies.particle_work import WARNINGS
 
 
@@ -87,7 +87,8 @@ def test_each_damper_has_its_own_warnings() -> None:
 
 def test_the_loss_of_contacts_of_any_age_is_all_loss() -> None:
     """Sampled in every eighth step it is that of the ledger; no contact is older than the run."""
-    packed, step, _ = pack_dem(small(12, 80, 100))
+    prepared = prepare(small(12, 80, 100))
+    packed, step = pack_particles(prepared), prepared.step
     shares = []
     for age in (0.0, 1 / 320, 1.0):
         dem = _core.Dem(packed.replace(enduring=age))

@@ -3,7 +3,7 @@
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines._core import Status
+from rattlebox.core._core import Status
 from rattlebox.engines.status import MESSAGES, describe
 
 LACKS = {

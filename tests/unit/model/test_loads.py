@@ -11,9 +11,9 @@ from scipy.integrate import quad
 from scipy.signal import lsim
 
 import rattlebox as rb
-from rattlebox.engines.base_motion import base_motion
 from rattlebox.model.doubts import doubts
 from rattlebox.model.signals import Polyline, Signal
+from rattlebox.prepare.base_motion import base_motion
 
 G = 9.80665
 PULSES: dict[str, tuple[Signal, float]] = {

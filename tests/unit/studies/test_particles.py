@@ -10,7 +10,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.analysis import shaken_cavity
-from rattlebox.engines import dem_settle
+from rattlebox.prepare import settle
 from rattlebox.results import Run
 from rattlebox.studies import particle_work
 from rattlebox.studies.axes import read_axes
@@ -324,16 +324,16 @@ def test_stops_are_heard(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_beds_are_settled_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """What does not touch the fall starts from the same bed; another seed, size or friction has a bed of its own."""
-    dem_settle._beds.clear()
+    settle._beds.clear()
     falls = []
-    fall = dem_settle._Bed.fall
-    monkeypatch.setattr(dem_settle._Bed, "fall", lambda self, *args: (falls.append(1), fall(self, *args))[1])
-    first = dem_settle.settle(box())
+    fall = settle._Bed.fall
+    monkeypatch.setattr(settle._Bed, "fall", lambda self, *args: (falls.append(1), fall(self, *args))[1])
+    first = settle.settle(box())
     for same in (box(contact=rb.Thornton()), box(direction="z", velocity=(0, 0, 1), softening=3)):
-        assert np.array_equal(dem_settle.settle(same), first)
+        assert np.array_equal(settle.settle(same), first)
     assert len(falls) == 1
     first[:] = 0
-    assert dem_settle.settle(box()).any()
+    assert settle.settle(box()).any()
     for other in (box(friction=0.3), box(packing=rb.Settled(seed=2)), box(gravity=(0, 0, -5))):
-        dem_settle.settle(other)
+        settle.settle(other)
     assert len(falls) == 4

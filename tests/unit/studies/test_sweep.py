@@ -8,7 +8,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox import analysis
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.model.paths import replaced
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork

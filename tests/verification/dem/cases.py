@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines.dem import pack_dem
+from rattlebox.core import _core
+from rattlebox.prepare.particles import pack_particles, prepare
 
 HERTZ_TIME = 3.2180655
 """Time of an elastic Hertz contact over (m*/A)^(2/5) V^(-1/5)."""
@@ -25,7 +25,8 @@ def run(case: Any, *, closes: bool = True) -> Any:
 
 def dem_of(case: Any, threads: int = 1) -> Any:
     """Return one of the core's simulations of a case, and the number of its last step."""
-    packed, step, _ = pack_dem(case)
+    prepared = prepare(case)
+    packed, step = pack_particles(prepared), prepared.step
     dem = _core.Dem(packed)
     dem.threads = threads
     return dem, step.count

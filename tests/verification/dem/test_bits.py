@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines import _core
-from rattlebox.engines.dem_settle import insert
+from rattlebox.core import _core
+from rattlebox.prepare.settle import insert
 
 from . import cases
 
@@ -235,7 +235,8 @@ def go_on(state: str, target: str) -> None:
 def test_output_does_not_change_the_run(law: str) -> None:
     """Whether every step is sampled or only the last one: the end has the same bits."""
     case = shaken(law, duration=0.004, rate=500.0)
-    packed, step, _ = cases.pack_dem(case)
+    prepared = cases.prepare(case)
+    packed, step = cases.pack_particles(prepared), prepared.step
     ends = []
     for every in (1, step.count):
         dem = _core.Dem(packed.replace(every=every))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.dem_settle import insert
+from rattlebox.prepare.settle import insert
 
 from . import brute, cases
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.engines.dem_step import expected_speeds, limits
+from rattlebox.prepare.time_step import expected_speeds, limits
 
 from . import cases
 

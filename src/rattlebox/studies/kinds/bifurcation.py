@@ -11,7 +11,7 @@ from pydantic import BeforeValidator
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.model.errors import Hint
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.continuation import ContinuationWork, without_states

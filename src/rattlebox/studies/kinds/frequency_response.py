@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic

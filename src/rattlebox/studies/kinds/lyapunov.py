@@ -14,7 +14,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.units import Number, Whole
 from rattlebox.studies.axes import read_axes

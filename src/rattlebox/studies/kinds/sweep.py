@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from rattlebox.engines._core import Status
+from rattlebox.core._core import Status
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import Whole
 from rattlebox.studies.axes import read_axes

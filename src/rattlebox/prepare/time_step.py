@@ -11,10 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox._util.narrow import instance
-from rattlebox.engines import _core
-from rattlebox.engines.base_motion import base_motion
-from rattlebox.engines.run_notes import MOST_OVERLAP
-from rattlebox.engines.softening import MOST_CHANGE, MOST_ENDURING, Effect, Shaking, exponent_of_force
+from rattlebox.core import _core
 from rattlebox.model.contacts import Linear
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic, SineSweep
@@ -23,6 +20,8 @@ from rattlebox.model.methods import Dem
 from rattlebox.model.restitutions import Constant
 from rattlebox.model.shocks import Shock
 from rattlebox.model.signals import Sampled
+from rattlebox.prepare.base_motion import base_motion
+from rattlebox.prepare.softening import MOST_CHANGE, MOST_ENDURING, Effect, Shaking, exponent_of_force
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
@@ -40,6 +39,9 @@ MOST_AVERAGED = 0.02
 
 FEWEST_STEPS = 20.0
 """In the shortest contact."""
+
+MOST_OVERLAP = 0.01
+"""Largest overlap over the smaller radius: beyond it contacts of spheres are no longer small against them."""
 
 WARNINGS = {
     "few_steps": f"fewer than {FEWEST_STEPS:g} steps in the shortest contact",
@@ -354,7 +356,7 @@ def _uncountable(case: Case, dt: float, *, given: bool) -> Hint:
 
 def outcome(
     case: Case,
-    tables: list[ContactTable],
+    tables: Sequence[ContactTable],
     step: Step,
     overlaps: Sequence[float],
     speeds: Sequence[float],

@@ -16,9 +16,16 @@ import numpy as np
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox._util.narrow import instance
-from rattlebox.engines import _core
-from rattlebox.engines.laws import packed_restitution, restitution_of_alpha
-from rattlebox.engines.variants import (
+from rattlebox.core import _core
+from rattlebox.model.base import Part
+from rattlebox.model.contacts import FixedDamping
+from rattlebox.model.errors import Hint
+from rattlebox.model.methods import EventDriven, Newton, TwoStep
+from rattlebox.model.pairs import Pair, contact_pairs
+from rattlebox.model.paths import Place, part_at, place_of, replaced
+from rattlebox.model.restitutions import Constant
+from rattlebox.prepare.laws import packed_restitution, restitution_of_alpha
+from rattlebox.prepare.variants import (
     Columns,
     Index,
     Joint,
@@ -32,13 +39,6 @@ from rattlebox.engines.variants import (
     variant,
     with_value,
 )
-from rattlebox.model.base import Part
-from rattlebox.model.contacts import FixedDamping
-from rattlebox.model.errors import Hint
-from rattlebox.model.methods import EventDriven, Newton, TwoStep
-from rattlebox.model.pairs import Pair, contact_pairs
-from rattlebox.model.paths import Place, part_at, place_of, replaced
-from rattlebox.model.restitutions import Constant
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

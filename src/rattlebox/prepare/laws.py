@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.model.contacts import Ending
 from rattlebox.model.pairs import Pair
 from rattlebox.model.restitutions import Restitution

@@ -80,5 +80,5 @@ def instructions() -> str:
 
 @cache
 def core() -> ModuleType:
-    """Return the compiled core. Modules that use it import `rattlebox.engines._core`, whose types mypy knows."""
+    """Return the compiled core. Modules that use it import `rattlebox.core._core`, whose types mypy knows."""
     return import_module(f"rattlebox.engines._core_{choice()[0]}")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from rattlebox._util.exceptions import CaseError, RattleboxError
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.model.base import Part
 from rattlebox.model.errors import Hint
 from rattlebox.model.paths import Place, get, part_at, place_of, replaced

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rattlebox._util.narrow import instance
-from rattlebox.engines import _core
+from rattlebox.core import _core
 from rattlebox.model.errors import Hint
 from rattlebox.model.packing import TOUCHING, Crowd, Settled, check_packing, fewer_at_random, overlapping
 

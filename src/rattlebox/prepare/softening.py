@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rattlebox.engines.base_motion import base_motion
 from rattlebox.model.contacts import Contact, Linear, PowerLaw, TabulatedNormal
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.shocks import Shock
 from rattlebox.model.signals import Signal
+from rattlebox.prepare.base_motion import base_motion
 from rattlebox.results.quantities import quantity
 
 if TYPE_CHECKING:

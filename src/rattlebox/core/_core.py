@@ -2,6 +2,6 @@
 
 import sys
 
-from rattlebox.engines.core import core
+from rattlebox.core.choose import core
 
 sys.modules[__name__] = core()

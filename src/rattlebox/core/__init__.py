@@ -1,0 +1,1 @@
+"""The compiled core, in the build that suits the processor."""

@@ -1,0 +1,270 @@
+"""Particle dampers: what is computed before the run, and the numbers that the core reads."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox._util.exceptions import RattleboxError
+from rattlebox.core import _core
+from rattlebox.model.errors import at
+from rattlebox.model.in_space import direction_of_base, inertia_along
+from rattlebox.model.methods import EventDriven, Output
+from rattlebox.model.packing import Settled
+from rattlebox.prepare.laws import packed_restitution
+from rattlebox.prepare.pack import mode_coupling, pack, packed_signal
+from rattlebox.prepare.settle import packed_walls, settle
+from rattlebox.prepare.softening import ENDURING, choose_softening, shaking
+from rattlebox.prepare.time_step import (
+    Step,
+    choose_step,
+    expected_speeds,
+    instants,
+    largest_softening,
+    packed_friction,
+    packed_normal,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rattlebox.model.case import Case
+    from rattlebox.model.particle_damper import ContactTable, Entry, ParticleDamper
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A case with particle dampers, and all that is computed before its first step.
+
+    Attributes
+    ----------
+    case
+        The case, with a number for each softening.
+    notes
+        Why a softening that was "auto" has its value.
+    step
+        The time step, and what limits it.
+    tables
+        Laws of the pairs in each damper.
+    positions
+        Where the particles of each damper start, (n, 3) [m].
+    """
+
+    case: Case
+    notes: tuple[str, ...]
+    step: Step
+    tables: tuple[ContactTable, ...]
+    positions: tuple[Array, ...]
+
+
+def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
+    """Choose the softening and the time step of a case, and settle its particles.
+
+    Parameters
+    ----------
+    case
+        The case, with particle dampers.
+    positions
+        Where the particles of each damper start, (n, 3) [m], as known from a checkpoint; by default those that settle are
+        let fall.
+
+    Returns
+    -------
+    Prepared
+        Everything that `pack_particles` needs.
+
+    Raises
+    ------
+    CaseError
+        If the given step is too long, or particles do not settle.
+    """
+    case, notes = resolved(case)
+    shapes = _shapes(case)
+    tables = tuple(damper.contact_table for damper in case.particle_dampers)
+    state = _without_particles(case)
+    speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
+    with at("method", "dt"):
+        step = choose_step(case, list(tables), speeds)
+    step = replace(step, motions=tuple(shaking(case, shape, state) for shape in shapes))
+    return Prepared(case, notes, step, tables, tuple(_positions(case, shapes, positions)))
+
+
+def pack_particles(prepared: Prepared) -> _core.DemProblem:
+    """Pack a prepared case for the core.
+
+    Parameters
+    ----------
+    prepared
+        The prepared case.
+
+    Returns
+    -------
+    DemProblem
+        Modes, loads, cavities with their particles, and the laws of pairs.
+    """
+    case, step = prepared.case, prepared.step
+    modes = case.modes
+    slowest = min((motion.main for motion in step.motions if motion.main), default=0.0)
+    loads, directions = _loads(case)
+    pairs: list[_core.PairLaws] = []
+    cavities = []
+    parts = zip(case.particle_dampers, _shapes(case), prepared.tables, prepared.positions, strict=True)
+    for damper, shape, table, position in parts:
+        cavities.append(_cavity(damper, shape, table, len(pairs), position))
+        pairs += [_pair_laws(damper, entry) for entry in table.entries]
+    return _core.DemProblem(
+        dt=step.dt,
+        enduring=ENDURING / slowest if slowest else math.inf,
+        steps=step.count,
+        every=step.every,
+        gravity=_array(case.particle_dampers[0].gravity),
+        mode_decay=_array(modes.decay),
+        mode_stiffness=_array(modes.stiffness),
+        mode_coupling=mode_coupling(modes),
+        mode_displacement=_array(modes.q0),
+        mode_velocity=_array(modes.p0),
+        loads=loads,
+        load_directions=directions,
+        cavities=cavities,
+        pairs=pairs,
+    )
+
+
+def settled(case: Case, go_on: Callable[[], bool]) -> bool:
+    """Let all particles of a case settle that are to.
+
+    Parameters
+    ----------
+    case
+        What is to be run.
+    go_on
+        Asked now and then; False stops.
+
+    Returns
+    -------
+    bool
+        Whether they did before it was stopped. The engine remembers the beds.
+
+    Raises
+    ------
+    CaseError
+        When particles cannot be inserted, or do not come to rest.
+    """
+    return all(
+        not isinstance(damper.packing, Settled) or settle(damper, go_on) is not None for damper in case.particle_dampers
+    )
+
+
+def objection(case: Case) -> str:
+    """Return why a case is refused before its first step; nothing where it can be run."""
+    try:
+        settled(case, lambda: True)
+        prepare(case)
+    except RattleboxError as error:
+        return str(error)
+    return ""
+
+
+def resolved(case: Case) -> tuple[Case, tuple[str, ...]]:
+    """Return a case with a number for each softening that is "auto", and notes on these numbers."""
+    dampers = case.particle_dampers
+    if all(damper.softening != "auto" for damper in dampers):
+        return case, ()
+    shapes = _shapes(case)
+    state = _without_particles(case)
+    speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
+    made: list[Any] = list(case.dampers)
+    notes = []
+    for index, (damper, shape, speed) in enumerate(zip(dampers, shapes, speeds, strict=True)):
+        if damper.softening == "auto":
+            choice = choose_softening(damper, shaking(case, shape, state), largest_softening(case, damper, speed))
+            place = next(k for k, each in enumerate(made) if each is damper)
+            made[place] = damper.model_copy(update={"softening": choice.softening})
+            notes.append((f"{damper.label(index)}: " if len(dampers) > 1 else "") + choice.note)
+    return case.model_copy(update={"dampers": tuple(made)}), tuple(notes)
+
+
+def _array(values: Any) -> Array:
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _shapes(case: Case) -> list[Array]:
+    return [case.modes.space_shape(damper.point, damper.direction) for damper in case.particle_dampers]
+
+
+def _positions(case: Case, shapes: Sequence[Array], known: Sequence[Array] | None) -> list[Array]:
+    """Return where the particles of each damper start; those that settle are let fall unless the places are known."""
+    positions = []
+    for index, (damper, shape) in enumerate(zip(case.particle_dampers, shapes, strict=True)):
+        moved = case.modes.q0 @ shape
+        position = damper.start.position + moved
+        if isinstance(damper.packing, Settled):
+            with at(*(("dampers", index) if len(shapes) > 1 else ("damper",)), "packing"):
+                position = settle(damper) + moved if known is None else known[index]
+        positions.append(_array(position))
+    return positions
+
+
+def _loads(case: Case) -> tuple[list[_core.Load], Array]:
+    """Loads and accelerations of the base, and the direction of each, zero for a load."""
+    loads = [
+        _core.Load(
+            signal=packed_signal(signal),
+            shape=_array(case.modes.shape(signal.point, signal.direction)),
+            base=False,
+        )
+        for signal in case.loads
+    ]
+    directions = [np.zeros(3) for _ in loads]
+    for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
+        direction = direction_of_base(case, signal)
+        shape = _array(-inertia_along(case, direction))
+        loads.append(_core.Load(signal=packed_signal(acceleration), shape=shape, base=True))
+        directions.append(direction)
+    return loads, _array(directions).reshape(-1, 3)
+
+
+def _without_particles(case: Case) -> Array:
+    """Modal displacements and velocities of the structure alone at the instants, (T, m, 2)."""
+    if not case.modes.decay.size:
+        return np.zeros((0, 0, 2))
+    alone = case.model_copy(
+        update={"dampers": (), "base": (), "loads": (), "method": EventDriven(), "output": Output()}
+    )
+    (raw,) = _core.simulate([pack(alone).replace(loads=_loads(case)[0], sample_times=_array(instants(case)))], 1)
+    return raw.state.reshape(raw.time.size, -1, 2)
+
+
+def _cavity(damper: ParticleDamper, shape: Array, table: ContactTable, first: int, position: Array) -> _core.Cavity:
+    """Return a cavity and its particles; the laws of its pairs begin at a number in the list of all."""
+    contents, start = damper.contents, damper.start
+    return _core.Cavity(
+        shape=_array(shape),
+        walls=packed_walls(damper.cavity.walls(), table.wall_kind),
+        position=position,
+        velocity=_array(start.velocity),
+        spin=_array(start.spin),
+        radius=_array(contents.radius),
+        mass=_array(contents.mass),
+        inertia=_array(contents.inertia),
+        species=np.asarray(contents.species, dtype=np.int64),
+        particle_pair=np.asarray(table.particle_entry + first, dtype=np.int64),
+        wall_pair=np.asarray(table.wall_entry + first, dtype=np.int64),
+    )
+
+
+def _pair_laws(damper: ParticleDamper, entry: Entry) -> _core.PairLaws:
+    return _core.PairLaws(
+        normal=packed_normal(damper, entry),
+        restitution=packed_restitution(entry.contact.impact_restitution, entry.pair),
+        tangential=packed_friction(damper, entry),
+        rolling=_core.RollingResistance(**damper.rolling_of(entry).coefficients()),
+        radius=float(entry.pair.radius),
+        mass=float(entry.pair.mass),
+    )
