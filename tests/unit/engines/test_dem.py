@@ -241,7 +241,7 @@ def test_force_on_the_cavity_is_what_changes_momentum() -> None:
 
 def test_loss_and_mass_of_a_shaken_cavity_in_two_ways() -> None:
     """Force times velocity and the ledger tell the same loss, momentum and the forces recorded the same mass."""
-    run = simulate(damper(gravity=(0, 0, 0)), structure=shaker(), duration=0.25, output=rb.Output(rate="8 kHz"))
+    run = simulate(damper(gravity=(0, 0, 0)), structure=shaker(), duration=0.25, output=rb.Output(rate="16 kHz"))
     found = rb.analysis.shaken_cavity(run, frequency=40, after=0.1)
     taken, lost = found.active_power.values
     labelled = rb.analysis.shaken_cavity(run, frequency=found.active_power.sum() * 0 + 40, after=0.1)
