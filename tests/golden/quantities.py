@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.prepare import core
+from rattlebox.core import choose as core
 
 Quantities = dict[str, NDArray[Any]]
 

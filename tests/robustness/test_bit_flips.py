@@ -67,7 +67,10 @@ def content(path: Path) -> Any:
         return snapshots.case_toml, snapshots.numbers, snapshots.planned.tobytes(), frames
     kept = Checkpoint(path, case()).read()
     assert kept is not None
-    arrays = {**kept.records, "state": kept.state, **{str(k): array for k, array in enumerate(kept.positions)}}
+    names = [name for name in dir(kept.records) if not name.startswith("_")]
+    records = {name: value for name in names if isinstance(value := getattr(kept.records, name), np.ndarray)}
+    assert records
+    arrays = {**records, "state": kept.state, **{str(k): array for k, array in enumerate(kept.positions)}}
     return kept.numbers, kept.time, kept.seconds, {name: array.tobytes() for name, array in arrays.items()}
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import rattlebox as rb
-from rattlebox.prepare import core
+from rattlebox.core import choose as core
 
 HERE = Path(__file__).parent
 V3 = {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"}
@@ -64,5 +64,5 @@ def test_build_that_cannot_run_is_refused(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv("RATTLEBOX_SIMD", "v4")
     monkeypatch.setattr(core, "_processor_flags", lambda: V3)
     monkeypatch.setattr(core, "built", lambda: ("v4", "v3", "v1"))
-    with pytest.raises(rb.CaseError, match="offer: v3, v1"):
+    with pytest.raises(rb.ResourceError, match="offer v3, v1"):
         core.choice.__wrapped__()

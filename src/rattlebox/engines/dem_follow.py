@@ -81,7 +81,7 @@ class Journey:
             if snapshots.taken >= before:
                 return
         except DataError as error:
-            wrong = str(error)
+            wrong = str(error).partition("\n  try: ")[0]
         raise DataError(
             f"{wrong}\n  try: put the file back and leave output.snapshots as it was, or remove the checkpoint to begin anew"
         )

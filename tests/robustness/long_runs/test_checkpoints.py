@@ -88,7 +88,7 @@ def same_snapshots(first: Path, second: Path) -> bool:
 def test_a_run_that_is_over_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Run again, a run that has reached its end comes back at once and is the same."""
     run = rb.simulate(case(), checkpoint=tmp_path / "run.checkpoint", snapshots=tmp_path / "run.vtkhdf")
-    monkeypatch.setattr("rattlebox.engines.dem.settle", None)
+    monkeypatch.setattr("rattlebox.prepare.particles.settle", None)
     again = rb.simulate(case(), checkpoint=tmp_path / "run.checkpoint", snapshots=tmp_path / "run.vtkhdf")
     assert bits(again) == bits(run)
 

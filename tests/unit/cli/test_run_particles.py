@@ -82,7 +82,7 @@ def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("where", "kept"),
     [
-        ("rattlebox.engines.dem.settle", "nothing is kept yet"),
+        ("rattlebox.prepare.particles.settle", "nothing is kept yet"),
         ("rattlebox.results.Run.save", "the same command goes on from out/run.checkpoint"),
         ("rattlebox.results.Run.to_csv", "the same command goes on from out/run.checkpoint"),
     ],

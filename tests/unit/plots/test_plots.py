@@ -211,6 +211,8 @@ def test_long_names_stay_on_the_paper(two_dampers: Run) -> None:
         points=points,
         displacement=np.repeat(arrays.displacement, 2, axis=1),
         velocity=np.repeat(arrays.velocity, 2, axis=1),
+        acceleration=np.repeat(arrays.acceleration, 2, axis=1),
+        absolute_acceleration=np.repeat(arrays.absolute_acceleration, 2, axis=1),
         dampers=("a damper with a rather long name, first", "a damper with a rather long name, second"),
     )
     for kind in ("motion", "impacts"):

@@ -48,7 +48,7 @@ def elastic_impact(ball: Ball, plane: bool, speed: float) -> tuple[float, float,
         forces.append(float(np.abs(dem.contacts(0).force).max()))
     assert 0 < np.argmax(forces) < 11
     dem.run(last)
-    x = dem.state().cavities[0]["position"][:, 0]
+    x = dem.state().cavities[0].position[:, 0]
     gap = 0.5 * case.dampers[0].cavity.size[0] - x[0] - ball.radius if plane else x[1] - x[0] - 2 * ball.radius
     left = dem.state().time - gap / speed
     return max(forces), dem.counts().largest_overlap[0] * ball.radius, left - 5.5 * dt
