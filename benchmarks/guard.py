@@ -12,6 +12,7 @@ dem N       N spheres in a box that is shaken along z with 10 g, fill 0.36, from
 from __future__ import annotations
 
 import argparse
+import inspect
 import os
 import statistics
 import subprocess
@@ -71,7 +72,9 @@ def impact() -> Callable[[], Any]:
 
     case = _case(IMPACT)
     starts = {"damper.start": np.linspace(-0.99, 0.99, STARTS)}
-    return lambda: rb.sweep(case, starts, ["impact_share"], workers=1, progress=False)
+    # Before 0.2.0 the number of threads was called so.
+    count = "workers" if "workers" in inspect.signature(rb.sweep).parameters else "threads"
+    return lambda: rb.sweep(case, starts, ["impact_share"], progress=False, **{count: 1})
 
 
 def dem(count: int) -> Callable[[], Any]:

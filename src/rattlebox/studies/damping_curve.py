@@ -114,7 +114,8 @@ def damping_curve(
     xarray.Dataset
         Over `amplitude` [m]: `damping_ratio`, `lower` and `upper` limit of its 95 % interval (NaN with fewer than two
         packings that reach the amplitude), `bare` (of the structure alone), and over `packing`, too, `damping_ratios` of
-        each. NaN where no decay passes the amplitude within the duration. Attributes: way, mode, point, frequency [Hz].
+        each. NaN where no decay passes the amplitude within the duration. Attributes: way, mode, point, frequency [Hz], and
+        `warnings` of the runs, such as that softening changes the loss.
 
     Raises
     ------
@@ -151,11 +152,12 @@ def damping_curve(
     count = whole_number(packings, "packings", 1)
     about = _mode(case, mode, point)
     cases = _starts(case, count)
+    warnings: dict[str, None] = {}
     if way == "shaking":
-        ratios = _shaken(cases, about, levels, cycles, threads, progress)
+        ratios = _shaken(cases, about, levels, cycles, threads, progress, warnings)
     else:
-        ratios = _decayed(cases, about, levels, way, threads, progress)
-    return _dataset(ratios, levels, about, way)
+        ratios = _decayed(cases, about, levels, way, threads, progress, warnings)
+    return _dataset(ratios, levels, about, way).assign_attrs(warnings=list(warnings))
 
 
 def _levels(amplitudes: Sequence[Any]) -> FloatArray:
@@ -232,12 +234,13 @@ def _decayed(
     way: Way,
     threads: int | None,
     progress: Callable[[int, int], object] | None,
+    warnings: dict[str, None],
 ) -> FloatArray:
     highest = float(band_edges(levels)[-1]) * _MARGIN
     variants = [_set_off(case, mode, highest) for case in cases]
     rows = []
     for number, run in enumerate(_runs(variants, threads, progress)):
-        _check(run, number)
+        _check(run, number, warnings)
         time = run.motion.time.values
         z = _along(run, mode)
         if way == "decay":
@@ -288,6 +291,7 @@ def _shaken(
     cycles: tuple[int, int],
     threads: int | None,
     progress: Callable[[int, int], object] | None,
+    warnings: dict[str, None],
 ) -> FloatArray:
     skip, kept = whole_number(cycles[0], "cycles[0]", 1), whole_number(cycles[1], "cycles[1]", 1)
     variants, owners = [], []
@@ -303,7 +307,7 @@ def _shaken(
                 owners.append((number, k))
     ratios = np.full((len(cases), levels.size), mode.ratio + _tuned(cases[0], mode))
     for (number, k), run in zip(owners, _runs(variants, threads, progress), strict=True):
-        _check(run, number)
+        _check(run, number, warnings)
         losses = run.energy.losses
         begin = skip / mode.frequency
         work = float(losses[-1]) - float(np.interp(begin, losses.time.values, losses.values))
@@ -353,7 +357,8 @@ def _runs(cases: list[Case], threads: int | None, progress: Callable[[int, int],
     return runs
 
 
-def _check(run: Run, number: int) -> None:
+def _check(run: Run, number: int, warnings: dict[str, None]) -> None:
+    warnings |= dict.fromkeys(note for note in run.notes if note.startswith("warning: "))
     if not run.ok:
         raise Hint(f"the run of start {number + 1} failed: {run.message}", "rb.simulate(case), to see where")
 

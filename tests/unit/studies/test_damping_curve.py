@@ -89,6 +89,8 @@ def test_particles() -> None:
     assert float(found.damping_ratio.max()) > 0.01
     assert found.damping_ratios.sizes == {"packing": 2, "amplitude": 3}
     assert np.all(found.lower <= found.damping_ratio)
+    soft = rb.damping_curve(case.model_copy(update={"duration": 0.3}), [4e-5, 6e-5], packings=1).attrs["warnings"]
+    assert any("softening" in warning or "resonance" in warning for warning in soft), soft
     assert found.damping_ratio.attrs["units"] == "1" and found.amplitude.attrs["units"] == "m"
 
 
