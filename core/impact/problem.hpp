@@ -71,7 +71,7 @@ struct Problem {
     std::vector<Contact> contacts;
     std::vector<real> ball_mass, ball_position, ball_velocity;
     std::vector<int> ball_damper;
-    std::vector<real> sample_times;        // increasing, within [0, duration]
+    std::vector<real> sample_times; // increasing, within [0, duration]
     Settings settings;
 
     int mode_count() const { return static_cast<int>(modes.size()); }
