@@ -124,6 +124,6 @@ def test_rate_that_nearly_divides_the_duration(duration: float) -> None:
 def test_run_of_very_many_events_is_sampled_evenly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beyond the limit of events only the times known before the run are recorded."""
     case = example("steel_ball.toml", duration=0.5)
-    for module in ("pack", "simulate"):
-        monkeypatch.setattr(f"rattlebox.engines.{module}.MOST_EVENTS", 10)
+    for module in ("prepare.pack", "engines.simulate"):
+        monkeypatch.setattr(f"rattlebox.{module}.MOST_EVENTS", 10)
     assert np.array_equal(rb.simulate(case).arrays.time, case.sample_times())
