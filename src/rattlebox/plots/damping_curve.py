@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-import xarray
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -23,6 +22,7 @@ from .style import (
 )
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.axes import Axes
 
 
@@ -41,6 +41,8 @@ def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *,
     matplotlib.figure.Figure
         The figure.
     """
+    import xarray  # takes longer to load than a figure of a run takes to draw
+
     named = {"": curves} if isinstance(curves, xarray.Dataset) else dict(curves)
     with figure_style(size):
         figure = StyledFigure(size, 0.62)

@@ -160,6 +160,8 @@ class StyledFigure(Figure):
         """Write a file; matplotlib adds a suffix to a name without one."""
         form = options.pop("format", None) or path.suffix[1:] or str(mpl.rcParams["savefig.format"])
         path = path if path.suffix else path.with_name(f"{path.name}.{form}")
+        if form == "png":  # Level 4 takes two thirds of the time of the usual level 6, for slightly larger files.
+            options = {"pil_kwargs": {"compress_level": 4}} | options
         with atomic_write(path, "make room and save the figure again") as name:
             super().savefig(name, format=form, **options)
 

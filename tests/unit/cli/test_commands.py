@@ -97,6 +97,17 @@ def test_help_tells_what_particles_draw() -> None:
     assert "Draw motion and energy, and the impacts of impact dampers." in told
 
 
+def test_figures_of_a_run_load_no_xarray() -> None:
+    """Figures of a run do without xarray, which takes longer to load than they take to draw."""
+    script = (
+        "import sys, rattlebox as rb; run = rb.simulate(rb.Case.from_file(sys.argv[1]));"
+        "run.plot.motion(); run.plot.energy(); run.plot.impacts(); print('xarray' in sys.modules)"
+    )
+    command = [sys.executable, "-c", script, str(EXAMPLES / "steel_ball.toml")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.stdout == "False\n", done.stderr
+
+
 def test_schema_is_a_schema(tmp_path: Path) -> None:
     """The exported schema is JSON and knows the structures."""
     done = rattlebox("schema", "-o", tmp_path / "schema.json")
