@@ -4,15 +4,40 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
-from rattlebox._util.exceptions import DataError, RattleboxError
+from rattlebox._util.exceptions import CaseError, DataError, RattleboxError
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
 
+
+class _PlainFlags:
+    """Leaves out the type of options that take no value, in the help of commands."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Return the arguments and options of a command."""
+        params: list[Any] = super().get_params(ctx)  # type: ignore[misc]
+        for param in params:
+            if getattr(param, "is_flag", False):
+                param.metavar = ""
+        return params
+
+
+class _Command(_PlainFlags, TyperCommand):
+    pass
+
+
+class _Group(_PlainFlags, TyperGroup):
+    pass
+
+
+_WRITES = {"allow_extra_args": True}  # so that _check_single can say how the output is named
+
 app = typer.Typer(
+    cls=_Group,
     help="Simulate and design particle and impact dampers.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -36,8 +61,18 @@ def _options(
     pass
 
 
-@app.command()
+def _check_single(ctx: typer.Context, first: Path) -> None:
+    """Raise if a command got more than its one file or folder."""
+    if ctx.args:
+        raise CaseError(
+            f"{' '.join(ctx.args)}: 'rattlebox {ctx.info_name}' takes one argument, {first}\n"
+            f"  try: rattlebox {ctx.info_name} {first} -o {ctx.args[0]}"
+        )
+
+
+@app.command(cls=_Command, context_settings=_WRITES)
 def run(
+    ctx: typer.Context,
     case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("out"),
     csv: Annotated[bool, typer.Option(help="Write CSV files too.")] = False,
@@ -52,13 +87,15 @@ def run(
     ] = False,
 ) -> None:
     """Run a case file: summary on the terminal, netCDF and figures in a folder. The same command goes on after a stop."""
+    _check_single(ctx, case)
     from rattlebox.cli.run import run_case
 
     run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint, replace=replace)
 
 
-@app.command()
+@app.command(cls=_Command, context_settings=_WRITES)
 def sweep(
+    ctx: typer.Context,
     study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder of results (Zarr); default named after the study file.")
@@ -69,6 +106,7 @@ def sweep(
     ] = None,
 ) -> None:
     """Run a study file: variants of a case over axes, or a ready map. The same command goes on after a stop."""
+    _check_single(ctx, study)
     from rattlebox.cli.sweep import run_sweep
 
     run_sweep(study, out, workers, dask)
@@ -82,7 +120,7 @@ def _check_results(path: Path, wanted: str) -> None:
         raise DataError(f"{path} is a case file or a study file, not a result", wanted)
 
 
-@app.command()
+@app.command(cls=_Command)
 def show(results: Annotated[Path, typer.Argument(help="Folder that run or sweep wrote; or run.nc.")]) -> None:
     """Tell what is in a study, and how far it is; or the summary, notes and files of a run."""
     _check_results(results, "the folder that 'rattlebox run -o' or 'rattlebox sweep -o' wrote")
@@ -98,8 +136,9 @@ def show(results: Annotated[Path, typer.Argument(help="Folder that run or sweep 
     show_study(results)
 
 
-@app.command()
+@app.command(cls=_Command, context_settings=_WRITES)
 def plot(
+    ctx: typer.Context,
     results: Annotated[
         Path, typer.Argument(help="Folder that run or sweep wrote; or one of the files run.nc and run.vtkhdf.")
     ],
@@ -128,6 +167,7 @@ def plot(
     size: Annotated[str | None, typer.Option(help="column, page or slide.")] = None,
 ) -> None:
     """Draw a study: its own figure, or a measure over one or two of its axes. Draw a run, or film its particles."""
+    _check_single(ctx, results)
     _check_results(results, "the folder that 'rattlebox run -o' or 'rattlebox sweep -o' wrote")
     from rattlebox.cli.folder import is_run
 
@@ -141,7 +181,7 @@ def plot(
     plot_study(results, out, kind=kind, of=of, at=at or (), number=number, size=size)
 
 
-@app.command()
+@app.command(cls=_Command)
 def demo(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo"),
 ) -> None:
@@ -151,7 +191,7 @@ def demo(
     run_demo(out)
 
 
-@app.command()
+@app.command(cls=_Command)
 def schema(
     out: Annotated[Path | None, typer.Option("--out", "-o", help="File; default the terminal.")] = None,
 ) -> None:
@@ -169,7 +209,7 @@ def schema(
             name.write_text(text, encoding="utf-8")
 
 
-@app.command()
+@app.command(cls=_Command)
 def materials() -> None:
     """List the materials of the library, with their sources."""
     from rattlebox.cli.materials import show_materials
@@ -177,7 +217,7 @@ def materials() -> None:
     show_materials()
 
 
-@app.command()
+@app.command(cls=_Command)
 def doctor() -> None:
     """Say what this machine can do, and which core is used and why."""
     from rattlebox.cli.doctor import examine

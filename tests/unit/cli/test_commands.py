@@ -11,6 +11,8 @@ import pytest
 import rattlebox as rb
 from rattlebox.cli import commands
 
+from .conftest import Answer
+
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
@@ -95,6 +97,23 @@ def test_help_tells_what_particles_draw() -> None:
     """The help of run names impacts as figures of impact dampers only."""
     told = " ".join(rattlebox("run", "--help").stdout.replace("│", " ").split())
     assert "Draw motion and energy, and the impacts of impact dampers." in told
+
+
+@pytest.mark.parametrize("command", ["run", "sweep", "plot"])
+def test_a_second_argument_suggests_the_option_for_output(command: str, answer: Answer) -> None:
+    """A second argument is refused with exit code 2 and the command line that names it as the output."""
+    code, printed, error = answer(command, "one.toml", "two")
+    assert (code, printed) == (2, "")
+    assert f"rattlebox {command} one.toml -o two" in error
+
+
+@pytest.mark.parametrize("command", [(), ("run",), ("sweep",), ("plot",)])
+def test_help_shows_no_type_for_flags(command: tuple[str, ...], answer: Answer) -> None:
+    """Options that take no value have no type in the help; other options have theirs."""
+    _, printed, _ = answer(*command, "--help")
+    assert "--help" in printed
+    assert "bool" not in printed
+    assert not command or "<path>" in printed
 
 
 def test_figures_of_a_run_load_no_xarray() -> None:
