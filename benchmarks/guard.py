@@ -1,6 +1,6 @@
 """Compares the speed of this source tree with that of another one, in pairs: `python benchmarks/guard.py OTHER`.
 
-OTHER is a source tree with compiled cores in src/rattlebox/engines, such as a worktree of the commit before. Each
+OTHER is a source tree with compiled cores, such as a worktree of the commit before. Each
 measurement runs in a process of its own, the two trees in turns. The median ratio of the pairs is printed: the CPU time of
 the other tree over that of this one, so that 1.1 means that this one is 10 % faster. The range that holds half of the
 pairs shows how steady the machine is. All jobs run on one thread.

@@ -154,5 +154,5 @@ def core_file(level: str) -> str:
     """Return the path of the compiled core of an instruction set."""
     from importlib.util import find_spec
 
-    spec = find_spec(f"rattlebox.engines._core_{level}")
+    spec = find_spec(f"rattlebox.core._core_{level}")
     return "" if spec is None or spec.origin is None else spec.origin

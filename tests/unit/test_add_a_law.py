@@ -205,7 +205,7 @@ def test_the_laws_of_the_page_run_in_both_engines(copy: Path) -> None:
         done = subprocess.run(command, cwd=copy, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
     (library,) = (copy / "build").glob("_core_*")
-    shutil.copy(library, copy / "src" / "rattlebox" / "engines")
+    shutil.copy(library, copy / "src" / "rattlebox" / "core")
 
     script = RUN.format(numbers=(RADIUS, DENSITY, YOUNG, POISSON, SPEED))
     # Without `site` (-S), an editable install of the package cannot come before the copy.

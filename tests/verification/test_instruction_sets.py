@@ -25,7 +25,7 @@ def test_every_build_gives_the_verified_numbers(level: str) -> None:
     environment = {**os.environ, "RATTLEBOX_SIMD": level}
     tell = "from rattlebox.core.choose import core; print(core().__name__)"
     name = subprocess.run([sys.executable, "-c", tell], env=environment, capture_output=True, text=True, check=True)
-    assert name.stdout.strip() == f"rattlebox.engines._core_{level}"
+    assert name.stdout.strip() == f"rattlebox.core._core_{level}"
     files = ["test_reference_w1.py", "test_known_solutions.py::test_run_has_the_exact_value"]
     lines = "reference or tsuji or jackson_green or thornton or slow_manifold or chatter or oscillator_with_stop"
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-k", lines]

@@ -31,7 +31,7 @@ def _processor_flags() -> set[str]:
 
 def built() -> tuple[str, ...]:
     """Return the levels whose extension was built, best first."""
-    return tuple(level for level in ("v4", "v3", "v1", "native") if find_spec(f"rattlebox.engines._core_{level}"))
+    return tuple(level for level in ("v4", "v3", "v1", "native") if find_spec(f"rattlebox.core._core_{level}"))
 
 
 def supported() -> tuple[str, ...]:
@@ -81,4 +81,4 @@ def instructions() -> str:
 @cache
 def core() -> ModuleType:
     """Return the compiled core. Modules that use it import `rattlebox.core._core`, whose types mypy knows."""
-    return import_module(f"rattlebox.engines._core_{choice()[0]}")
+    return import_module(f"rattlebox.core._core_{choice()[0]}")
