@@ -32,6 +32,8 @@ WAYS: tuple[Way, ...] = ("decay", "energy", "shaking")
 
 _SAMPLES = 40
 """Samples in a cycle."""
+_OTHER_MOTION = 0.1
+"""Relative change of the frequency of a decay beyond which a warning is given."""
 _MARGIN = 1.6
 """Amplitude at the start of a decay over the highest edge of the bands, so that two cycles pass before it is reached."""
 
@@ -242,11 +244,9 @@ def _decayed(
     for number, run in enumerate(_runs(variants, threads, progress)):
         _check(run, number, warnings)
         time = run.motion.time.values
-        z = _along(run, mode)
-        if way == "decay":
-            rows.append(damping_over_amplitude(time, z, levels).damping_ratio.values)
-        else:
-            rows.append(_by_energy(run, time, z, mode, levels))
+        bands = damping_over_amplitude(time, _along(run, mode), levels)
+        _check_frequency(bands.frequency.values, mode, warnings)
+        rows.append(bands.damping_ratio.values if way == "decay" else _by_energy(run, time, bands, mode))
     return np.array(rows)
 
 
@@ -261,6 +261,9 @@ def _set_off(case: Case, mode: _Mode, amplitude: float) -> Case:
 
 
 def _along(run: Run, mode: _Mode) -> FloatArray:
+    """Return the part of the point's motion that the mode has, (T,); with tuned masses, all of its motion."""
+    if not run.case.tuned_masses:
+        return np.asarray(mode.shape * run.motion.modal_displacement.values[:, mode.number])
     motion = run.motion.displacement
     if mode.axis is None:
         return np.asarray(motion.sel(point=mode.point).values)
@@ -269,11 +272,21 @@ def _along(run: Run, mode: _Mode) -> FloatArray:
     )
 
 
-def _by_energy(run: Run, time: FloatArray, z: FloatArray, mode: _Mode, levels: FloatArray) -> FloatArray:
-    bands = damping_over_amplitude(time, z, levels)
+def _check_frequency(found: FloatArray, mode: _Mode, warnings: dict[str, None]) -> None:
+    """Add a warning if what decays is not the mode."""
+    change = np.abs(found / mode.frequency - 1)
+    if np.nanmax(change, initial=0.0) > _OTHER_MOTION:
+        other = found[np.nanargmax(change)]
+        warnings[
+            f"warning: the decay has {other:.4g} Hz, the mode {mode.frequency:.4g} Hz; within {100 * _OTHER_MOTION:g} % the "
+            "damping ratio is that of the mode; try: a lighter damper, or way='shaking'"
+        ] = None
+
+
+def _by_energy(run: Run, time: FloatArray, bands: xarray.Dataset, mode: _Mode) -> FloatArray:
     time, lost = mean_over_period(time, run.energy.losses.values, 1 / mode.frequency)
-    ratios = np.full(levels.size, np.nan)
-    for k in range(levels.size):
+    ratios = np.full(bands.amplitude.size, np.nan)
+    for k in range(ratios.size):
         begin, end, squares = (float(bands[name][k]) for name in ("begin", "end", "squares"))
         if not math.isnan(end):
             work = np.interp(end, time, lost) - np.interp(begin, time, lost)

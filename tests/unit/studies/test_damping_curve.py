@@ -130,3 +130,25 @@ def test_modal_takes_any_structure() -> None:
         for s in (own, rb.Modal.of(own.modes()))
     ]
     np.testing.assert_allclose(runs[0].motion.displacement, runs[1].motion.displacement, atol=1e-15)
+
+
+def test_a_mode_is_told_from_others_that_impacts_excite() -> None:
+    """The decay of the second mode is that of its own coordinate, even where the first mode moves the point more."""
+    structure = rb.Modal(
+        frequencies=[20.0, 90.0], damping_ratios=[0.002, 0.02], shapes={"tip": [1.0, 0.1]}, participation=[1.0, 0.1]
+    )
+    damper = rb.ImpactDamper(
+        ball=rb.Sphere(radius="8 mm", material="steel"), gap="50 um", contact=rb.Tsuji(restitution=0.5)
+    )
+    case = rb.Case(structure=structure, damper=damper, duration="1 s")
+    found = rb.damping_curve(case, [2e-4, 3e-4, 4e-4], mode=2, packings=1)
+    np.testing.assert_allclose(found.damping_ratio, 0.02, rtol=0.25)
+    assert not found.attrs["warnings"]
+
+
+def test_a_heavy_damper_that_changes_the_motion_is_warned_of() -> None:
+    """A tuned mass as heavy as the structure shifts the frequency, which the curve says."""
+    structure = rb.SDOF(mass=3, frequency=50, damping_ratio=0.005)
+    tuned = rb.TunedMass(mass=3, frequency=50, damping_ratio=0.02)
+    found = rb.damping_curve(rb.Case(structure=structure, tuned_mass=tuned, duration="2 s"), LEVELS, packings=1)
+    assert any("Hz" in warning for warning in found.attrs["warnings"])
