@@ -37,12 +37,12 @@ found = rb.compare({name: rb.Case(**common, **damper) for name, damper in damper
 
 figure, panels = plt.subplots(1, 2, figsize=(7, 3), sharey=True, layout="constrained")
 floors, rms = [None, *(f"storey {k}" for k in range(1, 6))], {}
-for name, run in found.runs.items():
+for (name, run), mark, colour in zip(found.runs.items(), "o^sD", rb.plots.SERIES_COLOURS, strict=False):
     drifts = [1e3 * drift(run, upper, lower) for lower, upper in pairwise(floors)]
     peak, rms[name] = [float(abs(d).max()) for d in drifts], [float(d.std()) for d in drifts]
     print(f"{name:10} first storey: peak {peak[0]:.1f} mm, RMS {rms[name][0]:.1f} mm")
-    panels[0].plot(peak, range(1, 6), "o-")
-    panels[1].plot(rms[name], range(1, 6), "o-", label=name)
+    for panel, values in zip(panels, (peak, rms[name]), strict=True):
+        panel.plot(values, range(1, 6), f"{mark}-", color=colour, label=name)
 panels[0].set(xlabel="Peak drift (mm)", ylabel="Storey", yticks=range(1, 6), xlim=0)
 panels[1].set(xlabel="RMS drift (mm)", xlim=0)
 panels[1].legend()

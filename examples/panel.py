@@ -38,7 +38,13 @@ for name, dampers in {"bare": {}, "with particles": {"damper": damper}}.items():
     absolute = velocity.differentiate("time").assign_attrs(units="m/s^2")
     density = power_spectral_density(motion.time, absolute, resolution=2).density
     level = band_levels(density.sel(frequency=slice(20, 2000))) / G
-    axes.bar(np.arange(level.size) + 0.4 * len(found), level, width=0.4, label=name)
+    axes.bar(
+        np.arange(level.size) + 0.4 * len(found),
+        level,
+        width=0.4,
+        color=rb.plots.SERIES_COLOURS[len(found)],
+        label=name,
+    )
     found[name] = float(level.sel(nominal="200")), float(along_z.interface_force.std())
     print(f"{name:14} {found[name][0]:.1f} g in the band of 200 Hz, {found[name][1]:.0f} N on the base")
 axes.set_xticks(np.arange(level.size) + 0.2, level.nominal.values, rotation=90)
