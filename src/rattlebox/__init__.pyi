@@ -45,7 +45,7 @@ from rattlebox.model.pairs import contact_pairs as contact_pairs
 from rattlebox.model.particle_damper import PairLaws as PairLaws
 from rattlebox.model.particle_damper import ParticleDamper as ParticleDamper
 from rattlebox.model.particles import LogNormal as LogNormal
-from rattlebox.model.particles import Normal as Normal
+from rattlebox.model.particles import NormalSizes as NormalSizes
 from rattlebox.model.particles import Particles as Particles
 from rattlebox.model.particles import Sieve as Sieve
 from rattlebox.model.plates import Plate as Plate

@@ -222,7 +222,7 @@ HARDER = rb.Material(name="harder", density=4000, young=2e8, poisson=0.3, yield_
 OSCILLATOR = rb.SDOF(mass=0.5, stiffness=2e4, damping_ratio=0.02, velocity=1.0)
 BOX = rb.Box(size=("22.5 mm", "19.5 mm", "19.5 mm"))
 MINDLIN = rb.Mindlin(0.3)
-NORMAL_SIZES = rb.Normal(mean="3 mm", deviation="0.3 mm", smallest="2.5 mm", largest="3.5 mm")
+NORMAL_SIZES = rb.NormalSizes(mean="3 mm", deviation="0.3 mm", smallest="2.5 mm", largest="3.5 mm")
 SIEVED = rb.Sieve(sizes=["2.2 mm", "3 mm", "3.8 mm"], passing=[0.0, 0.4, 1.0])
 STEP = 2e-6
 

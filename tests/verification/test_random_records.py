@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.model.doubts import change_by_interpolation
+from rattlebox.model.plausibility import change_by_interpolation
 
 LOW, HIGH, DENSITY = 20.0, 2000.0, 10.0
 PSD = [(LOW, DENSITY), (HIGH, DENSITY)]

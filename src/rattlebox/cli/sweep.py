@@ -16,7 +16,7 @@ from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.text import printable
 from rattlebox.cli.show import statuses, warned
 from rattlebox.cli.terminal import terminal
-from rattlebox.model.doubts import doubts
+from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.study_file import read_study
 
@@ -39,7 +39,7 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
         raise typer.BadParameter("counts threads of this machine; with --dask, the cluster's workers run the study")
     study = read_study(path)
     out = out or path.with_suffix(".zarr")
-    for told in doubts(study.case, signals=False):
+    for told in plausibility_notes(study.case, signals=False):
         typer.echo(printable(f"{path}: {told}"), err=True)
     try:
         with _cluster(dask) as client, _naming(path, out):

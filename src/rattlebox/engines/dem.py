@@ -20,9 +20,9 @@ from rattlebox.engines.dem_snapshots import snapshots_of
 from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolated, particle_notes, table_notes
 from rattlebox.engines.status import describe, end_of
-from rattlebox.model.doubts import doubts
-from rattlebox.model.in_space import direction_of_base
 from rattlebox.model.methods import Dem
+from rattlebox.model.particle_case import direction_of_base
+from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.prepare.base_motion import base_motion
 from rattlebox.prepare.particles import Prepared, pack_particles, prepare
 from rattlebox.prepare.softening import effects
@@ -166,7 +166,7 @@ def _run(
         notes=(
             *notes,
             *prepared.notes,
-            *doubts(resolved_case),
+            *plausibility_notes(resolved_case),
             *(
                 particle_notes(resolved_case, touches, arrays.contacts, arrays.centre_of_mass, overlaps)
                 if status == Status.finished

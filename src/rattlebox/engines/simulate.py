@@ -15,8 +15,8 @@ from rattlebox.engines.responses import responses
 from rattlebox.engines.run_notes import extrapolated, impact_notes
 from rattlebox.engines.status import describe, end_of
 from rattlebox.model.case import Case
-from rattlebox.model.doubts import doubts
 from rattlebox.model.errors import Hint
+from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.model.units import whole_number
 from rattlebox.prepare.pack import MOST_EVENTS, pack
 from rattlebox.results.arrays import RunArrays
@@ -158,7 +158,7 @@ def _run(case: Case, raw: _core.Result) -> Run:
     with np.errstate(over="ignore", invalid="ignore"):  # a solution that became non-finite has a status
         arrays = _arrays(case, raw)
     status, message = _ended(case, arrays, raw)
-    notes = doubts(case)
+    notes = plausibility_notes(case)
     if raw.status == Status.finished:
         notes += impact_notes(case, arrays.relative_position - arrays.ball_centre, arrays.impacts)
         notes += tuple(extrapolated(raw.counts.extrapolated))

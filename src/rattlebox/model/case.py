@@ -23,12 +23,12 @@ from .elementwise import Vector
 from .errors import Hint, at, translate
 from .files import existing, read_toml
 from .harmonics import Harmonic, SineSweep
-from .in_space import check_in_space
 from .materials import Material, materials
 from .matrices import Matrices
 from .methods import AnyMethod, Dem, EventDriven, Newton, Output
 from .modes import ModalModel
 from .pairs import contact_pairs
+from .particle_case import check_particle_case
 from .particle_damper import ParticleDamper
 from .paths import replaced
 from .shocks import Shock
@@ -170,7 +170,7 @@ class Case(Part):
     def _check_directions(self) -> None:
         """Look at the kinds of dampers and at what moves where."""
         if self.particle_dampers:
-            check_in_space(self)
+            check_particle_case(self)
             self._check_snapshots()
             return
         if self.output.snapshots is not None:

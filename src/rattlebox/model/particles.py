@@ -57,7 +57,7 @@ class _Bounded(Distribution):
         return np.clip(ndtri(first + share * (last - first)), low, high)
 
 
-class Normal(_Bounded):
+class NormalSizes(_Bounded):
     """Diameters normally distributed by number, cut off on both sides.
 
     Parameters
@@ -85,25 +85,25 @@ class LogNormal(_Bounded):
     ----------
     median
         Median of the diameter before it is cut off [m].
-    spread
-        Geometric standard deviation, above 1: two thirds lie between median / spread and median x spread.
+    geometric_standard_deviation
+        Geometric standard deviation s, greater than 1: two thirds of the diameters lie between median / s and median x s.
     smallest, largest
         Diameters between which all particles lie [m].
     """
 
     kind: Literal["log_normal"] = "log_normal"
     median: PositiveLength = Field(examples=["4 mm"])
-    spread: Annotated[Number, Field(le=100, examples=[1.2])]
+    geometric_standard_deviation: Annotated[Number, Field(le=100, examples=[1.2])]
 
     @model_validator(mode="after")
-    def _spreads(self) -> LogNormal:
-        if not self.spread > 1:
-            raise Hint("the geometric standard deviation is above 1", "1.2", ["spread"])
+    def _has_width(self) -> LogNormal:
+        if not self.geometric_standard_deviation > 1:
+            raise Hint("must be greater than 1", "1.2", ["geometric_standard_deviation"])
         return self
 
     def diameters(self, share: Vector) -> Vector:
         """Return quantiles of the diameter [m], (n,)."""
-        width = math.log(self.spread)
+        width = math.log(self.geometric_standard_deviation)
         low, high = (math.log(size / self.median) / width for size in (self.smallest, self.largest))
         return self.median * np.exp(width * self._between(share, low, high))
 
@@ -151,7 +151,7 @@ class Sieve(Distribution):
         return np.asarray(np.interp(share, below, squares) ** -0.5)
 
 
-AnyDistribution = Annotated[Normal | LogNormal | Sieve, Field(discriminator="kind")]
+AnyDistribution = Annotated[NormalSizes | LogNormal | Sieve, Field(discriminator="kind")]
 
 
 class Particles(Part):

@@ -38,6 +38,7 @@ _OTHERS = {  # ours: others'
     "method": "solver integrator",
     "tolerance": "tol rtol atol",
     "shapes": "mode_shapes modes",
+    "geometric_standard_deviation": "spread gsd sigma_g",
     "deviation": "std sigma standard_deviation",
     "smallest": "min minimum lower",
     "largest": "max maximum upper",

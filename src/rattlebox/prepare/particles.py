@@ -12,9 +12,9 @@ import numpy as np
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox.core import _core
 from rattlebox.model.errors import at
-from rattlebox.model.in_space import direction_of_base, inertia_along
 from rattlebox.model.methods import EventDriven, Output
 from rattlebox.model.packing import Settled
+from rattlebox.model.particle_case import direction_of_base, inertia_along
 from rattlebox.prepare.laws import packed_restitution
 from rattlebox.prepare.pack import mode_coupling, pack, packed_signal
 from rattlebox.prepare.settle import packed_walls, settle

@@ -15,8 +15,8 @@ from rattlebox.core import _core
 from rattlebox.model.contacts import Linear
 from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic, SineSweep
-from rattlebox.model.in_space import direction_of_base
 from rattlebox.model.methods import Dem
+from rattlebox.model.particle_case import direction_of_base
 from rattlebox.model.restitutions import Constant
 from rattlebox.model.shocks import Shock
 from rattlebox.model.signals import Sampled

@@ -280,7 +280,7 @@ def test_particles_inserted_at_random_do_not_overlap(filled: float) -> None:
     """Random places are pushed apart until nothing overlaps or sticks out, the same for the same seed."""
     cavity = rb.Cylinder(diameter="40 mm", length="30 mm", axis=(0, 1, 1))
     radii = (
-        rb.LogNormal(median="4 mm", spread=1.2, smallest="3 mm", largest="6 mm").diameters(
+        rb.LogNormal(median="4 mm", geometric_standard_deviation=1.2, smallest="3 mm", largest="6 mm").diameters(
             np.linspace(0.001, 0.999, 500)
         )
         / 2

@@ -59,7 +59,10 @@ def followed(wanted: dict[str, Any], said: str, way: int) -> dict[str, Any]:
         {"diameter": "8 mm", "fill_ratio": 0.6},
         {"diameter": "3 mm", "fill_ratio": 0.7},
         {"diameter": "8 mm", "count": 10_000},
-        {"distribution": rb.Normal(mean="5 mm", deviation="1 mm", smallest="3 mm", largest="8 mm"), "fill_ratio": 0.75},
+        {
+            "distribution": rb.NormalSizes(mean="5 mm", deviation="1 mm", smallest="3 mm", largest="8 mm"),
+            "fill_ratio": 0.75,
+        },
     ],
     ids=["8 mm 0.9", "8 mm 0.6", "3 mm 0.7", "8 mm 10000", "mixed 0.75"],
 )
@@ -100,7 +103,10 @@ def test_a_fill_that_a_hint_names_settles_and_runs() -> None:
 @pytest.mark.parametrize("amount", [{"count": 40_000_000}, {"mass": "1 t"}])
 def test_far_too_many_are_refused_at_once(packing: Any, amount: dict[str, Any]) -> None:
     """Millions of particles in a box of 20 mm are refused before anything is made for each of them."""
-    sizes = ({"diameter": "3 mm"}, {"distribution": rb.Normal(mean=3e-3, deviation=1e-3, smallest=1e-3, largest=5e-3)})
+    sizes = (
+        {"diameter": "3 mm"},
+        {"distribution": rb.NormalSizes(mean=3e-3, deviation=1e-3, smallest=1e-3, largest=5e-3)},
+    )
     for size in sizes:
         tracemalloc.start()
         begin = time.perf_counter()

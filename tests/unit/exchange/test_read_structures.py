@@ -14,7 +14,7 @@ from ansys.mapdl.reader import examples
 
 import rattlebox as rb
 from rattlebox.exchange.read.universal import read_functions
-from rattlebox.model.doubts import doubts
+from rattlebox.model.plausibility import plausibility_notes
 
 UFF = Path(__file__).parents[2] / "data/uff"
 RST, FULL = Path(examples.rstfile), Path(examples.fullfile)
@@ -112,7 +112,7 @@ def test_a_table_without_units_is_told(tmp_path: Path) -> None:
     """Shapes without a unit or a modal mass count as kg^-1/2, and a run says so with the largest."""
     (tmp_path / "modes.csv").write_text("frequency,damping,tip\n10,0.01,2\n25,0.01,-3\n")
     case = rb.Case(structure=rb.Modal.from_file(tmp_path / "modes.csv"), duration=1.0)
-    (told,) = [note for note in doubts(case) if "kg is assumed" in note]
+    (told,) = [note for note in plausibility_notes(case) if "kg is assumed" in note]
     assert "the largest mass-normalised shape is 3 kg^-0.5, at tip" in told
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.model.doubts import doubts
+from rattlebox.model.plausibility import plausibility_notes
 
 G = 9.80665
 SAMPLES = 0.3 * np.sin(np.arange(23) * 0.7)
@@ -117,8 +117,8 @@ def test_an_assumed_unit_is_told_with_the_peak(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "bare.txt", SAMPLES)
     record = rb.Record(file=str(tmp_path / "bare.txt"), dt=0.01)
     case = rb.Case(structure=rb.SDOF(mass=1.0, frequency=2.0), base=record, duration=0.2)
-    (told,) = [note for note in doubts(case) if "states no unit" in note]
-    assert f"{np.abs(SAMPLES).max():.4g} m/s^2" in told
+    (found,) = [note for note in plausibility_notes(case) if "states no unit" in note]
+    assert f"{np.abs(SAMPLES).max():.4g} m/s^2" in found
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ from scipy.linalg import eigh
 
 import rattlebox as rb
 from rattlebox.model.beams import wave_numbers
-from rattlebox.model.doubts import doubts
 from rattlebox.model.modes import ModalModel
+from rattlebox.model.plausibility import plausibility_notes
 
 ENDS = ("clamped-free", "clamped-clamped", "clamped-pinned", "pinned-pinned", "pinned-free", "free-free")
 WITH_TIP = [(ends, mu) for ends in ENDS for mu in (0.0, 1e-3, 0.7, 40.0) if mu == 0 or ends.endswith("free")]
@@ -160,7 +160,7 @@ def test_stubby_beams_are_warned_of() -> None:
     stubby = rb.Beam(**slender | {"height": "100 mm"}, mode_count=4)
     (said,) = stubby.warnings()
     case = rb.Case(structure=stubby, duration=1.0)
-    assert any(said in note for note in doubts(case))
+    assert any(said in note for note in plausibility_notes(case))
     # Timoshenko's pinned beam: exact frequencies of the first mode that is warned of
     steel, k = rb.materials()["steel"], 3 * math.pi
     kappa = 10 * (1 + steel.poisson) / (12 + 11 * steel.poisson)

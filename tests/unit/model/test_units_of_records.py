@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.model.doubts import doubts
+from rattlebox.model.plausibility import plausibility_notes
 
 G = 9.80665
 
@@ -73,7 +73,7 @@ def test_a_unit_that_nobody_states_is_noted(tmp_path: Path, above: str) -> None:
         (note,) = rb.simulate(each).notes
         assert "quake.csv" in note and "m/s^2 is assumed" in note and "0.2 m/s^2 = 0.02039 g" in note
     assert "m/s^2 is assumed" in str(rb.simulate(case).summary())
-    assert doubts(case, signals=False) == (note,)  # of studies, too
+    assert plausibility_notes(case, signals=False) == (note,)  # of studies, too
 
 
 def test_a_unit_that_is_stated_is_not_noted(tmp_path: Path) -> None:

@@ -58,7 +58,7 @@ def shaken(
     )
 
 
-SIZES = rb.Normal(mean="3 mm", deviation="0.3 mm", smallest="2.5 mm", largest="3.5 mm")
+SIZES = rb.NormalSizes(mean="3 mm", deviation="0.3 mm", smallest="2.5 mm", largest="3.5 mm")
 
 
 def flat(value: Any) -> bytes:

@@ -10,7 +10,7 @@ import rattlebox as rb
 from . import cases
 
 SOFT = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25, yield_stress=5e6)
-SIZES = rb.LogNormal(median="2.5 mm", spread=1.5, smallest="1 mm", largest="5 mm")
+SIZES = rb.LogNormal(median="2.5 mm", geometric_standard_deviation=1.5, smallest="1 mm", largest="5 mm")
 LAWS: dict[str, dict[str, Any]] = {
     "smooth": {"contact": rb.Tsuji(restitution=0.8)},
     "rough": {"contact": rb.Tsuji(restitution=0.8), "friction": 0.5},

@@ -19,8 +19,8 @@ CAVITIES = {
     "can askew": rb.Cylinder(diameter="40 mm", length="50 mm", axis=(1, 2, -1)),
     "sphere": rb.SphericalCavity(diameter="50 mm"),
 }
-ALIKE = rb.Normal(mean="4 mm", deviation="0.1 mm", smallest="3.9 mm", largest="4.1 mm")
-WIDE = rb.LogNormal(median="1.5 mm", spread=2.0, smallest="0.8 mm", largest="8 mm")
+ALIKE = rb.NormalSizes(mean="4 mm", deviation="0.1 mm", smallest="3.9 mm", largest="4.1 mm")
+WIDE = rb.LogNormal(median="1.5 mm", geometric_standard_deviation=2.0, smallest="0.8 mm", largest="8 mm")
 
 
 SOFT = rb.Material(name="soft", density=2000, young=2e7, poisson=0.3)

@@ -50,7 +50,7 @@ def inertia_along(case: Case, direction: Vector) -> Vector:
     return np.asarray(modes.participation * (own @ direction))
 
 
-def check_in_space(case: Case) -> None:
+def check_particle_case(case: Case) -> None:
     """Refuse what does not fit together in a case with particle dampers.
 
     Parameters

@@ -1,0 +1,266 @@
+"""Plausibility checks: valid cases with a likely slip, such as a missing unit, a too heavy damper or a late load."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .dampers import ImpactDamper
+from .elementwise import Vector
+from .harmonics import Harmonic, SineSweep
+from .materials import Material
+from .recorded import Record
+from .shocks import Shock
+from .signals import Sampled, Signal
+from .space import Direction, unit_vector
+
+if TYPE_CHECKING:
+    from .case import Case
+    from .particle_damper import ParticleDamper
+
+_GRAVITY = 9.80665  # m/s^2
+_LARGEST_BODY = 1.0  # m
+_LARGEST_FRICTION = 3.0
+_FEWEST_SAMPLES = 4.0  # per period
+_LARGEST_DAMPING_RATIO = 0.5  # also 0.5 % without its sign
+_SMALLEST_MODULUS = 1e5  # Pa
+_FEWEST_POINTS = 64  # a record with fewer points is a polyline, not a sampled signal
+_BANDS = 2048
+_LARGEST_CHANGE = 0.02  # of the response of a mode
+_LONGEST_RECORD = 100.0  # in durations of the run
+_ACROSS = 1e-6
+_SMALLEST_FILL_RATIO = 1e-4
+_DENSITIES = 5.0, 25e3  # kg/m^3
+
+
+def plausibility_notes(case: Case, *, signals: bool = True) -> tuple[str, ...]:
+    """Return notes on assumed units and warnings about numbers that are likely slips.
+
+    Parameters
+    ----------
+    case
+        The case.
+    signals
+        Whether loads and base motions are checked, too.
+
+    Returns
+    -------
+    tuple of str
+        Notes, beginning with "note: ", then warnings, beginning with "warning: ".
+    """
+    dampers = (
+        warning
+        for index, damper in enumerate(case.dampers)
+        for warning in _check_damper(case, damper, " ".join(damper.label(index).split()))
+    )
+    warnings = (*_check_structure(case), *(_check_signals(case) if signals else ()), *dampers)
+    notes = (*(f"note: {note}" for note in case.structure.notes()), *_note_assumed_units(case))
+    return (*notes, *(f"warning: {warning}" for warning in warnings))
+
+
+def _named_signals(case: Case) -> list[tuple[str, Signal]]:
+    return [
+        (f"{field} {number}" if len(part) > 1 else field, signal)
+        for field, part in (("load", case.loads), ("base", case.base), ("motion", case.shaker_motion))
+        for number, signal in enumerate(part, 1)
+    ]
+
+
+def _note_assumed_units(case: Case) -> Iterator[str]:
+    """Yield the units that are assumed for files without units, and the resulting peaks."""
+    for name, signal in _named_signals(case):
+        if isinstance(signal, Record) and signal.unit_is_assumed:
+            peak = abs(signal.scale) * float(np.max(np.abs(signal.values)))
+            in_g = f" = {peak / _GRAVITY:.4g} g" if signal.unit == "m/s^2" else ""
+            file = " ".join(Path(signal.file or "").name.split())
+            yield (
+                f"note: {name}: {file} states no unit; {signal.unit} is assumed, with a peak of {peak:.4g} {signal.unit}"
+                f"{in_g}; set unit or scale if that is wrong"
+            )
+
+
+def _check_structure(case: Case) -> Iterator[str]:
+    modes = case.structure.modes()  # without tuned masses, which may have any damping
+    elastic = modes.stiffness > 0
+    ratio = float(np.max(modes.decay[elastic] / np.sqrt(modes.stiffness[elastic]), initial=0.0))
+    if ratio >= _LARGEST_DAMPING_RATIO * (1 - 1e-9):
+        yield (
+            f"the structure's damping ratio is {ratio:.3g}; structures that vibrate have less than "
+            f"{_LARGEST_DAMPING_RATIO:g}; a percentage needs its sign: 2 % is 0.02"
+        )
+    yield from case.structure.warnings()
+
+
+def _check_signals(case: Case) -> Iterator[str]:
+    signals = _named_signals(case)
+    for name, signal in signals:
+        if isinstance(signal, (Shock, Harmonic, SineSweep)) and signal.start >= case.duration:
+            yield f"{name} begins at {signal.start:.4g} s, after the end of the run at {case.duration:.4g} s"
+    for name, signal in signals:
+        if isinstance(signal, Record) and signal.times[-1] - signal.times[0] > _LONGEST_RECORD * case.duration:
+            yield (
+                f"{name} is a record of {signal.times[-1] - signal.times[0]:.4g} s, but the run takes only"
+                f" {case.duration:.4g} s; the times of a record are in seconds"
+            )
+    for name, signal in signals:
+        if isinstance(signal, SineSweep) and signal.start < case.duration < (signal.start + signal.length) * (1 - 1e-6):
+            yield (
+                f"{name} is a sweep of {signal.length:.4g} s from {signal.first_frequency:.4g} Hz to"
+                f" {signal.last_frequency:.4g} Hz; the run ends at {float(signal.frequency_at(case.duration)):.4g} Hz"
+            )
+    yield from _check_interpolation(case)
+    yield from _check_directions(case)
+    if case.output.rate is None:
+        return
+    stiffness = case.modes.stiffness[case.modes.stiffness > 0]
+    periods = [(f"{name}, at {s.frequency:.4g} Hz,", s.frequency) for name, s in signals if isinstance(s, Harmonic)]
+    if stiffness.size:
+        lowest = float(np.sqrt(stiffness.min())) / (2 * np.pi)
+        periods.append((f"the structure's lowest mode, at {lowest:.4g} Hz,", lowest))
+    label, frequency = max(periods, key=lambda period: period[1], default=("", 0.0))
+    if case.output.rate < _FEWEST_SAMPLES * frequency:
+        yield (
+            f"output.rate is {case.output.rate:.4g} Hz, {case.output.rate / frequency:.3g} samples in a period of {label}"
+            f" which is too few for figures and spectra of the motion; at least {_FEWEST_SAMPLES:g} are needed;"
+            " the run itself is not affected"
+        )
+
+
+def _check_interpolation(case: Case) -> Iterator[str]:
+    """Warn where straight lines between the samples of a record change the response of a mode."""
+    modes = case.modes
+    elastic = np.flatnonzero(modes.stiffness > 0)
+    for name, signal in _named_signals(case):
+        spectrum = _spectrum(signal) if isinstance(signal, Sampled) and elastic.size else None
+        if spectrum is None:
+            continue
+        if name.startswith("load"):
+            excited = np.abs(modes.shape(signal.point, signal.direction))
+        else:
+            participation = np.ones(modes.decay.size) if modes.participation is None else modes.participation
+            excited = np.linalg.norm(participation.reshape(modes.decay.size, -1), axis=1)
+        rate, frequency, power = spectrum
+        changes = [
+            (change_by_interpolation(rate, frequency, power, natural, float(modes.decay[k]) / (2 * np.pi)), natural, k)
+            for k in elastic
+            if excited[k] > _ACROSS * excited.max() and (natural := float(np.sqrt(modes.stiffness[k])) / (2 * np.pi))
+        ]
+        change, natural, k = max(changes, key=lambda each: abs(each[0]), default=(0.0, 0.0, 0))
+        if abs(change) > _LARGEST_CHANGE:
+            yield (
+                f"{name} is a record of {rate:.4g} points a second, and the straight lines between them change the response"
+                f" of mode {k + 1}, at {natural:.4g} Hz, by {100 * change:+.2g} %; up to {100 * _LARGEST_CHANGE:g} % is"
+                f" allowed; try: the record resampled to {16 * min(natural, 0.5 * rate):.6g} Hz"
+                " (scipy.signal.resample_poly)"
+            )
+
+
+def _spectrum(record: Sampled) -> tuple[float, Vector, Vector] | None:
+    """Return the sampling rate of a record [Hz], bands [Hz] and their power; None if it is not evenly sampled."""
+    times, values = record.polyline()
+    step = (times[-1] - times[0]) / (times.size - 1)
+    if times.size < _FEWEST_POINTS or np.max(np.abs(np.diff(times) - step)) > 1e-3 * step:
+        return None
+    # The Fourier series repeats the record. A step between its end and its begin would add power at all frequencies.
+    values = values - np.linspace(values[0], values[-1], values.size)
+    power = np.abs(np.fft.rfft(values[:-1]))[1:] ** 2
+    if not power.any():
+        return None
+    begins = np.unique(np.linspace(0, power.size, _BANDS, endpoint=False).astype(int))
+    ends = np.append(begins[1:], power.size)
+    return 1 / step, 0.5 * (begins + ends + 1) / (step * (times.size - 1)), np.add.reduceat(power, begins)
+
+
+def change_by_interpolation(rate: float, frequency: Vector, power: Vector, natural: float, decay: float) -> float:
+    """Compute how much straight lines between samples change the RMS response of a mode.
+
+    Parameters
+    ----------
+    rate
+        Sampling rate R [Hz].
+    frequency, power : (n,) float
+        Frequencies of the sampled signal [Hz], up to R / 2, and its power there.
+    natural, decay
+        Natural frequency f_0 and decay rate over 2 pi of the mode [Hz].
+
+    Returns
+    -------
+    float
+        RMS response to the straight lines over that to the band-limited signal, minus one.
+
+    Notes
+    -----
+    Linear interpolation multiplies the power at f by sinc^4(f / R), and adds images at k R +- f, of sinc^4(k +- f / R) of
+    the power. The mode responds with |H|^2 = 1 / ((f_0^2 - f^2)^2 + (2 d f)^2).
+    """
+    width = max(decay, 0.005 * natural, float(frequency[0]))
+
+    def response(at: Vector) -> Vector:
+        return np.asarray(1 / ((natural**2 - at**2) ** 2 + (2 * width * at) ** 2))
+
+    images = range(-2 - int(min(natural / rate, 50.0)), 3 + int(min(natural / rate, 50.0)))
+    lines = sum(
+        float(power @ (np.sinc(k + frequency / rate) ** 4 * response(np.abs(k * rate + frequency)))) for k in images
+    )
+    return float(np.sqrt(lines / (power @ response(frequency)))) - 1
+
+
+def _check_directions(case: Case) -> Iterator[str]:
+    """Warn of a base that moves across the only direction of the structure."""
+    particles = [damper for damper in case.particle_dampers if case.modes.point(damper.point) not in case.modes.spatial]
+    for number, signal in enumerate(case.base, 1):
+        if signal.direction is None or not particles:
+            continue
+        along = [abs(unit_vector(damper.direction) @ unit_vector(signal.direction)) for damper in particles]
+        if max(along) < _ACROSS:
+            name = f"base {number}" if len(case.base) > 1 else "base"
+            yield (
+                f"{name} moves along {_format(signal.direction)}, but the structure moves along"
+                f" {_format(particles[0].direction)}, the direction of {particles[0].label(0)}; check both directions"
+            )
+
+
+def _format(direction: Direction) -> str:
+    return direction if isinstance(direction, str) else "({:g}, {:g}, {:g})".format(*direction)
+
+
+def _check_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) -> Iterator[str]:
+    materials: list[Material | str | None]
+    if isinstance(damper, ImpactDamper):
+        body = "ball"
+        materials = [*(ball.material for ball in damper.balls), damper.wall]
+        diameters = [2 * ball.half for ball in damper.balls]
+        mass = float(sum(damper.masses))
+        if damper.clearance > 2 * _LARGEST_BODY:
+            yield f"the gap of {name} is {damper.clearance / 2:.4g} m; a number without a unit is in metres"
+    else:
+        body = "particle"
+        materials = [*(species.material for species in damper.particles), damper.wall]
+        diameters = [2 * float(damper.contents.radius.max())]
+        mass = float(damper.contents.mass.sum())
+        fill_ratio = float(np.sum(4 / 3 * np.pi * damper.contents.radius**3)) / damper.cavity.volume
+        if 0 < fill_ratio < _SMALLEST_FILL_RATIO:
+            yield f"the fill ratio of {name} is {fill_ratio:.2g}; a number without a unit is in metres"
+        frictions = [entry.friction.coefficient for entry in damper.contact_table.entries if entry.friction]
+        if max(frictions, default=0.0) > _LARGEST_FRICTION:
+            yield f"the coefficient of friction in {name} is {max(frictions):g}; a percentage needs its sign: 40 % is 0.4"
+    for material in dict.fromkeys(m for m in materials if isinstance(m, Material)):
+        label = " ".join(material.name.split()) or "a material"
+        if material.young < _SMALLEST_MODULUS:
+            yield f"the modulus of {label} in {name} is {material.young:g} Pa; a number without a unit is in pascals"
+        if not _DENSITIES[0] <= material.density <= _DENSITIES[1]:
+            yield (
+                f"the density of {label} in {name}, {material.density:g} kg/m^3, is outside the range of solids"
+                f" ({_DENSITIES[0]:g} to {_DENSITIES[1]:g} kg/m^3); check the unit"
+            )
+    if max(diameters) > _LARGEST_BODY:
+        yield f"a {body} of {name} is {max(diameters):.4g} m wide; a number without a unit is in metres"
+    mobility = float(np.max(np.sum(np.square(case.modes.shapes[case.modes.point(damper.point)]), axis=0), initial=0.0))
+    if mass * mobility > 1:
+        yield (
+            f"the {body}s of {name} have a mass of {mass:.4g} kg, {mass * mobility:.3g} times the effective mass of the"
+            " structure at their point; check diameter and density"
+        )
