@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# Tests start many processes, which must not compile the package again each time.
+unexport PYTHONDONTWRITEBYTECODE
 CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*.hpp' -o -name '*.cpp')
 
 .PHONY: setup demo test verify lint stub docs bench format clean
@@ -18,11 +20,12 @@ demo: setup
 	$(BIN)/rattlebox demo -o demo
 	$(BIN)/python -m reproduction -o demo/report
 
+# A worker takes tests that follow each other, so that most module fixtures are built once.
 test: setup
-	$(BIN)/python -m pytest -n 2 -m 'not slow'
+	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m 'not slow'
 
 verify: setup
-	$(BIN)/python -m pytest -n 2 -m slow
+	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m slow
 
 bench: setup
 	$(BIN)/python benchmarks/bench.py

@@ -53,7 +53,7 @@ class TunedMass(Part):
     >>> structure = rb.SDOF(mass="20 kg", stiffness="80 kN/m")
     >>> tuned = rb.TunedMass.den_hartog(structure, mass="1 kg")
     >>> round(tuned.frequency, 4), round(tuned.damping_ratio, 4)
-    (9.586, 0.1336)
+    (9.5865, 0.1336)
     """
 
     held_as: ClassVar[tuple[str, ...]] = ("tuned_mass", "tuned_masses")
