@@ -54,7 +54,7 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
     bindings::add_results(module);
     bindings::add_sweep(module);
     bindings::add_dem(module);
-    module.attr("worst_closure") = worst_closure;
+    module.attr("worst_energy_residual") = worst_energy_residual;
     module.attr("speed_at_rest") = speed_at_rest;
     module.def("simulate", &simulate, nb::arg("problems"), nb::arg("threads") = 1,
                "Run problems of the 1-D engine and return their results.");

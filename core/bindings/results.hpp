@@ -55,14 +55,14 @@ struct RunResult : Node {
     ImpactColumns impacts;
     RunCounts counts;
     Status status{};
-    double closure_bound = 0, stopped_at = 0, stopped_value = 0;
+    double energy_residual_limit = 0, stopped_at = 0, stopped_value = 0;
     int stopped_contact = -1;
     double seconds = 0;
 
     RunResult() = default;
     RunResult(const Problem& problem, Result&& r, double took)
         : impacts(problem, r.impacts), counts{{}, r.counts}, status(r.status),
-          closure_bound(problem.settings.closure_bound()), stopped_at(r.stopped_at),
+          energy_residual_limit(problem.settings.energy_residual_limit()), stopped_at(r.stopped_at),
           stopped_value(r.stopped_value), stopped_contact(r.stopped_contact), seconds(took) {
         Samples& s = r.samples;
         const std::size_t n = s.time.size(), d = problem.dampers.size();
@@ -114,7 +114,7 @@ inline void add_results(nb::module_& module) {
         field("viscous_loss", &R::viscous_loss), field("normal_loss", &R::normal_loss),
         field("plastic_loss", &R::plastic_loss), field("contact_energy", &R::contact_energy),
         field("cavity_force", &R::cavity_force), field("impacts", &R::impacts), field("counts", &R::counts),
-        field("status", &R::status), field("closure_bound", &R::closure_bound),
+        field("status", &R::status), field("energy_residual_limit", &R::energy_residual_limit),
         field("stopped_at", &R::stopped_at), field("stopped_value", &R::stopped_value),
         field("stopped_contact", &R::stopped_contact), field("seconds", &R::seconds));
 }

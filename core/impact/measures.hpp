@@ -167,7 +167,7 @@ public:
         return found;
     }
 
-    real closure() const {
+    real energy_residual() const {
         const Balance b = balance();
         return b.residual == 0 ? 0 : b.residual / b.supplied;
     }
@@ -323,7 +323,7 @@ inline constexpr Measure measures[] = {
     {"viscous_share", false, false, [](const Observer& o) { return o.share(o.viscous(o.last())); }},
     {"impact_share", false, false, [](const Observer& o) { return o.share(o.impact(o.last())); }},
     {"motion_share", false, false, [](const Observer& o) { return o.share(o.motion(o.last())); }},
-    {"closure", false, false, [](const Observer& o) { return o.closure(); }, true},
+    {"energy_residual", false, false, [](const Observer& o) { return o.energy_residual(); }, true},
     {"peak", true, false,
      [](const Observer& o) { return o.peak([&](std::size_t i) { return o.point(i).q; }); }},
     {"rms", true, false,

@@ -49,7 +49,7 @@ struct Kept {
         status[i] = static_cast<std::int8_t>(result.status);
         if (result.status != Status::finished) return;
         const Observer seen(problem, result, window);
-        const Status end = seen.end(problem.settings.closure_bound());
+        const Status end = seen.end(problem.settings.energy_residual_limit());
         status[i] = static_cast<std::int8_t>(end);
         for (std::size_t m = 0; m < wanted.measures.size(); ++m) {
             const Measure& measure = rattlebox::measures[wanted.measures[m]];

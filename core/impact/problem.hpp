@@ -33,7 +33,7 @@ struct Contact {
 };
 
 // Energy residual over the energy put in beyond which no run counts as finished, whatever its method.
-inline constexpr real worst_closure = 0.01;
+inline constexpr real worst_energy_residual = 0.01;
 // Balls that move no faster are at rest [m/s]: a residual below their energy is rounding.
 inline constexpr real speed_at_rest = 1e-9;
 
@@ -56,9 +56,9 @@ struct Settings {
     bool peaks = true; // of force and overlap are found for the impact log
 
     // Largest energy residual of a run that counts as finished, over the energy put in.
-    real closure_bound() const {
-        if (method == Method::two_step) return worst_closure;
-        return method == Method::newton ? 1e-8 : std::clamp(1e4 * tolerance, 1e-8, worst_closure);
+    real energy_residual_limit() const {
+        if (method == Method::two_step) return worst_energy_residual;
+        return method == Method::newton ? 1e-8 : std::clamp(1e4 * tolerance, 1e-8, worst_energy_residual);
     }
 };
 

@@ -254,7 +254,7 @@ def _ended(
     """Return the status and the message of a run."""
     if status == Status.finished:
         ledger = Ledger(arrays)
-        end = end_of(ledger, _core.worst_closure, arrays.particle_mass.sum())
+        end = end_of(ledger, _core.worst_energy_residual, arrays.particle_mass.sum())
         return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
     stopped = dem.stopped()
     cavity = stopped.cavity

@@ -179,7 +179,7 @@ def _ended(case: Case, arrays: RunArrays, raw: _core.Result) -> tuple[str, str]:
     if raw.status == Status.finished:
         ledger = Ledger(arrays)
         mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
-        end = end_of(ledger, raw.closure_bound, mass)
+        end = end_of(ledger, raw.energy_residual_limit, mass)
         return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
     counts = [len(damper.balls) for damper in case.impact_dampers]
     contact = _contact_name(arrays.dampers, counts, raw.stopped_contact)

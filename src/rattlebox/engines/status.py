@@ -102,7 +102,7 @@ def describe(
     contact
         Name of the contact concerned, if any.
     value
-        Approach speed there [m/s], or the closure of a ledger.
+        Approach speed there [m/s], or the energy residual of a ledger.
     method
         Kind of the method that ran, as in case files.
     softened

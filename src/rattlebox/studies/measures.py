@@ -45,7 +45,7 @@ MEASURES: dict[str, Measure] = {
     "viscous_share": Measure("1", "share lost in the structure"),
     "impact_share": Measure("1", "share lost in the damper"),
     "motion_share": Measure("1", "share left in the motion"),
-    "closure": Measure("1", "closure of the energy ledger"),
+    "energy_residual": Measure("1", "energy residual over the energy put in"),
     "peak": Measure("m", "peak displacement", samples=True),
     "rms": Measure("m", "RMS displacement", samples=True),
     "peak_velocity": Measure("m/s", "peak velocity", samples=True),

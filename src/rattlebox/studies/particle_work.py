@@ -124,7 +124,7 @@ _FOUND: dict[str, Callable[[Seen], float]] = {
     "viscous_share": lambda s: s.run.ledger.shares["viscous"],
     "impact_share": lambda s: s.run.ledger.contact_share,
     "motion_share": lambda s: s.run.ledger.shares["motion"],
-    "closure": lambda s: s.run.energy_residual,
+    "energy_residual": lambda s: s.run.energy_residual,
     "peak": lambda s: np.abs(s.motion).max(),
     "rms": lambda s: s.rms(s.motion),
     "peak_velocity": lambda s: np.abs(s.speed).max(),
@@ -249,8 +249,8 @@ class ParticleWork(ImpactWork):
             "status": Status[run.status],
             "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in warned),
         }
-        if run.status == "energy_error" and "closure" in self.named:
-            row["closure"] = self._seen_in(run, case).value("closure")
+        if run.status == "energy_error" and "energy_residual" in self.named:
+            row["energy_residual"] = self._seen_in(run, case).value("energy_residual")
         if run.ok:
             seen = self._seen_in(run, case)
             row |= {name: seen.value(name) for name in self.named}

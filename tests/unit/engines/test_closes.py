@@ -64,12 +64,16 @@ def test_fixed_steps_whose_energy_explodes_are_an_energy_error() -> None:
     assert (run.status, run.ok) == ("energy_error", False)
     assert "dt_contact" in run.message
     found = rb.sweep(
-        struck(), {"method.dt_contact": ["1 s", "30 ns"]}, ["impact_loss", "closure"], samples=201, progress=False
+        struck(),
+        {"method.dt_contact": ["1 s", "30 ns"]},
+        ["impact_loss", "energy_residual"],
+        samples=201,
+        progress=False,
     )
     names = found.status.attrs["flag_meanings"].split()
     assert [names[number] for number in found.status.values] == ["energy_error", "finished"]
     assert np.isfinite(found.impact_loss.values).tolist() == [False, True]
-    assert float(found.closure[0]) > 1e3
+    assert float(found.energy_residual[0]) > 1e3
 
 
 def test_a_residual_that_overflows_is_not_finite() -> None:
@@ -77,7 +81,7 @@ def test_a_residual_that_overflows_is_not_finite() -> None:
     structure = rb.SDOF(mass=1, stiffness=1e20, velocity=1)
     case = struck(structure=structure, damper=[], duration=5, method=rb.TwoStep(dt_flight=1))
     run = rb.simulate(case)
-    found = rb.sweep(case, {"duration": [5]}, "closure", samples=6, progress=False)
+    found = rb.sweep(case, {"duration": [5]}, "energy_residual", samples=6, progress=False)
     assert run.status == "not_finite"
     assert found.status.attrs["flag_meanings"].split()[int(found.status[0])] == "not_finite"
 
@@ -100,8 +104,8 @@ def test_no_method_finishes_beyond_the_bound(tolerance: float) -> None:
     run = rb.simulate(rb.reference_case(duration=0.3, method=rb.EventDriven(tolerance=tolerance)))
     off = 0.02 * float(run.ledger.supplied[-1])
     astray = rb.Run(run.arrays.replaced(viscous_loss=run.arrays.viscous_loss + off * (run.arrays.time > 0)))
-    assert end_of(run.ledger, _core.worst_closure, 1.2) == Status.finished
-    assert end_of(astray.ledger, _core.worst_closure, 1.2) == Status.energy_error
+    assert end_of(run.ledger, _core.worst_energy_residual, 1.2) == Status.finished
+    assert end_of(astray.ledger, _core.worst_energy_residual, 1.2) == Status.energy_error
 
 
 @pytest.mark.parametrize("method", [rb.EventDriven(), rb.Newton(), rb.TwoStep()], ids=lambda method: method.kind)
@@ -117,4 +121,4 @@ def test_a_ball_at_rest_is_finished(method: Any, gravity: float) -> None:
     )
     case = rb.Case(structure=rb.Fixed(), damper=damper, duration=0.02, method=method)
     assert rb.simulate(case).status == "finished"
-    assert int(rb.sweep(case, {"damper.gap": ["10 mm"]}, "closure", samples=101, progress=False).status[0]) == 0
+    assert int(rb.sweep(case, {"damper.gap": ["10 mm"]}, "energy_residual", samples=101, progress=False).status[0]) == 0

@@ -63,7 +63,7 @@ def test_variants_are_runs() -> None:
         "impact_share",
         "motion_share",
         "work",
-        "closure",
+        "energy_residual",
         "peak",
         "peak_velocity",
         "settling_time",
@@ -77,7 +77,7 @@ def test_variants_are_runs() -> None:
         assert float(one.turned) == turned(alone)
         assert float(one.motion_share) == alone.ledger.shares["motion"]
         assert float(one.impact_share) == pytest.approx(sum(alone.ledger.partner_share), rel=1e-12)
-        assert float(one.closure) == alone.energy_residual
+        assert float(one.energy_residual) == alone.energy_residual
         assert float(one.peak) == np.abs(alone.arrays.displacement).max()
         assert float(one.peak_velocity) == np.abs(alone.arrays.velocity).max()
         settled = rb.analysis.settling_time(alone.arrays.time, alone.arrays.displacement[:, 0])
@@ -178,7 +178,7 @@ def test_windows_leave_out_what_is_before() -> None:
     found = rb.sweep(
         struck(),
         {"structure.damping": [0.0, 100.0]},
-        ["viscous_loss", "impact_loss", "motion_share", "closure", "peak"],
+        ["viscous_loss", "impact_loss", "motion_share", "energy_residual", "peak"],
         skip="30 ms",
         samples=101,
         progress=False,
@@ -192,7 +192,7 @@ def test_windows_leave_out_what_is_before() -> None:
     fallen = ledger.gravity[first] - ledger.gravity[-1]
     share = ledger.motion[-1] / (ledger.motion[first] + ledger.work[-1] - ledger.work[first] + fallen)
     assert float(found.motion_share) == pytest.approx(share, rel=1e-12)
-    assert float(found.closure) < 1e-3
+    assert float(found.energy_residual) < 1e-3
     assert float(found.peak) == np.abs(arrays.displacement[first:]).max()
 
 

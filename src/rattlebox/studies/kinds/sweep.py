@@ -70,7 +70,7 @@ class Sweep(Study):
     -------
     xarray.Dataset
         Over the axes: `status` and each measure with its unit; NaN where a run did not finish, or ended
-        with the status "energy_error" (but `closure`). A variant with particles in
+        with the status "energy_error" (except `energy_residual`). A variant with particles in
         space whose particles do not fit or settle, or whose step is too long, has the status "refused"; `attrs["refused"]`
         says why the first of them was. There `warnings` tells of each run in what it left its bounds (`flag_meanings`).
 
