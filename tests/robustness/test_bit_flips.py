@@ -150,7 +150,7 @@ def test_a_flipped_bit_of_any_array_or_attribute_of_a_run_is_detected(folder: Pa
                     item.attrs.modify(part, np.bytes_(b"x" + bytes(item.attrs[part])[1:]))
                 else:
                     continue
-            with pytest.raises(rb.DataError, match=r"run\.nc is damaged: the group '.*' is not"):
+            with pytest.raises(rb.DataError, match=r"run\.nc is damaged: the group '.*'"):
                 rb.load(path)
 
 
@@ -159,13 +159,11 @@ def test_the_damaged_block_is_named(folder: Path, tmp_path: Path) -> None:
     path = tmp_path / "run.vtkhdf"
     path.write_bytes((folder / "run.vtkhdf").read_bytes())
     with h5py.File(path, "r+") as file:
-        file["VTKHDF/PointData/push"][7] += 1.0  # of the second snapshot of five particles
+        file["VTKHDF/PointData/contact_force"][7] += 1.0  # of the second snapshot of five particles
     snapshots = rb.Snapshots(path)
     assert len(snapshots) == 4
     assert np.isfinite(snapshots[0].position).all()
-    with pytest.raises(
-        rb.DataError, match=r"run\.vtkhdf is damaged: snapshot 1 is not as it was written\n  try: a copy"
-    ):
+    with pytest.raises(rb.DataError, match=r"run\.vtkhdf is damaged: snapshot 1 has changed\n  try: a copy"):
         snapshots[1]
     with h5py.File(path, "r+") as file:
         file["VTKHDF/PointData/mass"][0] *= 2
@@ -175,7 +173,7 @@ def test_the_damaged_block_is_named(folder: Path, tmp_path: Path) -> None:
     run.write_bytes((folder / "run.nc").read_bytes())
     with h5py.File(run, "r+") as file:
         file["energy/kinetic_energy"][0] += 1e-12
-    with pytest.raises(rb.DataError, match=r"run\.nc is damaged: the group 'energy' is not as .*\n  try: a copy"):
+    with pytest.raises(rb.DataError, match=r"run\.nc is damaged: the group 'energy'.*\n  try: a copy"):
         rb.load(run)
     state = tmp_path / "run.checkpoint"
     with np.load(folder / "run.checkpoint") as there:
@@ -184,7 +182,7 @@ def test_the_damaged_block_is_named(folder: Path, tmp_path: Path) -> None:
     with state.open("wb") as file:
         np.savez(file, **arrays)
     with pytest.raises(
-        rb.DataError, match=r"run\.checkpoint is not a whole checkpoint: the block 'position\.0' is damaged"
+        rb.DataError, match=r"run\.checkpoint is not an intact checkpoint: the block 'position\.0' is damaged"
     ):
         Checkpoint(state, case()).read()
 

@@ -135,7 +135,7 @@ def test_a_checkpoint_with_changed_numbers_is_refused(whole: Path, tmp_path: Pat
         changed[name].ravel()[-1] += 1
         with file.open("wb") as content:
             np.savez(content, **changed)
-        with pytest.raises(rb.DataError, match=r"is not a whole checkpoint: .* is damaged\n  try: another file"):
+        with pytest.raises(rb.DataError, match=r"is not an intact checkpoint: .* is damaged\n  try: another file"):
             rb.simulate(rb.Case.from_toml(BEADS), checkpoint=file, snapshots=tmp_path / "a.vtkhdf")
 
 

@@ -21,7 +21,7 @@ from rattlebox._util.owned_folder import (
     remove,
     write_marker,
 )
-from rattlebox.engines.checkpoint import Checkpoint, bare, is_checkpoint
+from rattlebox.engines.checkpoint import Checkpoint, comparable_toml, is_checkpoint
 from rattlebox.model.case import Case
 from rattlebox.model.differences import differences
 from rattlebox.results.netcdf import read_case
@@ -206,14 +206,16 @@ def taken(out: Path, case: Case, *, checkpoint: Path | None, replace: bool) -> I
     own = Checkpoint(out / CHECKPOINT, case)
     goes_on = bool(case.particle_dampers) and checkpoint is None
     with ExitStack() as stack:
-        with own.held():
+        with own.lock():
             for name in WRITTEN:
                 remove_temporaries(out / name)
             for folder in replacements(out):
                 _swap(out, folder)
             earlier = _case_in(out / RUN)
             there = tuple(name for name in files_in(out) if _is_own(out, name, _marker(out)))
-            lines = differences({"case": _bare(earlier)}, {"case": bare(case)}) if earlier is not None else []
+            lines = (
+                differences({"case": _bare(earlier)}, {"case": comparable_toml(case)}) if earlier is not None else []
+            )
             if lines and not replace:
                 raise DataError("\n".join([f"{out / RUN} holds another run", *lines, _ADVICE]))
             foreign = own.path.is_file() and not (goes_on and (not replace or _is_of(own)))
@@ -224,7 +226,7 @@ def taken(out: Path, case: Case, *, checkpoint: Path | None, replace: bool) -> I
         notes = [f"{folder} {_UNFINISHED}" for folder in replacements(out)]
         here = goes_on and own.path.is_file() and not foreign  # the run continues from the checkpoint in the folder
         if not goes_on or (not here and (lines or foreign)):  # else the run holds it
-            stack.enter_context(own.held())
+            stack.enter_context(own.lock())
         if not lines and not foreign:
             again = () if earlier is None else there
             yield Place(out, out, checkpoint or own.path, out / SNAPSHOTS, again, tuple(notes))
@@ -264,7 +266,7 @@ _UNFINISHED = (
 @contextmanager
 def _replacement(out: Path, case: Case) -> Iterator[Path]:
     """Yield a folder for the files of a run that replaces another one; it stays if the run can continue from it."""
-    folder = out / f"replacement-{hashlib.sha256(bare(case).encode()).hexdigest()[:8]}"
+    folder = out / f"replacement-{hashlib.sha256(comparable_toml(case).encode()).hexdigest()[:8]}"
     if folder.exists() and folder not in replacements(out) and not (folder.is_dir() and is_free(folder)):
         raise DataError(f"{folder} was not written by Rattlebox\n  try: another -o folder, or move it")
     folder.mkdir(exist_ok=True)
@@ -371,7 +373,7 @@ def _check_inputs(out: Path, case: Case) -> None:
 def _bare(text: str) -> str:
     """The text of a case without what its results do not depend on, or as it is where a file that it names is gone."""
     try:
-        return bare(Case.from_toml(text))
+        return comparable_toml(Case.from_toml(text))
     except RattleboxError:
         return text
 

@@ -18,7 +18,7 @@ from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, Place, check_own, note_begun, taken
 from rattlebox.cli.terminal import terminal
-from rattlebox.engines.checkpoint import AnotherRun
+from rattlebox.engines.checkpoint import CheckpointMismatch
 from rattlebox.engines.simulate import simulate
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
@@ -140,7 +140,7 @@ def _run_in(path: Path, case: Case, place: Place, *, csv: bool, mat: bool, figur
         unfinished = bool(case.particle_dampers) and run.status not in ("finished", "energy_error")
         checkpoint = place.finish(written, keep_checkpoint=unfinished)
         in_place = True
-    except AnotherRun as refused:
+    except CheckpointMismatch as refused:
         replacing = "--replace, " if checkpoint == out / CHECKPOINT else ""
         raise DataError(refused.complaint, f"another -o folder, {replacing}{refused.suggestion}") from None
     except Hint as hint:

@@ -15,7 +15,7 @@ from rich.text import Text
 from rattlebox.cli.terminal import terminal
 from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.results.quantities import MISSING, quantity
-from rattlebox.results.schema import HOW_ENDED
+from rattlebox.results.schema import OUTCOMES
 from rattlebox.studies.kinds.design import trials_in
 from rattlebox.studies.stored import Progress, has_map, open_study, progress_of, report_damage
 
@@ -152,7 +152,7 @@ def _results(study: xr.Dataset) -> Table:
     numbers = ("smallest", "largest", "values")
     table = Table("result", "meaning", *(Column(name, **right) for name in numbers), box=SIMPLE_HEAD)
     for name, values in study.data_vars.items():
-        if name not in HOW_ENDED and values.dtype.kind in "fiub" and values.size:
+        if name not in OUTCOMES and values.dtype.kind in "fiub" and values.size:
             parts = [part for part in map(_there, _parts(values)) if part.size]
             ends = [end for part in parts for end in (part.min(), part.max())]
             shown = [_number(end, values) for end in (min(ends), max(ends))] if ends else [MISSING, MISSING]

@@ -13,25 +13,26 @@ from rattlebox.core import _core
 
 
 @dataclass(frozen=True)
-class Look:
-    """What is kept of each run.
+class BlockOutput:
+    """Quantities that `run_block` returns for each variant.
 
     Attributes
     ----------
     measures
-        Names of measures, see rattlebox.studies.measures.
+        Names of measures (see `rattlebox.studies.measures`).
     shape
-        Mode shapes at the point that is watched: (m,), or (m, ...) over the grid.
+        Mode shapes at the observed point [kg^-1/2]: (m,), or (m, ...) over the grid.
     start, period
-        Begin of the window [s] and length of a cycle [s], numbers or arrays that broadcast over the grid.
+        Time from which measures are evaluated [s] and length of a cycle [s]; numbers, or arrays that broadcast over the
+        grid.
     samples
-        Equally spaced samples of the motion from `start` to the end of the run, both included.
+        Number of equally spaced samples of the motion from `start` to the end of the run, both included.
     motion
-        Keep those samples.
+        Whether to return those samples.
     last
-        Keep that many impacts from the end.
+        Number of impacts to return, counted from the end of the run.
     state
-        Keep the state at the end.
+        Whether to return the state at the end.
     """
 
     measures: Sequence[str] = ()
@@ -49,12 +50,12 @@ def run_block(
     shape: Sequence[int],
     start: int,
     stop: int,
-    look: Look,
+    output: BlockOutput,
     *,
     threads: int = 1,
     progress: Callable[[int], bool | None] | None = None,
 ) -> dict[str, NDArray[Any]] | None:
-    """Run some variants of a batch.
+    """Run a range of the variants of a batch.
 
     Parameters
     ----------
@@ -63,27 +64,29 @@ def run_block(
     shape
         Shape of the grid.
     start, stop
-        Variants, counted along the grid with its last axis fastest.
-    look
-        What is kept.
+        First variant and the one after the last, in C order of the grid.
+    output
+        Quantities to return.
     threads
-        Number of threads. The results do not depend on it, to the last bit.
+        Number of threads. The results are bitwise independent of it.
     progress
-        Called some fifty times a second with the number of variants done; False stops.
+        Function called about fifty times a second with the number of variants done; the run stops if it returns
+        False.
 
     Returns
     -------
     dict of str to array, or None
-        By name, variants first: `status`, the measures; `displacement` and `velocity` (n, samples), `ball_place` and
-        `ball_speed` (n, samples, balls) of the motion; `last_time`, `last_approach_speed`, `last_contact` (n, last);
-        `state` (n, 2 (modes + balls)). All but the status is NaN where a run did not finish. None when it was stopped.
+        Arrays by name, variants along the first axis: `status` and each measure (n,); `displacement` and `velocity`
+        (n, samples), `ball_place` and `ball_speed` (n, samples, balls) of the motion; `last_time`,
+        `last_approach_speed`, `last_contact` (n, last); `state` (n, 2 (modes + balls)). Everything but the status is
+        NaN for runs that did not finish. None if `progress` stopped the block.
     """
     grid = list(shape) or [1]
     window = _core.Window(
-        start=_number(look.start, grid),
-        period=_number(look.period, grid),
-        shape=np.asarray(look.shape, dtype=float),
-        samples=look.samples,
+        start=_number(output.start, grid),
+        period=_number(output.period, grid),
+        shape=np.asarray(output.shape, dtype=float),
+        samples=output.samples,
     )
     block = _core.sweep(
         packed,
@@ -91,17 +94,17 @@ def run_block(
         start,
         stop,
         window,
-        list(look.measures),
-        motion=look.motion,
-        state=look.state,
-        last=look.last,
+        list(output.measures),
+        motion=output.motion,
+        state=output.state,
+        last=output.last,
         threads=max(1, min(threads, stop - start)),
         progress=progress,
     )
     if block is None:
         return None
     arrays = {name: getattr(block, name) for name in block.fields() if name != "measures"}
-    measures = dict(zip(look.measures, block.measures, strict=True))
+    measures = dict(zip(output.measures, block.measures, strict=True))
     return {name: values for name, values in arrays.items() if values is not None} | measures
 
 

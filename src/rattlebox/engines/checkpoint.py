@@ -1,4 +1,4 @@
-"""Runs that are not over, on disk: what a run with particles needs to go on, bit by bit."""
+"""Checkpoints of particle runs: the state from which a run resumes bit by bit."""
 
 from __future__ import annotations
 
@@ -37,36 +37,36 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
 FORMAT = 3
-"""Number of the layout; files of another one are refused."""
+"""Version of the layout; files of other versions are rejected."""
 
-_FREE: dict[str, set[str]] = {"method": {"threads", "checkpoint", "checkpoint_every"}, "output": {"snapshots"}}
-"""Fields of the case that may change: the bits do not depend on them."""
+_FREE_FIELDS: dict[str, set[str]] = {"method": {"threads", "checkpoint", "checkpoint_every"}, "output": {"snapshots"}}
+"""Fields of the case that may differ when a run resumes: the results do not depend on them."""
 
-_LOST = "make room and give the same command again, which goes on from the last checkpoint"
+_DISK_HINT = "free disk space and give the same command again; it resumes from the last checkpoint"
 
 
-class AnotherRun(DataError):
-    """A checkpoint belongs to another run."""
+class CheckpointMismatch(DataError):
+    """The checkpoint belongs to another run."""
 
 
 @dataclass(frozen=True)
-class Kept:
-    """What a checkpoint holds.
+class CheckpointData:
+    """Content of a checkpoint file.
 
     Attributes
     ----------
     numbers
-        Fingerprint of all that the core was given.
+        Fingerprint of the core's input (see `fingerprint`).
     time
-        How far the run is [s].
+        Simulated time that the run has reached [s].
     seconds
         Computing time so far [s].
     positions
-        Of the particles at the start, in each damper, (n, 3) [m].
+        Start positions of the particles of each damper, (n, 3) [m].
     records
         Samples so far.
     state : (bytes,) uint8
-        Of the core.
+        State of the core.
     """
 
     numbers: str
@@ -78,7 +78,7 @@ class Kept:
 
 
 def is_checkpoint(path: Path) -> bool:
-    """Return whether Rattlebox wrote a checkpoint, whichever run it belongs to.
+    """Return whether a file is a Rattlebox checkpoint, of any run.
 
     Parameters
     ----------
@@ -93,33 +93,33 @@ def is_checkpoint(path: Path) -> bool:
 
 
 class Checkpoint:
-    """The file that a run goes on from.
+    """The file that stores the state of a run, and from which the run resumes.
 
     Parameters
     ----------
     path
-        File, which need not exist.
+        Checkpoint file, which need not exist.
     case
-        What is run.
+        Case of the run.
     """
 
     def __init__(self, path: str | os.PathLike[str], case: Case) -> None:
         self.path = Path(path)
-        self.time: float | None = None  # of what is in the file
+        self.time: float | None = None  # simulated time of the state in the file [s]
         self._numbers = ""
-        self._about = {"case": bare(case), "version": Provenance.now().version, "core": instructions()}
+        self._about = {"case": comparable_toml(case), "version": Provenance.now().version, "core": instructions()}
 
     @contextmanager
-    def held(self) -> Iterator[None]:
-        """Be the only run that keeps its state in this file.
+    def lock(self) -> Iterator[None]:
+        """Reserve the file for this run.
 
         Raises
         ------
         DataError
-            When another run does (its hold ends with its process, however that ends), or when the folder is missing or
-            cannot be written.
+            If another process has locked the file (the lock ends with that process), or if the folder is missing or not
+            writable.
         """
-        with disk_errors(self.path, _LOST):
+        with disk_errors(self.path, _DISK_HINT):
             require_folder(self.path)
             name = self.path.with_name(f".{self.path.name}.lock")
             lock = FileLock(name)
@@ -128,7 +128,7 @@ class Checkpoint:
             except Timeout:
                 holder = name.read_text() or "another process"
                 raise DataError(
-                    f"{self.path} is in use by {holder}\n  try: another file, or wait until that run is over"
+                    f"{self.path} is in use by {holder}\n  try: another file, or wait until that run has ended"
                 ) from None
         try:
             name.write_text(f"process {os.getpid()} on {socket.gethostname()}")
@@ -138,13 +138,15 @@ class Checkpoint:
             name.unlink(missing_ok=True)
             lock.release()
 
-    def read(self) -> Kept | None:
-        """Return what is in the file, None where there is no file.
+    def read(self) -> CheckpointData | None:
+        """Return the content of the file; None if there is no file.
 
         Raises
         ------
         DataError
-            When the file is something else, or of another case, version or core; with what differs.
+            If the file is no checkpoint or is damaged.
+        CheckpointMismatch
+            If it belongs to another case, version or core; the message lists the differences.
         """
         if not self.path.exists():
             return None
@@ -152,15 +154,15 @@ class Checkpoint:
         block = "its description"
         try:
             with zipfile.ZipFile(self.path) as archive:
-                about = json.loads(_member(archive, "about").tobytes())
+                about = json.loads(_read_array(archive, "about").tobytes())
                 check_format(self.path, about["format"], FORMAT)
                 self._compare(about)
                 arrays: dict[str, NDArray[Any]] = {}
                 for name, digest in about["digests"].items():
                     block = f"the block {name!r}"
-                    arrays[name] = _member(archive, name)
+                    arrays[name] = _read_array(archive, name)
                     if array_digest([arrays[name]]).hex() != digest:
-                        raise ValueError("the array is not the one that was written")
+                        raise ValueError("the digest does not match")
             groups: dict[str, dict[str, NDArray[Any]]] = {"records": {}, "position": {}}
             for name, array in arrays.items():
                 group, _, own = name.partition(".")
@@ -168,93 +170,101 @@ class Checkpoint:
                     groups[group][own] = array
             positions = tuple(groups["position"][str(k)] for k in range(len(groups["position"])))
             records = _core.Records(**groups["records"])
-            kept = Kept(about["numbers"], about["time"], about["seconds"], positions, records, arrays["state"])
+            data = CheckpointData(
+                about["numbers"], about["time"], about["seconds"], positions, records, arrays["state"]
+            )
         except (DataError, MemoryError):
             raise
         except Exception:
             raise DataError(
-                f"{self.path} is not a whole checkpoint: {block} is damaged", "another file, or remove this one"
+                f"{self.path} is not an intact checkpoint: {block} is damaged", "another file, or remove this one"
             ) from None
-        self.time = kept.time
-        return kept
+        self.time = data.time
+        return data
 
-    def check(self, kept: Kept, packed: _core.DemProblem) -> None:
-        """Refuse a checkpoint of a case that reads the same but has other numbers."""
-        if kept.numbers != self._fingerprint(packed):
-            raise AnotherRun(
-                f"{self.path} holds another run\n  the case reads the same but has other numbers: a file that it names has "
-                "changed, or a library that prepares it",
+    def check(self, data: CheckpointData, packed: _core.DemProblem) -> None:
+        """Raise if the core's input differs from that of the checkpoint although the case files agree."""
+        if data.numbers != self._fingerprint(packed):
+            raise CheckpointMismatch(
+                f"{self.path} holds another run\n  the case files agree but their numbers differ: a file that the case "
+                "names has changed, or a library that prepares the run",
                 "another file, or remove this one",
             )
 
     def write(self, dem: _core.Dem, packed: _core.DemProblem, records: _core.Records, seconds: float) -> None:
-        """Put a state in the place of the one in the file.
+        """Replace the state in the file.
 
         Raises
         ------
         DataError
-            If that cannot be done; the file is then as it was.
+            If the file cannot be written; it is then unchanged.
         ResourceError
-            If no space is left on the disk; likewise.
+            If no space is left on the disk; the file is then unchanged.
         """
         time = dem.step * packed.dt
-        told = {"format": FORMAT, "time": time, "seconds": seconds, "numbers": self._fingerprint(packed), **self._about}
+        header = {
+            "format": FORMAT,
+            "time": time,
+            "seconds": seconds,
+            "numbers": self._fingerprint(packed),
+            **self._about,
+        }
         arrays = {f"records.{name}": getattr(records, name) for name in records.fields()}
         arrays |= {f"position.{k}": cavity.position for k, cavity in enumerate(packed.cavities)}
         arrays["state"] = dem.save()
         digests = {name: array_digest([array]).hex() for name, array in arrays.items()}
-        about = np.frombuffer(json.dumps({**told, "digests": digests}).encode(), np.uint8)
-        with atomic_write(self.path, _LOST) as name, name.open("wb") as file:
+        about = np.frombuffer(json.dumps({**header, "digests": digests}).encode(), np.uint8)
+        with atomic_write(self.path, _DISK_HINT) as name, name.open("wb") as file:
             np.savez(file, allow_pickle=False, about=about, **arrays)
         self.time = time
 
     def _fingerprint(self, packed: _core.DemProblem) -> str:
-        self._numbers = self._numbers or fingerprint(packed)  # which do not change
+        self._numbers = self._numbers or fingerprint(packed)  # the input never changes
         return self._numbers
 
     def _compare(self, about: Mapping[str, Any]) -> None:
-        there = {name: about[name] for name in self._about}
-        if lines := differences(there, self._about):
+        stored = {name: about[name] for name in self._about}
+        if lines := differences(stored, self._about):
             hint = "another file, or remove this one"
-            if len(lines) == 1 and there["core"] != self._about["core"]:
-                hint = f"RATTLEBOX_SIMD={there['core']} in the environment, or another file"
-            raise AnotherRun("\n".join([f"{self.path} holds another run", *lines]), hint)
+            if len(lines) == 1 and stored["core"] != self._about["core"]:
+                hint = f"RATTLEBOX_SIMD={stored['core']} in the environment, or another file"
+            raise CheckpointMismatch("\n".join([f"{self.path} holds another run", *lines]), hint)
 
 
-def _member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
-    """Read an array whole, so that its checksum is compared before its shape is believed."""
+def _read_array(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
+    """Read all bytes of an array first: zipfile then compares the checksum before NumPy parses the shape."""
     array: NDArray[Any] = np.lib.format.read_array(io.BytesIO(archive.read(f"{name}.npy")), allow_pickle=False)
     return array
 
 
-def joined(pieces: Sequence[_core.Records]) -> _core.Records:
-    """Return samples that were taken one piece after another as one.
+def concatenate(pieces: Sequence[_core.Records]) -> _core.Records:
+    """Concatenate the samples of consecutive parts of a run.
 
     Parameters
     ----------
     pieces
-        Samples, earliest first.
+        Samples of each part, earliest first.
     """
     return _core.Records(
         **{name: np.concatenate([getattr(piece, name) for piece in pieces]) for name in _core.Records.fields()}
     )
 
 
-def bare(case: Case) -> str:
-    """Return the text of a case file without the fields that the results do not depend on.
+def comparable_toml(case: Case) -> str:
+    """Return the text of a case file without the fields that do not affect the results.
 
     Parameters
     ----------
     case
-        What is run.
+        Case to write.
     """
-    parts = {name: getattr(case, name) for name in _FREE}
-    free = {name: dict.fromkeys(_FREE[name] & type(part).model_fields.keys()) for name, part in parts.items()}
+    parts = {name: getattr(case, name) for name in _FREE_FIELDS}
+    free = {name: dict.fromkeys(_FREE_FIELDS[name] & type(part).model_fields.keys()) for name, part in parts.items()}
     return case.model_copy(update={name: part.model_copy(update=free[name]) for name, part in parts.items()}).to_toml()
 
 
 def fingerprint(packed: _core.Node | Mapping[str, Any]) -> str:
-    """Return a short text that differs when any number that the core is given differs."""
+    """Return a digest of every number in the input of the core."""
     digest = hashlib.sha256()
 
     def add(value: Any) -> None:

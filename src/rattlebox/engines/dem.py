@@ -1,4 +1,4 @@
-"""Particle dampers: Case -> the plain numbers that the core reads -> core -> Run."""
+"""The dem engine: prepare and run a case with particle dampers in the core, and return a Run."""
 
 from __future__ import annotations
 
@@ -15,21 +15,18 @@ from rattlebox._util.narrow import instance
 from rattlebox.core import _core
 from rattlebox.core._core import Partner, Status
 from rattlebox.engines.checkpoint import Checkpoint
-from rattlebox.engines.dem_follow import Journey
-from rattlebox.engines.dem_snapshots import snapshots_of
+from rattlebox.engines.dem_run import DemRun
+from rattlebox.engines.dem_snapshots import plan_snapshots
 from rattlebox.engines.responses import responses
-from rattlebox.engines.run_notes import extrapolated, particle_notes, table_notes
-from rattlebox.engines.status import describe, end_of
+from rattlebox.engines.run_notes import extrapolation_notes, particle_notes, table_notes
+from rattlebox.engines.status import describe, final_status
 from rattlebox.model.methods import Dem
 from rattlebox.model.particle_case import direction_of_base
 from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.prepare.base_motion import base_motion
 from rattlebox.prepare.particles import Prepared, pack_particles, prepare
 from rattlebox.prepare.softening import effects
-from rattlebox.prepare.time_step import (
-    Step,
-    outcome,
-)
+from rattlebox.prepare.time_step import Step, outcome
 from rattlebox.results.arrays import RunArrays
 from rattlebox.results.ledger import Ledger
 from rattlebox.results.provenance import Provenance
@@ -44,8 +41,8 @@ if TYPE_CHECKING:
 
 Progress = Callable[[int, int], object]
 
-PARTICLES_EACH = 1000
-"""Of a thread, at least: with fewer they wait for each other."""
+PARTICLES_PER_THREAD = 1000
+"""Smallest number of particles per thread: with fewer, synchronisation takes longer than the work."""
 
 
 def simulate_dem(
@@ -61,52 +58,58 @@ def simulate_dem(
     Parameters
     ----------
     case
-        What to run.
+        Case with particle dampers.
     threads
-        How many at once; default those of the method, or as many as there are cores and work for them.
+        Number of threads; default that of the method, or one for each core with at least `PARTICLES_PER_THREAD`
+        particles.
     progress
-        Called now and then with the number of steps done and of all; False stops the run, as Ctrl-C does.
+        Function called at intervals with the number of steps done and the total; the run stops if it returns False.
     checkpoint
-        File in which the state is kept, and from which the run goes on if it is there.
+        File that stores the state; if it exists, the run resumes from it.
     snapshots
         File to which snapshots are written.
 
     Returns
     -------
     Run
-        Its status is the reason why it ended.
+        Results with the status with which the run ended.
 
     Raises
     ------
     CaseError
-        When the step that is given is too long, particles do not settle, the checkpoint is of another run, or in use, or
-        a file is a folder, or both are one.
-    OSError
-        When a file cannot be written.
+        If the time step is too long, or the particles do not settle.
+    DataError
+        If the checkpoint belongs to another run or is in use, if a file is a folder, if both files are the same, or if
+        a file cannot be written.
+    ResourceError
+        If no space is left on the disk.
     """
     _check_files(checkpoint, snapshots)
     if case.output.snapshots == ():
         snapshots = None
     if checkpoint is None:
-        return _simulated(case, threads, progress, None, snapshots)
+        return _simulate(case, threads, progress, None, snapshots)
     file = Checkpoint(checkpoint, case)
-    with file.held():
-        return _simulated(case, threads, progress, file, snapshots)
+    with file.lock():
+        return _simulate(case, threads, progress, file, snapshots)
 
 
 def _check_files(checkpoint: Path | None, snapshots: Path | None) -> None:
-    """Refuse files that cannot be written side by side."""
+    """Raise if a file cannot be written, or both are the same."""
     if checkpoint is not None and checkpoint.is_dir():
-        raise DataError(f"{checkpoint} is a folder; a run is kept in a file\n  try: {checkpoint / 'run.checkpoint'}")
+        raise DataError(f"{checkpoint} is a folder; a checkpoint must be a file", f"{checkpoint / 'run.checkpoint'}")
     if snapshots is not None and snapshots.is_dir():
-        raise DataError(f"{snapshots} is a folder; snapshots are written to a file\n  try: another name or place")
+        raise DataError(f"{snapshots} is a folder; snapshots must be a file", f"{snapshots / 'run.vtkhdf'}")
     if snapshots is not None:
         check_suffix(snapshots, ".vtkhdf")
     if checkpoint is not None and snapshots is not None and checkpoint.resolve() == snapshots.resolve():
-        raise DataError(f"{checkpoint} cannot hold both a run and its snapshots\n  try: run.checkpoint and run.vtkhdf")
+        raise DataError(
+            f"{checkpoint} is both the checkpoint and the snapshots; they must be two files",
+            "run.checkpoint and run.vtkhdf",
+        )
 
 
-def _simulated(
+def _simulate(
     case: Case,
     threads: int | None,
     progress: Progress | None,
@@ -114,40 +117,37 @@ def _simulated(
     snapshots: Path | None,
 ) -> Run:
     method = instance(case.method, Dem)
-    kept = None if file is None else file.read()
-    prepared = prepare(case, None if kept is None else kept.positions)
+    data = None if file is None else file.read()
+    prepared = prepare(case, None if data is None else data.positions)
     packed = pack_particles(prepared)
     dem = _core.Dem(packed)
-    dem.threads = threads or method.threads or useful_threads(packed)
-    journey = Journey(dem, packed, file, method)
-    if file is not None and kept is not None:
-        file.check(kept, packed)
-        journey.resume(kept)
+    dem.threads = threads or method.threads or default_threads(packed)
+    active = DemRun(dem, packed, file, method)
+    if file is not None and data is not None:
+        file.check(data, packed)
+        active.resume(data)
     if snapshots is not None:
-        journey.watch(*snapshots_of(case, packed, snapshots))
-    status = journey.go(progress)
-    return _run(case, prepared, packed, dem, status, journey)
+        active.add_snapshots(*plan_snapshots(case, packed, snapshots))
+    status = active.run(progress)
+    return _result(case, prepared, packed, dem, status, active)
 
 
-def useful_threads(packed: _core.DemProblem) -> int:
-    """Return how many threads have enough to do, at most as many as there are cores."""
+def default_threads(packed: _core.DemProblem) -> int:
+    """Return the number of threads with at least `PARTICLES_PER_THREAD` particles each, at most one per core."""
     particles = sum(cavity.radius.size for cavity in packed.cavities)
-    return max(1, min(os.cpu_count() or 1, particles // PARTICLES_EACH))
+    return max(1, min(os.cpu_count() or 1, particles // PARTICLES_PER_THREAD))
 
 
-# ---- results
-
-
-def _run(
+def _result(
     case: Case,
     prepared: Prepared,
     packed: _core.DemProblem,
     dem: _core.Dem,
     status: Status,
-    journey: Journey,
+    active: DemRun,
 ) -> Run:
     resolved_case, step = prepared.case, prepared.step
-    raw, totals = journey.records(), dem.counts()
+    raw, totals = active.records(), dem.counts()
     arrays = _arrays(resolved_case, packed, raw, dem)
     overlaps, speeds = totals.largest_overlap.tolist(), totals.largest_approach_speed.tolist()
     losses = (raw.normal_loss, raw.plastic_loss, raw.sliding_loss, raw.rolling_loss)
@@ -156,7 +156,7 @@ def _run(
     softened = effects(resolved_case, step.motions, moves, lost, totals.enduring_loss)
     diagnostics, notes = outcome(resolved_case, prepared.tables, step, overlaps, speeds, softened)
     touches = totals.first_touches
-    name, message = _ended(resolved_case, arrays, dem, status, step, journey.checkpoint)
+    name, message = _status_and_message(resolved_case, arrays, dem, status, step, active.checkpoint)
     return Run(
         arrays,
         case,
@@ -173,7 +173,7 @@ def _run(
                 else ()
             ),
             *table_notes(resolved_case, speeds),
-            *extrapolated(totals.extrapolated),
+            *extrapolation_notes(totals.extrapolated),
         ),
         counts={
             "steps": totals.steps,
@@ -185,7 +185,7 @@ def _run(
             "memory_bytes": totals.memory_bytes,
         },
         diagnostics=diagnostics,
-        wall_time=journey.seconds,
+        wall_time=active.seconds,
     )
 
 
@@ -248,13 +248,13 @@ def _arrays(case: Case, packed: _core.DemProblem, raw: _core.Records, dem: _core
     )
 
 
-def _ended(
+def _status_and_message(
     case: Case, arrays: RunArrays, dem: _core.Dem, status: Status, step: Step, checkpoint: Checkpoint | None
 ) -> tuple[str, str]:
     """Return the status and the message of a run."""
     if status == Status.finished:
         ledger = Ledger(arrays)
-        end = end_of(ledger, _core.worst_energy_residual, arrays.particle_mass.sum())
+        end = final_status(ledger, _core.worst_energy_residual, arrays.particle_mass.sum())
         return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
     stopped = dem.stopped()
     cavity = stopped.cavity
@@ -263,8 +263,11 @@ def _ended(
     softened = case.particle_dampers[cavity].softening_factor > 1
     name, message = describe(status, stopped.time, where, stopped.speed, case.method.kind, softened=softened)
     if status == Status.interrupted:
-        return name, message if checkpoint is None else f"{message} Run again, it goes on from {checkpoint.path}."
+        return (
+            name,
+            message if checkpoint is None else f"{message} Run the case again to resume from {checkpoint.path}.",
+        )
     message += f" The step was {step.dt:.4g} s."
     if checkpoint is not None and checkpoint.time is not None:
-        message += f" The last checkpoint is of t = {checkpoint.time:.6g} s, in {checkpoint.path.name}."
+        message += f" The last checkpoint, at t = {checkpoint.time:.6g} s, is in {checkpoint.path.name}."
     return name, message

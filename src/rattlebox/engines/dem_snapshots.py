@@ -1,4 +1,4 @@
-"""When snapshots of particles are taken, and how their file is laid out."""
+"""Steps at which snapshots of particles are taken, and the layout of their file."""
 
 from __future__ import annotations
 
@@ -17,41 +17,41 @@ if TYPE_CHECKING:
 
     from rattlebox.model.case import Case
 
-APART = 1.25
-"""Between the centres of cavities side by side, over half the sum of their lengths along x."""
+SPACING = 1.25
+"""Distance between the centres of neighbouring cavities over half the sum of their lengths along x."""
 
 
-def snapshots_of(case: Case, packed: _core.DemProblem, path: Path) -> tuple[SnapshotFile, list[int]]:
+def plan_snapshots(case: Case, packed: _core.DemProblem, path: Path) -> tuple[SnapshotFile, list[int]]:
     """Plan the snapshots of a run.
 
     Parameters
     ----------
     case
-        What is run.
+        Case of the run.
     packed
-        What the core is given.
+        Input of the core.
     path
         File to write.
 
     Returns
     -------
     SnapshotFile
-        The file, not yet made.
+        The file, which is not created yet.
     list of int
-        Steps at which they are taken, each once.
+        Steps at which snapshots are taken, without repetition.
 
     Raises
     ------
-    Hint
-        When there are more than steps.
+    CaseError
+        If more snapshots are requested than the run has steps.
     """
     dt, last = packed.dt, packed.steps
-    asked = case.output.snapshots
-    if isinstance(asked, int) and asked > last + 1:
+    count = case.output.snapshots
+    if isinstance(count, int) and count > last + 1:
         place = ("output", "snapshots")
-        raise Hint(f"{asked} are asked for, but the run has {last} steps", f"snapshots = {min(last + 1, 1001)}", place)
+        raise Hint(f"{count} is more than the {last} steps of the run", f"snapshots = {min(last + 1, 1001)}", place)
     times = case.output.snapshot_times(case.duration)
-    shots = np.unique(np.clip(np.rint(times / dt).astype(np.int64), 0, last))
+    steps = np.unique(np.clip(np.rint(times / dt).astype(np.int64), 0, last))
     contents = [damper.contents for damper in case.particle_dampers]
     fixed = {
         "radius": np.concatenate([each.radius for each in contents]),
@@ -59,13 +59,13 @@ def snapshots_of(case: Case, packed: _core.DemProblem, path: Path) -> tuple[Snap
         "cavity": np.repeat(np.arange(len(contents)), [each.radius.size for each in contents]),
         "species": np.concatenate([each.species for each in contents]),
     }
-    return SnapshotFile(
-        path, np.asarray(shots * dt, dtype=float), _places(case), fixed, case.to_toml(), fingerprint(packed)
-    ), shots.tolist()
+    sampled = np.asarray(steps * dt, dtype=float)
+    file = SnapshotFile(path, sampled, _drawing_positions(case), fixed, case.to_toml(), fingerprint(packed))
+    return file, steps.tolist()
 
 
-def _places(case: Case) -> NDArray[np.float64]:
-    """Centres of the cavities side by side along x, (D, 3) [m]."""
+def _drawing_positions(case: Case) -> NDArray[np.float64]:
+    """Return centres at which the cavities are drawn side by side along x, (D, 3) [m]."""
     lengths = np.array([damper.cavity.extent(np.array([1.0, 0.0, 0.0])) for damper in case.particle_dampers])
-    along = np.concatenate([[0.0], np.cumsum(APART * (lengths[1:] + lengths[:-1]) / 2)])
+    along = np.concatenate([[0.0], np.cumsum(SPACING * (lengths[1:] + lengths[:-1]) / 2)])
     return np.stack([along, np.zeros_like(along), np.zeros_like(along)], axis=1)

@@ -26,12 +26,12 @@ def responses(
     force: FloatArray,
     shapes: Iterable[FloatArray],
 ) -> dict[str, Any]:
-    """Return the responses of a run that follow from its modes and forces.
+    """Compute accelerations, modal coordinates and the force on the base from modal motion and forces.
 
     Parameters
     ----------
     case
-        The case.
+        Case of the run.
     q, p : (T, M) float
         Modal displacement and velocity [kg^1/2 m], [kg^1/2 m/s].
     load : (T, L) float
@@ -39,7 +39,7 @@ def responses(
     base : (T,) or (T, 3) float
         Acceleration of the base [m/s^2]; three components in a 3-D run.
     force : (T, D) or (T, D, 3) float
-        Force of the contacts on each cavity [N].
+        Contact force on each cavity [N].
     shapes
         Mode shapes at each cavity, (M,) or (M, 3) [kg^-1/2].
 
@@ -50,10 +50,15 @@ def responses(
 
     Notes
     -----
-    q'' = f - D p - k q with the modal forces f of loads, contacts and base. The base carries participation . (D p + k q),
-    the force in springs and dashpots, without the inertia of modes that were left out; or the contacts of a fixed cavity.
+    The modal acceleration is q'' = f - D p - k q with the modal forces f of loads, contacts and base, the damping matrix D
+    and the stiffness k. The force on the base is L . (D p + k q) with the participation L: the force in springs and
+    dashpots, without the inertia of truncated modes. For a fixed cavity it is the contact force.
+
+    References
+    ----------
+    R. W. Clough and J. Penzien, Dynamics of Structures, 2nd ed., McGraw-Hill, 1993, chapters 12 and 26.
     """
-    modes, in_space = case.modes, base.ndim == 2
+    modes, three_d = case.modes, base.ndim == 2
     internal = 2 * modes.decay * p + modes.stiffness * q
     if modes.coupling is not None:
         internal = internal + p @ modes.coupling
@@ -61,10 +66,10 @@ def responses(
     for index, signal in enumerate(case.loads):
         driven += np.multiply.outer(load[:, index], modes.shape(signal.point, signal.direction))
     for index, shape in enumerate(shapes):
-        driven += force[:, index] @ shape.T if in_space else np.multiply.outer(force[:, index], shape)
-    inertia = _inertia(case, modes, in_space)
+        driven += force[:, index] @ shape.T if three_d else np.multiply.outer(force[:, index], shape)
+    inertia = _inertia(case, modes, three_d)
     if inertia is not None:
-        driven -= base @ inertia.T if in_space else np.multiply.outer(base, inertia)
+        driven -= base @ inertia.T if three_d else np.multiply.outer(base, inertia)
     lines = modes.lines()
     at_points = np.array(list(lines.values())).reshape(len(lines), modes.decay.size)
     acceleration = (driven - internal) @ at_points.T
@@ -73,28 +78,33 @@ def responses(
         "absolute_acceleration": acceleration + base_at_points(case, base),
         "modal_displacement": q,
         "modal_velocity": p,
-        "interface_force": _on_base(modes, internal, inertia, force, base.shape),
+        "interface_force": _interface_force(modes, internal, inertia, force, base.shape),
     }
 
 
-def _inertia(case: Case, modes: ModalModel, in_space: bool) -> FloatArray | None:
-    """Return the inertia of the modes per unit of base acceleration, (M,) or (M, 3), if it is known."""
-    if not in_space and modes.spatial:
+def _inertia(case: Case, modes: ModalModel, three_d: bool) -> FloatArray | None:
+    """Return the participation of the modes, (M,) or (M, 3) [kg^1/2]; None if it is unknown."""
+    if not three_d and modes.spatial:
         return None  # the base of a 1-D run has no direction, and does not move
-    if modes.participation is None or not in_space or modes.spatial:
+    if modes.participation is None or not three_d or modes.spatial:
         return modes.participation
     return np.multiply.outer(modes.participation, unit_vector(case.particle_dampers[0].direction))
 
 
 def base_at_points(case: Case, base: FloatArray) -> FloatArray:
-    """Return a motion of the base along the motion of each point, (T, P).
+    """Project a motion of the base on the direction of each point.
 
     Parameters
     ----------
     case
-        The case.
+        Case of the run.
     base : (T,) or (T, 3) float
         Displacement, velocity or acceleration of the base; three components in a 3-D run.
+
+    Returns
+    -------
+    (T, P) float
+        Component of the motion at each point.
     """
     modes = case.modes
     if base.ndim == 1:
@@ -104,9 +114,10 @@ def base_at_points(case: Case, base: FloatArray) -> FloatArray:
     return np.concatenate([*parts, np.zeros((len(base), 0))], axis=1)
 
 
-def _on_base(
+def _interface_force(
     modes: ModalModel, internal: FloatArray, inertia: FloatArray | None, force: FloatArray, shape: tuple[int, ...]
 ) -> FloatArray:
+    """Return the force on the base; NaN if the participation of the modes is unknown."""
     if not modes.decay.size:
         return np.asarray(force.sum(axis=1))
     return np.full(shape, np.nan) if inertia is None else np.asarray(internal @ inertia)

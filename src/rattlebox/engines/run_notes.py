@@ -1,4 +1,4 @@
-"""Notes on a finished run: overlaps beyond the range of the contact law, and dampers in which nothing touched."""
+"""Warnings about a finished run: overlaps and speeds beyond the range of a law, and dampers without contacts."""
 
 from __future__ import annotations
 
@@ -21,23 +21,29 @@ if TYPE_CHECKING:
     from rattlebox.model.particle_damper import ParticleDamper
     from rattlebox.results.arrays import Table
 
-MOST_LINEAR_OVERLAP = 0.1
-"""Largest overlap over the radius of a linear spring, which stands for a body softer than the ball, such as a pad."""
+MAX_LINEAR_OVERLAP = 0.1
+"""Largest overlap over the radius for a linear spring, which models a body softer than the ball, such as a pad."""
 
-_TOUCHING = 1e-9  # gap over the clearance
+_CONTACT_GAP = 1e-9
+"""Gap over the clearance below which a ball counts as touching."""
 
 
-def impact_notes(case: Case, places: NDArray[np.float64], impacts: Table) -> tuple[str, ...]:
-    """Return the notes on a run that finished.
+def impact_notes(case: Case, offsets: NDArray[np.float64], impacts: Table) -> tuple[str, ...]:
+    """Return the warnings about a finished 1-D run.
 
     Parameters
     ----------
     case
-        The case.
-    places
-        Reduced positions of all balls in their cavities at the samples, (T, balls) [m].
+        Case of the run.
+    offsets
+        Distances of all balls from their places in the packed, centred row, (T, balls) [m].
     impacts
         The impact log.
+
+    Returns
+    -------
+    tuple of str
+        Warnings.
     """
     notes: list[str] = []
     first = 0
@@ -47,10 +53,10 @@ def impact_notes(case: Case, places: NDArray[np.float64], impacts: Table) -> tup
         own = impacts.damper == index
         if own.any():
             notes += _deep_overlaps(damper, name, impacts.contact[own], impacts.peak_overlap[own])
-            notes += _beyond_tables(damper, name, impacts.contact[own], impacts.approach_speed[own])
-            notes += _measured_impacts(case, index, name, impacts, own)
+            notes += _fast_impacts(damper, name, impacts.contact[own], impacts.approach_speed[own])
+            notes += _beyond_measured_impacts(case, index, name, impacts, own)
         else:
-            notes += _never_touched(damper, name, places[:, first : first + count])
+            notes += _no_impacts(damper, name, offsets[:, first : first + count])
         first += count
     return tuple(notes)
 
@@ -58,32 +64,34 @@ def impact_notes(case: Case, places: NDArray[np.float64], impacts: Table) -> tup
 def _deep_overlaps(
     damper: ImpactDamper, name: str, contacts: NDArray[np.int_], overlaps: NDArray[np.float64]
 ) -> Iterator[str]:
+    """Yield a warning if an overlap exceeds the limit for its contact law."""
     radii = [ball.half for ball in damper.balls]
     at_walls, among_balls = damper.contact, damper.ball_contact or damper.contact
     laws = [at_walls, *[among_balls] * (len(radii) - 1), at_walls]
     smaller = [radii[0], *np.minimum(radii[:-1], radii[1:]), radii[-1]]
-    bounds = np.array([MOST_LINEAR_OVERLAP if isinstance(law, Linear) else MOST_OVERLAP for law in laws])
-    depths = overlaps / np.asarray(smaller)[contacts]
-    beyond = depths / bounds[contacts]
-    if np.any(beyond > 1):
-        worst = int(np.nanargmax(beyond))
+    limits = np.array([MAX_LINEAR_OVERLAP if isinstance(law, Linear) else MOST_OVERLAP for law in laws])
+    ratios = overlaps / np.asarray(smaller)[contacts]
+    excess = ratios / limits[contacts]
+    if np.any(excess > 1):
+        worst = int(np.nanargmax(excess))
         yield (
-            f"warning: overlaps in {name} reach {100 * depths[worst]:.3g} % of the radius, and should stay below "
-            f"{100 * bounds[contacts[worst]]:g} %: a stiffer contact, or slower impacts"
+            f"warning: overlaps in {name} reach {100 * ratios[worst]:.3g} % of the radius; the contact law holds below "
+            f"{100 * limits[contacts[worst]]:g} %: use a stiffer contact or slower impacts"
         )
 
 
-def _beyond_tables(
+def _fast_impacts(
     damper: ImpactDamper, name: str, contacts: NDArray[np.int_], speeds: NDArray[np.float64]
 ) -> Iterator[str]:
+    """Yield warnings if approach speeds exceed the restitution tables of a damper."""
     at_walls = (contacts == 0) | (contacts == len(damper.balls))
     for contact, own in ((damper.contact, at_walls), (damper.ball_contact or damper.contact, ~at_walls)):
         if own.any():
-            yield from _beyond_table(contact, name, float(np.nanmax(speeds[own])))
+            yield from _fast_impact(contact, name, float(np.nanmax(speeds[own])))
 
 
-def _beyond_table(contact: Contact, where: str, speed: float) -> Iterator[str]:
-    """Return a note if the largest approach speed [m/s] is above the table of the contact's restitution."""
+def _fast_impact(contact: Contact, where: str, speed: float) -> Iterator[str]:
+    """Yield a warning if an approach speed [m/s] exceeds the restitution table of a contact."""
     law = contact.impact_restitution
     if isinstance(law, Tabulated) and len(law.speeds) > 1 and speed > law.speeds[-1]:
         yield (
@@ -93,25 +101,41 @@ def _beyond_table(contact: Contact, where: str, speed: float) -> Iterator[str]:
 
 
 def table_notes(case: Case, speeds: Sequence[float]) -> Iterator[str]:
-    """Return the same notes on particle dampers with these largest approach speeds [m/s]."""
+    """Yield warnings if the largest approach speed in a particle damper exceeds a restitution table.
+
+    Parameters
+    ----------
+    case
+        Case of the run.
+    speeds
+        Largest approach speed in each damper [m/s].
+    """
     for index, (damper, speed) in enumerate(zip(case.particle_dampers, speeds, strict=True)):
         name = " ".join(damper.label(index).split())
         yield from dict.fromkeys(
-            note for entry in damper.contact_table.entries for note in _beyond_table(entry.contact, name, speed)
+            note for entry in damper.contact_table.entries for note in _fast_impact(entry.contact, name, speed)
         )
 
 
-def extrapolated(count: int) -> Iterator[str]:
-    """Return a note on impacts outside of the speeds for which a restitution law was fitted."""
+def extrapolation_notes(count: int) -> Iterator[str]:
+    """Yield a warning about impacts outside the range of a fitted restitution law.
+
+    Parameters
+    ----------
+    count
+        Number of these impacts.
+    """
     if count:
         yield (
-            f"warning: {count} impacts are faster than the restitution law was fitted for, and extrapolated: "
-            "compare with Thornton contacts"
+            f"warning: {count} impacts are faster than the range for which the restitution law was fitted; the law was "
+            "extrapolated: compare with Thornton contacts"
         )
 
 
-def _measured_impacts(case: Case, index: int, name: str, impacts: Table, own: NDArray[np.bool_]) -> Iterator[str]:
-    """Yield a note if an impact went beyond the last point of a measured curve."""
+def _beyond_measured_impacts(
+    case: Case, index: int, name: str, impacts: Table, own: NDArray[np.bool_]
+) -> Iterator[str]:
+    """Yield a warning if an impact exceeds the last point of a measured force curve."""
     damper, pairs = case.impact_dampers[index], contact_pairs(case, index)
     deepest: list[tuple[float, TabulatedNormal]] = []
     for contact, pair in enumerate(pairs):
@@ -121,7 +145,7 @@ def _measured_impacts(case: Case, index: int, name: str, impacts: Table, own: ND
         if not isinstance(law, TabulatedNormal) or not mine.any():
             continue
         overlap = float(np.nanmax(impacts.peak_overlap[mine]))
-        if overlap == 0:  # hard impacts: the overlap that the measured curve would have
+        if overlap == 0:  # a hard impact has none; use the overlap that the curve gives for its speed
             force = _core.normal_law(*law.coefficients(pair))
             overlap = force.largest_overlap(float(impacts.approach_speed[mine].max()))
         deepest.append((overlap, law))
@@ -129,54 +153,53 @@ def _measured_impacts(case: Case, index: int, name: str, impacts: Table, own: ND
 
 
 def _beyond_measurement(name: str, deepest: Iterable[tuple[float, TabulatedNormal]]) -> Iterator[str]:
-    """Yield a note on the measured curve that was used furthest beyond its last point."""
+    """Yield a warning about the measured curve with the largest ratio of overlap to last point."""
     overlap, law = max(deepest, key=lambda each: each[0] / each[1].overlap[-1], default=(0.0, None))
     if law is not None and overlap > law.overlap[-1]:
         yield (
-            f"warning: overlaps in {name} reach {_length(overlap)}, but the contact force is measured up to "
-            f"{_length(law.overlap[-1])} only and goes on with its last slope: measure further, or choose slower impacts"
+            f"warning: overlaps in {name} reach {_length(overlap)}, but the contact force is measured only up to "
+            f"{_length(law.overlap[-1])} and extrapolated with its last slope: extend the curve, or use slower impacts"
         )
 
 
-def _never_touched(damper: ImpactDamper, name: str, places: NDArray[np.float64]) -> Iterator[str]:
+def _no_impacts(damper: ImpactDamper, name: str, offsets: NDArray[np.float64]) -> Iterator[str]:
+    """Yield a warning unless a ball touches a wall or a neighbour."""
     half = 0.5 * damper.clearance
-    gaps = np.column_stack([half + places[:, 0], np.diff(places, axis=1), half - places[:, -1]])
-    if gaps.min() > _TOUCHING * damper.clearance:
-        moved = float(np.ptp(places, axis=0).max())
-        yield _nothing_touched(f"no ball of {name}", f"gap {_length(half)}", moved)
+    gaps = np.column_stack([half + offsets[:, 0], np.diff(offsets, axis=1), half - offsets[:, -1]])
+    if gaps.min() > _CONTACT_GAP * damper.clearance:
+        moved = float(np.ptp(offsets, axis=0).max())
+        yield _no_contact_note(f"no ball of {name}", f"gap {_length(half)}", moved)
 
 
 def particle_notes(
     case: Case,
-    touches: NDArray[np.int_],
+    first_touches: NDArray[np.int_],
     contacts: NDArray[np.int_],
-    places: NDArray[np.float64],
+    centre_of_mass: NDArray[np.float64],
     overlaps: Sequence[float],
 ) -> Iterator[str]:
-    """Yield notes on each particle damper in which nothing touched, or whose measured contacts were extrapolated.
+    """Yield warnings about particle dampers without contacts, and about extrapolated force curves.
 
     Parameters
     ----------
     case
-        The case.
-    touches
+        Case of the run.
+    first_touches
         Number of contacts that began, (dampers, partners).
     contacts
         Number of contacts at the samples, (T, dampers, partners).
-    places
+    centre_of_mass
         Centre of mass of the particles in each cavity, (T, dampers, 3) [m].
     overlaps
-        Largest overlap over the smaller radius, in each damper.
+        Largest overlap over the smaller radius in each damper.
     """
     for index, damper in enumerate(case.particle_dampers):
-        yield from _beyond_measurement(
-            " ".join(damper.label(index).split()), _deepest_measured(damper, overlaps[index])
-        )
-        if not touches[index].any() and not contacts[:, index].any():
+        name = " ".join(damper.label(index).split())
+        yield from _beyond_measurement(name, _deepest_measured(damper, overlaps[index]))
+        if not first_touches[index].any() and not contacts[:, index].any():
             room = float(damper.cavity.room(damper.start.position, damper.contents.radius).min())
-            name = " ".join(damper.label(index).split())
-            moved = float(np.ptp(places[:, index], axis=0).max())
-            yield _nothing_touched(f"no particle of {name}", f"smallest distance to a wall {_length(room)}", moved)
+            moved = float(np.ptp(centre_of_mass[:, index], axis=0).max())
+            yield _no_contact_note(f"no particle of {name}", f"smallest distance to a wall {_length(room)}", moved)
 
 
 def _deepest_measured(damper: ParticleDamper, ratio: float) -> Iterator[tuple[float, TabulatedNormal]]:
@@ -188,9 +211,9 @@ def _deepest_measured(damper: ParticleDamper, ratio: float) -> Iterator[tuple[fl
             yield ratio * float(min(radii.get(name, np.inf) for name in entry.names)), entry.contact
 
 
-def _nothing_touched(what: str, gap: str, moved: float) -> str:
+def _no_contact_note(what: str, gap: str, moved: float) -> str:
     return (
-        f"warning: {what} touched anything: {gap}, relative motion {_length(moved)}; check the units of lengths, "
+        f"warning: {what} touched anything ({gap}, relative motion {_length(moved)}): check the units of lengths, "
         "the load and the duration"
     )
 

@@ -1,4 +1,4 @@
-"""Case -> core -> Run."""
+"""Run cases: the impact engine and the choice of the engine."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import numpy as np
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.responses import responses
-from rattlebox.engines.run_notes import extrapolated, impact_notes
-from rattlebox.engines.status import describe, end_of
+from rattlebox.engines.run_notes import extrapolation_notes, impact_notes
+from rattlebox.engines.status import describe, final_status
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.plausibility import plausibility_notes
@@ -40,42 +40,51 @@ def simulate(
     Parameters
     ----------
     case
-        What to run. The method is part of it.
+        Case to run, including the method.
     checkpoint
-        Of particles in space: file in which the state is kept every ten minutes (`Dem(checkpoint=...)`, or
-        `checkpoint_every=...` in simulated time), on Ctrl-C and at the end. Where it is there, the run goes on from it; the
-        results are the same to the last bit.
+        Checkpoint file, written every ten minutes (`Dem(checkpoint=...)`, or `checkpoint_every=...` in simulated time),
+        on Ctrl-C and at the end. If it exists, the run resumes from it with bitwise the same results. Particle runs
+        only.
     snapshots
-        Of particles in space: file (.vtkhdf) that takes the particles at the times of `Output(snapshots=...)`, for ParaView.
+        File (.vtkhdf) for the particles at the times of `Output(snapshots=...)`, for ParaView. Particle runs only.
     progress
-        Of particles in space: called now and then with the number of steps done and of all; False stops the run, as Ctrl-C
-        does.
+        Function called at intervals with the number of steps done and the total; the run stops if it returns False.
+        Particle runs only.
 
     Returns
     -------
     Run
-        Motion, energy ledger, impacts or particles, and a status: a run that cannot be finished ends with a status and a
-        message, not with an exception, and holds the results until then.
+        Motion, energy ledger, impacts or particles, and a status. A run that cannot be finished has a status and a
+        message and holds the results up to that time; it raises no exception.
 
     Raises
     ------
     CaseError
-        When the run has no use for a checkpoint or snapshots, or lacks a file for them.
+        If a checkpoint or snapshots are given for a 1-D run, or the case requests snapshots without a file.
     DataError
-        When the checkpoint is of another case, version or core, with what differs, is damaged, or is in use by another
-        process; when a file is a folder, both are one, or a file cannot be written.
+        If the checkpoint belongs to another case, version or core (the message lists the differences), is damaged, or
+        is in use by another process; if a file is a folder, both files are the same, or a file cannot be written.
     ResourceError
-        When no space is left on the disk, or the environment asks for instructions that the processor lacks.
+        If no space is left on the disk, or RATTLEBOX_SIMD names instructions that the processor lacks.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> run = rb.simulate(rb.reference_case(duration="0.1 s"))
+    >>> run.status
+    'finished'
     """
-    _check_is_case(case)
+    _require_case(case)
     if case.particle_dampers:
         from rattlebox.engines.dem import simulate_dem
 
         if snapshots is None and case.output.snapshots:
-            raise Hint("the output asks for snapshots, and there is no file for them", 'snapshots="run.vtkhdf"')
+            raise Hint("output.snapshots requests snapshots, but no file is given", 'snapshots="run.vtkhdf"')
         return simulate_dem(case, progress=progress, checkpoint=_path(checkpoint), snapshots=_path(snapshots))
     if checkpoint is not None or snapshots is not None:
-        raise Hint("checkpoints and snapshots are of particles in space, and there are none", "leave them out")
+        raise Hint(
+            "the case has no particles; checkpoints and snapshots are for particle dampers only", "leave them out"
+        )
     return simulate_many([case])[0]
 
 
@@ -84,58 +93,50 @@ def _path(path: str | os.PathLike[str] | None) -> Path | None:
 
 
 def simulate_many(cases: Iterable[Case], *, threads: int | None = None) -> list[Run]:
-    """Run several cases, each on one thread.
+    """Run several cases at the same time, each 1-D case on one thread.
 
     Parameters
     ----------
     cases
-        What to run.
+        Cases to run.
     threads
-        How many at once; default as many as there are cores. The results do not depend on it, to the last bit.
+        Number of threads; default one per core. The results are bitwise independent of it.
 
     Returns
     -------
     list of Run
-        In the order of the cases. Ctrl-C ends the runs in progress with the status "interrupted".
+        Results in the order of the cases. Ctrl-C ends the runs in progress with the status "interrupted".
 
     Raises
     ------
     CaseError
-        When something else than cases is given, or no number of threads.
+        If an element is not a case, or `threads` is not a positive whole number.
     """
     if isinstance(cases, Case):
         raise Hint("a list of cases is needed, not one case", "simulate(case)")
     cases = list(cases)
     for case in cases:
-        _check_is_case(case)
+        _require_case(case)
     if threads is not None:
         threads = whole_number(threads, "threads", 1)
     if any(case.particle_dampers for case in cases):
-        return _in_space(cases, threads)
-    results = _simulated([pack(case) for case in cases], threads)
-    return [_run(case, _sampled(result)) for case, result in zip(cases, results, strict=True)]
+        # Particle cases run one after the other, each on all threads.
+        from rattlebox.engines.dem import simulate_dem
+
+        plain = iter(simulate_many([case for case in cases if not case.particle_dampers], threads=threads))
+        return [simulate_dem(case, threads=threads) if case.particle_dampers else next(plain) for case in cases]
+    packed = [pack(case) for case in cases]
+    results = _core.simulate(packed, max(1, min(len(packed), threads or os.cpu_count() or 1))) if packed else []
+    return [_result(case, _limit_samples(result)) for case, result in zip(cases, results, strict=True)]
 
 
-def _check_is_case(case: object) -> None:
+def _require_case(case: object) -> None:
     if not isinstance(case, Case):
         raise Hint(f"a Case is needed, not {case!r:.60}", 'rb.Case.from_file("case.toml")')
 
 
-def _in_space(cases: Sequence[Case], threads: int | None) -> list[Run]:
-    """Cases with particles one by one, each on several threads; those without as usual."""
-    from rattlebox.engines.dem import simulate_dem
-
-    plain = iter(simulate_many([case for case in cases if not case.particle_dampers], threads=threads))
-    return [simulate_dem(case, threads=threads) if case.particle_dampers else next(plain) for case in cases]
-
-
-def _simulated(packed: list[_core.Problem], threads: int | None) -> list[_core.Result]:
-    count = max(1, min(len(packed), threads or os.cpu_count() or 1))
-    return _core.simulate(packed, count) if packed else []
-
-
-def _sampled(raw: _core.Result) -> _core.Result:
-    """Drop the samples at contacts of a run that has too many of them."""
+def _limit_samples(raw: _core.Result) -> _core.Result:
+    """Remove the samples at contacts if the run has more than `MOST_EVENTS` events."""
     many = max(raw.counts.events, raw.impacts.time.size) > MOST_EVENTS
     chosen = raw.chosen
     if not many or chosen.all():
@@ -154,14 +155,14 @@ def _sampled(raw: _core.Result) -> _core.Result:
     )
 
 
-def _run(case: Case, raw: _core.Result) -> Run:
+def _result(case: Case, raw: _core.Result) -> Run:
     with np.errstate(over="ignore", invalid="ignore"):  # a solution that became non-finite has a status
         arrays = _arrays(case, raw)
-    status, message = _ended(case, arrays, raw)
+    status, message = _status_and_message(case, arrays, raw)
     notes = plausibility_notes(case)
     if raw.status == Status.finished:
         notes += impact_notes(case, arrays.relative_position - arrays.ball_centre, arrays.impacts)
-        notes += tuple(extrapolated(raw.counts.extrapolated))
+        notes += tuple(extrapolation_notes(raw.counts.extrapolated))
     return Run(
         arrays,
         case,
@@ -174,12 +175,12 @@ def _run(case: Case, raw: _core.Result) -> Run:
     )
 
 
-def _ended(case: Case, arrays: RunArrays, raw: _core.Result) -> tuple[str, str]:
+def _status_and_message(case: Case, arrays: RunArrays, raw: _core.Result) -> tuple[str, str]:
     """Return the status and the message of a run."""
     if raw.status == Status.finished:
         ledger = Ledger(arrays)
         mass = sum(float(damper.masses.sum()) for damper in case.impact_dampers)
-        end = end_of(ledger, raw.energy_residual_limit, mass)
+        end = final_status(ledger, raw.energy_residual_limit, mass)
         return describe(end, case.duration, "", ledger.energy_residual if end else 0.0, case.method.kind)
     counts = [len(damper.balls) for damper in case.impact_dampers]
     contact = _contact_name(arrays.dampers, counts, raw.stopped_contact)
@@ -194,13 +195,13 @@ def _arrays(case: Case, raw: _core.Result) -> RunArrays:
     time, state = raw.time, raw.state
     q, p = state[:, 0 : 2 * m : 2], state[:, 1 : 2 * m : 2]
     position, velocity = state[:, 2 * m : 2 * m + b], state[:, 2 * m + b :]
-    of = np.repeat(np.arange(d), counts)
+    ball_damper = np.repeat(np.arange(d), counts)
     shapes = np.array([modes.shape(damper.point) for damper in dampers]).reshape(d, m)
     centre = np.concatenate([damper.centres for damper in dampers]) if b else np.zeros(0)
     mass = np.concatenate([damper.masses for damper in dampers]) if b else np.zeros(0)
     gravity = np.array([damper.gravity for damper in dampers])
-    pull = np.zeros((time.size, d))
-    np.add.at(pull.T, of, -(mass * gravity[of])[:, None] * position.T)
+    potential = np.zeros((time.size, d))
+    np.add.at(potential.T, ball_damper, -(mass * gravity[ball_damper])[:, None] * position.T)
     lines = modes.lines()
     points = list(lines)
     at_points = np.array(list(lines.values())).reshape(len(points), m)
@@ -216,13 +217,13 @@ def _arrays(case: Case, raw: _core.Result) -> RunArrays:
         loads=tuple(f"{signal.kind} {index + 1}" for index, signal in enumerate(case.loads)),
         displacement=q @ at_points.T,
         velocity=p @ at_points.T,
-        ball_damper=of,
+        ball_damper=ball_damper,
         ball_centre=centre,
         clearance=np.array([damper.clearance for damper in dampers]),
         ball_position=position + centre,
         ball_velocity=velocity,
-        relative_position=position + centre - (q @ shapes.T)[:, of],
-        relative_velocity=velocity - (p @ shapes.T)[:, of],
+        relative_position=position + centre - (q @ shapes.T)[:, ball_damper],
+        relative_velocity=velocity - (p @ shapes.T)[:, ball_damper],
         base_displacement=base[0],
         base_velocity=base[1],
         base_acceleration=base[2],
@@ -233,7 +234,7 @@ def _arrays(case: Case, raw: _core.Result) -> RunArrays:
         mode_energy=0.5 * (p**2 + modes.stiffness * q**2),
         ball_energy=0.5 * mass * velocity**2,
         contact_energy=raw.contact_energy,
-        gravity_energy=pull,
+        gravity_energy=potential,
         load_work=raw.load_work,
         base_work=raw.base_work,
         viscous_loss=raw.viscous_loss,
@@ -244,6 +245,7 @@ def _arrays(case: Case, raw: _core.Result) -> RunArrays:
 
 
 def _contact_name(names: Sequence[str], counts: list[int], contact: int) -> str:
+    """Return damper and place of a contact, which is numbered over all dampers."""
     for name, balls in zip(names, counts, strict=True):
         if contact <= balls:
             place = (
@@ -259,7 +261,7 @@ def _contact_name(names: Sequence[str], counts: list[int], contact: int) -> str:
 
 
 def _base_motion(case: Case, time: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Displacement, velocity and acceleration of the base, (3, T); a harmonic has no drift, others start at rest."""
+    """Return displacement, velocity and acceleration of the base, (3, T); only a harmonic starts in motion."""
     from rattlebox.prepare.base_motion import base_motion
 
     return sum((base_motion(signal, time) for signal in case.base_acceleration()), np.zeros((3, time.size)))

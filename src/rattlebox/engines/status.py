@@ -1,4 +1,4 @@
-"""How a run can end, each with a sentence on what happened and one on what to try with the method that ran."""
+"""Messages for each status of a run: what happened, and what to try with the method that was used."""
 
 from __future__ import annotations
 
@@ -15,35 +15,35 @@ if TYPE_CHECKING:
 MESSAGES: dict[Status, str] = {
     Status.finished: "The run reached its end.",
     Status.law_domain: (
-        "{contact} was struck at {value:.6g} m/s, above the last speed its restitution law covers, at t = {time:.9g} s."
+        "{contact}: the approach speed {value:.6g} m/s at t = {time:.9g} s exceeds the range of the restitution law."
     ),
-    Status.too_many_events: "The budget of events was spent at t = {time:.9g} s, likely by chattering.",
+    Status.too_many_events: "The limit max_events was reached at t = {time:.9g} s, probably by chattering.",
     Status.step_too_small: "A contact could not be integrated within the tolerance at t = {time:.9g} s.",
-    Status.interrupted: "The run was stopped at t = {time:.9g} s; what was computed until then is kept.",
-    Status.not_finite: "The motion grew beyond all numbers at t = {time:.9g} s.",
+    Status.interrupted: "The run was stopped at t = {time:.9g} s; the results up to this time are available.",
+    Status.not_finite: "The solution became non-finite at t = {time:.9g} s.",
     Status.energy_error: (
-        "The run reached its end, but its energies do not add up: {value:.2g} of the energy put in is missing or too much. "
-        "Do not use its results."
+        "The run reached its end, but its energy balance has an error of {value:.2g} of the energy put in. Do not use its "
+        "results."
     ),
     Status.escaped: "{contact} left its cavity at {value:.6g} m/s, at t = {time:.9g} s.",
     Status.no_rebound: (
-        "{contact} was struck at {value:.6g} m/s, where its restitution law gives no rebound, which no contact with a "
-        "dashpot can do, at t = {time:.9g} s."
+        "{contact}: the restitution is zero at the approach speed {value:.6g} m/s at t = {time:.9g} s, which a dashpot "
+        "cannot represent."
     ),
     Status.refused: "The case cannot be run as it is.",
 }
 
-_SIZES = "Check that stiffnesses, masses and speeds are of the sizes you meant."
+_SIZES = "Check the units of stiffnesses, masses and speeds."
 _ADVICE: dict[Status, dict[str, str]] = {
     Status.law_domain: {
-        "": "Use a law that covers it (Thornton, a table), or allow extrapolation (extrapolate = true) knowingly."
+        "": "Use a law that covers it (Thornton, a table), or allow extrapolation (extrapolate = true)."
     },
     Status.too_many_events: {
         "": "Raise max_events, shorten the run, or add damping to the contact.",
         "event_driven": "Raise max_events, shorten the run, add damping to the contact, or use the Newton method, which "
         "lets chattering balls stick.",
-        "newton": "Raise stick, so that slow impacts end earlier, raise max_events, shorten the run, or use the EventDriven "
-        "method, whose contacts take their time.",
+        "newton": "Raise stick so that slow impacts end earlier, raise max_events, shorten the run, or use the EventDriven "
+        "method, whose contacts have a duration.",
     },
     Status.step_too_small: {"": "Loosen the tolerance. " + _SIZES},
     Status.no_rebound: {
@@ -60,53 +60,63 @@ _ADVICE: dict[Status, dict[str, str]] = {
         "": "Compare with another method.",
         "event_driven": "Lower the tolerance, and compare with another method.",
         "two_step": "Shorten the time steps dt_flight and dt_contact.",
-        "dem": "Shorten dt, or the fraction of the shortest contact that it is.",
+        "dem": "Shorten dt, or use a smaller fraction.",
     },
-    Status.refused: {"": "Run it alone, which says why."},
+    Status.refused: {"": "Run the variant alone to see the reason."},
     Status.escaped: {
         "": "Shorten dt, or use a stiffer contact.",
-        "softened": "Shorten dt, or soften the contacts less.",
+        "softened": "Shorten dt, or lower the softening.",
     },
 }
-"""What to try, by status and kind of method; "" for every other method, "softened" where contacts are."""
+"""Advice by status and kind of method; "" for all other methods, "softened" for softened contacts."""
 
 
-def end_of(ledger: Ledger, bound: float, mass: float) -> Status:
+def final_status(ledger: Ledger, limit: float, mass: float) -> Status:
     """Return the status of a run that reached its end.
 
     Parameters
     ----------
     ledger
         Energies of the run.
-    bound
-        Largest energy residual of a finished run, over the energy put in.
+    limit
+        Largest allowed energy residual, over the energy put in.
     mass
-        Mass of all balls or particles [kg]. A residual below their energy at a nanometre a second is rounding.
+        Mass of all balls or particles [kg]. A residual below their kinetic energy at 1 nm/s counts as rounding.
+
+    Returns
+    -------
+    Status
+        `finished`, `energy_error` or `not_finite`.
     """
     if not np.isfinite(ledger.residual).all():
         return Status.not_finite
-    return Status.finished if ledger.closes(bound, mass * _core.speed_at_rest**2) else Status.energy_error
+    return Status.finished if ledger.is_balanced(limit, mass * _core.speed_at_rest**2) else Status.energy_error
 
 
 def describe(
     status: Status, time: float, contact: str, value: float, method: str, *, softened: bool = False
 ) -> tuple[str, str]:
-    """Return the name of a core status, and what happened with what to try.
+    """Return the name of a status, and a message with what happened and what to try.
 
     Parameters
     ----------
     status
         Status of the run.
     time
-        Where the run stopped [s].
+        Time at which the run stopped [s].
     contact
-        Name of the contact concerned, if any.
+        Name of the contact that stopped the run; "" if none did.
     value
-        Approach speed there [m/s], or the energy residual of a ledger.
+        Approach speed at that contact [m/s], or the energy residual.
     method
-        Kind of the method that ran, as in case files.
+        Kind of the method, as in case files.
     softened
-        Whether the contacts concerned are softer than their bodies are.
+        Whether the contact is softened.
+
+    Returns
+    -------
+    tuple of str
+        Name and message.
     """
     happened, advice = MESSAGES[status], _ADVICE.get(status, {})
     own = advice.get("softened" if softened and "softened" in advice else method, advice.get("", ""))

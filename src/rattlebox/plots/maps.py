@@ -16,7 +16,7 @@ from rattlebox._util.exceptions import CaseError
 
 from ..model.errors import Hint, nearest
 from ..model.units import parse
-from ..results.schema import HOW_ENDED
+from ..results.schema import OUTCOMES
 from .labels import LabelledValues, Vector, log_ticks, name_of, unit_of, value_of
 from .style import (
     FAINT,
@@ -203,7 +203,7 @@ def _position(coord: xr.DataArray, name: str, value: Any) -> int:
 
 
 def _measure(study: xr.Dataset, of: str | None) -> str:
-    results = ((str(name), values) for name, values in study.data_vars.items() if name not in HOW_ENDED)
+    results = ((str(name), values) for name, values in study.data_vars.items() if name not in OUTCOMES)
     numbers = [name for name, values in results if values.dtype.kind in "fiu"]
     if of is None:
         if not numbers:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ..results import Run, RunArrays
 from ..results.figures import run_figure
 from ..results.schema import AXES
-from ..results.summary import shown_points
+from ..results.summary import largest_points
 from .style import (
     FAINT,
     INK,
@@ -169,7 +169,7 @@ def draw_structure(axes: Axes, arrays: RunArrays, shown: slice, time: Scale, len
     """
     x = arrays.displacement[shown]
     axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
-    for k, point in enumerate(shown_points(np.abs(x).max(axis=0), MOST_SERIES)):
+    for k, point in enumerate(largest_points(np.abs(x).max(axis=0), MOST_SERIES)):
         axes.plot(
             arrays.time[shown] / time.divisor,
             x[:, point] / length.divisor,

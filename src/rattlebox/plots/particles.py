@@ -183,7 +183,7 @@ def _end(run: Run) -> Frame:
         position=particles.position + displacement[particles.damper],
         velocity=particles.velocity,
         spin=particles.spin,
-        push=np.zeros_like(particles.radius),
+        contact_force=np.zeros_like(particles.radius),
         radius=particles.radius,
         mass=particles.mass,
         cavity=particles.damper,

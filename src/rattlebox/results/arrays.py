@@ -48,18 +48,18 @@ def same(a: Any, b: Any) -> bool:
     return bool(a == b)
 
 
-def _checked(variable: Variable, values: ArrayLike | None, sizes: Mapping[str, int]) -> NDArray[Any]:
-    """Return values as a read-only array of the variable's type, zeros where they are left out."""
+def _as_array(variable: Variable, values: ArrayLike | None, sizes: Mapping[str, int]) -> NDArray[Any]:
+    """Return values as a read-only array of the variable's type; zeros if they are None."""
     shape = tuple(sizes[dim] for dim in variable.dims)
     dtype = np.dtype(_DTYPES[variable.kind])
     if values is None:
         array: NDArray[Any] = np.zeros(shape, dtype)
     else:
-        given = np.asarray(values)
-        flags = variable.kind == "bool" and given.dtype.kind in "iu"
-        if not flags and not np.can_cast(given.dtype, dtype, "same_kind") and given.size:
-            raise TypeError(f"{variable.name} holds {given.dtype}, but {dtype} is needed")
-        array = np.ascontiguousarray(given, dtype).view()
+        source = np.asarray(values)
+        flags = variable.kind == "bool" and source.dtype.kind in "iu"
+        if not flags and not np.can_cast(source.dtype, dtype, "same_kind") and source.size:
+            raise TypeError(f"{variable.name} holds {source.dtype}, but {dtype} is needed")
+        array = np.ascontiguousarray(source, dtype).view()
     if array.shape != shape:
         names = ", ".join(variable.dims)
         raise ValueError(f"{variable.name} has shape {array.shape}, but ({names}) is {shape}")
@@ -67,7 +67,7 @@ def _checked(variable: Variable, values: ArrayLike | None, sizes: Mapping[str, i
     return array
 
 
-def _checked_time(times: ArrayLike) -> FloatArray:
+def _as_time(times: ArrayLike) -> FloatArray:
     """Return output times as a read-only array; they must increase."""
     time = np.ascontiguousarray(times, np.float64).view()
     if time.ndim != 1 or time.size == 0:
@@ -78,19 +78,21 @@ def _checked_time(times: ArrayLike) -> FloatArray:
     return time
 
 
-def _checked_labels(name: str, given: Any) -> tuple[str, ...]:
-    """Return labels as texts; they must differ."""
-    labels = tuple(str(label) for label in given)
+def _as_labels(name: str, values: Any) -> tuple[str, ...]:
+    """Return labels as strings; raise unless they are different and not empty."""
+    labels = tuple(str(label) for label in values)
     if len(set(labels)) != len(labels) or "" in labels or any("\0" in label for label in labels):
         raise ValueError(f"{name} {labels} must be different and not empty")
     return labels
 
 
 class _Frozen:
-    """A holder of read-only arrays by name, built from keyword arguments, equal by value."""
+    """Base class of read-only collections of arrays, which compare by value."""
 
     def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError(f"{name} cannot be set: results are read-only; replaced({name}=...) returns a copy")
+        raise AttributeError(
+            f"{name} cannot be set because results are read-only\n  try: replaced({name}=...), which returns a copy"
+        )
 
     def __eq__(self, other: object) -> bool:
         return same(vars(self), vars(other)) if type(other) is type(self) else NotImplemented
@@ -101,7 +103,7 @@ class _Frozen:
         return _rebuild, (type(self), dict(vars(self)))
 
     def replaced(self, **changes: Any) -> Self:
-        """Return a copy with other values.
+        """Return a copy with some values replaced.
 
         Parameters
         ----------
@@ -116,7 +118,7 @@ def _rebuild(cls: type[Any], values: dict[str, Any]) -> Any:
 
 
 class Table(_Frozen):
-    """Columns of equal length, one row for each impact or particle; read-only.
+    """Read-only columns of equal length, one row for each impact or particle.
 
     `schema.VARIABLES` lists the columns of each group.
 
@@ -127,14 +129,14 @@ class Table(_Frozen):
     engine
         Engine that wrote them.
     **columns : (N,) or (N, 3)
-        All columns of the group, or none for a table without rows.
+        All columns of the group; none for a table without rows.
 
     Raises
     ------
     ValueError
         If a column is missing, or columns differ in length.
     TypeError
-        If an array holds the wrong kind of numbers, or the group has no such column.
+        If an array has the wrong number type, or the group has no such column.
     """
 
     group: str
@@ -149,7 +151,7 @@ class Table(_Frozen):
             values = columns.pop(variable.name, None)
             if values is None and rows:
                 raise ValueError(f"{variable.name} of the {group} is missing")
-            vars(self)[variable.name] = _checked(variable, values, sizes)
+            vars(self)[variable.name] = _as_array(variable, values, sizes)
         if columns:
             raise TypeError(f"{group} have no {', '.join(columns)}")
 
@@ -176,7 +178,8 @@ class RunArrays(_Frozen):
     engine
         Engine that computed the run; it determines which variables and tables there are.
     points, balls, dampers, loads
-        Names; a ball is named "damper/number", a point that moves in space is three: "tip x", "tip y" and "tip z".
+        Labels. A ball is labelled "damper/number"; a point with three directions has three labels: "tip x", "tip y" and
+        "tip z".
     **values
         Variables by name; for the tables `impacts` and `particles` a `Table`, or its columns by name.
 
@@ -185,7 +188,7 @@ class RunArrays(_Frozen):
     ValueError
         If a shape does not fit, times do not increase, or a label is empty or repeated.
     TypeError
-        If an array holds the wrong kind of numbers, or runs of this engine have no such variable.
+        If an array has the wrong number type, or runs of this engine have no such variable.
     """
 
     engine: Engine
@@ -211,9 +214,9 @@ class RunArrays(_Frozen):
         if engine not in BOTH:
             raise ValueError(f"there is no engine {engine!r}; there are {', '.join(BOTH)}")
         fields = vars(self)
-        fields.update(engine=engine, time=_checked_time(time))
+        fields.update(engine=engine, time=_as_time(time))
         for name, labels in {"points": points, "balls": balls, "dampers": dampers, "loads": loads}.items():
-            fields[name] = _checked_labels(name, labels)
+            fields[name] = _as_labels(name, labels)
         sizes = {
             "time": self.time.size,
             "point": len(self.points),
@@ -228,7 +231,7 @@ class RunArrays(_Frozen):
             if group.along == "time":
                 for v in variables(engine, group.name):
                     if not v.derived:
-                        fields[v.name] = _checked(v, values.pop(v.name, None), sizes)
+                        fields[v.name] = _as_array(v, values.pop(v.name, None), sizes)
             else:
                 table = values.pop(group.name, {})
                 fields[group.name] = table if isinstance(table, Table) else Table(group.name, engine, **table)
@@ -264,7 +267,7 @@ class RunArrays(_Frozen):
 
     @property
     def labels(self) -> dict[str, Any]:
-        """Values of the coordinates, by dimension: times, names, and numbers of modes (from 1) and particles (from 0)."""
+        """Coordinates by dimension: times, labels, and numbers of modes (from 1) and particles (from 0)."""
         known: dict[str, Any] = {
             "time": self.time,
             "point": self.points,
@@ -293,6 +296,6 @@ class RunArrays(_Frozen):
         return ("trailing wall", *between, "leading wall") if balls else ()
 
 
-def refuse_absent(name: str, engine: Engine) -> NoReturn:
-    """Raise the error of a group that runs of an engine lack."""
+def raise_absent(name: str, engine: Engine) -> NoReturn:
+    """Raise AttributeError for a group or variable that runs of an engine lack."""
     raise AttributeError(explain_absence(name, engine))

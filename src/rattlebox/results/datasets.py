@@ -56,7 +56,7 @@ def dataset(run: Record, group: str) -> xarray.Dataset:
             described = dimensions(engine)[dim]
             meaning = {"long_name": described.long_name} | ({"units": described.units} if described.units else {})
             label = labels[dim]
-            # An empty tuple would become an array of floats.
+            # NumPy would convert an empty tuple to an array of floats.
             label = np.array(label, dtype=str) if isinstance(label, tuple) else label
             coords[dim] = (dim, label, meaning)
     attrs = {"title": groups(engine)[group].title, "status": run.status, "message": run.message}

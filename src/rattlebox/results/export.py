@@ -1,4 +1,4 @@
-"""Runs in MATLAB and CSV files."""
+"""Export of runs to MATLAB and CSV files."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from .schema import dimensions, groups, variables
 if TYPE_CHECKING:
     from .record import Record
 
-_LOST = "make room and write the file again"
+_DISK_HINT = "free disk space and write the file again"
 
 
 def _cells(names: tuple[str, ...]) -> Any:
-    """Texts as a column of cells."""
+    """Return texts as a MATLAB column of cells."""
     cells = np.empty((len(names), 1), dtype=object)
     cells[:, 0] = names
     return cells
 
 
 def _column(values: Any) -> Any:
-    """Vectors as columns, empty ones too."""
+    """Return a vector as a column, also if it is empty; other arrays unchanged."""
     return values[:, None] if values.ndim == 1 else values
 
 
@@ -56,9 +56,9 @@ def to_mat(run: Record, path: Path) -> Path:
     Raises
     ------
     DataError
-        When the file cannot be written, or its name is that of another kind of file.
+        If the file cannot be written, or its suffix belongs to another kind of file.
     ResourceError
-        When no space is left on the disk.
+        If no space is left on the disk.
     """
     from scipy.io import savemat
 
@@ -92,7 +92,7 @@ def to_mat(run: Record, path: Path) -> Path:
         "counts": dict(run.counts) or np.zeros((0, 0)),
         "diagnostics": dict(run.diagnostics) or np.zeros((0, 0)),
     }
-    with atomic_write(path, _LOST) as name:
+    with atomic_write(path, _DISK_HINT) as name:
         savemat(
             name,
             content | {"units": units, "info": info},
@@ -108,7 +108,7 @@ def _header(name: str, label: str, units: str) -> str:
 
 
 def _columns(run: Record, group: str) -> Iterator[tuple[str, Any]]:
-    """Header and values of every column of a CSV file: the index, then what runs along it."""
+    """Return header and values of every column of a CSV file, the index first."""
     engine, labels = run.arrays.engine, run.arrays.labels
     values = columns(run, group)
     along = groups(engine)[group].along
@@ -118,22 +118,22 @@ def _columns(run: Record, group: str) -> Iterator[tuple[str, Any]]:
         if v.dims[0] != along:
             continue
         for place in product(*(range(len(labels[dim])) for dim in v.dims[1:])):
-            told = " ".join(str(labels[dim][k]) for dim, k in zip(v.dims[1:], place, strict=True))
-            yield _header(v.name, told, v.units), values[v.name][:, *place]
+            labelled = " ".join(str(labels[dim][k]) for dim, k in zip(v.dims[1:], place, strict=True))
+            yield _header(v.name, labelled, v.units), values[v.name][:, *place]
 
 
 def to_csv(run: Record, folder: Path) -> tuple[Path, ...]:
     """Write a CSV file for each dataset of the run, such as motion.csv.
 
-    One line of headers, "name label [unit]"; every number keeps all its digits. Variables that do not run along the
-    rows (clearances, natural frequencies, final shares) are in the other formats.
+    The first line holds the headers, "name label [unit]"; numbers are written with all digits. Variables without a value
+    for each row (clearances, natural frequencies, final shares) are only in the other formats.
 
     Parameters
     ----------
     run
         Run to write.
     folder
-        Folder to write to, made when missing.
+        Folder to write to, created if missing.
 
     Returns
     -------
@@ -143,24 +143,24 @@ def to_csv(run: Record, folder: Path) -> tuple[Path, ...]:
     Raises
     ------
     DataError
-        When a file cannot be written, or its name is that of a file.
+        If a file cannot be written, or the folder is a file.
     ResourceError
-        When no space is left on the disk.
+        If no space is left on the disk.
     """
     import csv
 
     check_suffix(folder, "")
     if folder.is_file():
-        raise DataError(f"{folder} is a file; CSV files need a folder", "another name")
+        raise DataError(f"{folder} is a file; CSV files are written to a folder", "another name")
     with disk_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
     written = []
     for group in run.groups:
         path = folder / f"{group}.csv"
         header, data = zip(*_columns(run, group), strict=True)
-        # tolist() gives Python numbers, whose repr is the shortest text that reads back equal.
+        # tolist() returns Python numbers, whose repr is the shortest text that parses to the same number.
         lists = [array.astype(int).tolist() if array.dtype == bool else array.tolist() for array in data]
-        with atomic_write(path, _LOST) as name, name.open("w", newline="", encoding="utf-8") as file:
+        with atomic_write(path, _DISK_HINT) as name, name.open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(header)
             writer.writerows(zip(*lists, strict=True))

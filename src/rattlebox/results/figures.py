@@ -1,4 +1,4 @@
-"""The figures that `run.plot` offers: the modules of `rattlebox.plots` register theirs here."""
+"""Registry of the figures of `run.plot`, in which the modules of `rattlebox.plots` register their functions."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def run_figure(name: str, needs: str = "motion") -> Callable[[Draw], Draw]:
     name
         Name of the figure in `run.plot`.
     needs
-        Group without which a run has no such figure.
+        Group that a run must have for the figure.
 
     Returns
     -------

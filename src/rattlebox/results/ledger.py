@@ -8,25 +8,32 @@ from functools import cached_property
 
 import numpy as np
 
-from .arrays import FloatArray, RunArrays, refuse_absent
+from .arrays import FloatArray, RunArrays, raise_absent
 from .quantities import quantity
 from .schema import channels
 
 _KINETIC = ("ball_energy", "kinetic_energy", "rotation_energy")
 
 
-def _summed(values: FloatArray) -> FloatArray:
-    """Return the sum over all axes but the first."""
+def _sum(values: FloatArray) -> FloatArray:
+    """Return the sum over all axes except the first."""
     return np.asarray(values.sum(axis=tuple(range(1, values.ndim))))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ledger:
-    """Sums over the energies of a run; every array is (T,) in J.
+    """The energy ledger of a run: sums over its energies, each (T,) in J.
 
-    The balance is  E(t) - E(0) = W(t) - losses(t)  with the total energy E (structure, particles, elastic
-    contacts, gravity), the work W of load and base, and the losses (viscous, and in contacts normal, plastic, and in
-    3-D runs sliding and rolling).
+    Parameters
+    ----------
+    arrays
+        Arrays of the run.
+
+    Notes
+    -----
+    The energy balance is E(t) - E(0) = W(t) - L(t) with the total energy E (structure, particles, elastic contacts,
+    gravity), the work W of load and base, and the losses L (viscous; in contacts normal, plastic, and in 3-D runs
+    sliding and rolling).
     """
 
     arrays: RunArrays
@@ -34,23 +41,23 @@ class Ledger:
     @cached_property
     def structure(self) -> FloatArray:
         """Energy of all modes."""
-        return _summed(self.arrays.mode_energy)
+        return _sum(self.arrays.mode_energy)
 
     @cached_property
     def particles(self) -> FloatArray:
         """Kinetic energy of all balls or particles."""
         parts: Sequence[FloatArray] = [getattr(self.arrays, name) for name in _KINETIC if name in self.arrays]
-        return _summed(np.asarray(sum(parts)))
+        return _sum(np.asarray(sum(parts)))
 
     @cached_property
     def contact(self) -> FloatArray:
         """Elastic energy of all contacts."""
-        return _summed(self.arrays.contact_energy)
+        return _sum(self.arrays.contact_energy)
 
     @cached_property
     def gravity(self) -> FloatArray:
         """Gravity potential of all balls or particles."""
-        return _summed(self.arrays.gravity_energy)
+        return _sum(self.arrays.gravity_energy)
 
     @cached_property
     def motion(self) -> FloatArray:
@@ -69,9 +76,9 @@ class Ledger:
 
     @cached_property
     def channels(self) -> dict[str, FloatArray]:
-        """Losses since the start by channel, and the energy left in the motion."""
+        """Losses since the start by channel, and the remaining energy of the motion under "motion"."""
         return {
-            name: self.motion if name == "motion" else _summed(getattr(self.arrays, f"{name}_loss"))
+            name: self.motion if name == "motion" else _sum(getattr(self.arrays, f"{name}_loss"))
             for name in channels(self.arrays.engine)
         }
 
@@ -91,7 +98,7 @@ class Ledger:
 
     @cached_property
     def supplied(self) -> FloatArray:
-        """Energy available so far: at the start, by load and base, and released by gravity."""
+        """Energy supplied until t: energy of motion at the start, work of load and base, and work of gravity."""
         return np.asarray(self.motion[0] + self.work + (self.gravity[0] - self.gravity))
 
     @cached_property
@@ -102,10 +109,10 @@ class Ledger:
 
     @cached_property
     def energy_residual(self) -> float:
-        """Largest residual over the energy that was put in.
+        """Largest residual over the energy put in; 0 if nothing moves.
 
-        The reference is max|W_load| + max|W_base| + E(0), where the gravity potential, whose zero is
-        arbitrary, enters as max|V(t) - V(0)| in place of V(0). It is 0 when nothing ever moved.
+        The reference is max|W_load| + max|W_base| + E(0), in which max|V(t) - V(0)| replaces the gravity potential V(0),
+        whose zero is arbitrary.
         """
         arrays = self.arrays
         reference = (
@@ -119,27 +126,27 @@ class Ledger:
             return 0.0
         return float(worst / reference) if reference != 0.0 else float("inf")
 
-    def closes(self, bound: float, floor: float = 0.0) -> bool:
-        """Return whether the energy balance holds, up to rounding.
+    def is_balanced(self, limit: float, floor: float = 0.0) -> bool:
+        """Return whether the energy residual is within a limit or within rounding.
 
         Parameters
         ----------
-        bound
-            Largest energy residual.
+        limit
+            Largest allowed `energy_residual`.
         floor
-            Residual [J] that is rounding, added to 1e-10 of the largest energy of the run.
+            Residual [J] that counts as rounding, added to 1e-10 of the largest energy of the run.
         """
         arrays = self.arrays
         handled = self.motion + np.abs(self.gravity) + arrays.viscous_loss
         handled = handled + np.abs(arrays.load_work) + np.abs(arrays.base_work)
         rounding = 1e-10 * float(np.max(handled)) + floor
-        return self.energy_residual <= bound or float(np.max(np.abs(self.residual))) <= rounding
+        return self.energy_residual <= limit or float(np.max(np.abs(self.residual))) <= rounding
 
     @cached_property
     def shares(self) -> dict[str, float]:
         """Shares of the energy supplied by the end, by channel.
 
-        They add up to one, to the energy residual. NaN when nothing was supplied.
+        Their sum is one up to the energy residual. NaN if no energy was supplied.
         """
         supplied = float(self.supplied[-1])
         return {
@@ -149,39 +156,39 @@ class Ledger:
 
     @property
     def share(self) -> FloatArray:
-        """The same as an array, (channels,)."""
+        """Values of `shares` as an array, (channels,)."""
         return np.array(list(self.shares.values()))
 
     @property
     def contact_share(self) -> float:
-        """Share of the energy supplied that is lost in all contacts by the end."""
+        """Share of the supplied energy that is dissipated in all contacts by the end."""
         return sum(self.shares[channel] for channel in self._contact_channels)
 
     @property
     def damper_share(self) -> FloatArray:
-        """Shares of the energy supplied that are lost in the contacts of each damper, (D,)."""
-        return self._share_of(_summed(self._lost_in_contacts))
+        """Shares of the supplied energy that are dissipated in the contacts of each damper, (D,)."""
+        return self._share_of(_sum(self._contact_losses))
 
     @property
     def partner_share(self) -> FloatArray:
-        """Shares of the energy supplied that are lost among particles, and at walls, (2,); 3-D runs only."""
+        """Shares of the supplied energy that are dissipated between particles and at walls, (2,); 3-D runs only."""
         if "contacts" not in self.arrays:
-            refuse_absent("partner_share", self.arrays.engine)
-        return self._share_of(np.asarray(self._lost_in_contacts.sum(axis=0)))
+            raise_absent("partner_share", self.arrays.engine)
+        return self._share_of(np.asarray(self._contact_losses.sum(axis=0)))
 
     def _share_of(self, lost: FloatArray) -> FloatArray:
         supplied = float(self.supplied[-1])
         return np.asarray(lost / supplied if supplied > 0.0 else np.full(lost.shape, np.nan))
 
     @property
-    def _lost_in_contacts(self) -> FloatArray:
-        """Energy lost in contacts by the end, by damper and, in 3-D runs, by partner."""
+    def _contact_losses(self) -> FloatArray:
+        """Energy dissipated in contacts by the end, by damper and, in 3-D runs, by partner."""
         parts = (getattr(self.arrays, f"{channel}_loss")[-1] for channel in self._contact_channels)
         return np.asarray(sum(parts))
 
     @property
     def coordination(self) -> FloatArray:
-        """Mean number of contacts of a particle, (T, D); 3-D runs only."""
+        """Mean number of contacts per particle (coordination number), (T, D); 3-D runs only."""
         arrays = self.arrays
         count = np.bincount(arrays.particles.damper, minlength=len(arrays.dampers))
         return np.asarray(arrays.contacts @ np.array([2, 1]) / np.maximum(count, 1))

@@ -1,9 +1,9 @@
-"""Runs in netCDF-4 files, restricted to what every netCDF reader knows.
+"""Runs in netCDF-4 files, restricted to features that every netCDF reader supports.
 
 Numbers are double, 32-bit integer or byte; texts are arrays of characters (UTF-8), not variable-length
-strings; attributes are plain characters. A group for each dataset of the run, `counts` and `diagnostics` for the
-numbers of these names; the root holds the engine, the case, the status, the message, the notes and the provenance.
-Dimensions of length zero are left out together with the variables that need them, except `impact`, which is unlimited.
+strings; attributes are plain characters. The file has a group for each dataset of the run, and the groups `counts` and
+`diagnostics`. The root group holds the engine, the case, the status, the message, the notes and the provenance.
+Dimensions of length zero are omitted together with their variables, except `impact`, which is unlimited.
 """
 
 from __future__ import annotations
@@ -40,20 +40,20 @@ if TYPE_CHECKING:
 Read = TypeVar("Read")
 
 FORMAT = 2
-"""Number of the layout; files of another one are refused."""
+"""Version of the layout; files of other versions are rejected."""
 
-_AGAIN = "a copy of the file, or run the case again"
-_LOST = "make room and write the run again"
+_DAMAGE_HINT = "a copy of the file, or run the case again"
+_DISK_HINT = "free disk space and save the run again"
 
 _STORED: dict[Kind, str] = {"float": "f8", "int": "i4", "bool": "i1"}
 _NAMES = {"point": "points", "ball": "balls", "damper": "dampers", "source": "loads"}
-"""Argument of the arrays that holds the names of a dimension."""
+"""Argument of `RunArrays` with the labels of a dimension."""
 _LARGE: dict[str, Any] = {"compression": "gzip", "compression_opts": 4, "shuffle": True, "fletcher32": True}
-"""Of arrays of more than 64 numbers; the last is a checksum, so that damage is told when they are read."""
+"""Filters of arrays of more than 64 numbers; Fletcher-32 is a checksum, which HDF5 verifies when it reads them."""
 
 
 def _characters(texts: tuple[str, ...]) -> Any:
-    """Array of single UTF-8 bytes, one row a text, padded with zeros."""
+    """Return an array of single UTF-8 bytes, one row per text, padded with zeros."""
     encoded = np.array([text.encode() for text in texts])
     return encoded.view("S1").reshape(len(texts), -1)
 
@@ -64,7 +64,7 @@ def _texts(characters: Any) -> tuple[str, ...]:
 
 
 def _attribute(text: str) -> np.bytes_:
-    """Fixed-length characters: older readers do not know variable-length strings."""
+    """Return fixed-length characters: older readers do not support variable-length strings."""
     return np.bytes_(text.encode() or b" ")
 
 
@@ -100,20 +100,22 @@ def _write_coordinate(group: Any, dim: str, values: Any, units: str, long_name: 
     _describe(variable, long_name=long_name, units=units)
 
 
-def _write_numbers(file: Any, group: str, numbers: Mapping[str, float], told: Mapping[str, tuple[str, str]]) -> None:
-    """Write single numbers, integers or floats, with the unit and the meaning of each."""
+def _write_numbers(
+    file: Any, group: str, numbers: Mapping[str, float], meanings: Mapping[str, tuple[str, str]]
+) -> None:
+    """Write single numbers, integers or floats, with their units and long names."""
     if not numbers:
         return
     target = file.create_group(group)
     for name, number in numbers.items():
         whole = isinstance(number, int)
         variable = target.create_variable(name, (), "i8" if whole else "f8", data=np.asarray(number))
-        units, long_name = told.get(name, ("1", name))
+        units, long_name = meanings.get(name, ("1", name))
         _describe(variable, long_name=long_name, units=units)
 
 
 def _write_group(file: Any, run: Record, name: str) -> None:
-    """Write a dataset with its coordinates."""
+    """Write a dataset of the run with its coordinates."""
     engine, labels = run.arrays.engine, run.arrays.labels
     target = file.create_group(name)
     along = groups(engine)[name].along
@@ -142,7 +144,7 @@ def _write_group(file: Any, run: Record, name: str) -> None:
 def _write(run: Record, target: IO[bytes]) -> None:
     import h5netcdf  # type: ignore[import-untyped]
 
-    # From version 1.10 on HDF5 has checksums of its own entries, too, and takes less room.
+    # Since version 1.10 HDF5 also has checksums of its metadata, and smaller files.
     with h5netcdf.File(target, "w", invalid_netcdf=False, libver="v110") as file:
         _describe(file, title="Rattlebox run", engine=run.arrays.engine, status=run.status)
         file.attrs["rattlebox_format"] = np.int32(FORMAT)
@@ -160,7 +162,7 @@ def _write(run: Record, target: IO[bytes]) -> None:
 
 
 def save(run: Record, path: Path) -> Path:
-    """Write a run to one netCDF-4 file; an existing file is replaced once the new one is complete.
+    """Write a run to a netCDF-4 file; the new file replaces an existing one when it is complete.
 
     Parameters
     ----------
@@ -177,22 +179,23 @@ def save(run: Record, path: Path) -> Path:
     Raises
     ------
     DataError
-        When the file cannot be written, or its name is that of another kind of file.
+        If the file cannot be written, or its suffix belongs to another kind of file.
     ResourceError
-        When no space is left on the disk.
+        If no space is left on the disk.
     """
     check_suffix(path, ".nc")
     require_folder(path)
-    content = io.BytesIO()  # HDF5 cannot be rid of what a full disk does not take, and takes the process with it
+    # HDF5 crashes the process if it cannot flush its buffers to a full disk, so it writes to memory.
+    content = io.BytesIO()
     _write(run, content)
-    _protect(content)
-    with atomic_write(path, _LOST) as name:
+    _add_digests(content)
+    with atomic_write(path, _DISK_HINT) as name:
         name.write_bytes(content.getbuffer())
     return path
 
 
 def _text_attribute(value: Any) -> str:
-    # Fixed-length characters carry no encoding, so other bytes than ASCII arrive escaped.
+    # Fixed-length characters have no encoding, so h5netcdf returns non-ASCII bytes escaped.
     raw = value if isinstance(value, bytes) else str(value).encode("ascii", "surrogateescape")
     return "" if raw == b" " else raw.decode()
 
@@ -208,18 +211,18 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
     Returns
     -------
     dict
-        Arguments of the run.
+        Arguments of `Run`.
 
     Raises
     ------
     DataError
-        When there is no such file, or it cannot be read, is not a run of Rattlebox, is damaged, or has another format.
+        If the file does not exist, cannot be read, is not a run of Rattlebox, is damaged, or has another format.
     """
-    return _from(Path(path), _read_run)
+    return _read_file(Path(path), _read_run)
 
 
 def read_case(path: str | os.PathLike[str]) -> str:
-    """Read from a file that `Run.save` wrote which case was run, and leave the results where they are.
+    """Read only the case from a file that `Run.save` wrote.
 
     Parameters
     ----------
@@ -229,18 +232,18 @@ def read_case(path: str | os.PathLike[str]) -> str:
     Returns
     -------
     str
-        The case, as the text of a case file.
+        Text of the case file.
 
     Raises
     ------
     DataError
-        As `load` does.
+        If the file cannot be read; see `load`.
     """
-    return _from(Path(path), lambda file: _read_text(file, "case"), blocks=("/",))
+    return _read_file(Path(path), lambda file: _read_text(file, "case"), blocks=("/",))
 
 
-def _protect(content: IO[bytes]) -> None:
-    """Add to each group of a file the digest of its variables and attributes."""
+def _add_digests(content: IO[bytes]) -> None:
+    """Add the digest of variables and attributes to each group of a file."""
     import h5py  # type: ignore[import-untyped]
 
     with h5py.File(content, "r+", libver="v110") as file:
@@ -249,12 +252,12 @@ def _protect(content: IO[bytes]) -> None:
 
 
 def _groups(file: Any) -> dict[str, Any]:
-    """The root group and the groups below it, by name."""
+    """Return the root group and its subgroups by name."""
     return {"/": file} | {name: item for name, item in sorted(file.items()) if not hasattr(item, "shape")}
 
 
-def _from(path: Path, read: Callable[[Any], Read], blocks: Collection[str] | None = None) -> Read:
-    """Read from the file of a run, after its format and the digests of its groups (default all) are checked."""
+def _read_file(path: Path, read: Callable[[Any], Read], blocks: Collection[str] | None = None) -> Read:
+    """Check format and digests of some groups (default all) of a file, and read from it."""
     import h5netcdf
     import h5py
 
@@ -267,11 +270,11 @@ def _from(path: Path, read: Callable[[Any], Read], blocks: Collection[str] | Non
     except DataError:
         raise
     except HDF5_ERRORS as error:
-        raise DataError(f"{path} is not a netCDF-4 file that is whole", _AGAIN) from error
+        raise DataError(f"{path} is not an intact netCDF-4 file", _DAMAGE_HINT) from error
 
 
 def _check(file: Any, path: Path, blocks: Collection[str] | None) -> None:
-    """Raise if a file holds no run, a run of another format, or a group that is not as it was written."""
+    """Raise if a file holds no run, a run of another format, or a damaged group."""
     layout = file.attrs.get("rattlebox_format")
     if layout is None:
         raise DataError(f"{path} is a netCDF-4 file, but not a run written by Rattlebox")
@@ -282,7 +285,7 @@ def _check(file: Any, path: Path, blocks: Collection[str] | None) -> None:
         if blocks is not None and name not in blocks:
             continue
         if group.attrs.get("digest") != np.bytes_(group_digest(group, nested=False)):
-            raise DataError(f"{path} is damaged: the group {name!r} is not as it was written", _AGAIN)
+            raise DataError(f"{path} is damaged: the group {name!r} has changed", _DAMAGE_HINT)
 
 
 def _read_run(file: Any) -> dict[str, Any]:

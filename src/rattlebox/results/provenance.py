@@ -1,4 +1,4 @@
-"""Where a run comes from: program, machine, method and seed."""
+"""Provenance of a run: version, machine, method and seed."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Provenance:
 
     @classmethod
     def now(cls, method: str = "", seed: int = 0) -> Provenance:
-        """Provenance of a run that is made here and now.
+        """Return the provenance of a run on this machine at the current time.
 
         Parameters
         ----------

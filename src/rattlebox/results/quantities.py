@@ -1,4 +1,4 @@
-"""Numbers with units as a reader wants them: SI prefixes and four significant digits."""
+"""Formatting of numbers with units: SI prefixes and four significant digits."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ PREFIXES: dict[int, str] = {
 """Prefix of each power of ten."""
 
 MISSING = "-"
-"""Stands for a number that does not exist."""
+"""Text for NaN."""
 
 
 def _exponent(value: float, significant: int) -> int:
-    """Power of ten of the first digit once the number is rounded."""
+    """Return the power of ten of the first digit of the rounded number."""
     return int(f"{value:.{significant - 1}e}".partition("e")[2])
 
 
 def prefix(value: float, least: float = 1.0) -> tuple[float, str]:
-    """Power of ten and SI prefix in which `value` is at least `least`, and less than a thousand times that.
+    """Return the SI prefix in which `value` is at least `least` and less than 1000 `least`.
 
     Parameters
     ----------
@@ -31,9 +31,9 @@ def prefix(value: float, least: float = 1.0) -> tuple[float, str]:
     Returns
     -------
     scale : float
-        Divide by this.
+        Divisor of the value.
     name : str
-        Write this before the unit.
+        Prefix of the unit.
     """
     if value == 0.0 or not math.isfinite(value):
         return 1.0, ""
@@ -42,7 +42,7 @@ def prefix(value: float, least: float = 1.0) -> tuple[float, str]:
 
 
 def in_unit(value: float, unit: str, least: float = 1.0) -> tuple[float, str]:
-    """Return the divisor and the unit with its prefix in which a number is written.
+    """Return the divisor and the prefixed unit for a number.
 
     Masses are written in grams, kilograms and tonnes: kkg and Mg are not used.
 
@@ -53,7 +53,7 @@ def in_unit(value: float, unit: str, least: float = 1.0) -> tuple[float, str]:
     unit
         SI unit.
     least
-        Power of ten that the written number reaches.
+        Smallest number to be written in the unit, a power of ten.
     """
     base = 1.0
     if unit == "kg":
@@ -64,7 +64,7 @@ def in_unit(value: float, unit: str, least: float = 1.0) -> tuple[float, str]:
 
 
 def digits(value: float, significant: int = 4) -> str:
-    """Write a number with a fixed count of significant digits and no exponent for ordinary sizes.
+    """Format a number with a fixed number of significant digits; with an exponent only below 1e-4 and from 1e7.
 
     Parameters
     ----------
@@ -84,14 +84,15 @@ def digits(value: float, significant: int = 4) -> str:
 
 
 def quantity(value: float, unit: str, significant: int = 4) -> str:
-    """Write a number with its unit and a fitting SI prefix.
+    """Format a number with its unit and an SI prefix.
 
     Parameters
     ----------
     value
         Number in SI units.
     unit
-        Unit, such as "m" or "m/s"; "" or "1" for a pure number, "%" for a share written in per cent, below 1e-12 as 0.
+        Unit, such as "m" or "m/s"; "" or "1" for a pure number, "%" for a share in per cent, of which less than 1e-12 is
+        written as 0.
     significant
         Count of significant digits.
 

@@ -1,4 +1,4 @@
-"""The data of one finished run: the content of its files."""
+"""The data of a run, as its files store them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
 _INCIDENTAL = {"memory_bytes"}
-"""Counts that depend on how a run was computed: they differ when the same case is run again."""
+"""Counts that can differ when the same case is run again."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -29,13 +29,13 @@ class Record:
     arrays : RunArrays
         The plain arrays, SI units, read-only.
     source : Case or str
-        The case, or its text as a case file; `case` and `case_toml` return the one and the other.
+        The case, or the text of its case file; see `case` and `case_toml`.
     provenance : Provenance
-        Version, method, seed, date and platform; default here and now.
+        Version, method, seed, date and platform; default those of this process.
     status : str
         "finished", or the reason why the run ended early.
     message : str
-        One sentence that explains the status and says what to try.
+        Explanation of the status with advice.
     notes : tuple of str
         Warnings, and in 3-D runs what limits the time step.
     counts : mapping of str to int
@@ -65,7 +65,7 @@ class Record:
         for name in self.counts:
             if not name.isidentifier():
                 raise ValueError(f"count {name!r} is not an identifier")
-        put = object.__setattr__
+        put = object.__setattr__  # the dataclass is frozen
         put(self, "notes", tuple(self.notes))
         put(self, "counts", MappingProxyType({name: int(number) for name, number in self.counts.items()}))
         put(self, "diagnostics", MappingProxyType({name: float(value) for name, value in self.diagnostics.items()}))
@@ -124,7 +124,7 @@ class Record:
 
     @property
     def _results(self) -> dict[str, Any]:
-        """Fields that do not depend on when, where and how fast the run was computed, nor on the form of the case."""
+        """Fields that are equal whenever the same case is run on the same kind of machine."""
         counts = {name: number for name, number in self.counts.items() if name not in _INCIDENTAL}
         names = ("arrays", "status", "message", "notes", "diagnostics")
         return {name: getattr(self, name) for name in names} | {"counts": counts}

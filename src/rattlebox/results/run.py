@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from . import datasets, export, netcdf
-from .arrays import refuse_absent
+from .arrays import raise_absent
 from .figures import Plots
 from .record import Record
 from .summary import Summary
@@ -24,13 +24,12 @@ class Run(Record):
     A 1-D run (impact engine) has the datasets `motion`, `energy` and `impacts`, a 3-D run (dem engine) `motion`,
     `energy` and `particles`; `groups` lists them. A dataset that a run lacks raises AttributeError with the reason.
 
-    Runs are equal if their case and their results are, to the last bit; when, where and how fast they were computed
-    does not count.
+    Two runs are equal if their cases and results are bitwise equal; date, machine and computing time are ignored.
     """
 
     @cached_property
     def motion(self) -> xarray.Dataset:
-        """Positions, velocities and forces at the output times; relative to the base, SI units."""
+        """Positions, velocities and forces at the output times, relative to the base; SI units."""
         return self._dataset("motion")
 
     @cached_property
@@ -40,12 +39,12 @@ class Run(Record):
 
     @cached_property
     def impacts(self) -> xarray.Dataset:
-        """The impact log of a 1-D run, one entry for each contact that closed; SI units.
+        """The impact log of a 1-D run, one entry per impact; SI units.
 
         Raises
         ------
         AttributeError
-            If the run is 3-D: contacts among many particles are counted, not logged.
+            If the run is 3-D; contacts of particles are counted, not logged.
         """
         return self._dataset("impacts")
 
@@ -62,7 +61,7 @@ class Run(Record):
 
     def _dataset(self, group: str) -> xarray.Dataset:
         if group not in self.groups:
-            refuse_absent(group, self.arrays.engine)
+            raise_absent(group, self.arrays.engine)
         return datasets.dataset(self, group)
 
     def summary(self) -> Summary:
@@ -78,16 +77,16 @@ class Run(Record):
     @property
     def plot(self) -> Plots:
         """Figures of this run: `motion`, `energy`, `phase_portrait`, and `impacts` (1-D) or `particles` (3-D)."""
-        import_module("rattlebox.plots")  # the only look-up from results to plots: it registers the figures
+        import_module("rattlebox.plots")  # registers the figures; results must not import plots statically
         return Plots(self)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write everything to one netCDF-4 file that MATLAB, ncdump and xarray read.
+        """Write the run to one netCDF-4 file that MATLAB, ncdump and xarray read.
 
         Parameters
         ----------
         path
-            File to write; an existing one is replaced once the new one is complete.
+            File to write; the new file replaces an existing one when it is complete.
 
         Returns
         -------
@@ -97,9 +96,9 @@ class Run(Record):
         Raises
         ------
         DataError
-            When the file cannot be written, or its name is that of another kind of file.
+            If the file cannot be written, or its suffix belongs to another kind of file.
         ResourceError
-            When no space is left on the disk.
+            If no space is left on the disk.
         """
         return netcdf.save(self, Path(path))
 
@@ -111,22 +110,27 @@ class Run(Record):
         path
             File to write.
 
+        Returns
+        -------
+        Path
+            The file.
+
         Raises
         ------
         DataError
-            When the file cannot be written, or its name is that of another kind of file.
+            If the file cannot be written, or its suffix belongs to another kind of file.
         ResourceError
-            When no space is left on the disk.
+            If no space is left on the disk.
         """
         return export.to_mat(self, Path(path))
 
     def to_csv(self, folder: str | os.PathLike[str]) -> tuple[Path, ...]:
-        """Write a CSV file for each dataset, such as motion.csv, units in the header, every digit kept.
+        """Write a CSV file for each dataset, such as motion.csv, with units in the header and all digits.
 
         Parameters
         ----------
         folder
-            Folder to write to, made if missing.
+            Folder to write to, created if missing.
 
         Returns
         -------
@@ -136,9 +140,9 @@ class Run(Record):
         Raises
         ------
         DataError
-            When a file cannot be written.
+            If a file cannot be written.
         ResourceError
-            When no space is left on the disk.
+            If no space is left on the disk.
         """
         return export.to_csv(self, Path(folder))
 
@@ -154,11 +158,11 @@ def load(path: str | os.PathLike[str]) -> Run:
     Returns
     -------
     Run
-        Equal to the run that was saved, bit by bit.
+        Run that is bitwise equal to the saved one.
 
     Raises
     ------
     DataError
-        When there is no such file, or it cannot be read, is not a run of Rattlebox, is damaged, or has another format.
+        If the file does not exist, cannot be read, is not a run of Rattlebox, is damaged, or has another format.
     """
     return Run(**netcdf.read(path))

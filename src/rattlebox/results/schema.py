@@ -1,8 +1,7 @@
-"""The output of a run: every variable with its group, dimensions, unit and meaning, declared once.
+"""Schema of a run: every output variable with its group, dimensions, unit and meaning.
 
-The arrays are checked against these tables, and datasets, netCDF, MATLAB and CSV files are derived from them. A run of
-the impact engine moves on one line and has one kind of contact partner per contact: it has neither the dimension `axis`
-nor `partner`, and its variables are declared with them only for the engine that has them.
+The arrays are checked against these tables, and datasets, netCDF, MATLAB and CSV files are derived from them. Runs of the
+impact engine are 1-D and have neither the dimension `axis` nor `partner`; `variables` removes these from their variables.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ class Dimension:
     units
         SI unit of the coordinate, "1" for pure numbers, "" for names.
     engines
-        Engines whose runs have it; variables of other runs lack it.
+        Engines whose runs have the dimension; variables of other runs lack it.
     """
 
     name: str
@@ -54,13 +53,13 @@ class Group:
     name
         Name of the attribute of a run and of the group in files.
     title
-        Content, in a line.
+        One line about the content.
     along
-        Dimension of its rows; variables without it hold once for the run.
+        Dimension of the rows; variables without it have one value per run.
     engines
-        Engines whose runs have it.
+        Engines whose runs have the group.
     absent
-        Why other runs lack it, and what they have instead.
+        Message for other runs: the reason, and an alternative.
     """
 
     name: str
@@ -79,7 +78,7 @@ class Variable:
     name
         Name of the array, and of the variable in datasets and files.
     group
-        Dataset that holds it.
+        Dataset of the variable.
     dims
         Names of the dimensions, in order.
     units
@@ -89,13 +88,13 @@ class Variable:
     kind
         Number type.
     engines
-        Engines that write it.
+        Engines that write the variable.
     derived
-        Whether the energy ledger computes it from the others.
+        Whether the energy ledger computes the variable from others.
     cumulative
-        Whether it is a sum since the start of the run.
+        Whether the variable is an integral from the start of the run.
     coordinate
-        Whether it labels the others in datasets.
+        Whether the variable is a coordinate of its dataset.
     """
 
     name: str
@@ -319,11 +318,11 @@ def explain_absence(name: str, engine: Engine) -> str:
     return f"this {runs} has no {name!r}; {there}"
 
 
-HOW_ENDED = ("status", "warnings")
-"""Variables of studies beside the measures of each run."""
+OUTCOMES = ("status", "warnings")
+"""Variables of studies other than measures."""
 
 COUNTS: dict[str, str] = {
-    "events": "touches, openings and other turns of a contact",
+    "events": "beginnings, ends and other switching points of contacts",
     "flights": "flights of balls between contacts",
     "contact_steps": "integration steps in contacts",
     "rejected_steps": "integration steps that were repeated with a shorter step",

@@ -1,8 +1,8 @@
-"""Where all particles are at chosen times, in one VTKHDF file that grows during a run and opens in ParaView.
+"""Snapshots of all particles in one VTKHDF file, which grows during a run and opens in ParaView.
 
 The file is a PolyData with time steps (VTKHDF 2): points with radius, velocity and spin, and the displacement of each
-cavity as field data. Nothing but numbers at fixed places changes after the first snapshot, so that whatever ends the
-process, the snapshots before are there.
+cavity as field data. All space is allocated when the file is created, and each snapshot only overwrites numbers. Earlier
+snapshots therefore survive when the process is killed.
 """
 
 from __future__ import annotations
@@ -35,26 +35,26 @@ from .arrays import FloatArray, IntArray
 if TYPE_CHECKING:
     from rattlebox.core import _core
 
-FORMAT = 2
-"""Number of the layout beside the VTKHDF; files of another one are refused."""
+FORMAT = 3
+"""Version of the layout beyond VTKHDF; files of other versions are rejected."""
 
 _DIGESTS = "digests"
-"""Dataset beside the VTKHDF: the digest of each snapshot, zero before it is written, (steps, SIZE)."""
+"""Dataset outside the VTKHDF group: digest of each snapshot, zero until it is written, (steps, SIZE)."""
 
 ROOT = "VTKHDF"
-"""Group of a VTKHDF file that holds everything."""
+"""Root group of a VTKHDF file."""
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
-_MOVING = {"velocity": (3,), "spin": (3,), "push": ()}
+_MOVING = {"velocity": (3,), "spin": (3,), "contact_force": ()}
 _FIXED = ("radius", "mass", "cavity", "species")
 _OFFSETS, _LAYOUT = 25, 1 << 16
-"""Numbers of a snapshot that tell where it is; what names, places and sizes take at most [bytes]."""
+"""Number of offsets stored for each snapshot; upper bound of the size of names, offsets and shapes [bytes]."""
 
 _HEAD = 1 << 20
-"""Length of the first part of a file, in which the name of our attribute lies [bytes]."""
+"""Length of the first part of a file, which contains the name of the format attribute [bytes]."""
 
-_AGAIN = "a copy of the file, or run the case again"
-_LOST = "make room and give the same call again, with fewer snapshots or another folder"
+_DAMAGE_HINT = "a copy of the file, or run the case again"
+_DISK_HINT = "free disk space and repeat the call, with fewer snapshots or another folder"
 
 
 @dataclass(frozen=True)
@@ -64,24 +64,32 @@ class Frame:
     Attributes
     ----------
     time
-        [s].
-    position, velocity, spin : (N, 3) float
-        From the rest place of the centre of the particle's own cavity [m], relative to the base [m/s], [rad/s].
-    push : (N,) float
-        Sum of the magnitudes of the forces that touch it [N]; where it is large, force chains are.
-    radius, mass : (N,) float
-        [m], [kg].
-    cavity, species : (N,) int
-        Numbers, from 0.
+        Time [s].
+    position : (N, 3) float
+        Position from the rest position of the centre of the particle's cavity [m].
+    velocity : (N, 3) float
+        Velocity relative to the base [m/s].
+    spin : (N, 3) float
+        Angular velocity [rad/s].
+    contact_force : (N,) float
+        Sum of the magnitudes of the contact forces on the particle [N]; it is large in force chains.
+    radius : (N,) float
+        Radius [m].
+    mass : (N,) float
+        Mass [kg].
+    cavity : (N,) int
+        Index of the cavity.
+    species : (N,) int
+        Index of the species.
     displacement : (D, 3) float
-        Of each cavity [m].
+        Displacement of each cavity [m].
     """
 
     time: float
     position: FloatArray
     velocity: FloatArray
     spin: FloatArray
-    push: FloatArray
+    contact_force: FloatArray
     radius: FloatArray
     mass: FloatArray
     cavity: IntArray
@@ -90,7 +98,7 @@ class Frame:
 
 
 def is_snapshots(path: Path) -> bool:
-    """Return whether Rattlebox wrote a file of snapshots, which may be damaged.
+    """Return whether a file is a snapshot file of Rattlebox, intact or damaged.
 
     Parameters
     ----------
@@ -106,7 +114,7 @@ def is_snapshots(path: Path) -> bool:
     try:
         with h5py.File(path, "r", locking=False) as content:
             return "rattlebox_format" in content.attrs and ROOT in content
-    except HDF5_ERRORS:  # it is damaged
+    except HDF5_ERRORS:  # the file is damaged
         return b"rattlebox_format" in begin
 
 
@@ -119,26 +127,26 @@ _GROWING = frozenset(
         *(f"{ROOT}/PointData/{field}" for field in _MOVING),
     )
 )
-"""Parts of the file that change after it was made; the digest of the file does not cover their values."""
+"""Parts of the file that change after its creation; the digest of the file does not cover their values."""
 
 
 class SnapshotFile:
-    """The file that a run adds snapshots to.
+    """Writer of a snapshot file.
 
     Parameters
     ----------
     path
         File to write.
     times : (n,)
-        Of all snapshots [s].
+        Times of all snapshots [s].
     places : (D, 3)
-        Where each cavity is drawn [m]: cavities have no place of their own in a case, so they stand side by side.
+        Position at which each cavity is drawn [m]. A case does not define positions of cavities.
     fixed
-        "radius", "mass", "cavity" and "species" of the particles, (N,).
+        Arrays "radius", "mass", "cavity" and "species" of the particles, (N,).
     case_toml
-        The case, as the text of a case file.
+        Text of the case file.
     numbers
-        What tells the run from others.
+        Fingerprint of the run.
     """
 
     def __init__(
@@ -155,36 +163,36 @@ class SnapshotFile:
         self._case, self._numbers = case_toml, numbers
 
     def create(self) -> None:
-        """Make the file, without a snapshot, in the place of an earlier one.
+        """Create the file without snapshots; it replaces an earlier one.
 
         Raises
         ------
         DataError
-            When something else than snapshots is in its place, or the file cannot be written.
+            If the path holds anything but snapshots, or the file cannot be written.
         ResourceError
-            When no space is left on the disk.
+            If no space is left on the disk.
         """
         import h5py
 
         if self.path.is_file() and not is_snapshots(self.path):
-            raise DataError(f"{self.path} holds no snapshots, and is kept", "another file for the snapshots")
-        with atomic_write(self.path, _LOST) as name:
-            reserve_space(name, self._room())
+            raise DataError(f"{self.path} is not a snapshot file and is not overwritten", "another file")
+        with atomic_write(self.path, _DISK_HINT) as name:
+            reserve_space(name, self._size())
             with h5py.File(name, "w") as file:
-                self._lay_out(file)
+                self._create_datasets(file)
             with h5py.File(name, "r+") as file:
                 file.attrs["digest"] = group_digest(file, _GROWING)
-            reserve_space(name, name.stat().st_size)  # no holes that are to be filled when the disk may be full
+            reserve_space(name, name.stat().st_size)  # a sparse file could fail later on a full disk
 
-    def _room(self) -> int:
-        """How large the file is, or a little more [bytes]."""
+    def _size(self) -> int:
+        """Return an upper bound of the size of the file [bytes]."""
         steps, count, cavities = self._times.size, self._fixed["radius"].size, len(self._places)
         moving = 3 + sum(math.prod(shape) for shape in _MOVING.values())
         numbers = steps * (moving * count + 3 * cavities + _OFFSETS) + (2 + len(_FIXED)) * count + 3 * cavities
         return 8 * numbers + SIZE * steps + len(self._case.encode()) + _LAYOUT
 
-    def _lay_out(self, file: Any) -> None:
-        """Make the places of all numbers, and write those that do not change."""
+    def _create_datasets(self, file: Any) -> None:
+        """Create all datasets and write those that do not change."""
         steps, count, cavities = self._times.size, self._fixed["radius"].size, len(self._places)
         file.attrs["rattlebox_format"] = FORMAT
         file.attrs["case"] = self._case
@@ -201,27 +209,27 @@ class SnapshotFile:
             root[f"{cells}/Offsets"] = np.arange(number + 1)
             root[f"{cells}/Connectivity"] = np.arange(number)
         every, once = np.arange(steps), np.zeros(steps, np.int64)
-        kept = root.create_group("Steps")
-        kept.attrs["NSteps"] = 0
-        kept["Values"] = self._times
-        kept["NumberOfParts"] = np.ones(steps, np.int64)
-        kept["PartOffsets"] = once
-        kept["PointOffsets"] = every * count
-        kept["CellOffsets"] = np.zeros((steps, 4), np.int64)
-        kept["ConnectivityIdOffsets"] = np.zeros((steps, 4), np.int64)
+        catalogue = root.create_group("Steps")
+        catalogue.attrs["NSteps"] = 0
+        catalogue["Values"] = self._times
+        catalogue["NumberOfParts"] = np.ones(steps, np.int64)
+        catalogue["PartOffsets"] = once
+        catalogue["PointOffsets"] = every * count
+        catalogue["CellOffsets"] = np.zeros((steps, 4), np.int64)
+        catalogue["ConnectivityIdOffsets"] = np.zeros((steps, 4), np.int64)
         for field, shape in _MOVING.items():
             root.create_dataset(f"PointData/{field}", (steps * count, *shape), "f8")
-            kept[f"PointDataOffsets/{field}"] = every * count
+            catalogue[f"PointDataOffsets/{field}"] = every * count
         for field in _FIXED:
             root[f"PointData/{field}"] = self._fixed[field]
-            kept[f"PointDataOffsets/{field}"] = once
+            catalogue[f"PointDataOffsets/{field}"] = once
         root.create_dataset("FieldData/displacement", (steps * cavities, 3), "f8")
-        kept["FieldDataOffsets/displacement"] = every * cavities
-        kept["FieldDataSizes/displacement"] = np.tile([3, cavities], (steps, 1))
+        catalogue["FieldDataOffsets/displacement"] = every * cavities
+        catalogue["FieldDataSizes/displacement"] = np.tile([3, cavities], (steps, 1))
         root["FieldData/place"] = self._places
-        kept["FieldDataOffsets/place"] = once
-        kept["FieldDataSizes/place"] = np.tile([3, cavities], (steps, 1))
-        # Storage is given out with the first values, and nothing but numbers changes later.
+        catalogue["FieldDataOffsets/place"] = once
+        catalogue["FieldDataSizes/place"] = np.tile([3, cavities], (steps, 1))
+        # HDF5 allocates storage with the first values; later writes then change only numbers.
         file.create_dataset(_DIGESTS, (steps, SIZE), "u1")
         moving = (root["Points"], *(root[f"PointData/{f}"] for f in _MOVING), root["FieldData/displacement"])
         for dataset in (*moving, file[_DIGESTS]):
@@ -229,7 +237,7 @@ class SnapshotFile:
                 dataset[-1] = 0
 
     def sync(self) -> None:
-        """Wait until the snapshots are on the disk.
+        """Flush the snapshots to the disk.
 
         Raises
         ------
@@ -239,38 +247,38 @@ class SnapshotFile:
             If no space is left on the disk.
         """
         if self.path.exists():
-            with disk_errors(self.path, _LOST):
+            with disk_errors(self.path, _DISK_HINT):
                 sync(self.path)
 
     @property
-    def taken(self) -> int:
-        """Number of snapshots of this very run in the file; 0 without a file.
+    def written(self) -> int:
+        """Number of snapshots of this run in the file; 0 without a file.
 
         Raises
         ------
         DataError
-            When the file is something else, or torn.
+            If the file holds anything else, or is damaged.
         """
         if not self.path.exists():
             return 0
-        found = Snapshots(self.path)
-        same = found.numbers == self._numbers and np.array_equal(found.planned, self._times)
-        return len(found) if same else 0
+        stored = Snapshots(self.path)
+        same = stored.numbers == self._numbers and np.array_equal(stored.planned, self._times)
+        return len(stored) if same else 0
 
-    def take(self, number: int, cavities: Sequence[_core.CavityState], contacts: Sequence[_core.ContactList]) -> None:
-        """Add a snapshot.
+    def append(self, number: int, cavities: Sequence[_core.CavityState], contacts: Sequence[_core.ContactList]) -> None:
+        """Write the next snapshot.
 
         Parameters
         ----------
         number
-            Which one, from 0; those before it are there.
+            Index of the snapshot; those before it must exist.
         cavities, contacts
             State of the particles and their contacts, for each cavity.
 
         Raises
         ------
         DataError
-            If it cannot be written.
+            If the snapshot cannot be written.
         ResourceError
             If no space is left on the disk.
         """
@@ -280,11 +288,13 @@ class SnapshotFile:
         moving = {
             "velocity": [each.velocity for each in cavities],
             "spin": [each.spin for each in cavities],
-            "push": [_pushes(one, len(each.position)) for each, one in zip(cavities, contacts, strict=True)],
+            "contact_force": [
+                _force_sums(touching, len(each.position)) for each, touching in zip(cavities, contacts, strict=True)
+            ],
         }
         placed = [each.position + place for each, place in zip(cavities, self._places, strict=True)]
-        # Without a lock, so that others may look at the file during the run.
-        with disk_errors(self.path, _LOST), h5py.File(self.path, "r+", locking=False) as file:
+        # Without a lock, other programs can read the file during the run.
+        with disk_errors(self.path, _DISK_HINT), h5py.File(self.path, "r+", locking=False) as file:
             root, blocks = file[ROOT], _blocks(number, self._fixed["radius"].size, len(cavities))
             fields = {field: np.concatenate(moving[field]) for field in _MOVING}
             parts = [np.concatenate(placed), *fields.values(), displacement]
@@ -299,36 +309,49 @@ class SnapshotFile:
 
 
 def _blocks(number: int, count: int, cavities: int) -> dict[str, slice]:
-    """Datasets of the VTKHDF that hold a snapshot, and its rows in each."""
+    """Return the datasets of a snapshot and its rows in each."""
     rows = slice(number * count, (number + 1) * count)
     names = ("Points", *(f"PointData/{field}" for field in _MOVING))
     return dict.fromkeys(names, rows) | {"FieldData/displacement": slice(number * cavities, (number + 1) * cavities)}
 
 
-def _pushes(touching: _core.ContactList, count: int) -> FloatArray:
-    """Sum of the forces on each particle, by magnitude, (count,); walls are numbered after the particles."""
+def _force_sums(touching: _core.ContactList, count: int) -> FloatArray:
+    """Return the sum of the force magnitudes on each particle, (count,); walls are numbered after the particles."""
     force = np.linalg.norm(touching.force, axis=1)
     sides = np.concatenate([touching.first, touching.second])
     return np.asarray(np.bincount(sides, np.tile(force, 2), minlength=count)[:count])
 
 
 class Snapshots:
-    """The snapshots of a run, read when they are used.
+    """The snapshots of a run: a sequence of `Frame`, each read from the file on access.
 
     Parameters
     ----------
     path
-        File that a run wrote.
+        Snapshot file of a run.
+
+    Attributes
+    ----------
+    times : (n,) float
+        Times of the snapshots in the file [s].
+    planned : (m,) float
+        Times of all snapshots of the run, m >= n [s].
+    case_toml
+        Text of the case file.
 
     Raises
     ------
     DataError
-        When there is no such file, or it cannot be read, holds no snapshots of particles, is damaged, or has another format.
+        If the file does not exist, cannot be read, holds no snapshots of particles, is damaged, or has another format.
+
+    References
+    ----------
+    Kitware, "VTKHDF file format", https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format/index.html.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
-        with self._opened() as file:
+        with self._open() as file:
             self._check_format(file)
             if file.attrs.get("digest") != group_digest(file, _GROWING):
                 raise self._damaged("its description")
@@ -337,11 +360,11 @@ class Snapshots:
             self.planned: FloatArray = root["Steps/Values"][...]
             self._fixed = {field: root[f"PointData/{field}"][...] for field in _FIXED}
             self._places: FloatArray = root["FieldData/place"][...]
-            self.times = self.planned[: self._taken(file)]
+            self.times = self.planned[: self._count_complete(file)]
 
     @contextmanager
-    def _opened(self) -> Iterator[Any]:
-        """Open the file to read; errors of HDF5 meanwhile are reported as damage."""
+    def _open(self) -> Iterator[Any]:
+        """Open the file for reading; report errors of HDF5 as damage."""
         import h5py
 
         require_readable(self.path)
@@ -351,33 +374,33 @@ class Snapshots:
         except DataError:
             raise
         except HDF5_ERRORS as error:
-            raise DataError(f"{self.path} is not an HDF5 file that is whole", _AGAIN) from error
+            raise DataError(f"{self.path} is not an intact HDF5 file", _DAMAGE_HINT) from error
 
     def _check_format(self, file: Any) -> None:
-        """Raise if a file of HDF5 holds no snapshots, or snapshots of another format."""
+        """Raise if an HDF5 file holds no snapshots, or snapshots of another format."""
         layout = file.attrs.get("rattlebox_format")
         if layout is None or ROOT not in file:
             raise DataError(f"{self.path} holds no snapshots of particles written by Rattlebox")
         check_format(self.path, layout, FORMAT)
 
     def _damaged(self, block: str) -> DataError:
-        return DataError(f"{self.path} is damaged: {block} is not as it was written", _AGAIN)
+        return DataError(f"{self.path} is damaged: {block} has changed", _DAMAGE_HINT)
 
-    def _taken(self, file: Any) -> int:
-        """Number of snapshots that are complete.
+    def _count_complete(self, file: Any) -> int:
+        """Return the number of complete snapshots.
 
-        A process that is killed while it writes a snapshot may leave one that its digest does not fit, or one that
-        is complete and not yet in the number of steps that ParaView reads.
+        A process that is killed while it writes a snapshot may leave one with a wrong digest, or a complete one that
+        NSteps, which ParaView reads, does not count yet.
         """
         written = np.any(file[_DIGESTS][...], axis=1)
-        taken = int(written.size if written.all() else written.argmin())
+        complete = int(written.size if written.all() else written.argmin())
         listed = int(file[ROOT]["Steps"].attrs["NSteps"])
-        if listed not in (taken, taken - 1):
+        if listed not in (complete, complete - 1):
             raise self._damaged("the number of its steps")
-        return taken - (listed < taken and self._read(file, taken - 1) is None)
+        return complete - (listed < complete and self._read(file, complete - 1) is None)
 
     def _read(self, file: Any, number: int) -> list[FloatArray] | None:
-        """Points, moving fields and displacements of a snapshot; None if it is damaged."""
+        """Return points, moving fields and displacements of a snapshot; None if it is damaged."""
         blocks = _blocks(number, self._fixed["radius"].size, len(self._places))
         parts = [file[ROOT][name][rows] for name, rows in blocks.items()]
         return parts if array_digest(parts) == file[_DIGESTS][number].tobytes() else None
@@ -398,19 +421,19 @@ class Snapshots:
         if isinstance(number, slice):
             return [self[n] for n in range(*number.indices(len(self)))]
         if not -len(self) <= number < len(self):
-            raise IndexError(f"{self.path} holds {len(self)} snapshots, numbered from 0; there is no number {number}")
+            raise IndexError(f"{self.path} holds {len(self)} snapshots; {number} is not from 0 to {len(self) - 1}")
         number %= len(self)
-        with self._opened() as file:
+        with self._open() as file:
             parts = self._read(file, number)
         if parts is None:
             raise self._damaged(f"snapshot {number}")
-        points, velocity, spin, push, displacement = parts
+        points, velocity, spin, contact_force, displacement = parts
         return Frame(
             time=float(self.times[number]),
             position=points - self._places[self._fixed["cavity"]],
             velocity=velocity,
             spin=spin,
-            push=push,
+            contact_force=contact_force,
             displacement=displacement,
             **self._fixed,
         )

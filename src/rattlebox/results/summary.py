@@ -1,4 +1,4 @@
-"""The numbers of a run that one looks at first, for one run or several side by side."""
+"""Summary of the main results of a run, and comparison of several runs."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 Value = float | int | str
 
-_MOST_SHOWN = 4
-_STILL = 1e-9
-"""Of the largest motion of any point: a point that moves no more stands still but for rounding."""
+_MAX_POINTS = 4
+_ROUNDING = 1e-9
+"""Motion over the largest motion of any point, below which a point counts as at rest."""
 _CHANNEL_LABELS = {
     "viscous": "lost in the structure",
     "normal": "lost in normal damping",
@@ -34,15 +34,16 @@ _CHANNEL_LABELS = {
     "rolling": "lost in rolling",
     "motion": "left in the motion",
 }
-_RARE = ("plastic", "rolling")  # told only where there is any
-_PARTNER_LABELS = {"particle": "lost among particles", "wall": "lost at walls"}
+_OPTIONAL = ("plastic", "rolling")
+"""Channels with a line only if they are not zero."""
+_PARTNER_LABELS = {"particle": "lost between particles", "wall": "lost at walls"}
 
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """One line: key of the value, its label, and its unit.
+    """One line of the table: key of the value, label and unit.
 
-    The unit is "%" for a share, "order" where only the size matters, "" for a count or a text. `error` is the key of half
+    The unit is "%" for a share, "order" for an order of magnitude, "" for a count or a text. `error` is the key of half
     the width of the 95 % interval, if the value has one.
     """
 
@@ -74,14 +75,14 @@ class _Row:
         return f"{quantity(value, self.unit)} +- {digits(share, 2)} %"
 
 
-def _measure(run: Record) -> dict[str, Value]:
-    """Return the numbers of the summary, in SI units."""
+def _main_results(run: Record) -> dict[str, Value]:
+    """Return the values of the summary, in SI units."""
     arrays = run.arrays
     values: dict[str, Value] = {"status": run.status, "end_time": float(arrays.time[-1])}
     if "impacts" in run.groups:
-        values |= _of_impacts(run)
+        values |= _impact_results(run)
     if "particles" in run.groups:
-        values |= _of_particles(run)
+        values |= _particle_results(run)
     values["supplied_energy"] = float(run.ledger.supplied[-1])
     values |= {f"share_{channel}": share for channel, share in run.ledger.shares.items()}
     if len(arrays.dampers) > 1:
@@ -94,7 +95,7 @@ def _measure(run: Record) -> dict[str, Value]:
             x = arrays.displacement[:, k]
             values[f"peak_displacement[{point}]"] = _largest(np.abs(x))
             values[f"rms_displacement[{point}]"] = _rms(arrays.time, x)
-            values[f"rms_acceleration[{point}]"] = _rms_of_changes(arrays.time, arrays.velocity[:, k] + base[:, k])
+            values[f"rms_acceleration[{point}]"] = _rms_derivative(arrays.time, arrays.velocity[:, k] + base[:, k])
         if is_driven(arrays):
             for k, point in enumerate(arrays.points):
                 values |= _steady(arrays.time, arrays.displacement[:, k], point)
@@ -105,10 +106,10 @@ def _measure(run: Record) -> dict[str, Value]:
     return values
 
 
-def _of_impacts(run: Record) -> dict[str, Value]:
-    """Return the numbers of a run with an impact log."""
+def _impact_results(run: Record) -> dict[str, Value]:
+    """Return the results of a run with an impact log."""
     log = run.arrays.impacts
-    # Hard impacts have no force, and a contact cut off by the end may lack a number.
+    # Hard impacts have no force, and a contact that the end of the run interrupts may lack values.
     return {
         "impacts": len(log),
         "peak_contact_force": _largest(log.peak_force[np.isfinite(log.peak_force)]),
@@ -116,8 +117,8 @@ def _of_impacts(run: Record) -> dict[str, Value]:
     }
 
 
-def _of_particles(run: Record) -> dict[str, Value]:
-    """Return the numbers of a run with particles."""
+def _particle_results(run: Record) -> dict[str, Value]:
+    """Return the results of a particle run."""
     arrays = run.arrays
     moved = len(arrays.particles) * run.counts.get("steps", 0)
     names = ("step", "steps_per_contact", "largest_overlap", "largest_approach_speed")
@@ -134,7 +135,7 @@ def _of_particles(run: Record) -> dict[str, Value]:
 
 
 def _notes(run: Record) -> tuple[str, ...]:
-    """Return the lines below the numbers."""
+    """Return the lines below the table."""
     message = (run.message,) if run.message and not run.ok else ()
     return message + run.notes
 
@@ -144,15 +145,15 @@ def _largest(x: Any) -> float:
 
 
 def _rms(time: Any, x: Any) -> float:
-    """Root mean square over time of a motion sampled at uneven times."""
+    """Return the root mean square over time of a motion with uneven sample times."""
     if time.size < 2:
         return float(np.abs(x[0]))
-    with np.errstate(over="ignore"):  # of a motion that grew beyond all numbers
+    with np.errstate(over="ignore"):  # the solution may have diverged
         return float(np.sqrt(np.trapezoid(x**2, time) / (time[-1] - time[0])))
 
 
-def _rms_of_changes(time: Any, velocity: Any) -> float:
-    """Root mean square of the acceleration, mean over each output step."""
+def _rms_derivative(time: Any, velocity: Any) -> float:
+    """Return the root mean square of the acceleration, averaged over each output step."""
     if time.size < 2:
         return float("nan")
     with np.errstate(over="ignore"):
@@ -160,19 +161,19 @@ def _rms_of_changes(time: Any, velocity: Any) -> float:
 
 
 def _base_velocity(arrays: RunArrays) -> Any:
-    """Velocity of the base along the motion of each point, (T, P), up to a constant."""
+    """Return the velocity of the base in the direction of each point, (T, P), up to a constant."""
     own = arrays.absolute_acceleration - arrays.acceleration
     if not own.any():
         return np.zeros_like(own)
     base = arrays.base_velocity.reshape(arrays.time.size, -1)
     accelerations = arrays.base_acceleration.reshape(arrays.time.size, -1)
-    # Each point moves along a direction, by which the acceleration of the base was projected.
+    # `own` is the acceleration of the base projected on the direction of each point.
     direction, *_ = np.linalg.lstsq(accelerations, own, rcond=None)
     return base @ direction
 
 
 def is_driven(arrays: RunArrays) -> bool:
-    """Return whether loads or the base still act at the end of a run.
+    """Return whether a load or the base motion acts in the last tenth of a run.
 
     Parameters
     ----------
@@ -187,7 +188,7 @@ def is_driven(arrays: RunArrays) -> bool:
 
 
 def _reductions(reference: Mapping[str, Value], values: Mapping[str, Value]) -> dict[str, Value]:
-    """Return one minus the ratios of displacements to those of a reference."""
+    """Return the relative reductions of the displacements against a reference run."""
     found: dict[str, Value] = {}
     for kind in ("peak", "rms"):
         for key, value in values.items():
@@ -198,12 +199,12 @@ def _reductions(reference: Mapping[str, Value], values: Mapping[str, Value]) -> 
 
 
 def _steady(time: Any, x: Any, point: str) -> dict[str, Value]:
-    """RMS displacement over the second half of the run with its 95 % interval."""
+    """Return the RMS displacement over the second half of the run with half the width of its 95 % interval."""
     even = np.linspace(
         0.5 * (time[0] + time[-1]), time[-1], min(max(int(np.count_nonzero(2 * time >= time[-1])), 2), 20_000)
     )
-    found = mean_interval(np.interp(even, time, x) ** 2)
-    rms = [math.sqrt(max(square, 0.0)) for square in (found.lower, found.mean, found.upper)]
+    interval = mean_interval(np.interp(even, time, x) ** 2)
+    rms = [math.sqrt(max(square, 0.0)) for square in (interval.lower, interval.mean, interval.upper)]
     return {
         f"steady_rms_displacement[{point}]": rms[1],
         f"steady_rms_displacement_error[{point}]": 0.5 * (rms[2] - rms[0]),
@@ -211,24 +212,24 @@ def _steady(time: Any, x: Any, point: str) -> dict[str, Value]:
 
 
 def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
-    """Lines that any of the runs needs."""
+    """Return the lines for which any of the runs has a value."""
     rows = [
         _Row("status", "status", ""),
         _Row("end_time", "simulated time", "s"),
         _Row("impacts", "impacts", ""),
         _Row("particles", "particles", ""),
-        _Row("particle_mass", "their mass", "kg"),
+        _Row("particle_mass", "mass of the particles", "kg"),
         _Row("first_touches", "first touches", ""),
-        _Row("contacts", "contacts in the mean", "1"),
+        _Row("contacts", "mean number of contacts", "1"),
         _Row("step", "time step", "s"),
         _Row("steps_per_contact", "steps in the shortest contact", "1"),
         _Row("supplied_energy", "energy supplied", "J"),
     ]
-    for channel, told in _CHANNEL_LABELS.items():
+    for channel, label in _CHANNEL_LABELS.items():
         key = f"share_{channel}"
-        if channel not in _RARE or any(values.get(key, 0.0) != 0.0 for values in all_values):
-            rows.append(_Row(key, told, "%"))
-    rows += [_Row(f"share_at_{partner}", told, "%") for partner, told in _PARTNER_LABELS.items()]
+        if channel not in _OPTIONAL or any(values.get(key, 0.0) != 0.0 for values in all_values):
+            rows.append(_Row(key, label, "%"))
+    rows += [_Row(f"share_at_{partner}", label, "%") for partner, label in _PARTNER_LABELS.items()]
     rows += [_Row(key, f"lost in {name}", "%") for key, name in _largest_of("share_in", all_values)]
     rows += [
         _Row("energy_residual", "energy residual", "order"),
@@ -242,42 +243,44 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         rows.append(_Row(key, f"peak displacement{where}", "m"))
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
         steady = f"steady_rms_displacement[{point}]"
-        rows.append(_Row(steady, f"the same, second half{where}", "m", f"steady_rms_displacement_error[{point}]"))
+        rows.append(
+            _Row(steady, f"RMS displacement, second half{where}", "m", f"steady_rms_displacement_error[{point}]")
+        )
         rows.append(_Row(f"rms_acceleration[{point}]", f"RMS acceleration{where}", "m/s^2"))
         rows.append(_Row(f"peak_reduction[{point}]", f"reduction of the peak{where}", "%"))
         rows.append(_Row(f"rms_reduction[{point}]", f"reduction of the RMS{where}", "%"))
     rows.append(_Row("rms_interface_force", "RMS force on the base", "N"))
     rows.append(_Row("computing_time", "computing time", "s"))
-    rows.append(_Row("particle_steps_per_second", "particle-steps a second", "million"))
+    rows.append(_Row("particle_steps_per_second", "particle steps per second", "million"))
     return [row for row in rows if any(row.key in values for values in all_values)]
 
 
 def _largest_of(what: str, all_values: tuple[dict[str, Value], ...]) -> list[tuple[str, str]]:
-    """Keys of those values "what[name]" that are shown, and their names."""
+    """Return key and name of the largest values with keys "what[name]"."""
     keys = list(dict.fromkeys(key for values in all_values for key in values if key.startswith(f"{what}[")))
     highest = [max(float(values.get(key, 0.0)) for values in all_values) for key in keys]
-    return [(keys[k], keys[k].partition("[")[2][:-1]) for k in shown_points(highest, _MOST_SHOWN)]
+    return [(keys[k], keys[k].partition("[")[2][:-1]) for k in largest_points(highest, _MAX_POINTS)]
 
 
-def shown_points(peaks: ArrayLike, most: int) -> list[int]:
-    """Choose the points of a structure that are shown: those that move, of many those that move most.
+def largest_points(peaks: ArrayLike, count: int) -> list[int]:
+    """Return the points of a structure with the largest motion, without those at rest.
 
     Parameters
     ----------
     peaks
         Largest displacement of each point, (P,) [m].
-    most
-        How many at most.
+    count
+        Largest number of points.
 
     Returns
     -------
     list of int
-        Numbers of points, in their order; where all stand still, they count as if they moved.
+        Indices of the points in rising order; if all are at rest, the first ones.
     """
     highest = np.asarray(peaks, dtype=float)
-    moves = ~(highest <= _STILL * highest.max(initial=0.0, where=np.isfinite(highest)))
+    moves = ~(highest <= _ROUNDING * highest.max(initial=0.0, where=np.isfinite(highest)))
     order = np.argsort(-highest, kind="stable")
-    return sorted(order[moves[order] | ~moves.any()][:most].tolist())
+    return sorted(order[moves[order] | ~moves.any()][:count].tolist())
 
 
 class _Report:
@@ -327,12 +330,12 @@ class _Report:
         return Group(table, *notes)
 
     def show(self, file: TextIO | None = None) -> None:
-        """Print a table with lines in a terminal, and plain text anywhere else.
+        """Print a table in a terminal, plain text otherwise.
 
         Parameters
         ----------
         file
-            Where to print; standard output when left out.
+            Output stream; default standard output.
         """
         from rich.console import Console
 
@@ -344,11 +347,11 @@ class _Report:
 
 
 class Summary(_Report):
-    """The numbers of one run that one looks at first.
+    """The main results of one run.
 
-    `print(summary)` writes plain text, `rich.print(summary)` a table, `summary.show()` whichever fits. Peak
-    and RMS displacement are taken at the output times, relative to the base; points that stand still are left out of
-    the text, and of many points those that move less.
+    `print(summary)` prints plain text, `rich.print(summary)` a table, `summary.show()` a table in a terminal. Peak and RMS
+    displacement are evaluated at the output times, relative to the base. The text lists the four points with the largest
+    motion; `values` has all.
 
     Parameters
     ----------
@@ -371,21 +374,21 @@ class Summary(_Report):
 
     def __init__(self, run: Record) -> None:
         super().__init__("", ("",), _notes(run))
-        self.values = _measure(run)
+        self.values = _main_results(run)
 
     def _cells(self) -> list[tuple[str, ...]]:
         return [(row.label, row.text(self.values)) for row in _rows((self.values,))]
 
 
 class Comparison(_Report):
-    """The summaries of several runs side by side, one column a run.
+    """Summaries of several runs in one table, one column per run.
 
     Parameters
     ----------
     runs
-        Runs by the name that heads their column.
+        Runs by column name.
     title
-        Title above the table.
+        Title of the table.
 
     Attributes
     ----------
@@ -398,7 +401,7 @@ class Comparison(_Report):
     Raises
     ------
     ValueError
-        When there is no run.
+        If there is no run.
     """
 
     def __init__(self, runs: Mapping[str, Record], title: str = "") -> None:
@@ -407,7 +410,7 @@ class Comparison(_Report):
         notes = tuple(f"{name}: {note}" for name, run in runs.items() for note in _notes(run))
         super().__init__(title, tuple(runs), notes)
         self.runs = dict(runs)
-        self.values = {name: _measure(run) for name, run in runs.items()}
+        self.values = {name: _main_results(run) for name, run in runs.items()}
         reference, *others = self.values.values()
         for values in others:
             values |= _reductions(reference, values)
@@ -418,14 +421,14 @@ class Comparison(_Report):
 
 
 def compare(runs: Mapping[str, Record], title: str = "") -> Comparison:
-    """Set the summaries of several runs side by side.
+    """Compare the summaries of several runs in one table.
 
     Parameters
     ----------
     runs
-        Runs by the name that heads their column.
+        Runs by column name.
     title
-        Title above the table.
+        Title of the table.
 
     Returns
     -------
@@ -435,6 +438,6 @@ def compare(runs: Mapping[str, Record], title: str = "") -> Comparison:
     Raises
     ------
     ValueError
-        When there is no run.
+        If there is no run.
     """
     return Comparison(runs, title)

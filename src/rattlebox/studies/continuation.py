@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rattlebox._util.exceptions import CaseError
 from rattlebox.core import _core
 from rattlebox.core._core import Status
-from rattlebox.engines.batch import Look, run_block
+from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.paths import place_of
 
@@ -74,7 +74,7 @@ def follow(
     values
         Its values.
     cycles
-        How many cycles of each value to skip, and how many to look at.
+        Numbers of cycles of each value to skip and to evaluate.
     ways
         "up" runs the values as they stand, "down" from the last one to the first.
     turning
@@ -196,7 +196,7 @@ class ContinuationWork(ImpactWork):
                 raise CaseError(
                     f"{path} is a start, which only the first value would have\n  try: it as an axis of a sweep"
                 )
-        period = np.asarray(self.look.period)
+        period = np.asarray(self.output.period)
         for load in self.packed.loads:
             signal = load.signal
             repeats = False
@@ -304,27 +304,27 @@ class _Step:
         self, work: ContinuationWork, at: At | None, members: Members, cancelled: Callable[[], bool] | None
     ) -> None:
         self._cancelled, self._count = cancelled, len(members)
-        shape, look = work.grid.shape, work.look
+        shape, output = work.grid.shape, work.output
         self._own = gather_variants(work.packed, shape, members)
 
         def each(number: Any) -> Any:
             return gather_values(number, shape, members)
 
-        self.look = replace(look, shape=each(look.shape), start=each(look.start), period=each(look.period))
-        self.period = np.asarray(self.look.period)
+        self.output = replace(output, shape=each(output.shape), start=each(output.start), period=each(output.period))
+        self.period = np.asarray(self.output.period)
         self._packed = self._own if at is None else self._begun(at)
 
     def run(self) -> dict[str, NDArray[Any]] | None:
         """Return what is found; None when it was stopped."""
-        return self._found(self._packed, self.look, self._count)
+        return self._found(self._packed, self.output, self._count)
 
-    def _found(self, packed: _core.Problem, look: Look, count: int) -> dict[str, NDArray[Any]] | None:
+    def _found(self, packed: _core.Problem, output: BlockOutput, count: int) -> dict[str, NDArray[Any]] | None:
         found = run_block(
             packed,
             (count,),
             0,
             count,
-            look,
+            output,
             progress=lambda _: not (self._cancelled and self._cancelled()),
         )
         return None if found is None else dict(found)
@@ -342,7 +342,7 @@ class _Step:
         wait = at.early * self.period
         loads = [load.replace(signal=_earlier(load.signal, wait)) for load in begun.loads]
         settings = begun.settings.replace(duration=begun.settings.duration + wait)
-        self.look = replace(self.look, start=self.look.start + wait)
+        self.output = replace(self.output, start=self.output.start + wait)
         return begun.replace(loads=loads, settings=settings)
 
     def own(self) -> Vector:
@@ -398,13 +398,13 @@ class _Step:
             For which an earlier moment is needed, (walks,).
         """
         settings, waiting = self._packed.settings, closed
-        bare = replace(self.look, measures=(), start=0.0, samples=2, motion=False, last=0)
+        bare = replace(self.output, measures=(), start=0.0, samples=2, motion=False, last=0)
         for early in _EARLIER:
             if not waiting.any():
                 break
             sooner = self._packed.replace(settings=settings.replace(duration=settings.duration - early * self.period))
             members = np.flatnonzero(waiting)
-            shape, period = (gather_values(part, (self._count,), members) for part in (self.look.shape, self.period))
+            shape, period = (gather_values(part, (self._count,), members) for part in (self.output.shape, self.period))
             there = gather_variants(sooner, (self._count,), members)
             found = self._found(there, replace(bare, shape=shape, period=period), len(members))
             if found is None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rattlebox.analysis.shaken import LEAST_SAMPLES
 from rattlebox.core import _core
-from rattlebox.engines.batch import Look, run_block
+from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
 from rattlebox.prepare.pack import Batch, pack_parts
@@ -104,7 +104,7 @@ class ImpactWork:
             found[name] = ((), "float64", {"units": "", "long_name": name.replace("_", " ")})
         balls = self._balls
         if self.motion:
-            time: Extra = (("instant", self.look.samples),)
+            time: Extra = (("instant", self.output.samples),)
             found["displacement"] = (time, "float64", {"units": "m", "long_name": "displacement"})
             found["velocity"] = (time, "float64", {"units": "m/s", "long_name": "velocity"})
             ball: Extra = (*time, ("ball", balls))
@@ -143,7 +143,7 @@ class ImpactWork:
         }
 
     def _window(self, start: float, stop: float) -> NDArray[np.float64]:
-        return np.linspace(start, stop, self.look.samples)
+        return np.linspace(start, stop, self.output.samples)
 
     def describe(self) -> dict[str, Any]:
         """What is computed besides the grid, in JSON's types."""
@@ -220,11 +220,11 @@ class ImpactWork:
     def _measured(self, start: int, stop: int, threads: int, go_on: Callable[[int], bool]) -> Values | None:
         """What the core finds of variants start to stop."""
         found: dict[str, NDArray[Any]] = {}
-        for part, look, numbers in self._prepared:
+        for part, output, numbers in self._prepared:
             first, last = (start, stop) if numbers is None else np.searchsorted(numbers, (start, stop)).tolist()
             if first == last:
                 continue
-            values = run_block(part.packed, part.shape, first, last, look, threads=threads, progress=go_on)
+            values = run_block(part.packed, part.shape, first, last, output, threads=threads, progress=go_on)
             if values is None or numbers is None:
                 return values
             for name, array in values.items():
@@ -269,12 +269,12 @@ class ImpactWork:
         return part.packed
 
     @property
-    def look(self) -> Look:
+    def output(self) -> BlockOutput:
         """What is kept of each, for the core; of the first ones, where variants differ in more than numbers."""
         return self._prepared[0][1]
 
     @cached_property
-    def _prepared(self) -> list[tuple[Batch, Look, NDArray[np.intp] | None]]:
+    def _prepared(self) -> list[tuple[Batch, BlockOutput, NDArray[np.intp] | None]]:
         """Parts that differ in numbers only, with the numbers of their variants."""
         parts = pack_parts(self.case, self.grid.columns, self.grid.shape)
         found = []
@@ -291,7 +291,7 @@ class ImpactWork:
             found.append((*self._seen(part), numbers))
         return found
 
-    def _seen(self, part: Batch) -> tuple[Batch, Look]:
+    def _seen(self, part: Batch) -> tuple[Batch, BlockOutput]:
         """A part as it is run, and what is kept of it."""
         packed = part.packed
         settings = packed.settings
@@ -305,7 +305,9 @@ class ImpactWork:
                 raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "kind harmonic")
         start = self.skip if self.cycles is None else self.cycles[0] * period
         if np.any(np.asarray(start) >= settings.duration):
-            raise Hint(f"skip = {np.max(start):.6g} s leaves nothing of the run to look at", "a longer duration")
+            raise Hint(
+                f"skip = {np.max(start):.6g} s is not before the end of the run", "a smaller skip or a longer duration"
+            )
         dense = self.motion or any(MEASURES[name].samples for name in self.named)
         usual = 2001 if self.cycles is None else 1 + int(np.ceil(64 * self.cycles[1]))
         harmonic = [name for name in self.named if MEASURES[name].samples and MEASURES[name].cyclic]
@@ -318,7 +320,7 @@ class ImpactWork:
                     f"{harmonic[0]} needs {LEAST_SAMPLES} samples in a cycle, and there are {each:.3g}",
                     "more samples; without a number there are enough",
                 )
-        look = Look(
+        output = BlockOutput(
             measures=self.named,
             shape=part.points[self._point],
             start=start,
@@ -328,7 +330,7 @@ class ImpactWork:
             last=self.last,
             state=self.state,
         )
-        return replace(part, packed=packed.replace(settings=settings)), look
+        return replace(part, packed=packed.replace(settings=settings)), output
 
     @property
     def _balls(self) -> int:

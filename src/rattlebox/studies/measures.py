@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from rattlebox.model.errors import Hint
-from rattlebox.results.schema import HOW_ENDED
+from rattlebox.results.schema import OUTCOMES
 
 
 class Measure(NamedTuple):
@@ -61,7 +61,7 @@ MEASURES: dict[str, Measure] = {
 }
 
 
-_OF_VARIANTS = {*HOW_ENDED, "state", "displacement", "velocity", "ball_place", "ball_speed"}
+_OF_VARIANTS = {*OUTCOMES, "state", "displacement", "velocity", "ball_place", "ball_speed"}
 _OF_IMPACTS = {"last_time", "last_approach_speed", "last_contact"}
 _OF_DESIGNS = {"trial", "front", "case", "missing", "feasible", "added_mass"}
 TAKEN = _OF_VARIANTS | _OF_IMPACTS | _OF_DESIGNS

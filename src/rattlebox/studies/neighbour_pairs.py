@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rattlebox.core import _core
 from rattlebox.core._core import Status
-from rattlebox.engines.batch import Look, run_block
+from rattlebox.engines.batch import BlockOutput, run_block
 
 from .gather_variants import gather_values, gather_variants
 
@@ -54,7 +54,7 @@ class Pairs:
         self._packed = gather_variants(task.sweep.packed, shape, members, 2)
         self._modes = len(self._packed.mode_decay)
         self.status = np.full((self._count, task.pairs), Status.finished)
-        self.period = self._each(gather_values(task.sweep.look.period, shape, members, 2))
+        self.period = self._each(gather_values(task.sweep.output.period, shape, members, 2))
         duration = self._each(self._packed.settings.duration)
         length = duration - task.skip if task.cycles is None else task.cycles[1] * self.period
         self.leg = length / task.count
@@ -197,13 +197,13 @@ class Pairs:
             settings=self._packed.settings.replace(duration=length[..., None]),
         )
         shape = state.shape[:-1]
-        look, size = Look(state=True), int(np.prod(shape))
+        output, size = BlockOutput(state=True), int(np.prod(shape))
         result = run_block(
             packed,
             shape,
             0,
             size,
-            look,
+            output,
             threads=self._threads,
             progress=lambda _: not self._cancelled(),
         )

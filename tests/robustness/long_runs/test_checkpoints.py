@@ -20,7 +20,7 @@ import pytest
 import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER
 from rattlebox.engines.checkpoint import Checkpoint
-from rattlebox.engines.dem_follow import Journey
+from rattlebox.engines.dem_run import DemRun
 from rattlebox.model.differences import differences
 from rattlebox.results.snapshots import SnapshotFile, Snapshots
 
@@ -40,14 +40,14 @@ def whole() -> Mapping[str, Any]:
 
 def stop_at(snapshot: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Press Ctrl-C at a snapshot, before it is taken."""
-    take = SnapshotFile.take
+    append = SnapshotFile.append
 
     def stopping(self: SnapshotFile, number: int, *state: Any) -> None:
         if number == snapshot:
             raise KeyboardInterrupt
-        take(self, number, *state)
+        append(self, number, *state)
 
-    monkeypatch.setattr(SnapshotFile, "take", stopping)
+    monkeypatch.setattr(SnapshotFile, "append", stopping)
 
 
 def test_runs_that_are_stopped_again_and_again_have_the_same_bits(
@@ -61,7 +61,7 @@ def test_runs_that_are_stopped_again_and_again_have_the_same_bits(
         monkeypatch.undo()
         assert part.status == "interrupted"
         assert part.arrays.contacts[-1].sum() > 10
-        assert part.message.endswith(f"Run again, it goes on from {files['checkpoint']}.")
+        assert str(files["checkpoint"]) in part.message
         assert len(Snapshots(files["snapshots"])) == stop
     run = rb.simulate(case(method=rb.Dem(threads=2)), **files)
     assert run.ok
@@ -137,7 +137,7 @@ def test_ctrl_c_stops_within_a_fifth_of_a_second(tmp_path: Path) -> None:
         run = rb.simulate(hours, checkpoint=tmp_path / "run.checkpoint", progress=begun)
         took.append(time.perf_counter() - pressed[0])
         assert run.status == "interrupted"
-        assert "it goes on from" in run.message
+        assert str(tmp_path / "run.checkpoint") in run.message
         if took[-1] < 0.2:
             return
     pytest.fail(f"Ctrl-C took {took}")
@@ -263,7 +263,7 @@ def test_files_that_have_changed_are_noticed(tmp_path: Path) -> None:
     again()
     again()
     places.write_text("x, y, z\n0, 0, 0.001\n")
-    with pytest.raises(rb.DataError, match="reads the same but has other numbers"):
+    with pytest.raises(rb.DataError, match="the case files agree but their numbers differ"):
         again()
 
 
@@ -272,7 +272,7 @@ def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
     """A file that is no checkpoint is left alone."""
     file = tmp_path / "notes.txt"
     file.write_bytes(content)
-    with pytest.raises(rb.DataError, match=r"is not a whole checkpoint: .* is damaged\n  try: another file"):
+    with pytest.raises(rb.DataError, match=r"is not an intact checkpoint: .* is damaged\n  try: another file"):
         rb.simulate(case(output=rb.Output(rate="2 kHz")), checkpoint=file)
     assert file.read_bytes() == content
 
@@ -335,12 +335,12 @@ def test_snapshots_that_are_something_else_are_told(tmp_path: Path, monkeypatch:
 
     for content in (whole[:5000], b"notes"):
         files["snapshots"].write_bytes(content)
-        said = f"{files['snapshots']} is not an HDF5 file that is whole\n  try: put the file back"
+        said = f"{files['snapshots']} is not an intact HDF5 file\n  try: put the file"
         assert refused().startswith(said)
         assert files["snapshots"].read_bytes() == content
     files["snapshots"].unlink()
     files["snapshots"].mkdir()
-    assert refused().startswith(f"{files['snapshots']} is a folder; snapshots are written to a file\n  try: ")
+    assert refused().startswith(f"{files['snapshots']} is a folder; snapshots must be a file\n  try: ")
 
 
 def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
@@ -358,7 +358,7 @@ def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(np, "savez", full)
-    with pytest.raises(OSError, match="no space is left on the disk\n  try: make room and give the same") as told:
+    with pytest.raises(OSError, match="no space is left on the disk\n  try: free disk space and give the same") as told:
         rb.simulate(case(), **files)
     assert told.value.filename == str(files["checkpoint"])
     monkeypatch.undo()
@@ -397,7 +397,9 @@ def test_runs_that_find_no_room(tmp_path: Path) -> None:
     full = f'mount -t tmpfs -o size=8k none {disk}; {sys.executable} -c "{code}" || echo ended $?; ls -A {disk}'
     done = with_own_mounts(full)
     assert done.stdout == "ended 1\n"
-    assert f"{disk}/run.nc: no space is left on the disk\n  try: make room and write the run again\n" in done.stderr
+    assert (
+        f"{disk}/run.nc: no space is left on the disk\n  try: free disk space and save the run again\n" in done.stderr
+    )
     assert "Exception ignored" not in done.stderr
 
 
@@ -451,11 +453,11 @@ def test_particles_are_counted_over_all_dampers() -> None:
 def test_runs_without_particles_take_no_files(tmp_path: Path) -> None:
     """Checkpoints and snapshots are refused where there is nothing to keep, and snapshots need a file."""
     plain = rb.Case(structure=rb.SDOF(mass=1, stiffness=1e4, velocity=1), duration="1 ms")
-    with pytest.raises(rb.CaseError, match="are of particles in space"):
+    with pytest.raises(rb.CaseError, match="are for particle dampers only"):
         rb.simulate(plain, checkpoint=tmp_path / "run.checkpoint")
     with pytest.raises(rb.CaseError, match=r"snapshots are of particles in space"):
         rb.Case(structure=rb.SDOF(mass=1, stiffness=1e4), duration="1 ms", output=rb.Output(snapshots=5))
-    with pytest.raises(rb.CaseError, match=r'there is no file for them\n  try: snapshots="run\.vtkhdf"'):
+    with pytest.raises(rb.CaseError, match=r'no file is given\n  try: snapshots="run\.vtkhdf"'):
         rb.simulate(case())
 
 
@@ -467,7 +469,7 @@ def test_a_run_stopped_before_its_first_step_goes_on(tmp_path: Path, monkeypatch
 
     file, short = tmp_path / "run.checkpoint", case(duration="5 ms", output=rb.Output(rate="2 kHz"))
     with monkeypatch.context() as patch:
-        patch.setattr(Journey, "_through", press)
+        patch.setattr(DemRun, "_run_to_end", press)
         run = rb.simulate(short, checkpoint=file)
     assert run.status == "interrupted"
     assert run.arrays.time.tolist() == [0.0]
@@ -547,7 +549,7 @@ def test_the_command_goes_on(number: int, tmp_path: Path) -> None:
     process.send_signal(number)
     said = process.communicate()[1]
     assert process.returncode == 128 + number
-    assert "Run again, it goes on from out/run.checkpoint." in said
+    assert "out/run.checkpoint" in said
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "going on from out/run.checkpoint" in done.stderr
@@ -570,9 +572,9 @@ def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
     """A folder in place of a file, and one file for both, are refused before anything is computed."""
     file = tmp_path / "file"
     for files, said in (
-        ({"checkpoint": tmp_path, "snapshots": file}, f"{tmp_path} is a folder; a run is kept in a file"),
-        ({"checkpoint": file, "snapshots": tmp_path}, f"{tmp_path} is a folder; snapshots are written to a file"),
-        ({"checkpoint": tmp_path / "." / "file", "snapshots": file}, "both a run and its snapshots"),
+        ({"checkpoint": tmp_path, "snapshots": file}, f"{tmp_path} is a folder; a checkpoint must be a file"),
+        ({"checkpoint": file, "snapshots": tmp_path}, f"{tmp_path} is a folder; snapshots must be a file"),
+        ({"checkpoint": tmp_path / "." / "file", "snapshots": file}, "both the checkpoint and the snapshots"),
     ):
         with pytest.raises(rb.DataError, match=re.escape(said)):
             rb.simulate(case(), **files)

@@ -101,5 +101,5 @@ def test_a_state_that_was_changed_is_refused_with_its_file(tmp_path: Path) -> No
     assert _core.Dem(packed).restore(np.load(path)["state"]) is None
     with path.open("wb") as content:
         np.savez(content, **members)
-    with pytest.raises(rb.DataError, match=r"run\.checkpoint is (damaged|not a whole checkpoint)"):
+    with pytest.raises(rb.DataError, match=r"run\.checkpoint is (damaged|not an intact checkpoint)"):
         rb.simulate(case, checkpoint=path)

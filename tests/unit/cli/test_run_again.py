@@ -111,7 +111,7 @@ def test_replace_leaves_what_is_no_run(answer: Answer) -> None:
         assert answer("run", "case.toml", *options) == (
             2,
             "",
-            "error: out/run.nc is not a netCDF-4 file that is whole\n  try: another -o folder, or remove this file\n",
+            "error: out/run.nc is not an intact netCDF-4 file\n  try: another -o folder, or remove this file\n",
         )
     assert Path("out/run.nc").read_text() == "notes"
 
@@ -160,7 +160,7 @@ def test_a_run_says_where_it_goes_on_from(answer: Answer) -> None:
 def test_a_run_in_progress_is_not_replaced(answer: Answer) -> None:
     """While another process keeps its state in the folder, --replace removes nothing and says who it is."""
     begin()
-    with Checkpoint(Path("out/run.checkpoint"), rb.Case.from_file("beads.toml")).held():
+    with Checkpoint(Path("out/run.checkpoint"), rb.Case.from_file("beads.toml")).lock():
         code, told, errors = answer("run", "rougher.toml", "--replace")
     assert (code, told) == (2, "")
     assert errors.startswith("error: out/run.checkpoint is in use by process ")
@@ -187,7 +187,7 @@ def test_a_run_that_is_not_over_is_kept_from_others(answer: Answer) -> None:
     said = "error: out/run.checkpoint is of a run that is not over\n  try: another -o folder, or --replace\n"
     assert answer("run", "case.toml", "--no-figures") == (2, "", said)
     assert answer("run", "rougher.toml", "--no-figures", "--checkpoint", "new.checkpoint") == (2, "", said)
-    with Checkpoint(Path("out/run.checkpoint"), rb.Case.from_file("beads.toml")).held():
+    with Checkpoint(Path("out/run.checkpoint"), rb.Case.from_file("beads.toml")).lock():
         assert "in use by process" in answer("run", "case.toml", "--no-figures", "--replace")[2]
     assert names() == {"run.checkpoint"} and Path("out/run.checkpoint").read_bytes() == before
     assert answer("run", "case.toml", "--no-figures", "--replace")[0] == 0

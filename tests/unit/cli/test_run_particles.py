@@ -41,14 +41,14 @@ def test_a_case_with_particles_runs_from_its_file(tmp_path: Path) -> None:
     told = " ".join(done.stdout.split())
     for said in (
         "particles",
-        "contacts in the mean",
+        "mean number of contacts",
         "lost in sliding",
         "lost at walls",
         "energy residual",
         "time step",
     ):
         assert said in told
-    for said in ("particle-steps a second", "limited by the contact of glass and glass", "moduli are divided by 100"):
+    for said in ("particle steps per second", "limited by the contact of glass and glass", "moduli are divided by 100"):
         assert said in told
     names = {path.name for path in (tmp_path / "out").iterdir()} - {"rattlebox.json"}
     assert {"run.nc", "motion.csv", "energy.csv", "particles.csv", "motion.png", "energy.png"} <= names
@@ -135,7 +135,7 @@ def test_files_that_collide_are_refused(tmp_path: Path) -> None:
     for checkpoint, said in (
         (
             tmp_path,
-            f"error: {tmp_path} is a folder; a run is kept in a file\n  try: {tmp_path}/run.checkpoint\n",
+            f"error: {tmp_path} is a folder; a checkpoint must be a file\n  try: {tmp_path}/run.checkpoint\n",
         ),
         (
             out / "run.vtkhdf",

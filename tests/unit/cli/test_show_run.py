@@ -100,7 +100,7 @@ def test_what_is_no_run_is_told(answer: Answer) -> None:
     Path("empty").mkdir()
     for path, said in (
         ("nowhere.nc", "nowhere.nc is not there\n  try: the folder that 'rattlebox run -o' or"),
-        ("notes.nc", "notes.nc is not a netCDF-4 file that is whole"),
+        ("notes.nc", "notes.nc is not an intact netCDF-4 file"),
         ("empty", "empty is not a study"),
         (
             "case.toml",
@@ -121,7 +121,7 @@ def test_names_are_printed_as_they_are(answer: Answer) -> None:
     assert answer("show", f"{ODD}.zarr")[1].startswith(f"{ODD}.zarr: 3 variants")
     assert answer("plot", f"{ODD}.zarr", "-o", f"{ODD}.png") == (0, f"written: {ODD}.png\n", "")
     errors = answer("run", "fast.toml", "-o", f"{ODD}/fast", "--no-figures")[2]
-    assert ", in run.checkpoint." in errors
+    assert "in run.checkpoint." in errors
     assert f"\n{ODD}/fast/run.checkpoint is kept" in errors
     assert answer("demo", "-o", f"{ODD}/demo")[1].endswith(
         f"written to {ODD}/demo: demo.png, and a netCDF and a case file of each model\n"

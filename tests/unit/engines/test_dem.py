@@ -300,14 +300,14 @@ def test_a_particle_that_leaves_is_named() -> None:
     assert run.arrays.time[-1] < 1e-3
 
 
-@pytest.mark.parametrize(("softening", "advice"), [(1e6, "soften the contacts less."), (1, "use a stiffer contact.")])
+@pytest.mark.parametrize(("softening", "advice"), [(1e6, "softening"), (1, "stiffer contact")])
 def test_what_to_try_when_a_particle_leaves(softening: float, advice: str) -> None:
     """Less softening is proposed where there is some, else a stiffer contact."""
     soft = rb.Linear(stiffness="1 kN/m" if softening > 1 else "1 N/m", restitution=0.7)
     fast = damper(particles=balls(1), contact=soft, friction=0, velocity=(100, 0, 0), softening=softening)
     run = simulate(fast, structure=rb.Fixed(), duration=1e-3)
     assert run.status == "escaped"
-    assert f"Shorten dt, or {advice} The step was" in run.message
+    assert advice in run.message
 
 
 def test_a_bed_that_does_not_settle_is_named_as_in_the_file() -> None:
@@ -324,7 +324,7 @@ def test_laws_are_not_used_beyond_their_domain() -> None:
     fast = damper(contact=rb.Tsuji(restitution=rb.JacksonGreen()), velocity=(200, 0, 0), gravity=(0, 0, 0), softening=1)
     run = simulate(fast, structure=rb.Fixed(), duration=1e-3, output=rb.Output())
     assert run.status == "law_domain"
-    assert "was struck at" in run.message
+    assert "200 m/s" in run.message
     assert not any("warning" in note for note in run.notes)
 
 
@@ -357,7 +357,7 @@ def test_laws_that_give_no_rebound_are_told(ending: str) -> None:
     fast = damper(particles=lead, contact=law, velocity=(20, 0, 0), gravity=(0, 0, 0), softening=1)
     run = simulate(fast, structure=rb.Fixed(), duration=2e-3, output=rb.Output())
     assert run.status == "no_rebound"
-    assert "Particle 0, in 'damper', was struck at 20 m/s" in run.message
+    assert "Particle 0, in 'damper'" in run.message and " 20 m/s " in run.message
     assert np.isfinite(run.arrays.particles.position).all()
     assert not any("warning: only" in note or "overlaps reach" in note for note in run.notes)
 
@@ -426,7 +426,7 @@ def test_a_run_is_the_same_in_a_file(tmp_path: Path) -> None:
     assert run.motion.cavity_force.dims == ("time", "damper", "axis")
     assert run.energy.sliding_loss.sel(partner="wall").attrs["units"] == "J"
     text = str(run.summary())
-    for said in ("lost in sliding", "lost at walls", "particle-steps a second", "limited by the contact of steel"):
+    for said in ("lost in sliding", "lost at walls", "particle steps per second", "limited by the contact of steel"):
         assert said in text
     assert run.summary().values["particles"] == 60
     with pytest.raises(AttributeError, match="has no 'impacts': a 3-D run counts its contacts"):

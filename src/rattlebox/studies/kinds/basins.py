@@ -48,7 +48,8 @@ class Basins(Study):
         Axes as of `rb.sweep`: {"damper.start": rb.linspace(-1, 1, 200), "damper.velocity": rb.linspace(-1, 1, 200)}, or
         "structure.displacement", "load.phase", whatever may decide.
     cycles
-        How many cycles to skip until motions are steady, and how many to look at. Periods up to half of these are found.
+        Numbers of cycles to skip until motions are steady, and to evaluate. Periods up to half of the
+        latter are detected.
     measure
         Names of further measures (rb.MEASURES).
     tolerance
@@ -124,7 +125,7 @@ class Basins(Study):
         """Run all starts and find their attractors; see `Study.compute`."""
         work, grid = self.work, self.work.grid
         runs = self.run_work(work).load().isel(instant=slice(1, None)).rename(instant="strobe")
-        strobes = reduced_strobes(runs, work.packed, work.look.period)
+        strobes = reduced_strobes(runs, work.packed, work.output.period)
         period, residual = period_of(strobes, self.tolerance)
         flat = strobes.reshape(grid.size, self.cycles[1], -1)
         label, best = attractors(flat, period.ravel(), residual.ravel(), self.apart)

@@ -45,7 +45,7 @@ _IMPACTS = 8  # kept, for each cycle looked at
 
 @dataclass(frozen=True, config=CONFIG)
 class Bifurcation(Study):
-    """Follow the motion under a harmonic load over a parameter, and look at it once a cycle or at each impact.
+    """Follow the motion under a harmonic load over a parameter, and output at it once a cycle or at each impact.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Bifurcation(Study):
     values
         Rising: a list, an array, linspace or geomspace; with several paths, one such for each.
     cycles
-        How many cycles of each value to skip until the motion is steady, and how many to look at.
+        How many cycles of each value to skip until the motion is steady, and how many to output at.
     show
         "strobe" for the state once a cycle, "impacts" for phase and speed of each impact, too.
     direction
@@ -121,13 +121,13 @@ class Bifurcation(Study):
     @cached_property
     def work(self) -> ImpactWork:
         """Runs of all values."""
-        look = self.cycles[1]
+        output = self.cycles[1]
         options: dict[str, Any] = {
             "measures": with_required(("impacts", "impacts_per_cycle"), self.measure),
             "cycles": self.cycles,
-            "samples": look + 1,
+            "samples": output + 1,
             "motion": True,
-            "last": _IMPACTS * look if self.show == "impacts" else 0,
+            "last": _IMPACTS * output if self.show == "impacts" else 0,
             "point": self.point,
         }
         if self.direction == "fresh":
@@ -180,13 +180,13 @@ def _check_order(design: Grid, direction: str) -> None:
 
 def _looked_at(maps: xarray.Dataset, task: ImpactWork, tolerance: float) -> xarray.Dataset:
     """Take the strobes and the impacts of the cycles looked at, and find the periods."""
-    over, period = maps.status.dims, np.asarray(task.look.period)
+    over, period = maps.status.dims, np.asarray(task.output.period)
     maps = maps.isel(instant=slice(1, None)).rename(instant="cycle")
     repeats, _ = period_of(reduced_strobes(maps, task.packed, period), tolerance)
     maps["period"] = over, repeats, {"units": "1", "long_name": "cycles after which the motion repeats"}
     if "last_time" in maps:
         load = next(load.signal for load in task.packed.loads if isinstance(load.signal, _core.Harmonic))
-        time = maps.last_time.where(maps.last_time >= _column(task.look.start))
+        time = maps.last_time.where(maps.last_time >= _column(task.output.start))
         phase = (_column(load.frequency) * time + _column(load.phase)) % (2 * np.pi)
         maps = maps.rename(last="impact", last_approach_speed="approach_speed", last_contact="contact")
         maps["impact_phase"] = (*over, "impact"), phase.values, {"units": "rad", "long_name": "phase of the load"}

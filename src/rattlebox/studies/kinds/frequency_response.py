@@ -58,7 +58,7 @@ class FrequencyResponse(Study):
     direction
         "up", "down", "both"; or "fresh", each frequency from the start that the case says.
     cycles
-        How many cycles of each frequency to skip until the motion is steady, and how many to look at.
+        How many cycles of each frequency to skip until the motion is steady, and how many to output at.
     measure
         Names of further measures (rb.MEASURES).
     point
@@ -197,7 +197,7 @@ def _bare(task: ImpactWork) -> NDArray[np.float64]:
         force = np.broadcast_to(np.moveaxis(load.shape, 0, -1), matrix.shape[:-1])
         solution = np.linalg.solve(matrix, force[..., None])[..., 0]
         motion = np.moveaxis(np.asarray(solution, np.complex128), -1, 0)
-    response = np.sum(task.look.shape * motion, axis=0)
+    response = np.sum(task.output.shape * motion, axis=0)
     return np.asarray(np.broadcast_to(np.abs(signal.amplitude * response), task.grid.shape))
 
 

@@ -16,7 +16,7 @@ from rattlebox._util.exceptions import CaseError
 from rattlebox._util.optional_imports import optional_import
 from rattlebox.model.errors import Hint
 from rattlebox.model.units import Whole
-from rattlebox.results.schema import HOW_ENDED
+from rattlebox.results.schema import OUTCOMES
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.kinds.sweep import Sweep
 from rattlebox.studies.robust import robust_axes
@@ -165,7 +165,7 @@ def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed
     """Sobol indices of every measure of a sweep."""
     import xarray as xr
 
-    names = [str(name) for name in runs.data_vars if name not in HOW_ENDED]
+    names = [str(name) for name in runs.data_vars if name not in OUTCOMES]
     rows = [_of_measure(runs, name, len(paths), n, confidence, seed) for name in names]
     found = xr.Dataset(
         {

@@ -9,7 +9,7 @@ import pytest
 import rattlebox as rb
 from rattlebox.core import _core
 from rattlebox.core._core import Status
-from rattlebox.engines.status import end_of
+from rattlebox.engines.status import final_status
 
 
 @pytest.mark.parametrize("start", [-1.0, -0.999])
@@ -37,8 +37,8 @@ def test_a_lost_joule_is_found_out() -> None:
     """A thousandth of the viscous loss gone astray is more than any bound allows."""
     run = rb.simulate(rb.reference_case(duration=0.5))
     astray = rb.Run(run.arrays.replaced(viscous_loss=1.001 * run.arrays.viscous_loss))
-    assert run.ledger.closes(1e-8)
-    assert not astray.ledger.closes(1e-8)
+    assert run.ledger.is_balanced(1e-8)
+    assert not astray.ledger.is_balanced(1e-8)
 
 
 def struck(**changes: Any) -> rb.Case:
@@ -104,8 +104,8 @@ def test_no_method_finishes_beyond_the_bound(tolerance: float) -> None:
     run = rb.simulate(rb.reference_case(duration=0.3, method=rb.EventDriven(tolerance=tolerance)))
     off = 0.02 * float(run.ledger.supplied[-1])
     astray = rb.Run(run.arrays.replaced(viscous_loss=run.arrays.viscous_loss + off * (run.arrays.time > 0)))
-    assert end_of(run.ledger, _core.worst_energy_residual, 1.2) == Status.finished
-    assert end_of(astray.ledger, _core.worst_energy_residual, 1.2) == Status.energy_error
+    assert final_status(run.ledger, _core.worst_energy_residual, 1.2) == Status.finished
+    assert final_status(astray.ledger, _core.worst_energy_residual, 1.2) == Status.energy_error
 
 
 @pytest.mark.parametrize("method", [rb.EventDriven(), rb.Newton(), rb.TwoStep()], ids=lambda method: method.kind)

@@ -1,0 +1,167 @@
+"""Advance a particle run to its end, with checkpoints and snapshots on the way."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+
+from rattlebox._util.exceptions import DataError
+from rattlebox.core import _core
+from rattlebox.core._core import Status
+from rattlebox.engines.checkpoint import Checkpoint, CheckpointData, concatenate
+from rattlebox.model.methods import Dem
+from rattlebox.results.snapshots import SnapshotFile
+
+CHECKPOINT_INTERVAL = 600.0
+"""Default computing time between checkpoints [s]."""
+
+
+class DemRun:
+    """A particle run in progress.
+
+    Parameters
+    ----------
+    dem
+        The core.
+    packed
+        Input of the core.
+    checkpoint
+        Checkpoint file, if any.
+    method
+        Method, which sets the interval of checkpoints.
+    """
+
+    def __init__(self, dem: _core.Dem, packed: _core.DemProblem, checkpoint: Checkpoint | None, method: Dem) -> None:
+        self.checkpoint = checkpoint
+        self._dem, self._packed = dem, packed
+        every = method.checkpoint_every
+        self._steps = None if every is None else max(1, round(every / packed.dt))  # between checkpoints
+        self._interval = math.inf if every else method.checkpoint or CHECKPOINT_INTERVAL
+        self._due = time.monotonic() + self._interval
+        self._pieces: list[_core.Records] = []
+        self._earlier_seconds = 0.0
+        self._snapshots: SnapshotFile | None = None
+        self._snapshot_steps: list[int] = []
+
+    def resume(self, data: CheckpointData) -> None:
+        """Restore the state of a checkpoint.
+
+        Raises
+        ------
+        DataError
+            If the state does not fit the case.
+        """
+        try:
+            self._dem.restore(data.state)
+        except ValueError as error:
+            path = self.checkpoint.path if self.checkpoint else "the checkpoint"
+            raise DataError(
+                f"{path} is damaged: {error}; its state must be one that the core wrote",
+                "a copy of the file, or remove it and run from the start",
+            ) from None
+        self._pieces = [data.records]
+        self._earlier_seconds = data.seconds
+
+    def add_snapshots(self, snapshots: SnapshotFile, steps: Sequence[int]) -> None:
+        """Take snapshots at the given steps. Those before a resumed checkpoint must already be in the file.
+
+        Raises
+        ------
+        DataError
+            If they are missing, or the file holds something else.
+        """
+        self._snapshots, self._snapshot_steps = snapshots, list(steps)
+        before = sum(step + 1 < self._dem.step for step in steps)
+        if not before:
+            snapshots.create()
+            return
+        wrong = f"{snapshots.path} does not hold the {before} snapshots before the checkpoint"
+        try:
+            if snapshots.written >= before:
+                return
+        except DataError as error:
+            wrong = str(error).partition("\n  try: ")[0]
+        raise DataError(wrong, "put the file and output.snapshots back, or remove the checkpoint to start again")
+
+    @property
+    def seconds(self) -> float:
+        """Computing time so far [s], including the time before a restart."""
+        return self._earlier_seconds + self._dem.counts().seconds
+
+    def records(self) -> _core.Records:
+        """Samples so far."""
+        self._pieces = [concatenate([*self._pieces, self._dem.records()])]
+        return self._pieces[0]
+
+    def run(self, progress: Callable[[int, int], object] | None = None) -> Status:
+        """Run to the end. Ctrl-C ends the run with the status `interrupted`.
+
+        Parameters
+        ----------
+        progress
+            Function called at intervals with the number of steps done and the total; the run stops if it returns
+            False.
+
+        Returns
+        -------
+        Status
+            Status of the run.
+        """
+        last = self._packed.steps
+        try:
+            if self._dem.step == 0:
+                self._write_checkpoint()
+            finished = self._run_to_end(last, progress)
+        except KeyboardInterrupt:
+            finished = False
+        # A run that was stopped before its first step still returns the sample at its start.
+        if self._dem.step == 0:
+            self._dem.run(0)
+        self._write_checkpoint()
+        return self._dem.status if finished or self._dem.status else Status.interrupted
+
+    def _run_to_end(self, last: int, progress: Callable[[int, int], object] | None) -> bool:
+        """Run to the end and take the remaining snapshots; return False if the run was stopped."""
+        for number, step in enumerate(self._snapshot_steps):
+            if step + 1 < self._dem.step:
+                continue
+            if not self._run_until(step, last, progress):
+                return False
+            if self._snapshots is not None and not self._dem.status:
+                cavities = self._dem.state().cavities
+                contacts = [self._dem.contacts(k) for k in range(len(cavities))]
+                self._snapshots.append(number, cavities, contacts)
+        return self._run_until(last, last, progress)
+
+    def _run_until(self, until: int, last: int, progress: Callable[[int, int], object] | None) -> bool:
+        """Run until a step is done, and write the checkpoints that are due; return False if the run was stopped."""
+        stopped = False
+
+        def proceed(done: int) -> bool:
+            nonlocal stopped
+            stopped = progress is not None and progress(done, last) is False
+            return not stopped and (self.checkpoint is None or time.monotonic() < self._due)
+
+        while True:
+            goal = until
+            if self._steps is not None:
+                goal = min(goal, (self._dem.step // self._steps + 1) * self._steps - 1)
+            reached = self._dem.run(goal, proceed)
+            if reached and (goal == last or self._dem.status):
+                return True
+            in_time = reached and proceed(self._dem.step)  # the core does not call `proceed` in a short part
+            if stopped:
+                return False
+            if goal < until or not in_time:
+                self._write_checkpoint()
+            if reached and goal == until:
+                return True
+
+    def _write_checkpoint(self) -> None:
+        """Write a checkpoint unless the run has failed: the last state before the failure is then more useful."""
+        if self.checkpoint is not None and not self._dem.status:
+            if self._snapshots is not None:
+                self._snapshots.sync()  # a checkpoint needs the snapshots before it, also after a power cut
+            self.checkpoint.write(self._dem, self._packed, self.records(), self.seconds)
+            self._due = time.monotonic() + self._interval
