@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from inspect import Signature
+from reprlib import Repr
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError, WithJsonSchema, model_validator
@@ -15,24 +16,12 @@ from pydantic_core import CoreSchema
 from rattlebox._util.text import has_controls
 
 from .errors import Hint, nearest, translate
+from .signatures import part_signature
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass as _ModelType
 else:
     _ModelType = type(BaseModel)
-
-
-@dataclass(frozen=True)
-class AlsoTakes:
-    """Adds to the JSON Schema of a field what a validator takes besides; None stands for one instead of a list."""
-
-    schema: dict[str, Any] | None = None
-
-    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        schema = handler(core)
-        return {"anyOf": [schema, self.schema or schema["items"]]}
-
-    __hash__ = object.__hash__
 
 
 class _Explaining(_ModelType):
@@ -50,7 +39,31 @@ class _Explaining(_ModelType):
             raise translate(error, cls.__name__, vocabulary(), values) from None
 
 
+class _ReadableSignature:
+    """The signature of a part, in place of the one with all validators that pydantic sets."""
+
+    def __get__(self, part: Part | None, cls: type[Part]) -> Signature:
+        if part is not None:  # only classes are called
+            raise AttributeError("__signature__")
+        return part_signature(cls)
+
+
 _NAMES = frozenset({"name", "title", "point"})
+
+
+class _Shown(str):
+    """A text that is its own representation."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+_SHORT = Repr()
+_SHORT.maxtuple = _SHORT.maxlist = _SHORT.maxdict = 6
+_SHORT.maxstring = 60
+_SHORT.maxother = 10_000  # parts inside parts shorten themselves
 
 
 class Part(BaseModel, metaclass=_Explaining):
@@ -105,6 +118,21 @@ class Part(BaseModel, metaclass=_Explaining):
             'another one; or a new case with other values, case.replaced({"duration": "2 s", "damper.friction": 0.5})',
         )
 
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Show plain types in the signature."""
+        cls.__signature__ = _ReadableSignature()  # type: ignore[assignment]
+
+    def __repr_args__(self) -> Iterator[tuple[str, Any]]:
+        """Return the fields that are not at their defaults, shortened."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            if field.is_required() or value != field.get_default(call_default_factory=True):
+                yield name, _Shown(_SHORT.repr(value))
+
+    def __str__(self) -> str:
+        return repr(self)
+
     def fields_from_file(self) -> tuple[str, ...]:
         """Return the fields whose values were read from a file."""
         return type(self).in_file if getattr(self, "file", None) is not None else ()
@@ -132,6 +160,23 @@ class Part(BaseModel, metaclass=_Explaining):
             if name in content.get("required", []):
                 content["required"].remove(name)
         return schema
+
+
+def full_text(value: Any) -> str:
+    """Return a text that two values share only if they are equal; the representation of a part is shortened.
+
+    Parameters
+    ----------
+    value
+        A part, a list, tuple or dictionary of them, or anything else, whose representation is returned.
+    """
+    if isinstance(value, Part):
+        return f"{type(value).__name__} {value.model_dump_json()}"
+    if isinstance(value, (list, tuple)):
+        return f"{type(value).__name__}[{', '.join(map(full_text, value))}]"
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key!r}: {full_text(each)}' for key, each in value.items())}}}"
+    return repr(value)
 
 
 def vocabulary() -> dict[str, dict[str, dict[str, str]]]:

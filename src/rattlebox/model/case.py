@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
@@ -14,10 +15,12 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError
 
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import CaseError, DataError, ResourceError
+from rattlebox._util.html import code_block, paragraph
 
+from .also_takes import AlsoTakes
 from .any_signal import AnySignal
 from .any_structure import AnyStructure
-from .base import AlsoTakes, Part, vocabulary
+from .base import Part, vocabulary
 from .dampers import ImpactDamper
 from .elementwise import Vector
 from .errors import Hint, at, translate
@@ -37,6 +40,8 @@ from .structures import Shaker
 from .tuned_mass import TunedMass, with_tuned_masses
 from .units import PositiveTime, Whole
 
+_LONG = 12  # items of a list
+_LONG_TEXT = 300  # characters
 _MEMORY = 16e9  # bytes
 _NOT_COMPUTABLE = "cannot be computed for bodies of these sizes, masses and moduli"
 _USUAL = "numbers of usual sizes"
@@ -412,6 +417,25 @@ class Case(Part):
         except ValidationError as error:
             raise translate(error, source, vocabulary(), given) from None
 
+    def __repr__(self) -> str:
+        counts = Counter(type(part).__name__ for part in (*self.dampers, *self.tuned_masses, *self.loads, *self.base))
+        parts = ", ".join([type(self.structure).__name__, *(f"{n} {kind}" for kind, n in counts.items())])
+        return f"<Case{f' {self.name!r}' if self.name else ''}: {parts}; {self.duration:g} s, {self.method.kind}>"
+
+    def _repr_html_(self) -> str:
+        return paragraph(repr(self)[1:-1]) + code_block(self.short_toml())
+
+    def short_toml(self, most: int = 8000) -> str:
+        """Return the case as the text of a case file, with long lists shortened, for reading only.
+
+        Parameters
+        ----------
+        most
+            Largest number of characters; the rest is left out.
+        """
+        text = self._toml(str, _shortened)
+        return text if len(text) <= most else f"{text[:most]}\n... {len(text) - most} more characters"
+
     def replaced(self, values: Mapping[str, Any]) -> Case:
         """Return a case with other values in places; this one stays as it is.
 
@@ -441,11 +465,11 @@ class Case(Part):
         with atomic_write(path, "make room and write the case again") as name:
             name.write_text(text, encoding="utf-8")
 
-    def _toml(self, name_of: Callable[[str], str]) -> str:
+    def _toml(self, name_of: Callable[[str], str], change: Callable[[Any], Any] = lambda data: data) -> str:
         import tomli_w
 
         data = self.model_dump(mode="json", exclude_none=True, exclude_defaults=False)
-        return tomli_w.dumps(_tidy(_with_files(data, name_of)))
+        return tomli_w.dumps(change(_tidy(_with_files(data, name_of))))
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
@@ -483,6 +507,16 @@ def _tidy(value: Any) -> Any:
     if isinstance(value, list):
         return [_tidy(item) for item in value]
     return value
+
+
+def _shortened(value: Any) -> Any:
+    """Return tables and lists with a note in place of all but the first items of long lists and of long texts."""
+    if isinstance(value, dict):
+        return {key: _shortened(item) for key, item in value.items()}
+    if isinstance(value, list):
+        items = value if len(value) <= _LONG else [*value[:3], f"... {len(value)} in all"]
+        return [_shortened(item) for item in items]
+    return f"{value[:_LONG_TEXT]}..." if isinstance(value, str) and len(value) > _LONG_TEXT else value
 
 
 class _Library(Part):

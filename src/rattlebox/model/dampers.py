@@ -13,7 +13,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rattlebox._util.narrow import present
 
-from .base import AlsoTakes, Part
+from .also_takes import AlsoTakes
+from .base import Part
 from .contacts import AnyContact
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from .base import AlsoTakes, Part
+from .also_takes import AlsoTakes
+from .base import Part
 from .errors import one_of
 from .materials import Material
 from .pairs import Pair

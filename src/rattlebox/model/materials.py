@@ -9,7 +9,10 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
-from .base import AlsoTakes, Part
+from rattlebox._util.html import Catalogue
+
+from .also_takes import AlsoTakes
+from .base import Part
 from .errors import Hint, nearest
 from .units import Density, Modulus, Number
 
@@ -53,15 +56,28 @@ class Material(Part):
         return value
 
 
-def materials() -> dict[str, Material]:
+class Materials(Catalogue[Material]):
+    """Materials by name."""
+
+    plural = "materials"
+    columns = ("name", "description", "density", "Young's modulus", "Poisson's ratio", "yield stress")
+
+    def row(self, name: str, entry: Material) -> tuple[str, ...]:
+        """Return name, description and values of a material."""
+        stress = "" if entry.yield_stress is None else f"{entry.yield_stress / 1e6:g} MPa"
+        values = f"{entry.density:g} kg/m^3", f"{entry.young / 1e9:g} GPa", f"{entry.poisson:g}", stress
+        return name, entry.title, *values
+
+
+def materials() -> Materials:
     """Return the library, by name.
 
     Returns
     -------
     dict of str to Material
-        In the order of the file; each material names its source.
+        In the order of the file; each material names its source. Notebooks display a table.
     """
-    return dict(_library())
+    return Materials(_library())
 
 
 @cache

@@ -15,7 +15,8 @@ from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_
 from rattlebox._util.exceptions import ResourceError, named
 from rattlebox._util.narrow import instance
 
-from .base import AlsoTakes, Part
+from .also_takes import AlsoTakes
+from .base import Part
 from .cavities import AnyCavity
 from .contacts import AnyContact, Linear
 from .elementwise import Vector

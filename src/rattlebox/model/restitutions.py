@@ -9,7 +9,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rattlebox._util.narrow import present
 
-from .base import AlsoTakes, Part
+from .also_takes import AlsoTakes
+from .base import Part
 from .elementwise import less, pick, power, sqrt
 from .errors import Hint
 from .materials import AnyWall

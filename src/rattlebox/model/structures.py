@@ -22,8 +22,9 @@ from pydantic import (
 
 from rattlebox._util.narrow import present
 
+from .also_takes import AlsoTakes
 from .any_signal import AnySignal
-from .base import AlsoTakes, Part
+from .base import Part
 from .elementwise import Vector, power, stacked
 from .errors import Hint, at, one_of, several
 from .files import absolute

@@ -10,7 +10,7 @@ import numpy as np
 
 from rattlebox._util.exceptions import CaseError, RattleboxError
 from rattlebox.core import _core
-from rattlebox.model.base import Part
+from rattlebox.model.base import Part, full_text
 from rattlebox.model.errors import Hint
 from rattlebox.model.paths import Place, get, part_at, place_of, replaced
 
@@ -65,8 +65,8 @@ def alike(values: NDArray[Any], axis: int) -> list[NDArray[np.intp]]:
     """Return the places along an axis, grouped by what stands there."""
     if values.dtype == object:
         different = {id(value): value for value in values.flat}
-        number = {text: n for n, text in enumerate(dict.fromkeys(map(repr, different.values())))}
-        codes = {key: number[repr(value)] for key, value in different.items()}
+        number = {text: n for n, text in enumerate(dict.fromkeys(map(full_text, different.values())))}
+        codes = {key: number[full_text(value)] for key, value in different.items()}
         values = np.fromiter((codes[id(value)] for value in values.flat), int, values.size).reshape(values.shape)
     rows = np.moveaxis(values, axis, 0).reshape(values.shape[axis], -1)
     if rows.shape[1] > 1:

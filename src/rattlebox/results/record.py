@@ -135,14 +135,17 @@ class Record:
 
     def __repr__(self) -> str:
         arrays = self.arrays
-        contents = (
-            f"{len(arrays.balls)} balls, {len(arrays.impacts)} impacts"
-            if "impacts" in arrays
-            else f"{len(arrays.particles)} particles in {len(arrays.dampers)} dampers"
-        )
-        return (
-            f"<Run {self.status}: {arrays.time[0]:g} to {arrays.time[-1]:g} s, {len(arrays.points)} points, {contents}>"
-        )
+        contents = [f"{arrays.time[0]:g} to {arrays.time[-1]:g} s", _count(len(arrays.points), "point")]
+        if "impacts" in arrays:
+            contents += [_count(len(arrays.balls), "ball"), _count(len(arrays.impacts), "impact")]
+        else:
+            contents.append(f"{_count(len(arrays.particles), 'particle')} in {_count(len(arrays.dampers), 'damper')}")
+        contents += [_count(len(self.notes), "note")] if self.notes else []
+        return f"<Run {self.status}: {', '.join(contents)}>"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def _rebuild(cls: type[Record], values: dict[str, Any]) -> Record:

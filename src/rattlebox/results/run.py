@@ -8,6 +8,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rattlebox._util.exceptions import CaseError
+from rattlebox._util.html import paragraph
+
 from . import datasets, export, netcdf
 from .arrays import raise_absent
 from .figures import Plots
@@ -73,6 +76,13 @@ class Run(Record):
             `str()` gives plain text, rich prints a table, `.show()` picks one, `.values` holds the numbers.
         """
         return Summary(self)
+
+    def _repr_html_(self) -> str:
+        try:
+            case = repr(self.case)[1:-1]
+        except CaseError as error:  # a file that the case names is gone
+            case = str(error)
+        return paragraph(repr(self)[1:-1], self.provenance.method) + paragraph("", case) + self.summary()._repr_html_()
 
     @property
     def plot(self) -> Plots:

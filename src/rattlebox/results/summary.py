@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 
 from rattlebox._util.batch_means import mean_interval
+from rattlebox._util.html import bullets, paragraph, table
 
 from .quantities import MISSING, digits, quantity
 from .schema import PARTNERS
@@ -307,6 +308,10 @@ class _Report:
         return "\n".join((*lines, *self._notes))
 
     __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        title = paragraph(self._title) if self._title else ""
+        return title + table(("", *self._columns), self._cells(), numbers=True) + bullets(self._notes)
 
     def __rich__(self) -> Group:
         from rich import box

@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from rattlebox.model.base import full_text
+
 
 def fingerprint(function: Callable[..., Any]) -> str:
     """Return what tells a function from others of its name: its text, and the values that it takes from elsewhere.
@@ -88,7 +90,7 @@ class _Digest:
         elif isinstance(value, (set, frozenset)):
             self._say(*sorted(map(repr, value)))
         else:
-            self._say(repr(value))
+            self._say(full_text(value))
             if _package(type(value)) == self._package:
                 self._tell((type(value), getattr(value, "__dict__", None)))
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
+from rattlebox._util.html import Catalogue
 from rattlebox.model.errors import Hint
 from rattlebox.results.schema import OUTCOMES
 
@@ -31,7 +32,19 @@ class Measure(NamedTuple):
     cyclic: bool = False
 
 
-MEASURES: dict[str, Measure] = {
+class Measures(Catalogue[Measure]):
+    """Descriptions of measures by name."""
+
+    plural = "measures"
+    columns = ("name", "unit", "meaning", "needs")
+
+    def row(self, name: str, entry: Measure) -> tuple[str, ...]:
+        """Return name, unit, meaning and what the measure needs."""
+        needs = ["samples of the motion"] * entry.samples + ["a harmonic load or motion"] * entry.cyclic
+        return name, "" if entry.units == "1" else entry.units, entry.long_name, " and ".join(needs)
+
+
+_MEASURES: dict[str, Measure] = {
     "impacts": Measure("1", "impacts"),
     "impacts_per_cycle": Measure("1", "impacts a cycle", cyclic=True),
     "peak_contact_force": Measure("N", "peak contact force"),
@@ -59,6 +72,7 @@ MEASURES: dict[str, Measure] = {
     "damping_mass": Measure("kg", "imaginary part of the apparent mass", samples=True, cyclic=True),
     "loss_factor": Measure("1", "loss factor", samples=True, cyclic=True),
 }
+MEASURES = Measures(_MEASURES)
 
 
 _OF_VARIANTS = {*OUTCOMES, "state", "displacement", "velocity", "ball_place", "ball_speed"}

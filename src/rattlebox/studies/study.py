@@ -137,7 +137,8 @@ def study_function(kind: Callable[Parameters, Study]) -> Callable[Parameters, xr
         [
             argument.replace(annotation=_readable(str(argument.annotation)))
             for argument in sorted(arguments, key=lambda argument: argument.name in shared)
-        ]
+        ],
+        return_annotation="xarray.Dataset",
     )
 
     def function(*args: Parameters.args, **kwargs: Parameters.kwargs) -> xr.Dataset:
@@ -150,8 +151,29 @@ def study_function(kind: Callable[Parameters, Study]) -> Callable[Parameters, xr
 
 
 def _readable(annotation: str) -> str:
-    """Return the annotation of a field without the checks of its value."""
-    return re.sub(r"InstanceOf\[(\w+)\]|Annotated\[(\w+),.*?\)\]", r"\1\2", annotation)
+    """Return the annotation of a field without the checks of its value, in types that need no look-up."""
+    plain = re.sub(r"InstanceOf\[(\w+)\]|Annotated\[(\w+),.*?\)\]", r"\1\2", annotation.replace("typing.", ""))
+    return re.sub(r"\w+", lambda word: _SIMPLE.get(word[0], word[0]), plain)
+
+
+_SIMPLE = {
+    "Axes": "Mapping[Any, Sequence[Any]] | RandomDesign | Replicas",
+    "Bounds": "Mapping[Any, Sequence[Any]]",
+    "Count": "int",
+    "Cycles": "tuple[int, int]",
+    "CyclesToCompare": "tuple[int, int]",
+    "Fraction": "float",
+    "Kilograms": "float | str",
+    "Measures": "str | Callable | Sequence[str | Callable]",
+    "Number": "float",
+    "Path": "str | tuple[str, ...]",
+    "Robust": "Literal['worst', 'mean', 'median']",
+    "Samples": "int",
+    "Seconds": "float | str",
+    "Seed": "int",
+    "Values": "Sequence[float | str]",
+    "Whole": "int",
+}
 
 
 def make_study(cls: type[Study], values: Mapping[str, Any], source: str = "", vocabulary: Any = None) -> Study:

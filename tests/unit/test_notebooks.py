@@ -1,0 +1,164 @@
+"""What notebooks display, and what the interpreter prints."""
+
+import copy
+import inspect
+import pickle
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.results import compare
+
+TIME = np.linspace(0.0, 2.0, 20_001)
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    """Return a case with a record of 2 s, whose name and points would be tags."""
+    return rb.Case(
+        name="<b>bold</b>",
+        structure=rb.Modal(frequencies=["10 Hz"], damping_ratio=0.01, shapes={"<i>tip</i>": [0.2]}),
+        load=rb.Record(times=TIME, values=np.sin(9.0 * TIME), unit="N"),
+        duration="2 s",
+    )
+
+
+@pytest.fixture(scope="module")
+def run(recorded):
+    """Return its run."""
+    return rb.simulate(recorded)
+
+
+class _Balanced(HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.open, self.tags, self.text = [], set(), ""
+
+    def handle_starttag(self, tag, attrs):
+        self.open.append(tag)
+        self.tags.add(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text += data
+
+
+def parsed(thing):
+    """Parse what a notebook displays of a thing; it is well formed, sets no colours, and contains only known tags."""
+    html = thing._repr_html_()
+    reader = _Balanced()
+    reader.feed(html)
+    reader.close()
+    assert reader.open == []
+    assert reader.tags <= {"p", "b", "pre", "table", "thead", "tbody", "tr", "th", "td", "ul", "li"}
+    assert not re.search(r"color|background|class=", html)
+    return reader
+
+
+def test_a_long_record_is_shortened(recorded):
+    """The file of the case has 800 kB; a notebook shows at most 10 kB, and says how long the record is."""
+    assert len(recorded.to_toml()) > 500_000
+    assert len(recorded._repr_html_()) < 10_000
+    assert "... 20001 in all" in parsed(recorded).text
+    assert "1.9998" not in repr(recorded) and len(repr(recorded)) < 200
+    assert len(repr(recorded.loads[0])) < 500
+
+
+def test_a_case_of_very_many_points_is_cut():
+    """A case whose shortened file is still long is cut, with the number of characters that are left out."""
+    shapes = {f"point {k} <{'x' * 250}>": [0.2] for k in range(60)}
+    structure = rb.Modal(frequencies=[10], damping_ratio=0.01, shapes=shapes)
+    many = rb.Case(structure=structure, duration=1)
+    assert len(many.to_toml()) > len(many._repr_html_()) and len(many._repr_html_()) < 10_000
+    assert re.search(r"\.\.\. \d+ more characters", parsed(many).text)
+
+
+def test_names_are_shown_literally(recorded, run):
+    """Names with tags are shown as they are, in cases, runs, summaries and comparisons."""
+    assert "<b>bold</b>" in parsed(recorded).text
+    assert "<b>bold</b>" in parsed(run).text
+    assert "<u>" in parsed(compare({"<u>": run, "b": run}, title="<s>")).text
+
+
+def test_run_and_summary(run):
+    """A run shows how it ended, its case, its method, and the table of its summary with units and notes."""
+    shown = parsed(run).text
+    for words in ("finished", "Modal", "1 Record", "event_driven", "peak displacement", "µm"):
+        assert words in shown
+    assert "+-" in parsed(run.summary()).text
+    assert parsed(run.summary()).text in shown
+    warned = parsed(type(run)(run.arrays, run.source, notes=("mind the <gap>",), status="interrupted", message="stop"))
+    assert "mind the <gap>" in warned.text and "interrupted" in warned.text and "stop" in warned.text
+
+
+def test_a_run_whose_case_cannot_be_read_is_shown(run, tmp_path):
+    """A run from a file whose case names a file that is gone is displayed with the reason."""
+    orphan = type(run)(run.arrays, '[structure]\nkind = "modal"\nfile = "gone.csv"\n')
+    assert "gone.csv" in parsed(orphan).text
+
+
+def test_materials_and_measures():
+    """The library and the measures are tables with units; they stay dictionaries that can be copied and pickled."""
+    shown = parsed(rb.materials()).text
+    assert "7850 kg/m^3" in shown and "200 GPa" in shown and "1030 MPa" in shown
+    shown = parsed(rb.MEASURES).text
+    assert all(name in shown and measure.long_name in shown for name, measure in rb.MEASURES.items())
+    for table in (rb.materials(), rb.MEASURES):
+        assert dict(table) == table == pickle.loads(pickle.dumps(table)) == copy.deepcopy(table)
+        assert len(repr(table).splitlines()) <= 6 and all(name in repr(table) for name in table)
+
+
+def test_representations_are_short(recorded, run):
+    """Cases and runs print one line; the parts of a case print what was set, as a call."""
+    for thing in (recorded, run):
+        assert len(repr(thing).splitlines()) == 1 and len(repr(thing)) < 200
+    damper = rb.ImpactDamper(ball=rb.Sphere(radius=0.01, material="steel"), gap=0.1, contact=rb.Tsuji(alpha=0.1))
+    assert "contact=Tsuji(alpha=0.1)" in repr(damper) and "gravity" not in repr(damper)
+    assert repr(rb.SDOF(mass=2, stiffness=8)) == "SDOF(mass=2.0, stiffness=8.0)"
+
+
+def test_variants_that_differ_late_in_a_list_are_different():
+    """Two records that differ in their last values only are computed apart, although both print alike."""
+    case = rb.Case(structure=rb.SDOF(mass=1, stiffness=100), loads=[], duration=1, output=rb.Output(rate=100))
+    damper = rb.ImpactDamper(ball=rb.Sphere(radius=0.01, material="steel"), gap=0.1, contact=rb.Tsuji(alpha=0.1))
+    times = np.linspace(0.0, 1.0, 101)
+    loads = [rb.Record(times=times, values=np.where(times > 0.5, size, 0.0), unit="N") for size in (1.0, 2.0)]
+    assert repr(loads[0]) == repr(loads[1]) and loads[0] != loads[1]
+    study = rb.sweep(case.replaced({"damper": damper, "load": loads[0]}), {"load": loads}, "peak", progress=False)
+    assert study.peak.values[1] == pytest.approx(2 * study.peak.values[0], rel=1e-6)
+
+
+def public_callables():
+    """Return all public functions and classes, and the public methods of runs, cases and snapshots."""
+    for module in (rb, rb.analysis, rb.plots):
+        yield from ((f"{module.__name__}.{name}", getattr(module, name)) for name in module.__all__)
+    for cls in (rb.Run, rb.Case, rb.Snapshots):
+        yield from ((f"{cls.__name__}.{n}", m) for n, m in vars(cls).items() if inspect.isfunction(m) and n[0] != "_")
+
+
+@pytest.mark.parametrize(("name", "thing"), [(n, t) for n, t in public_callables() if callable(t)])
+def test_signatures_are_readable(name, thing):
+    """Every parameter of a public callable has a type that is short and names nothing private."""
+    for parameter in inspect.signature(thing).parameters.values():
+        if parameter.name == "self":
+            continue
+        text = inspect.formatannotation(parameter.annotation)
+        assert parameter.annotation is not inspect.Parameter.empty, parameter.name
+        assert len(text) < 200, text
+        assert not re.search(r"\b_\w|Annotated|Validator| at 0x|PydanticUndefined|typing\.", text), text
+
+
+def test_signatures_of_parts_name_what_calls_take():
+    """The signature of a part has the names that calls use, also the singular ones, and text beside quantities."""
+    parameters = inspect.signature(rb.ImpactDamper).parameters
+    assert str(parameters["gap"]) == "gap: float | str | None = None"
+    assert str(parameters["ball"]) == "ball: Sphere | None = None" and "kind" not in parameters
+    assert str(inspect.signature(rb.Box)) == "(*, size: tuple[float | str, float | str, float | str])"
+    assert str(inspect.signature(rb.Constant)).startswith("(e: float, *")
+    inspect.signature(rb.Cylinder).bind(diameter="1 cm", length="2 cm")
+    inspect.signature(rb.Random).bind("1 N^2/Hz", "1 s")
