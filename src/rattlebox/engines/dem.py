@@ -26,7 +26,7 @@ from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.prepare.base_motion import base_motion
 from rattlebox.prepare.particles import Prepared, pack_particles, prepare
 from rattlebox.prepare.softening import effects
-from rattlebox.prepare.time_step import Step, outcome
+from rattlebox.prepare.time_step import Step, step_diagnostics
 from rattlebox.results.arrays import RunArrays
 from rattlebox.results.ledger import Ledger
 from rattlebox.results.provenance import Provenance
@@ -154,7 +154,7 @@ def _result(
     lost = sum((loss[-1].sum(axis=1) for loss in losses), np.zeros(len(arrays.dampers)))
     moves = arrays.base_velocity[:, None] + arrays.cavity_velocity
     softened = effects(resolved_case, step.motions, moves, lost, totals.enduring_loss)
-    diagnostics, notes = outcome(resolved_case, prepared.tables, step, overlaps, speeds, softened)
+    diagnostics, notes = step_diagnostics(resolved_case, prepared.tables, step, overlaps, speeds, softened)
     touches = totals.first_touches
     name, message = _status_and_message(resolved_case, arrays, dem, status, step, active.checkpoint)
     return Run(

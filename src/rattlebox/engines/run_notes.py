@@ -12,7 +12,7 @@ from rattlebox.core import _core
 from rattlebox.model.contacts import Contact, Linear, TabulatedNormal
 from rattlebox.model.pairs import contact_pairs
 from rattlebox.model.restitutions import Tabulated
-from rattlebox.prepare.time_step import MOST_OVERLAP
+from rattlebox.prepare.time_step import MAX_OVERLAP
 from rattlebox.results.quantities import quantity
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def _deep_overlaps(
     at_walls, among_balls = damper.contact, damper.ball_contact or damper.contact
     laws = [at_walls, *[among_balls] * (len(radii) - 1), at_walls]
     smaller = [radii[0], *np.minimum(radii[:-1], radii[1:]), radii[-1]]
-    limits = np.array([MAX_LINEAR_OVERLAP if isinstance(law, Linear) else MOST_OVERLAP for law in laws])
+    limits = np.array([MAX_LINEAR_OVERLAP if isinstance(law, Linear) else MAX_OVERLAP for law in laws])
     ratios = overlaps / np.asarray(smaller)[contacts]
     excess = ratios / limits[contacts]
     if np.any(excess > 1):

@@ -18,7 +18,7 @@ from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.model.units import whole_number
-from rattlebox.prepare.pack import MOST_EVENTS, pack
+from rattlebox.prepare.pack import MAX_EVENTS, pack
 from rattlebox.results.arrays import RunArrays
 from rattlebox.results.ledger import Ledger
 from rattlebox.results.provenance import Provenance
@@ -136,8 +136,8 @@ def _require_case(case: object) -> None:
 
 
 def _limit_samples(raw: _core.Result) -> _core.Result:
-    """Remove the samples at contacts if the run has more than `MOST_EVENTS` events."""
-    many = max(raw.counts.events, raw.impacts.time.size) > MOST_EVENTS
+    """Remove the samples at contacts if the run has more than `MAX_EVENTS` events."""
+    many = max(raw.counts.events, raw.impacts.time.size) > MAX_EVENTS
     chosen = raw.chosen
     if not many or chosen.all():
         return raw

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def base_motion(signal: Signal, time: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Integrate an acceleration twice.
+    """Integrate the acceleration of the base twice, without discretisation error.
 
     Parameters
     ----------
@@ -28,8 +28,13 @@ def base_motion(signal: Signal, time: NDArray[np.float64]) -> NDArray[np.float64
     Returns
     -------
     (3, T) float
-        Displacement [m], velocity [m/s], acceleration [m/s^2]. A harmonic that acts from the start for good has no mean
-        displacement or velocity; every other signal starts from rest.
+        Displacement [m], velocity [m/s], acceleration [m/s^2]. An unlimited harmonic that starts at 0 has zero mean
+        displacement and velocity; every other signal starts from rest.
+
+    Notes
+    -----
+    Harmonics and half sines are integrated in closed form. A record is linear between its samples, so that its velocity is
+    piecewise quadratic and its displacement piecewise cubic.
     """
     if isinstance(signal, Harmonic):
         omega = 2 * math.pi * signal.frequency
@@ -60,15 +65,15 @@ def base_motion(signal: Signal, time: NDArray[np.float64]) -> NDArray[np.float64
     v_knots = np.concatenate([[0.0], np.cumsum(h * (a[1:] + a[:-1]) / 2)])
     u_knots = np.concatenate([[0.0], np.cumsum(h * v_knots[:-1] + h**2 * (2 * a[:-1] + a[1:]) / 6)])
 
-    def moved(at: Any) -> tuple[Any, Any]:
+    def integrate(at: Any) -> tuple[Any, Any]:
         k = np.clip(np.searchsorted(t, at, side="right") - 1, 0, len(t) - 2)
         s = at - t[k]
         slope = (a[k + 1] - a[k]) / h[k]
         v = v_knots[k] + s * (a[k] + s * slope / 2)
         return v, u_knots[k] + s * (v_knots[k] + s * (a[k] / 2 + s * slope / 6))
 
-    v, u = moved(time)
-    if t[0] < 0:  # what went before has not moved the base
-        v0, u0 = moved(0.0)
+    v, u = integrate(time)
+    if t[0] < 0:  # The base is at rest at time 0, whatever the record holds before it.
+        v0, u0 = integrate(0.0)
         v, u = v - v0, u - u0 - v0 * time
     return np.array([u, v, signal.evaluate(time)])

@@ -1,4 +1,4 @@
-"""Restitution against approach speed and against damping, from the core's own formulas."""
+"""Restitution as a function of approach speed and of damping, from the formulas of the core."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ if TYPE_CHECKING:
 
 
 def restitution_curve(law: Restitution, pair: Pair, speeds: ArrayLike) -> NDArray[np.float64]:
-    """Return the restitution that a law gives at each approach speed.
+    """Return the restitution of a law at each approach speed.
 
     Parameters
     ----------
     law
         A restitution law.
     pair
-        The bodies (see contact_pairs).
+        The two bodies (see `contact_pairs`).
     speeds
         Approach speeds [m/s], any shape.
 
     Returns
     -------
     float, shape of speeds
-        NaN where a speed lies beyond the law.
+        Restitution; NaN outside the range of speeds of the law.
     """
     given = np.asarray(speeds, dtype=float)
-    return packed_restitution(law, pair).at(given.ravel()).reshape(given.shape)
+    return pack_restitution(law, pair).at(given.ravel()).reshape(given.shape)
 
 
-def packed_restitution(law: Restitution | None, pair: Pair) -> _core.Restitution:
-    """Pack a restitution law for a pair of bodies; a contact without one rebounds without loss."""
+def pack_restitution(law: Restitution | None, pair: Pair) -> _core.Restitution:
+    """Pack a restitution law for a pair of bodies; None is a restitution of 1."""
     if law is None:
         return _core.ConstantRestitution(e=1.0, maximum=1.0)
     name, values = law.coefficients(pair)
@@ -49,7 +49,7 @@ def packed_restitution(law: Restitution | None, pair: Pair) -> _core.Restitution
 
 
 def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDArray[np.float64]:
-    """Return the restitution that Tsuji's damping coefficient gives.
+    """Return the restitution for a damping coefficient of Tsuji's law.
 
     Parameters
     ----------
@@ -65,8 +65,8 @@ def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDA
 
     Notes
     -----
-    With zeta = alpha/sqrt(5) and an end at zero overlap, e = exp(-pi zeta / sqrt(1 - zeta^2)); at zero force
-    e = exp(-2 b cot b), zeta = cos b. Derived from the exact solution of Tsuji's equation.
+    With zeta = alpha/sqrt(5), a contact that ends at zero overlap has e = exp(-pi zeta / sqrt(1 - zeta^2)); one that ends at
+    zero force has e = exp(-2 b cot b), where zeta = cos b. Both follow from the exact solution of Tsuji's equation.
 
     References
     ----------
@@ -84,7 +84,7 @@ def restitution_of_alpha(alpha: ArrayLike, ending: Ending = "zero_force") -> NDA
 
 
 def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray[np.float64]:
-    """Return Tsuji's damping coefficient for a restitution, the exact inverse of restitution_of_alpha.
+    """Return the damping coefficient of Tsuji's law for a restitution, the exact inverse of `restitution_of_alpha`.
 
     Parameters
     ----------
@@ -97,6 +97,16 @@ def alpha_of_restitution(e: ArrayLike, ending: Ending = "zero_force") -> NDArray
     -------
     float, shape of e
         Damping coefficients.
+
+    References
+    ----------
+    Y. Tsuji, T. Tanaka, T. Ishida, Powder Technology 71 (1992) 239, doi:10.1016/0032-5910(92)88030-L.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> round(float(rb.alpha_of_restitution(0.99117, "zero_overlap")), 6)
+    0.006313
     """
     given = np.asarray(e, dtype=float)
     ratios = _core.damping_of_restitution(given.ravel(), ending == "zero_overlap")

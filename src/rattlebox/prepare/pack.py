@@ -1,8 +1,8 @@
-"""Case -> the problem that the 1-D engine runs, in SI units.
+"""Packing of a case into the problem of the 1-D engine, in SI units.
 
-Many variants of a case are packed at once: arrays that broadcast against each other stand in place of numbers in a copy of
-the case, which the same formulas pack. Values that are no numbers, and entries of tables, cannot be arrays: each of them
-makes a case of its own. The problems are merged into one batch, or stay apart where they differ in more than numbers.
+Many variants of a case are packed at once: numbers in a copy of the case are replaced by arrays that broadcast against each
+other, and the same formulas pack the copy. Values that are not numbers, and entries of tables, cannot be arrays: each of
+them needs a separate case. The problems are merged into one batch, or stay separate if they differ in more than numbers.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from rattlebox.model.methods import EventDriven, Newton, TwoStep
 from rattlebox.model.pairs import Pair, contact_pairs
 from rattlebox.model.paths import Place, part_at, place_of, replaced
 from rattlebox.model.restitutions import Constant
-from rattlebox.prepare.laws import packed_restitution, restitution_of_alpha
+from rattlebox.prepare.laws import pack_restitution, restitution_of_alpha
 from rattlebox.prepare.variants import (
     Columns,
     Index,
-    Joint,
-    Unlike,
-    alike,
+    Merger,
+    NotMergeable,
     column,
     compare,
     examples,
+    group_equal,
+    invalid_starts,
     is_number,
-    misplaced,
     variant,
     with_value,
 )
@@ -48,8 +48,8 @@ if TYPE_CHECKING:
     from rattlebox.model.restitutions import Restitution
     from rattlebox.model.signals import Signal
 
-MOST_EVENTS = 200_000
-"""Most events of a run that is sampled at its contacts, too, unless the output times are chosen."""
+MAX_EVENTS = 200_000
+"""Largest number of events of a run whose contacts are sampled by default."""
 
 
 def pack(case: Case) -> _core.Problem:
@@ -64,51 +64,56 @@ def pack(case: Case) -> _core.Problem:
     -------
     Problem
         Modes, loads, dampers, contacts, sample times and settings.
+
+    Raises
+    ------
+    CaseError
+        If the case has particle dampers.
     """
     problem = _problem(case)
-    settings = problem.settings.replace(contact_samples=0 if case.output.is_chosen else MOST_EVENTS)
+    settings = problem.settings.replace(contact_samples=0 if case.output.is_chosen else MAX_EVENTS)
     return problem.replace(settings=settings, sample_times=_array(case.sample_times()))
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Variants of a grid that differ in numbers only, packed.
+    """Packed variants of a grid that differ in numbers only.
 
     Attributes
     ----------
     packed
         The problem, with arrays over the grid of these variants.
-    places
-        Indices along each dimension of the whole grid, rising.
+    indices
+        Indices along each dimension of the whole grid, ascending.
     points
         Mode shapes at each point of the structure, (m, ...) over the grid.
-    unlike
-        Why it is not all of the grid, if it is not.
+    obstacle
+        The reason why the batch is only a part of the grid; None for the whole grid.
     """
 
     packed: _core.Problem
-    places: tuple[NDArray[np.intp], ...]
+    indices: tuple[NDArray[np.intp], ...]
     points: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
-    unlike: Unlike | None = None
+    obstacle: NotMergeable | None = None
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of its grid."""
-        return tuple(len(place) for place in self.places)
+        """Shape of the grid of the batch."""
+        return tuple(len(axis) for axis in self.indices)
 
-    def index(self, inside: Index) -> Index:
-        """Return where a variant of the batch is in the whole grid."""
-        return tuple(int(place[i]) for place, i in zip(self.places, inside, strict=True))
+    def grid_index(self, local: Index) -> Index:
+        """Return the index in the whole grid of a variant of the batch."""
+        return tuple(int(axis[i]) for axis, i in zip(self.indices, local, strict=True))
 
-    def inside(self, index: Index) -> Index | None:
-        """Return where a variant of the whole grid is in the batch, if it is there."""
-        found = tuple(int(np.searchsorted(place, i)) for place, i in zip(self.places, index, strict=True))
-        there = all(k < len(place) and place[k] == i for place, i, k in zip(self.places, index, found, strict=True))
-        return found if there else None
+    def local_index(self, index: Index) -> Index | None:
+        """Return the index in the batch of a variant of the whole grid; None if the batch does not contain it."""
+        local = tuple(int(np.searchsorted(axis, i)) for axis, i in zip(self.indices, index, strict=True))
+        is_member = all(k < len(axis) and axis[k] == i for axis, i, k in zip(self.indices, index, local, strict=True))
+        return local if is_member else None
 
-    def numbers(self, shape: Sequence[int]) -> NDArray[np.intp]:
-        """Return the numbers of its variants in a whole grid of some shape, rising."""
-        return np.ravel_multi_index(np.ix_(*self.places), tuple(shape)).ravel()
+    def flat_indices(self, shape: Sequence[int]) -> NDArray[np.intp]:
+        """Return the flat indices of the variants in the whole grid of this shape, ascending."""
+        return np.ravel_multi_index(np.ix_(*self.indices), tuple(shape)).ravel()
 
 
 def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> _core.Problem:
@@ -117,60 +122,65 @@ def pack_batch(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> 
     Parameters
     ----------
     case
-        The case that the variants are made from.
+        The case of which these are variants.
     columns
-        By path, "damper.gap": the values, an array with as many axes as `shape` and broadcastable to it. Numbers in SI;
-        anything else, such as names of materials, laws or lists, as objects.
+        Values by path, such as "damper.gap": arrays with as many axes as `shape` and broadcastable to it. Numbers in SI
+        units; names of materials, laws, lists and other values as objects.
     shape
         Shape of the grid of variants.
 
     Returns
     -------
     Problem
-        As `pack` returns it, but each number may be an array that broadcasts to `shape`, and each vector has these axes
-        after its own, (n, ...). There are no sample times.
+        As `pack` returns it, but each number may be an array that broadcasts to `shape`, and each vector has the axes of
+        the grid last, (n, ...). There are no sample times.
 
     Raises
     ------
     CaseError
-        When a variant does not fit, or variants differ in more than numbers: in kinds of laws, in how many balls there are.
+        If a variant is invalid, or variants differ in more than numbers: in kinds of laws or in the number of balls.
     """
     first, *others = pack_parts(case, columns, shape)
-    if others and first.unlike:
-        raise first.unlike
+    if others and first.obstacle:
+        raise first.obstacle
     return first.packed
 
 
 def pack_parts(case: Case, columns: Mapping[str, Any], shape: Sequence[int]) -> list[Batch]:
-    """Pack many variants of a case for the core, in parts that differ in numbers only.
+    """Pack many variants of a case for the core, in batches that differ in numbers only.
 
-    Some of them, the extreme ones among them, are packed one by one as well and compared.
+    As a check, some variants, the extreme ones included, are also packed one by one and compared with their batch.
 
     Parameters
     ----------
     case, columns, shape
-        As of `pack_batch`.
+        As in `pack_batch`.
+
+    Returns
+    -------
+    list of Batch
+        Batches that together cover the grid.
 
     Raises
     ------
     CaseError
-        When a variant does not fit.
+        If a variant is invalid.
     """
     given = {path: column(path, values, shape) for path, values in columns.items()}
     parts = _variants(case, given, tuple(shape), {})
     tried = examples(given, shape)
     for part in parts:
-        wrong = [part.index(inside) for inside in misplaced(part.packed, part.shape)]
+        wrong = [part.grid_index(local) for local in invalid_starts(part.packed, part.shape)]
         for index in (*wrong, *tried):
-            if (inside := part.inside(index)) is not None:
+            if (local := part.local_index(index)) is not None:
                 one = variant(case, given, index)
-                compare(_problem(one), part.packed, inside)
-                compare(_points(one), part.points, inside)
+                compare(_problem(one), part.packed, local)
+                compare(_points(one), part.points, local)
     return parts
 
 
 def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mapping[str, Any]) -> list[Batch]:
-    """The variants over columns, with fixed values besides."""
+    """Return the batches of the variants over columns; all of them have the fixed values."""
     whole = tuple(np.arange(n) for n in shape)
     path = next((path for path, values in columns.items() if not is_number(case, path, values)), None)
     if path is None:
@@ -181,27 +191,30 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
     axis = next((k for k, n in enumerate(values.shape) if n > 1), None)
     if axis is None:
         return _variants(case, rest, shape, {**fixed, path: values.item()})
-    groups = alike(values, axis)
-    found = []
+    groups = group_equal(values, axis)
+    batches = []
     for group in groups:
         inside = {other: np.take(c, group, axis) if c.shape[axis] > 1 else c for other, c in rest.items()}
         inside[path] = np.take(values, group[:1], axis)
-        found.append(_variants(case, inside, (*shape[:axis], len(group), *shape[axis + 1 :]), fixed))
+        batches.append(_variants(case, inside, (*shape[:axis], len(group), *shape[axis + 1 :]), fixed))
     if len(groups) == 1:
-        return found[0]
-    unlike = next((part.unlike for parts in found for part in parts if part.unlike), None)
-    if all(len(parts) == 1 for parts in found):
+        return batches[0]
+    obstacle = next((part.obstacle for parts in batches for part in parts if part.obstacle), None)
+    if all(len(parts) == 1 for parts in batches):
         try:
-            joint = Joint(path, groups, axis, shape)
-            problem = joint.of([part.packed for (part,) in found])
-            return [Batch(problem, whole, joint.points([part.points for (part,) in found]))]
-        except Unlike as told:
-            unlike = told
+            merger = Merger(path, groups, axis, shape)
+            problem = merger.merge([part.packed for (part,) in batches])
+            return [Batch(problem, whole, merger.merge_points([part.points for (part,) in batches]))]
+        except NotMergeable as error:
+            obstacle = error
     return [
         Batch(
-            part.packed, (*part.places[:axis], group[part.places[axis]], *part.places[axis + 1 :]), part.points, unlike
+            part.packed,
+            (*part.indices[:axis], group[part.indices[axis]], *part.indices[axis + 1 :]),
+            part.points,
+            obstacle,
         )
-        for group, parts in zip(groups, found, strict=True)
+        for group, parts in zip(groups, batches, strict=True)
         for part in parts
     ]
 
@@ -209,28 +222,29 @@ def _variants(case: Case, columns: Columns, shape: tuple[int, ...], fixed: Mappi
 def _broadcast(
     case: Case, columns: Columns, axes: int, fixed: Mapping[str, Any]
 ) -> tuple[_core.Problem, dict[str, NDArray[np.float64]]]:
-    """The variants over columns of numbers, and the mode shapes at their points."""
+    """Pack the variants over columns of numbers; return the problem and the mode shapes at the points."""
+    # A case with the first value of each column has a field for every array.
     first = {path: values.flat[0].item() for path, values in columns.items()}
-    batch = replaced(case, {**fixed, **first})  # where each number has its place
+    batch = replaced(case, {**fixed, **first})
     cavities: dict[Place, NDArray[Any]] = {}
     for path, values in columns.items():
         place = place_of(batch, path)
-        held = part_at(batch, place)
+        current = part_at(batch, place)
         if place[-1] == "cavity_length":
             cavities[place[:-1]] = values
         elif place[-1] == "diameter":
             batch = with_value(batch, (*place[:-1], "radius"), values / 2)
-        elif isinstance(held, Part):  # a number for a law: its only coefficient
+        elif isinstance(current, Part):  # A number in place of a law is its only coefficient.
             batch = with_value(batch, (*place, "e"), values)
         else:
-            batch = with_value(batch, place, (values,) if isinstance(held, tuple) else values)
+            batch = with_value(batch, place, (values,) if isinstance(current, tuple) else values)
     for place, length in cavities.items():
         batch = with_value(batch, (*place, "gap"), (length - part_at(batch, place).row) / 2)
     try:
         return _problem(batch, axes), _points(batch, axes)
     except (TypeError, ValueError) as error:
         if not isinstance(error, CaseError):
-            error.add_note("A formula does not take arrays: see rattlebox.model.elementwise.")
+            error.add_note("A formula of the model does not accept arrays; see rattlebox.model.elementwise.")
         raise
 
 
@@ -239,10 +253,10 @@ def _points(case: Case, axes: int = 0) -> dict[str, NDArray[np.float64]]:
 
 
 def _problem(case: Case, axes: int = 0) -> _core.Problem:
-    """The problem without sample times; vectors of a batch over some axes have these after their own."""
+    """Return the problem without sample times; in a batch over some axes, vectors have these axes last."""
     if case.particle_dampers:
         raise Hint(
-            "this study computes impact dampers, not particles in space",
+            "this study computes impact dampers, not particle dampers",
             "a sweep, a loss map or a sensitivity, or one run after the other",
         )
     modes = case.modes
@@ -275,7 +289,7 @@ def _problem(case: Case, axes: int = 0) -> _core.Problem:
 
 
 def mode_coupling(modes: ModalModel, axes: int = 0) -> NDArray[np.float64]:
-    """Return the damping between modes, row by row; empty for proportional damping."""
+    """Return the coefficients of damping between modes, row by row; empty for proportional damping."""
     matrix = modes.coupling
     return _vector(np.zeros(0) if matrix is None else matrix.reshape(-1, *matrix.shape[2:]), axes)
 
@@ -292,19 +306,19 @@ def _vector(values: Any, axes: int) -> NDArray[np.float64]:
 def _loads(case: Case, modes: ModalModel, axes: int) -> list[_core.Load]:
     loads = [
         _core.Load(
-            signal=packed_signal(signal), shape=_vector(modes.shape(signal.point, signal.direction), axes), base=False
+            signal=pack_signal(signal), shape=_vector(modes.shape(signal.point, signal.direction), axes), base=False
         )
         for signal in case.loads
     ]
     base = [
-        _core.Load(signal=packed_signal(signal), shape=_vector(-_participation(modes), axes), base=True)
+        _core.Load(signal=pack_signal(signal), shape=_vector(-_participation(modes), axes), base=True)
         for signal in case.base_acceleration()
     ]
     return loads + base
 
 
-def packed_signal(signal: Signal) -> _core.HalfSine | _core.Harmonic | _core.Record:
-    """Return a load or an acceleration as the core reads it."""
+def pack_signal(signal: Signal) -> _core.HalfSine | _core.Harmonic | _core.Record:
+    """Pack a load or an acceleration for the core."""
     values = signal.coefficients()
     kind: type[_core.HalfSine | _core.Harmonic | _core.Record] = {
         "half_sine": _core.HalfSine,
@@ -330,11 +344,11 @@ def _contact(case: Case, damper_index: int, pair: Pair, place: int) -> _core.Con
     else:
         rebound = law.impact_restitution
         normal = _core.normal_law(*law.coefficients(pair))
-    return _core.Contact(mass=pair.mass, normal=normal, restitution=packed_restitution(rebound, pair))
+    return _core.Contact(mass=pair.mass, normal=normal, restitution=pack_restitution(rebound, pair))
 
 
 def _hard(equivalent: Restitution | FixedDamping) -> Restitution:
-    """Return the restitution law of hard impacts."""
+    """Return the restitution law of hard impacts that is equivalent to a contact."""
     if not isinstance(equivalent, FixedDamping):
         return equivalent
     e: Any = restitution_of_alpha(math.sqrt(5) * equivalent.ratio, equivalent.ending)

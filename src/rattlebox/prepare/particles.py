@@ -1,4 +1,4 @@
-"""Particle dampers: what is computed before the run, and the numbers that the core reads."""
+"""Preparation of particle runs: softening, time step, initial positions; packing into the problem of the 3-D engine."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from rattlebox.model.errors import at
 from rattlebox.model.methods import EventDriven, Output
 from rattlebox.model.packing import Settled
 from rattlebox.model.particle_case import direction_of_base, inertia_along
-from rattlebox.prepare.laws import packed_restitution
-from rattlebox.prepare.pack import mode_coupling, pack, packed_signal
-from rattlebox.prepare.settle import packed_walls, settle
-from rattlebox.prepare.softening import ENDURING, choose_softening, shaking
+from rattlebox.prepare.laws import pack_restitution
+from rattlebox.prepare.pack import mode_coupling, pack, pack_signal
+from rattlebox.prepare.settle import pack_walls, settle
+from rattlebox.prepare.softening import ENDURING, cavity_motion, choose_softening
 from rattlebox.prepare.time_step import (
     Step,
     choose_step,
+    evaluation_times,
     expected_speeds,
-    instants,
     largest_softening,
-    packed_friction,
-    packed_normal,
+    pack_friction,
+    pack_normal,
 )
 
 if TYPE_CHECKING:
@@ -40,20 +40,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A case with particle dampers, and all that is computed before its first step.
+    """A case with particle dampers and everything that is computed before its first step.
 
     Attributes
     ----------
     case
-        The case, with a number for each softening.
+        The case, with a number in place of each softening "auto".
     notes
-        Why a softening that was "auto" has its value.
+        Reasons for the values of softening "auto".
     step
-        The time step, and what limits it.
+        The time step and its limits.
     tables
-        Laws of the pairs in each damper.
+        Contact laws of the pairs in each damper.
     positions
-        Where the particles of each damper start, (n, 3) [m].
+        Initial positions of the particles of each damper, (n, 3) [m].
     """
 
     case: Case
@@ -64,15 +64,15 @@ class Prepared:
 
 
 def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
-    """Choose the softening and the time step of a case, and settle its particles.
+    """Choose the softening and the time step of a case, and let its particles settle.
 
     Parameters
     ----------
     case
         The case, with particle dampers.
     positions
-        Where the particles of each damper start, (n, 3) [m], as known from a checkpoint; by default those that settle are
-        let fall.
+        Initial positions of the particles of each damper, (n, 3) [m], from a checkpoint. By default, settled packings are
+        computed.
 
     Returns
     -------
@@ -82,16 +82,16 @@ def prepare(case: Case, positions: Sequence[Array] | None = None) -> Prepared:
     Raises
     ------
     CaseError
-        If the given step is too long, or particles do not settle.
+        If the time step of the case is too long, or particles do not settle.
     """
-    case, notes = resolved(case)
+    case, notes = resolve_softening(case)
     shapes = _shapes(case)
     tables = tuple(damper.contact_table for damper in case.particle_dampers)
     state = _without_particles(case)
     speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
     with at("method", "dt"):
         step = choose_step(case, list(tables), speeds)
-    step = replace(step, motions=tuple(shaking(case, shape, state) for shape in shapes))
+    step = replace(step, motions=tuple(cavity_motion(case, shape, state) for shape in shapes))
     return Prepared(case, notes, step, tables, tuple(_positions(case, shapes, positions)))
 
 
@@ -136,58 +136,59 @@ def pack_particles(prepared: Prepared) -> _core.DemProblem:
     )
 
 
-def settled(case: Case, go_on: Callable[[], bool]) -> bool:
-    """Let all particles of a case settle that are to.
+def settle_all(case: Case, proceed: Callable[[], bool]) -> bool:
+    """Compute the settled packings of a case in advance; `prepare` takes them from the cache of `settle`.
 
     Parameters
     ----------
     case
-        What is to be run.
-    go_on
-        Asked now and then; False stops.
+        The case.
+    proceed
+        Function that is called repeatedly; settling stops when it returns False.
 
     Returns
     -------
     bool
-        Whether they did before it was stopped. The engine remembers the beds.
+        Whether all packings have settled; False if `proceed` stopped it.
 
     Raises
     ------
     CaseError
-        When particles cannot be inserted, or do not come to rest.
+        If particles cannot be inserted, or do not come to rest.
     """
     return all(
-        not isinstance(damper.packing, Settled) or settle(damper, go_on) is not None for damper in case.particle_dampers
+        not isinstance(damper.packing, Settled) or settle(damper, proceed) is not None
+        for damper in case.particle_dampers
     )
 
 
-def objection(case: Case) -> str:
-    """Return why a case is refused before its first step; nothing where it can be run."""
+def refusal_reason(case: Case) -> str:
+    """Return the reason why a case cannot be run; empty if it can."""
     try:
-        settled(case, lambda: True)
+        settle_all(case, lambda: True)
         prepare(case)
     except RattleboxError as error:
         return str(error)
     return ""
 
 
-def resolved(case: Case) -> tuple[Case, tuple[str, ...]]:
-    """Return a case with a number for each softening that is "auto", and notes on these numbers."""
+def resolve_softening(case: Case) -> tuple[Case, tuple[str, ...]]:
+    """Return a case with a number in place of each softening "auto", and the reasons for these numbers."""
     dampers = case.particle_dampers
     if all(damper.softening != "auto" for damper in dampers):
         return case, ()
     shapes = _shapes(case)
     state = _without_particles(case)
     speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
-    made: list[Any] = list(case.dampers)
+    new_dampers: list[Any] = list(case.dampers)
     notes = []
     for index, (damper, shape, speed) in enumerate(zip(dampers, shapes, speeds, strict=True)):
         if damper.softening == "auto":
-            choice = choose_softening(damper, shaking(case, shape, state), largest_softening(case, damper, speed))
-            place = next(k for k, each in enumerate(made) if each is damper)
-            made[place] = damper.model_copy(update={"softening": choice.softening})
+            choice = choose_softening(damper, cavity_motion(case, shape, state), largest_softening(case, damper, speed))
+            place = next(k for k, each in enumerate(new_dampers) if each is damper)
+            new_dampers[place] = damper.model_copy(update={"softening": choice.softening})
             notes.append((f"{damper.label(index)}: " if len(dampers) > 1 else "") + choice.note)
-    return case.model_copy(update={"dampers": tuple(made)}), tuple(notes)
+    return case.model_copy(update={"dampers": tuple(new_dampers)}), tuple(notes)
 
 
 def _array(values: Any) -> Array:
@@ -199,23 +200,23 @@ def _shapes(case: Case) -> list[Array]:
 
 
 def _positions(case: Case, shapes: Sequence[Array], known: Sequence[Array] | None) -> list[Array]:
-    """Return where the particles of each damper start; those that settle are let fall unless the places are known."""
+    """Return the initial positions of the particles of each damper; settled ones are taken from `known` if it is given."""
     positions = []
     for index, (damper, shape) in enumerate(zip(case.particle_dampers, shapes, strict=True)):
-        moved = case.modes.q0 @ shape
-        position = damper.start.position + moved
+        displacement = case.modes.q0 @ shape
+        position = damper.start.position + displacement
         if isinstance(damper.packing, Settled):
             with at(*(("dampers", index) if len(shapes) > 1 else ("damper",)), "packing"):
-                position = settle(damper) + moved if known is None else known[index]
+                position = settle(damper) + displacement if known is None else known[index]
         positions.append(_array(position))
     return positions
 
 
 def _loads(case: Case) -> tuple[list[_core.Load], Array]:
-    """Loads and accelerations of the base, and the direction of each, zero for a load."""
+    """Return the loads and accelerations of the base, and the direction of each acceleration; zero for a load."""
     loads = [
         _core.Load(
-            signal=packed_signal(signal),
+            signal=pack_signal(signal),
             shape=_array(case.modes.shape(signal.point, signal.direction)),
             base=False,
         )
@@ -225,28 +226,30 @@ def _loads(case: Case) -> tuple[list[_core.Load], Array]:
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         direction = direction_of_base(case, signal)
         shape = _array(-inertia_along(case, direction))
-        loads.append(_core.Load(signal=packed_signal(acceleration), shape=shape, base=True))
+        loads.append(_core.Load(signal=pack_signal(acceleration), shape=shape, base=True))
         directions.append(direction)
     return loads, _array(directions).reshape(-1, 3)
 
 
 def _without_particles(case: Case) -> Array:
-    """Modal displacements and velocities of the structure alone at the instants, (T, m, 2)."""
+    """Return modal displacements and velocities of the structure without particles, (T, m, 2) at `evaluation_times`."""
     if not case.modes.decay.size:
         return np.zeros((0, 0, 2))
     alone = case.model_copy(
         update={"dampers": (), "base": (), "loads": (), "method": EventDriven(), "output": Output()}
     )
-    (raw,) = _core.simulate([pack(alone).replace(loads=_loads(case)[0], sample_times=_array(instants(case)))], 1)
+    (raw,) = _core.simulate(
+        [pack(alone).replace(loads=_loads(case)[0], sample_times=_array(evaluation_times(case)))], 1
+    )
     return raw.state.reshape(raw.time.size, -1, 2)
 
 
 def _cavity(damper: ParticleDamper, shape: Array, table: ContactTable, first: int, position: Array) -> _core.Cavity:
-    """Return a cavity and its particles; the laws of its pairs begin at a number in the list of all."""
+    """Pack a cavity and its particles; `first` is the index of its first pair law in the list of the problem."""
     contents, start = damper.contents, damper.start
     return _core.Cavity(
         shape=_array(shape),
-        walls=packed_walls(damper.cavity.walls(), table.wall_kind),
+        walls=pack_walls(damper.cavity.walls(), table.wall_kind),
         position=position,
         velocity=_array(start.velocity),
         spin=_array(start.spin),
@@ -261,9 +264,9 @@ def _cavity(damper: ParticleDamper, shape: Array, table: ContactTable, first: in
 
 def _pair_laws(damper: ParticleDamper, entry: Entry) -> _core.PairLaws:
     return _core.PairLaws(
-        normal=packed_normal(damper, entry),
-        restitution=packed_restitution(entry.contact.impact_restitution, entry.pair),
-        tangential=packed_friction(damper, entry),
+        normal=pack_normal(damper, entry),
+        restitution=pack_restitution(entry.contact.impact_restitution, entry.pair),
+        tangential=pack_friction(damper, entry),
         rolling=_core.RollingResistance(**damper.rolling_of(entry).coefficients()),
         radius=float(entry.pair.radius),
         mass=float(entry.pair.mass),

@@ -22,58 +22,65 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-ROUNDS = 5000
-KISSING = 12  # equal spheres that touch one
-SWELL = 2e-3  # how much larger particles are made while they are pushed apart, so that in the end none touch
-GROWN = 5e-6  # the same while they fall: twice that are the gaps of the bed
-SINK = 0.1  # overlap over radius at the largest speed of the fall; it is two hundredths of it under the own weight
-LIGHTER = tuple(0.5**n for n in range(1, 25))  # parts of the weight, one after the other
-CALM = 3  # times twenty contact times under each
+MAX_ITERATIONS = 5000
+KISSING_NUMBER = 12  # equal spheres that can touch one sphere
+SWELL = 2e-3  # relative enlargement of the radii while particles are pushed apart, so that none touch in the end
+FALL_SWELL = 5e-6  # the same during the fall; the gaps of the bed are twice as large
+SINK = 0.1  # overlap over radius at the largest speed of the fall; under the own weight it is 50 times smaller
+WEIGHT_FACTORS = tuple(0.5**n for n in range(1, 25))  # successive fractions of the weight during expansion
+RELAXATION_BLOCKS = 3  # blocks of twenty contact times under each of them
 RESTITUTION = 0.1
 STEPS = 20  # in a contact
-FALLS = 40  # times that a fall through the cavity takes; common beds rest after three to thirteen
-QUIET = 5  # times twenty contact times
-STOPS = 100  # after that: what nothing slows, as one ball that rolls in a round cavity, is stopped where it is fastest
-ROUGH = 1.0  # friction beyond which hardly anything slides
-REMEMBERED = 8  # beds
+MAX_FALL_TIMES = 40  # longest simulation over the duration of a fall through the cavity; common beds need 3 to 13
+QUIET_BLOCKS = 5  # blocks of twenty contact times in a row below the energy limit, after which a bed is at rest
+STOPS = (
+    100  # Then motion that nothing slows, such as a ball rolling in a round cavity, is stopped at its largest speed.
+)
+MAX_FRICTION = 1.0  # A larger coefficient of friction does not change the bed.
+CACHED_BEDS = 8
 
 
 @overload
 def settle(damper: ParticleDamper) -> Array: ...
 @overload
-def settle(damper: ParticleDamper, go_on: Callable[[], bool]) -> Array | None: ...
-def settle(damper: ParticleDamper, go_on: Callable[[], bool] = lambda: True) -> Array | None:
-    """Return positions of a bed at rest, (n, 3) [m] from the centre of the cavity.
+def settle(damper: ParticleDamper, proceed: Callable[[], bool]) -> Array | None: ...
+def settle(damper: ParticleDamper, proceed: Callable[[], bool] = lambda: True) -> Array | None:
+    """Return the positions of a settled packing of a damper.
 
-    The last few beds are remembered: cases that differ in motion or contacts only start from the same one.
+    The last few packings are cached: cases that differ only in motion or contacts start from the same one.
 
     Parameters
     ----------
     damper
-        What to fill in; its packing is Settled.
-    go_on
-        Asked now and then; False stops, and nothing is returned.
+        The damper, with a `Settled` packing.
+    proceed
+        Function that is called repeatedly; settling stops when it returns False.
+
+    Returns
+    -------
+    (n, 3) float or None
+        Positions relative to the centre of the cavity [m]; None if `proceed` stopped it.
 
     Raises
     ------
     Hint
-        When particles cannot be inserted, or do not come to rest.
+        If particles cannot be inserted, or do not come to rest.
     """
     packing = instance(damper.packing, Settled)
-    about = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
-    if about in _beds:
-        return _beds[about].copy()
+    key = damper.model_dump_json(include={"particles", "cavity", "gravity", "packing"}) + f" {_friction(damper)!r}"
+    if key in _beds:
+        return _beds[key].copy()
     radii = damper.contents.radius
     inserted = insert(damper.cavity, radii, packing.seed)
-    bed = _Bed(damper, go_on)
+    bed = _SettlingBed(damper, proceed)
     try:
         settled = bed.expand(bed.fall(inserted, packing.at_rest), damper.cavity)
     except _Stopped:
         return None
     check_packing(damper.cavity, settled, radii)
-    for oldest in list(_beds)[: 1 - REMEMBERED]:
+    for oldest in list(_beds)[: 1 - CACHED_BEDS]:
         _beds.pop(oldest, None)
-    _beds[about] = settled.copy()
+    _beds[key] = settled.copy()
     return settled
 
 
@@ -85,28 +92,33 @@ class _Stopped(Exception):
 
 
 def insert(cavity: AnyCavity, radii: Array, seed: int) -> Array:
-    """Return places of spheres at random that do not overlap, (n, 3) [m].
+    """Return random positions of spheres that do not overlap.
 
     Parameters
     ----------
     cavity
-        Where.
+        Cavity around the spheres.
     radii
-        Of the spheres, (n,) [m].
+        Radii of the spheres, (n,) [m].
     seed
-        Of the places.
+        Random seed of the positions.
+
+    Returns
+    -------
+    (n, 3) float
+        Positions relative to the centre of the cavity [m].
 
     Raises
     ------
     Hint
-        When they are too many.
+        If the cavity is too small for all of them.
     """
     generator = np.random.default_rng(seed)
     half = cavity.lengths / 2
     places = np.zeros((radii.size, 3))
     there = np.zeros(0, int)
     octave = np.log2(radii.max() / radii).astype(int)
-    for k in np.unique(octave):  # the largest first: they do not get through many small ones
+    for k in np.unique(octave):  # The largest first, since many small ones would block their way.
         left = new = np.flatnonzero(octave == k)
         for _ in range(1000):
             places[left] = generator.uniform(-half, half, (left.size, 3)) @ cavity.frame
@@ -120,47 +132,60 @@ def insert(cavity: AnyCavity, radii: Array, seed: int) -> Array:
 
 
 def _overlap(places: Array, radii: Array, others: Array, other_radii: Array) -> NDArray[np.bool_]:
-    """Whether spheres overlap others, larger ones, (n,)."""
+    """Return whether each sphere overlaps one of the others, which are larger, (n,)."""
     from scipy.spatial import cKDTree
 
-    found = np.zeros(radii.size, bool)
+    overlaps = np.zeros(radii.size, bool)
     octave = np.log2(other_radii / other_radii.min(initial=math.inf)).astype(int)
     for k in np.unique(octave):
         large = np.flatnonzero(octave == k)
         reach = float(radii.max() + other_radii[large].max())
         near = cKDTree(places).sparse_distance_matrix(cKDTree(others[large]), reach, output_type="ndarray")
-        found[near["i"][near["v"] < radii[near["i"]] + other_radii[large[near["j"]]]]] = True
-    return found
+        overlaps[near["i"][near["v"] < radii[near["i"]] + other_radii[large[near["j"]]]]] = True
+    return overlaps
 
 
 def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> Array:
-    """Push spheres apart and off the walls, each pair by what it overlaps, until none does.
+    """Push overlapping spheres apart and off the walls until no overlap is left.
 
     Parameters
     ----------
     cavity
-        Around them.
+        Cavity around the spheres.
     places
-        Where they are, (n, 3) [m].
+        Positions, (n, 3) [m].
     radii
-        Of the spheres, (n,) [m].
+        Radii of the spheres, (n,) [m].
     swell
-        How much larger they are made for it, in parts of the radius.
+        Enlargement of the spheres during the computation, relative to the radius.
+
+    Returns
+    -------
+    (n, 3) float
+        Positions without overlaps [m].
 
     Raises
     ------
     Hint
-        When there is no room.
+        If the cavity is too small for all of them.
+
+    Notes
+    -----
+    FIRE, steepest descent with inertia, on the sum of the squares of all overlaps.
+
+    References
+    ----------
+    E. Bitzek et al., Physical Review Letters 97 (2006) 170201, doi:10.1103/PhysRevLett.97.170201.
     """
     places, grown = places.copy(), radii * (1 + swell)
     walls = cavity.walls()
     margin = 0.3 * float(grown.min())
-    looked = np.full_like(places, np.inf)
+    listed = np.full_like(places, np.inf)  # positions at which the candidate pairs were listed
     move, stride, mixing, downhill = np.zeros_like(places), 0.3, 0.1, 0
-    for _ in range(ROUNDS):  # steepest descent with inertia (FIRE) on the squares of all overlaps
-        if not 2 * np.abs(places - looked).max() * math.sqrt(3) < margin:
+    for _ in range(MAX_ITERATIONS):
+        if not 2 * np.abs(places - listed).max() * math.sqrt(3) < margin:
             near = overlapping(places, grown, margin)[:2]
-            looked = places.copy()
+            listed = places.copy()
         between = places[near[0]] - places[near[1]]
         length = np.linalg.norm(between, axis=1)
         apart = length - grown[near[0]] - grown[near[1]]
@@ -176,7 +201,9 @@ def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> 
         np.add.at(force, first, push)
         np.add.at(force, second, -push)
         around = np.bincount(first, minlength=radii.size) + np.bincount(second, minlength=radii.size)
-        force /= np.maximum(around / KISSING, 1.0)[:, None]  # a large one among many small ones is stiffly held
+        force /= np.maximum(around / KISSING_NUMBER, 1.0)[
+            :, None
+        ]  # The springs of many small ones add up on a large one.
         if np.sum(force * move) > 0:
             move = (1 - mixing) * move + mixing * force * np.linalg.norm(move) / np.linalg.norm(force)
             downhill += 1
@@ -194,7 +221,7 @@ def push_apart(cavity: AnyCavity, places: Array, radii: Array, swell: float) -> 
 
 
 def _off_walls(walls: Any, places: Array, depth: Array) -> Array:
-    """Moves that take spheres out of walls."""
+    """Return displacements that move spheres out of the walls."""
     move = np.zeros_like(places)
     for k, (axis, form) in enumerate(zip(walls.axis, walls.form, strict=True)):
         deep = np.minimum(depth[:, k], 0.0)[:, None]
@@ -207,21 +234,21 @@ def _off_walls(walls: Any, places: Array, depth: Array) -> Array:
     return move
 
 
-class _Bed:
-    """Particles, a little larger than they are, in a cavity that stands still, with soft and sticky contacts."""
+class _SettlingBed:
+    """Slightly enlarged particles with soft, strongly damped contacts in a cavity at rest."""
 
-    def __init__(self, damper: ParticleDamper, go_on: Callable[[], bool]) -> None:
-        self._go_on = go_on
+    def __init__(self, damper: ParticleDamper, proceed: Callable[[], bool]) -> None:
+        self._proceed = proceed
         self._contents, self._walls = damper.contents, damper.cavity.walls()
         self._gravity = np.array(damper.gravity)
         self._pull = float(np.linalg.norm(self._gravity))
         height = damper.cavity.extent(self._gravity / self._pull)
         self._fall = math.sqrt(2 * height / self._pull)
         small = float(self._contents.radius.min())
-        # the largest overlap is speed times duration over pi
-        self._lasts = math.pi * SINK * small / (self._pull * self._fall)
+        # A linear contact has a largest overlap of speed times duration over pi.
+        self._contact_time = math.pi * SINK * small / (self._pull * self._fall)
         mass = float(self._contents.mass.min()) / 2
-        stiffness = mass * (math.pi / self._lasts) ** 2
+        stiffness = mass * (math.pi / self._contact_time) ** 2
         self._laws = _core.PairLaws(
             normal=_core.LinearForce(stiffness=stiffness, mass=mass, zero_overlap=0.0, fixed_contact_time=1.0),
             restitution=_core.ConstantRestitution(e=RESTITUTION, maximum=1.0),
@@ -232,14 +259,14 @@ class _Bed:
         )
 
     def fall(self, places: Array, at_rest: float) -> Array:
-        """Let particles fall until they rest."""
+        """Return the positions of the particles after they have fallen and come to rest."""
         still = at_rest * float(self._contents.mass @ self._contents.radius) * self._pull
-        rounds = max(1, math.ceil(FALLS * self._fall / (20 * self._lasts)))
+        blocks = max(1, math.ceil(MAX_FALL_TIMES * self._fall / (20 * self._contact_time)))
         for stopped in (False, *STOPS * (True,)):
             quiet, before = 0, 0.0
-            for now, energy in self._followed(places, 1.0, rounds):
+            for now, energy in self._simulate(places, 1.0, blocks):
                 quiet = quiet + 1 if energy < still else 0
-                if quiet == QUIET:
+                if quiet == QUIET_BLOCKS:
                     return now
                 places = now
                 if stopped and energy < before:
@@ -247,29 +274,30 @@ class _Bed:
                         return now
                     break
                 before = energy
-        raise Hint(f"particles do not come to rest within {FALLS * self._fall:.3g} s", "a larger at_rest")
+        raise Hint(f"particles do not come to rest within {MAX_FALL_TIMES * self._fall:.3g} s", "a larger at_rest")
 
     def expand(self, places: Array, cavity: AnyCavity) -> Array:
-        """Lift the weight little by little, until no particle in its true size overlaps another one."""
+        """Reduce the weight step by step until particles of the true size do not overlap; return their positions."""
         radii = self._contents.radius
-        told = radii - 0.5 * TOUCHING * radii.min()  # a row as long as the cavity overlaps by its rounding for ever
-        for weight in LIGHTER:
-            for now, _ in self._followed(places, weight, CALM):
-                if cavity.room(now, told).min() >= 0 and not overlapping(now, told)[0].size:
+        # The tolerance is for rows exactly as long as the cavity, which overlap by rounding under any weight.
+        reduced = radii - 0.5 * TOUCHING * radii.min()
+        for weight in WEIGHT_FACTORS:
+            for now, _ in self._simulate(places, weight, RELAXATION_BLOCKS):
+                if cavity.room(now, reduced).min() >= 0 and not overlapping(now, reduced)[0].size:
                     return now
             places = now
         return push_apart(cavity, places, radii, SWELL)
 
-    def _followed(self, places: Array, weight: float, rounds: int) -> Iterator[tuple[Array, float]]:
-        """Places and kinetic energy every twenty contact times, under a part of the weight."""
+    def _simulate(self, places: Array, weight: float, blocks: int) -> Iterator[tuple[Array, float]]:
+        """Yield positions and kinetic energy every twenty contact times, under a fraction of the weight."""
         every, none, count = 20 * STEPS, np.zeros(0), self._contents.radius.size
         cavity = _core.Cavity(
             shape=np.zeros((0, 3)),
-            walls=packed_walls(self._walls, np.zeros(self._walls.offset.size, int)),
+            walls=pack_walls(self._walls, np.zeros(self._walls.offset.size, int)),
             position=places,
             velocity=np.zeros_like(places),
             spin=np.zeros_like(places),
-            radius=self._contents.radius * (1 + GROWN),
+            radius=self._contents.radius * (1 + FALL_SWELL),
             mass=self._contents.mass,
             inertia=self._contents.inertia,
             species=np.zeros(count, np.int64),
@@ -277,8 +305,8 @@ class _Bed:
             wall_pair=np.zeros((1, 1), np.int64),
         )
         problem = _core.DemProblem(
-            dt=self._lasts / STEPS,
-            steps=rounds * every,
+            dt=self._contact_time / STEPS,
+            steps=blocks * every,
             every=every,
             gravity=self._gravity * weight,
             mode_decay=none,
@@ -293,17 +321,17 @@ class _Bed:
         )
         dem = _core.Dem(problem)
         dem.threads = max(1, min(os.cpu_count() or 1, count // 4000))
-        for sample in range(1, rounds + 1):
+        for sample in range(1, blocks + 1):
             dem.run(sample * every, None)
-            if not self._go_on():
+            if not self._proceed():
                 raise _Stopped
             if dem.status:
                 raise Hint(f"particles do not settle: the run ended with status {dem.status.name}")
             yield dem.state().cavities[0].position, float(dem.records().kinetic[-1].sum())
 
 
-def packed_walls(walls: Walls, material: NDArray[np.int_]) -> list[_core.Wall]:
-    """Return walls as the core reads them, each with the number of its material."""
+def pack_walls(walls: Walls, material: NDArray[np.int_]) -> list[_core.Wall]:
+    """Pack walls for the core, each with the index of its material."""
     return [
         _core.Wall(form=_core.WallForm[form], axis=axis, offset=float(offset), material=int(number))
         for form, axis, offset, number in zip(walls.form, walls.axis, walls.offset, material, strict=True)
@@ -311,6 +339,8 @@ def packed_walls(walls: Walls, material: NDArray[np.int_]) -> list[_core.Wall]:
 
 
 def _friction(damper: ParticleDamper) -> float:
-    """The largest coefficient of friction among the particles, up to where more makes no other bed."""
+    """Return the largest coefficient of friction in a damper, at most `MAX_FRICTION`."""
     entries = damper.contact_table.entries
-    return min(max((entry.friction.coefficient for entry in entries if entry.friction is not None), default=0.0), ROUGH)
+    return min(
+        max((entry.friction.coefficient for entry in entries if entry.friction is not None), default=0.0), MAX_FRICTION
+    )

@@ -1,8 +1,9 @@
 """Softening of contacts: its effect on a bed under its own weight, the value of "auto", and validity warnings.
 
-A softened bed is more compliant: the resonance of its compression under its own weight falls, and comes near the excitation.
-The loss in a cycle then changes by up to K ((f / f_s)^2 - (f / f_1)^2) m V^2, where f is the frequency of the motion and f_s
-the resonance at softening s. The coefficients K are from a table of computed runs, see docs/theory/softening.md.
+A softened bed is more compliant: the resonance of its compression under its own weight falls towards the excitation. The
+loss in a cycle then changes by up to K ((f / f_s)^2 - (f / f_1)^2) m V^2, where f is the frequency of the motion, f_s the
+resonance at softening s, m the mass of the particles and V the velocity amplitude of the cavity. The coefficients K were
+fitted to computed runs, see docs/theory/softening.md.
 """
 
 from __future__ import annotations
@@ -28,61 +29,61 @@ if TYPE_CHECKING:
     from rattlebox.model.particle_damper import Entry, ParticleDamper
 
 PACKED = 0.58
-"""Fraction of a settled bed that is particles."""
+"""Volume fraction of particles in a settled bed."""
 
 COLUMN = 0.75
-"""Resonance of a bed over that of a column of contacts in series: the least of four measured beds. Deep and narrow beds
-have up to twice of it, since their side walls hold them."""
+"""Resonance of a bed over that of a column of contacts in series: the smallest of four computed beds. The ratio is up to
+twice as large in deep and narrow beds, which the side walls support."""
 
 SENSITIVITY = (25.0, 7.0)
 """K of the module's equation, below and above `THROWN`, from computed runs."""
 
 THROWN = 2.0
-"""Amplitude of the acceleration over gravity above which a bed is thrown in every cycle."""
+"""Amplitude of the acceleration over gravity above which a bed leaves the floor in every cycle."""
 
 RESTING = 1.2
 """Amplitude of the acceleration over gravity below which a bed stays on the floor for most of a cycle."""
 
-MOST_CHANGE = 0.2
-"""Change of the loss in a cycle over m V^2 above which a run has a warning: a tenth of what a thrown bed loses at best."""
+MAX_CHANGE = 0.2
+"""Change of the loss in a cycle over m V^2 above which a run has a warning: a tenth of the largest loss of a thrown bed."""
 
 AUTO_CHANGE = 0.1
-"""The same, up to which "auto" softens."""
+"""Change of the loss in a cycle over m V^2 that softening "auto" accepts."""
 
 ENDURING = 0.25
 """Age, in periods of the excitation, beyond which a contact counts as enduring."""
 
-MOST_ENDURING = 0.1
+MAX_ENDURING_SHARE = 0.1
 """Share of the loss in enduring contacts above which a softened run has a warning."""
 
-_LEAST_PART = 0.1  # of the largest acceleration: weaker motions are left aside
+_LEAST_PART = 0.1  # Motions with less than this part of the largest acceleration are ignored.
 _INSTANTS = 1 << 14
 _LARGEST = 1e6
 
 
 @dataclass(frozen=True)
-class Shaking:
+class CavityMotion:
     """Motion of a cavity.
 
     Attributes
     ----------
     main
-        Frequency of its largest acceleration [Hz]; 0 where there is none.
+        Frequency of the largest acceleration [Hz]; 0 without motion.
     highest
         Highest frequency with at least a tenth of that acceleration [Hz].
     acceleration
-        Amplitude, from all frequencies [m/s^2].
-    is_given
-        Whether it does not depend on the particles, as on a shaker.
+        Amplitude of the acceleration, from all frequencies [m/s^2].
+    is_prescribed
+        Whether the motion is independent of the particles, as on a shaker.
     """
 
     main: float
     highest: float
     acceleration: float
-    is_given: bool
+    is_prescribed: bool
 
 
-def shaking(case: Case, shape: NDArray[np.float64], state: NDArray[np.float64]) -> Shaking:
+def cavity_motion(case: Case, shape: NDArray[np.float64], state: NDArray[np.float64]) -> CavityMotion:
     """Return the motion of a cavity with an empty damper.
 
     Parameters
@@ -93,22 +94,27 @@ def shaking(case: Case, shape: NDArray[np.float64], state: NDArray[np.float64]) 
         Mode shapes at the cavity.
     state : (T, m, 2) float
         Modal displacements and velocities of the structure without particles.
+
+    Returns
+    -------
+    CavityMotion
+        Frequencies and acceleration.
     """
     parts = [_harmonic(signal, case.duration) for signal in case.base_acceleration()]
     for mode, row in zip(np.moveaxis(state, 1, 0), shape, strict=True):
-        moved, speed = (float(values.std()) for values in mode.T)
-        rate = speed / moved if moved > 0 else 0.0
+        displacement, speed = (float(values.std()) for values in mode.T)
+        rate = speed / displacement if displacement > 0 else 0.0
         parts.append((rate / (2 * math.pi), math.sqrt(2) * rate * speed * float(np.linalg.norm(row))))
     parts = [(f, a) for f, a in parts if f > 0 and a > 0]
     if not parts:
-        return Shaking(0.0, 0.0, 0.0, not len(shape))
+        return CavityMotion(0.0, 0.0, 0.0, not len(shape))
     main, largest = max(parts, key=lambda part: part[1])
     highest = max(f for f, a in parts if a >= _LEAST_PART * largest)
-    return Shaking(main, highest, math.hypot(*(a for _, a in parts)), not len(shape))
+    return CavityMotion(main, highest, math.hypot(*(a for _, a in parts)), not len(shape))
 
 
 def _harmonic(signal: Signal, duration: float) -> tuple[float, float]:
-    """Frequency [Hz] and amplitude of an acceleration, or of the harmonic with its mean rate and mean square."""
+    """Return frequency [Hz] and amplitude of the harmonic with the same mean squares of acceleration and velocity."""
     if isinstance(signal, Harmonic):
         return signal.frequency, abs(signal.amplitude)
     if isinstance(signal, Shock):
@@ -119,20 +125,26 @@ def _harmonic(signal: Signal, duration: float) -> tuple[float, float]:
 
 
 def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> float:
-    """Return the lowest resonance of the bed of a damper, compressed under its own weight [Hz]; 0 without gravity.
+    """Return the lowest resonance of the bed of a damper, compressed under its own weight.
 
     Parameters
     ----------
     damper
         The damper.
     softening
-        Instead of its own.
+        Softening; default that of the damper.
+
+    Returns
+    -------
+    float
+        Resonance [Hz]; 0 without gravity.
 
     Notes
     -----
-    A column of depth h under gravity, of contacts of stiffness k in series, has waves of speed c = (k / (d rho))^(1/2) at
-    its floor. Contacts with a force A x^n have k = n F/x at the force F = pi d^2 p / (phi Z) of the pressure p there, and a
-    wave takes 2n/(n + 1) h / c, which is 6/5 h / c with Hertz contacts. The resonance is a quarter wave.
+    In a column of depth h under gravity, with contacts of stiffness k in series, waves have the speed
+    c = (k / (d rho))^(1/2) at the floor. Contacts with a force A x^n have k = n F/x at the force F = pi d^2 p / (phi Z) for
+    the pressure p there (phi: volume fraction, Z: contacts of a particle), and a wave takes 2n/(n + 1) h / c, which is
+    6/5 h / c with Hertz contacts. The resonance is a quarter wave, multiplied by `COLUMN`.
     """
     gravity = np.array(damper.gravity)
     size = float(np.linalg.norm(gravity))
@@ -150,10 +162,10 @@ def bed_resonance(damper: ParticleDamper, softening: float | None = None) -> flo
     density = PACKED * float(contents.mass.sum()) / volume
     neighbours = 4.6
     force = math.pi * diameter**2 * density * size * depth / (PACKED * neighbours)
-    exponent = exponent_of_force(entry.contact)
+    exponent = force_exponent(entry.contact)
     stiffness = exponent * force / _overlap(entry, factor, force)
-    slowed = 2 * exponent / (exponent + 1)
-    return float(COLUMN * math.sqrt(stiffness / (diameter * density)) / (4 * slowed * depth))
+    travel = 2 * exponent / (exponent + 1)  # time of a wave over h / c
+    return float(COLUMN * math.sqrt(stiffness / (diameter * density)) / (4 * travel * depth))
 
 
 def _overlap(entry: Entry, softening: float, force: float) -> float:
@@ -162,18 +174,18 @@ def _overlap(entry: Entry, softening: float, force: float) -> float:
     if isinstance(contact, TabulatedNormal):
         return force * softening / contact.secant_stiffness(force * softening)
     _, values = contact.softened(entry.pair, softening)
-    return float((force / values["stiffness"]) ** (1 / exponent_of_force(contact)))
+    return float((force / values["stiffness"]) ** (1 / force_exponent(contact)))
 
 
-def exponent_of_force(contact: Contact) -> float:
-    """Return the power of the overlap with which a force grows; measured curves count as springs, with their secant."""
+def force_exponent(contact: Contact) -> float:
+    """Return the exponent of a contact force in the overlap; measured curves count as linear, with their secant."""
     if isinstance(contact, PowerLaw):
         return contact.exponent
     return 1.0 if isinstance(contact, (Linear, TabulatedNormal)) else 1.5
 
 
-def change_of_loss(damper: ParticleDamper, motion: Shaking, level: float, softening: float) -> float:
-    """Return by how much softening may change the loss in a cycle, over m V^2 (see the module).
+def loss_change(damper: ParticleDamper, motion: CavityMotion, level: float, softening: float) -> float:
+    """Return the possible change of the loss in a cycle by softening, over m V^2.
 
     Parameters
     ----------
@@ -185,6 +197,11 @@ def change_of_loss(damper: ParticleDamper, motion: Shaking, level: float, soften
         Amplitude of the acceleration over gravity.
     softening
         The softening.
+
+    Returns
+    -------
+    float
+        K ((f / f_s)^2 - (f / f_1)^2), see the docstring of the module; 0 without gravity.
     """
     soft, hard = bed_resonance(damper, softening), bed_resonance(damper, 1.0)
     if not soft:
@@ -198,7 +215,7 @@ def _sensitivity(level: float) -> float:
 
 @dataclass(frozen=True)
 class Choice:
-    """The value that "auto" takes.
+    """The value of softening "auto".
 
     Attributes
     ----------
@@ -212,8 +229,8 @@ class Choice:
     note: str
 
 
-def choose_softening(damper: ParticleDamper, motion: Shaking, largest: float) -> Choice:
-    """Return the largest softening with a change of the loss of at most `AUTO_CHANGE`.
+def choose_softening(damper: ParticleDamper, motion: CavityMotion, largest: float) -> Choice:
+    """Return the largest softening that changes the loss by at most `AUTO_CHANGE`.
 
     Parameters
     ----------
@@ -223,25 +240,32 @@ def choose_softening(damper: ParticleDamper, motion: Shaking, largest: float) ->
         Motion of its cavity.
     largest
         Softening at which overlaps reach their limit.
+
+    Returns
+    -------
+    Choice
+        The softening and the reason for it.
     """
     gravity = float(np.linalg.norm(damper.gravity))
-    level = motion.acceleration / gravity if gravity and motion.is_given else 0.0
+    level = motion.acceleration / gravity if gravity and motion.is_prescribed else 0.0
     if not gravity:
-        return _none("without gravity the effect of softening cannot be estimated")
+        return _unsoftened("without gravity the effect of softening cannot be estimated")
     if not motion.highest:
-        return _none("the case has no frequency to compare the bed with")
-    if motion.is_given and level < RESTING:
-        return _none(
+        return _unsoftened("the case has no frequency to compare with the resonance of the bed")
+    if motion.is_prescribed and level < RESTING:
+        return _unsoftened(
             f"at {level:.2g} times gravity the bed stays on the floor for most of a cycle, and its loss grows with "
-            "softening; the model of friction matters there, too, and without friction that of the dashpot"
+            "softening; it also depends on the friction law, and without friction on the dashpot"
         )
-    exponent = exponent_of_force(damper.contact)
+    exponent = force_exponent(damper.contact)
     room = AUTO_CHANGE / _sensitivity(level) * (bed_resonance(damper, 1.0) / motion.highest) ** 2
     by_loss = (1 + room) ** exponent
     value = _rounded(max(1.0, min(by_loss, largest, _LARGEST)))
     if value == 1:
-        return _none("more would " + ("change the loss" if by_loss < largest else "make overlaps too large"))
-    change = change_of_loss(damper, motion, level, value)
+        return _unsoftened(
+            "a larger one would " + ("change the loss" if by_loss < largest else "make overlaps too large")
+        )
+    change = loss_change(damper, motion, level, value)
     faster = value ** (1 / (exponent + 1))
     limit = "the loss" if by_loss <= largest else "overlaps"
     return Choice(
@@ -251,12 +275,12 @@ def choose_softening(damper: ParticleDamper, motion: Shaking, largest: float) ->
     )
 
 
-def _none(why: str) -> Choice:
-    return Choice(1.0, f"softening 1: {why}")
+def _unsoftened(reason: str) -> Choice:
+    return Choice(1.0, f"softening 1: {reason}")
 
 
 def _rounded(value: float) -> float:
-    """Two digits, rounded down."""
+    """Round a value down to two digits."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return round(math.floor(value / unit * (1 + 1e-12)) * unit, 12)
 
@@ -272,9 +296,9 @@ class Effect:
     resonance
         Resonance of the bed under its own weight [Hz].
     change
-        Change of the loss in a cycle, over m V^2.
+        Possible change of the loss in a cycle, over m V^2.
     share
-        Share of the loss in enduring contacts; 0 where none is known.
+        Share of the loss in enduring contacts; 0 without any loss.
     frequency
         Highest frequency of the motion [Hz].
     """
@@ -286,27 +310,27 @@ class Effect:
     frequency: float
 
     def warnings(self, where: str) -> list[str]:
-        """Return the warnings, for a damper described by some words."""
+        """Return the warnings; `where` names the damper in them."""
         notes = []
-        if self.softening > 1 and self.change > MOST_CHANGE:
+        if self.softening > 1 and self.change > MAX_CHANGE:
             notes.append(
                 f"warning: softening {self.softening:g}{where} lowers the resonance of the bed under its weight to about "
                 f"{quantity(self.resonance, 'Hz', 2)}, {self.resonance / self.frequency:.2g} times the frequency of the "
-                f"motion: the loss in a cycle may change by {min(self.change, 3):.2g} m V^2, and should by less than "
-                f'{MOST_CHANGE:g}: use softening = "auto", or compare with rb.check_softening'
+                f"motion: the loss in a cycle may change by {min(self.change, 3):.2g} m V^2; below "
+                f'{MAX_CHANGE:g} is acceptable; try: softening = "auto", or compare with rb.check_softening'
             )
-        if self.softening > 1 and self.share > MOST_ENDURING:
+        if self.softening > 1 and self.share > MAX_ENDURING_SHARE:
             notes.append(
                 f"warning: {100 * self.share:.2g} % of the loss{where} is in contacts that last longer than a quarter of a "
-                f"period; above {100 * MOST_ENDURING:g} % it grows with softening ({self.softening:g} here): use "
-                "softening = 1; even then it depends on the model of friction, and without friction on that of the dashpot"
+                f"period; above {100 * MAX_ENDURING_SHARE:g} % the loss grows with softening ({self.softening:g} here); "
+                "try: softening = 1; even then it depends on the friction law, and without friction on the dashpot"
             )
         return notes
 
 
 def effects(
     case: Case,
-    motions: Sequence[Shaking],
+    motions: Sequence[CavityMotion],
     velocity: NDArray[np.float64],
     lost: NDArray[np.float64],
     enduring: NDArray[np.float64],
@@ -323,14 +347,19 @@ def effects(
         Velocity of the cavities in the run, with that of the base [m/s].
     lost, enduring : (D,) float
         Loss in all contacts, and in enduring ones [J].
+
+    Returns
+    -------
+    list of Effect
+        One for each damper.
     """
-    found = []
+    result = []
     for index, (damper, motion) in enumerate(zip(case.particle_dampers, motions, strict=True)):
         gravity = float(np.linalg.norm(damper.gravity))
         speed = math.sqrt(2 * float(np.var(velocity[:, index], axis=0).sum()))
         level = speed * 2 * math.pi * motion.main / gravity if gravity else 0.0
         softening = damper.softening_factor
         share = float(enduring[index] / lost[index]) if lost[index] > 0 else 0.0
-        change = change_of_loss(damper, motion, level, softening)
-        found.append(Effect(softening, bed_resonance(damper), change, share, motion.highest))
-    return found
+        change = loss_change(damper, motion, level, softening)
+        result.append(Effect(softening, bed_resonance(damper), change, share, motion.highest))
+    return result

@@ -1,4 +1,4 @@
-"""The time step of a run with particles: what limits it, and what the run made of it."""
+"""Time step of particle runs: its limits before the run, diagnostics and warnings after it."""
 
 from __future__ import annotations
 
@@ -21,63 +21,63 @@ from rattlebox.model.restitutions import Constant
 from rattlebox.model.shocks import Shock
 from rattlebox.model.signals import Sampled
 from rattlebox.prepare.base_motion import base_motion
-from rattlebox.prepare.softening import MOST_CHANGE, MOST_ENDURING, Effect, Shaking, exponent_of_force
+from rattlebox.prepare.softening import MAX_CHANGE, MAX_ENDURING_SHARE, CavityMotion, Effect, force_exponent
 
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
     from rattlebox.model.particle_damper import ContactTable, Entry, ParticleDamper
 
 BOUND = 0.2
-"""Longest step over the shortest contact. A lone Hertz contact is followed stably up to half of it; a particle that many
-others hold swings up to twice as fast, and friction adds to it."""
+"""Longest step over the duration of the shortest contact. The integration of a single Hertz contact is stable up to half of
+its duration; a particle with many contacts oscillates up to twice as fast, and friction adds to that."""
 
 RAYLEIGH = 0.2
-"""Longest automatic step over the time that a Rayleigh wave takes along the smallest particle."""
+"""Longest automatic step over the time of a Rayleigh wave along the smallest particle."""
 
-MOST_AVERAGED = 0.02
-"""Of the amplitude of a record at the fastest mode, that its means over steps may lack."""
+MAX_AVERAGING_LOSS = 0.02
+"""Largest relative loss of amplitude at the fastest mode when a record is averaged over steps."""
 
-FEWEST_STEPS = 20.0
-"""In the shortest contact."""
+MIN_STEPS_PER_CONTACT = 20.0
+"""Fewest steps in the shortest contact without a warning."""
 
-MOST_OVERLAP = 0.01
-"""Largest overlap over the smaller radius: beyond it contacts of spheres are no longer small against them."""
+MAX_OVERLAP = 0.01
+"""Largest overlap over the smaller radius without a warning; contact laws of spheres hold for small overlaps."""
 
 WARNINGS = {
-    "few_steps": f"fewer than {FEWEST_STEPS:g} steps in the shortest contact",
-    "deep_overlap": f"overlaps above {100 * MOST_OVERLAP:g} % of the radius",
+    "few_steps": f"fewer than {MIN_STEPS_PER_CONTACT:g} steps in the shortest contact",
+    "deep_overlap": f"overlaps above {100 * MAX_OVERLAP:g} % of the radius",
     "soft_bed": "softening that lowers the resonance of the bed too close to the excitation",
-    "enduring_contacts": f"more than {100 * MOST_ENDURING:g} % of the loss in enduring contacts, which grows with softening",
+    "enduring_contacts": f"over {100 * MAX_ENDURING_SHARE:g} % of the loss in enduring contacts, which grows with softening",
 }
-"""What a run can leave its bounds in."""
+"""Validity limits that a run can exceed: name and description."""
 
 HERTZ_TIME = 2.9432752
-"""Duration of a Hertz contact over its largest overlap by the approach speed."""
+"""Duration of a Hertz contact times the approach speed over the largest overlap."""
 
-MOST_STEPS = 2**63 - 1
-"""In a run: the core counts them in 64-bit integers."""
+MAX_STEPS = 2**63 - 1
+"""Most steps of a run: the core counts them in 64-bit integers."""
 
 INSTANTS, GOLDEN = 4096, (math.sqrt(5) - 1) / 2
-"""At which speeds are looked at besides the samples, which may be as far apart as a period. Multiples of the golden ratio
-fall together with no other motion."""
+"""Number and spacing of the times, besides those of the samples, at which speeds are evaluated. Samples may be a period of
+the motion apart; multiples of the golden ratio are in step with no periodic motion."""
 
 
 @dataclass(frozen=True)
 class Limit:
-    """Something that a step must resolve.
+    """A contact, wave or period that the step must resolve.
 
     Attributes
     ----------
     duration
-        How long it lasts [s].
+        Duration [s].
     step
         Longest automatic step [s].
     bound
-        Longest step that is not refused [s]; infinite if any is allowed.
+        Longest step that is accepted [s]; infinite for any.
     what
-        What it is, in words.
+        Description for messages.
     is_contact
-        Whether it is a contact.
+        Whether this is a contact.
     """
 
     duration: float
@@ -89,22 +89,22 @@ class Limit:
 
 @dataclass(frozen=True)
 class Step:
-    """The step of a run.
+    """Time step of a run.
 
     Attributes
     ----------
     dt
-        [s].
+        Time step [s].
     every
         Steps between samples.
     count
-        Steps in all.
+        Total number of steps.
     limit
-        What limits it most.
+        The limit with the shortest automatic step.
     shortest
-        The shortest contact that is expected.
+        The shortest expected contact.
     speeds
-        Largest approach speed that is expected in each damper [m/s].
+        Largest expected approach speed in each damper [m/s].
     motions
         Expected motion of each cavity.
     """
@@ -115,29 +115,36 @@ class Step:
     limit: Limit
     shortest: Limit
     speeds: tuple[float, ...]
-    motions: tuple[Shaking, ...] = ()
+    motions: tuple[CavityMotion, ...] = ()
 
 
-def instants(case: Case) -> Any:
-    """Return times at which speeds are looked at, (T,) [s]: those of the samples, and others in step with nothing."""
+def evaluation_times(case: Case) -> Any:
+    """Return the times at which speeds are evaluated, (T,) [s]: those of the samples and `INSTANTS` others."""
     others = case.duration * (np.arange(INSTANTS) * GOLDEN % 1.0)
     return np.union1d(case.sample_times(), others)
 
 
 def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ...]:
-    """Return the largest approach speed to expect in each damper [m/s].
-
-    The sum of what a free particle and its cavity may differ by: the span of the cavity's velocity without particles, with
-    rest in it, that of the base's, the speed of a fall through the cavity, and twice the largest speed at the start.
+    """Estimate the largest approach speed in each damper.
 
     Parameters
     ----------
     case
         The case.
     cavity_velocities
-        Velocity of each cavity without particles at the `instants`, (T, 3) [m/s].
+        Velocity of each cavity without particles at the `evaluation_times`, (T, 3) [m/s].
+
+    Returns
+    -------
+    tuple of float
+        Largest expected approach speeds [m/s].
+
+    Notes
+    -----
+    The estimate is the sum of the range of the cavity's velocity without particles (zero included), the range of the base
+    velocity, the speed after a fall through the cavity, and twice the largest initial speed of a particle.
     """
-    times = instants(case)
+    times = evaluation_times(case)
     base = np.zeros((times.size, 3))
     for signal, acceleration in zip((*case.base, *case.shaker_motion), case.base_acceleration(), strict=True):
         base += np.outer(base_motion(acceleration, times)[1], direction_of_base(case, signal))
@@ -147,7 +154,7 @@ def expected_speeds(case: Case, cavity_velocities: list[Any]) -> tuple[float, ..
         size = float(np.linalg.norm(gravity))
         fall = math.sqrt(2 * size * damper.cavity.extent(gravity / size)) if size else 0.0
         start = 2 * float(np.linalg.norm(damper.start.velocity, axis=1).max())
-        rest = np.zeros((1, 3))  # particles without a speed of their own
+        rest = np.zeros((1, 3))  # particles at rest relative to the base
         speeds.append(_span(np.vstack([rest, velocity])) + _span(base) + fall + start)
     return tuple(speeds)
 
@@ -159,60 +166,67 @@ def _span(velocity: Any) -> float:
 def contact_limits(
     case: Case, damper: ParticleDamper, table: ContactTable, speed: float, fraction: float
 ) -> Iterator[Limit]:
-    """Yield a limit for each kind of pair in a damper: its shortest contact at a speed.
+    """Yield a limit for each kind of pair in a damper: its shortest contact at an approach speed.
 
     Parameters
     ----------
     case, damper
         The case, and one of its dampers.
     table
-        Its pairs.
+        Contact laws of its pairs.
     speed
         Approach speed [m/s].
     fraction
-        Of a contact, for a step.
+        Automatic step over the duration of the contact.
+
+    Yields
+    ------
+    Limit
+        The shortest contact of a kind of pair.
     """
     labels = [species.label for species in damper.particles]
     wall_mass = _wall_mass(case, damper)
     numbers = np.bincount(damper.contents.species, minlength=len(labels))
     for entry in table.entries:
         if entry.names[0] == entry.names[1] and numbers[labels.index(entry.names[0])] < 2:
-            continue  # nothing to meet
-        reference = packed_normal(damper, entry)
+            continue  # A single particle has no partner of its species.
+        reference = pack_normal(damper, entry)
         damped = max(1.0, 2 * _damping_ratio(entry, reference, speed))
         duration, bound, sizes = math.inf, math.inf, ""
-        for pair_radius, pair_mass, told in _sizes(damper, entry, wall_mass):
+        for pair_radius, pair_mass, text in _sizes(damper, entry, wall_mass):
             law = reference.resized(entry.pair.radius, entry.pair.mass, pair_radius, pair_mass)
-            lasts = law.contact_time(speed)
-            bound = min(bound, BOUND * lasts / max(damped, _sideways(damper, entry, law, pair_radius, speed, lasts)))
-            if lasts < duration:
-                duration, sizes = lasts, told
+            time = law.contact_time(speed)
+            factor = max(damped, _tangential_factor(damper, entry, law, pair_radius, speed, time))
+            bound = min(bound, BOUND * time / factor)
+            if time < duration:
+                duration, sizes = time, text
         at = "" if isinstance(entry.contact, Linear) else f" at {speed:.3g} m/s"
-        rubs = ", with its friction" if bound < 0.5 * BOUND * duration / damped else ""
-        what = f"contact of {' and '.join(entry.names)} ({sizes}){at}, {_time(duration)}{rubs}"
+        friction = ", with its friction" if bound < 0.5 * BOUND * duration / damped else ""
+        what = f"contact of {' and '.join(entry.names)} ({sizes}){at}, {_time(duration)}{friction}"
         yield Limit(duration, min(fraction * duration / damped, 0.5 * bound), bound, what, is_contact=True)
 
 
-def packed_normal(damper: ParticleDamper, entry: Entry) -> _core.NormalForce:
+def pack_normal(damper: ParticleDamper, entry: Entry) -> _core.NormalForce:
     """Return the softened normal law of a pair."""
     return _core.normal_law(*damper.softened(entry))
 
 
-def packed_friction(damper: ParticleDamper, entry: Entry) -> _core.TangentialForce:
+def pack_friction(damper: ParticleDamper, entry: Entry) -> _core.TangentialForce:
     """Return the softened friction law of a pair."""
     return _core.tangential_law(*damper.softened_friction(entry))
 
 
-def _sideways(
+def _tangential_factor(
     damper: ParticleDamper, entry: Entry, law: _core.NormalForce, radius: float, speed: float, duration: float
 ) -> float:
-    """Return by what factor friction and rolling resistance shorten the longest stable step of a contact.
+    """Return the factor by which friction and rolling resistance shorten the longest stable step of a contact.
 
-    A spring in the plane of contact swings spheres that are free to turn with 7/2 k_t/m*, against k/m* along the normal; one
-    against rolling adds 5/2 of its own part of k_t. Steps up to 1.2 over the frequency were seen to give no energy. Dashpots
-    take a velocity predicted from the last two steps, stable up to 1 over their rate: 7/2 c_t/m*, and 5/2 c_r/(m* R*^2).
+    Spheres that are free to rotate oscillate on a tangential spring with the squared angular frequency 7/2 k_t/m*, compared
+    with k/m* along the normal; a rolling spring adds 5/2 of its share of k_t. Steps up to 1.2 over the angular frequency did
+    not generate energy in tests. Dashpots use a velocity that is extrapolated from the last two steps, which is stable up to
+    1 over their rate: 7/2 c_t/m*, and 5/2 c_r/(m* R*^2).
     """
-    tangential = packed_friction(damper, entry)
+    tangential = pack_friction(damper, entry)
     if not tangential.friction_coefficient or not math.isfinite(duration):
         return 1.0
     mass = law.effective_mass
@@ -230,13 +244,13 @@ def _sideways(
 
 
 def _wall_mass(case: Case, damper: ParticleDamper) -> float:
-    """Of the structure, where an impact on a wall meets the least of it [kg]."""
+    """Return the smallest effective mass of the structure at the cavity, over all directions [kg]."""
     mobility = np.linalg.norm(case.modes.space_shape(damper.point, damper.direction), 2) ** 2
     return float(1 / mobility) if mobility else math.inf
 
 
 def _sizes(damper: ParticleDamper, entry: Entry, wall_mass: float) -> Iterator[tuple[float, float, str]]:
-    """R*, m* and a description of the smallest and largest pairs of an entry."""
+    """Yield R*, m* and a description of the pairs of smallest and largest bodies of an entry."""
     labels = [species.label for species in damper.particles]
     extremes = []
     for name in entry.names:
@@ -248,13 +262,13 @@ def _sizes(damper: ParticleDamper, entry: Entry, wall_mass: float) -> Iterator[t
         extremes.append([(float(radii[k]), float(masses[k])) for k in {int(radii.argmin()), int(radii.argmax())}])
     for radius, mass in extremes[0]:
         for other_radius, other_mass in extremes[1]:
-            told = [f"{2e3 * r:.4g} mm" for r in (radius, other_radius) if math.isfinite(r)]
+            diameters = [f"{2e3 * r:.4g} mm" for r in (radius, other_radius) if math.isfinite(r)]
             pair = 1 / (1 / radius + 1 / other_radius), 1 / (1 / mass + 1 / other_mass)
-            yield *pair, "diameter " + " and ".join(dict.fromkeys(told))
+            yield *pair, "diameter " + " and ".join(dict.fromkeys(diameters))
 
 
 def _damping_ratio(entry: Entry, law: _core.NormalForce, speed: float) -> float:
-    """Return the damping ratio of a contact; 0 where its restitution depends on the speed."""
+    """Return the damping ratio of a contact; 0 if its restitution depends on the speed."""
     constant = entry.contact.impact_restitution
     if law.needs_restitution and not isinstance(constant, Constant):
         return 0.0
@@ -262,21 +276,35 @@ def _damping_ratio(entry: Entry, law: _core.NormalForce, speed: float) -> float:
 
 
 def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> list[Limit]:
-    """Return all that a step must resolve.
+    """Return the limits of the time step: contacts, Rayleigh waves, modes, loads.
 
     Parameters
     ----------
     case
         The case.
     tables
-        Pairs of each damper.
+        Contact laws of the pairs in each damper.
     speeds
-        Largest approach speed to expect in each damper [m/s].
+        Largest expected approach speed in each damper [m/s].
+
+    Returns
+    -------
+    list of Limit
+        All limits.
+
+    Notes
+    -----
+    A Rayleigh wave along a sphere of radius R takes pi R / ((0.1631 nu + 0.8766) (G / rho)^(1/2)).
+
+    References
+    ----------
+    C. Thornton, C. W. Randall, Applications of theoretical contact mechanics to solid particle system simulation, in:
+    Micromechanics of Granular Materials, Elsevier (1988) 133-142.
     """
     fraction = instance(case.method, Dem).fraction
-    found: list[Limit] = []
+    result: list[Limit] = []
     for damper, table, speed in zip(case.particle_dampers, tables, speeds, strict=True):
-        found += contact_limits(case, damper, table, speed, fraction)
+        result += contact_limits(case, damper, table, speed, fraction)
         for index, species in enumerate(damper.particles):
             if all(isinstance(entry.contact, Linear) for entry in table.entries if species.label in entry.names):
                 continue
@@ -285,76 +313,81 @@ def limits(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) ->
             shear = material.young / (2 * (1 + material.poisson)) / damper.softening_factor
             wave = (0.1631 * material.poisson + 0.8766) * math.sqrt(shear / material.density)
             time = math.pi * radius / wave
-            told = f"Rayleigh wave along {species.label} (diameter {2e3 * radius:.4g} mm), {_time(time)}"
-            found.append(Limit(time, RAYLEIGH * time, math.inf, told))
+            what = f"Rayleigh wave along {species.label} (diameter {2e3 * radius:.4g} mm), {_time(time)}"
+            result.append(Limit(time, RAYLEIGH * time, math.inf, what))
     for k, stiffness in enumerate(case.modes.stiffness):
         if stiffness > 0:
-            found.append(_of_motion(2 * math.pi / math.sqrt(stiffness), fraction, f"period of mode {k + 1}"))
+            result.append(_motion_limit(2 * math.pi / math.sqrt(stiffness), fraction, f"period of mode {k + 1}"))
     for signal in (*case.loads, *case.base_acceleration()):
         if isinstance(signal, Shock):
-            found.append(_of_motion(signal.duration, fraction, "pulse"))
+            result.append(_motion_limit(signal.duration, fraction, "pulse"))
         elif isinstance(signal, Harmonic):
-            found.append(_of_motion(1 / signal.frequency, fraction, "period of a harmonic"))
+            result.append(_motion_limit(1 / signal.frequency, fraction, "period of a harmonic"))
         elif isinstance(signal, SineSweep):
             highest = max(signal.first_frequency, signal.last_frequency)
-            found.append(_of_motion(1 / highest, fraction, "shortest period of a sweep"))
-    return found
+            result.append(_motion_limit(1 / highest, fraction, "shortest period of a sweep"))
+    return result
 
 
-def _of_motion(duration: float, fraction: float, what: str) -> Limit:
+def _motion_limit(duration: float, fraction: float, what: str) -> Limit:
     return Limit(duration, fraction * duration, BOUND * duration, f"{what}, {_time(duration)}")
 
 
 def choose_step(case: Case, tables: list[ContactTable], speeds: tuple[float, ...]) -> Step:
-    """Return the step: as given, or from what it must resolve; a little shorter so that samples fall on steps.
+    """Return the time step of a run: that of the case or the longest automatic one, shortened so that samples fall on steps.
 
     Parameters
     ----------
     case
         The case.
     tables
-        Pairs of each damper.
+        Contact laws of the pairs in each damper.
     speeds
-        Largest approach speed to expect in each damper [m/s].
+        Largest expected approach speed in each damper [m/s].
+
+    Returns
+    -------
+    Step
+        The step and its limits.
 
     Raises
     ------
     Hint
-        When the step that is given is too long to be stable or to follow a load, or its steps are too many to be counted.
+        If the step of the case is too long for stability or for a load, or the number of steps exceeds `MAX_STEPS`.
     """
     method = instance(case.method, Dem)
-    found = limits(case, tables, speeds)
-    tightest = min(found, key=lambda limit: limit.step)
+    all_limits = limits(case, tables, speeds)
+    tightest = min(all_limits, key=lambda limit: limit.step)
     samples = case.even_samples()
     if method.dt == "auto":
         longest = tightest.step
     else:
         longest = float(method.dt)
-        refusing = min(found, key=lambda limit: limit.bound)
-        if longest > refusing.bound:
+        strictest = min(all_limits, key=lambda limit: limit.bound)
+        if longest > strictest.bound:
             raise Hint(
-                f"dt = {_time(longest)} is too long: the bound is {_time(refusing.bound)}, for the {refusing.what}",
-                f'dt = "auto", or dt = "{0.99e6 * refusing.bound:.3g} us"',
+                f"dt = {_time(longest)} is too long: the bound is {_time(strictest.bound)}, for the {strictest.what}",
+                f'dt = "auto", or dt = "{0.99e6 * strictest.bound:.3g} us"',
             )
     interval = case.duration / samples
-    every = math.ceil(min(interval / longest * (1 - 1e-12), 2.0 * MOST_STEPS))
-    if every * samples > MOST_STEPS:
-        raise _uncountable(case, longest, given=method.dt != "auto")
-    shortest = min((limit for limit in found if limit.is_contact), key=lambda limit: limit.duration)
+    every = math.ceil(min(interval / longest * (1 - 1e-12), 2.0 * MAX_STEPS))
+    if every * samples > MAX_STEPS:
+        raise _too_many_steps(case, longest, given=method.dt != "auto")
+    shortest = min((limit for limit in all_limits if limit.is_contact), key=lambda limit: limit.duration)
     return Step(interval / every, every, every * samples, tightest, shortest, speeds)
 
 
-def _uncountable(case: Case, dt: float, *, given: bool) -> Hint:
-    """What is said of a step of which more are needed than the core can count."""
+def _too_many_steps(case: Case, dt: float, *, given: bool) -> Hint:
+    """Return the error for a step of which a run needs more than `MAX_STEPS`."""
     steps = Decimal(case.duration) / Decimal(dt)
     return Hint(
         f"{'' if given else 'the automatic '}dt = {dt:.3g} s is too short: the run would take {steps:.2e} steps, "
-        f"and at most {MOST_STEPS:.2e} can be counted",
+        f"and at most {MAX_STEPS:.2e} can be counted",
         'dt = "auto"' if given else "a larger fraction, or a shorter duration",
     )
 
 
-def outcome(
+def step_diagnostics(
     case: Case,
     tables: Sequence[ContactTable],
     step: Step,
@@ -362,18 +395,25 @@ def outcome(
     speeds: Sequence[float],
     effects: Sequence[Effect] = (),
 ) -> tuple[dict[str, float], list[str]]:
-    """Return diagnostics and notes on a step, after the run.
+    """Return diagnostics and notes on the time step after the run.
 
     Parameters
     ----------
     case, tables, step
-        As for `choose_step`, and what it returned.
+        The arguments of `choose_step`, and its result.
     overlaps
         Largest overlap over the smaller radius, in each damper.
     speeds
         Largest approach speed at a first touch, in each damper [m/s].
     effects
         Effect of softening on each damper.
+
+    Returns
+    -------
+    diagnostics : dict
+        Diagnostics by name, in SI units.
+    notes : list of str
+        Notes and warnings.
     """
     dampers = case.particle_dampers
     shortest = min(
@@ -401,105 +441,119 @@ def outcome(
             "enduring_share": max(effect.share for effect in effects),
             "softened_enduring_share": max(effect.share if effect.softening > 1 else 0.0 for effect in effects),
         }
-    notes = [_limited(case, step), *_softened(case)]
-    warned = warnings_of(diagnostics)
+    notes = [_step_note(case, step), *_softening_notes(case)]
+    warned = exceeded_limits(diagnostics)
     if "few_steps" in warned:
         notes.append(
             f"warning: only {steps:.3g} steps in the shortest contact, that of {shortest.what.removeprefix('contact of ')}; "
-            f"at least {FEWEST_STEPS:g} are good"
+            f"it should have at least {MIN_STEPS_PER_CONTACT:g}; try: a step of "
+            f"{0.9 * shortest.duration / MIN_STEPS_PER_CONTACT:.2g} s"
         )
-    notes.extend(_averaged(case, step))
+    notes.extend(_averaging_warnings(case, step))
     for index, effect in enumerate(effects):
         notes += effect.warnings(f" in {dampers[index].label(index)}" if len(dampers) > 1 else "")
     for index, (damper, overlap) in enumerate(zip(dampers, overlaps, strict=True)):
-        if overlap > MOST_OVERLAP:
+        if overlap > MAX_OVERLAP:
             where = f" in {damper.label(index)}" if len(dampers) > 1 else ""
             notes.append(
-                f"warning: overlaps{where} reach {100 * overlap:.3g} % of the radius, and should stay below "
-                f"{100 * MOST_OVERLAP:g} %: "
+                f"warning: overlaps{where} reach {100 * overlap:.3g} % of the radius; they should stay below "
+                f"{100 * MAX_OVERLAP:g} %; try: "
                 + ("less softening or a stiffer contact" if damper.softening_factor > 1 else "a stiffer contact")
             )
     return diagnostics, notes
 
 
-def _averaged(case: Case, step: Step) -> Iterator[str]:
-    """State what the fastest mode loses of records, which act with their means over steps."""
+def _averaging_warnings(case: Case, step: Step) -> Iterator[str]:
+    """Yield a warning if averaging a record over steps reduces it too much at the fastest mode."""
     fastest = math.sqrt(max(case.modes.stiffness, default=0.0)) / (2 * math.pi)
     lost = 1 - float(np.sinc(fastest * step.dt))
-    if lost > MOST_AVERAGED and any(isinstance(signal, Sampled) for signal in (*case.loads, *case.base_acceleration())):
-        shorter = 0.9 * math.sqrt(6 * MOST_AVERAGED) / (math.pi * fastest)  # also when it is rounded
+    if lost > MAX_AVERAGING_LOSS and any(
+        isinstance(signal, Sampled) for signal in (*case.loads, *case.base_acceleration())
+    ):
+        # The factor 0.9 leaves room for the rounding in the message.
+        shorter = 0.9 * math.sqrt(6 * MAX_AVERAGING_LOSS) / (math.pi * fastest)
         yield (
-            f"warning: a record acts with its mean over each step, which takes {100 * lost:.2g} % of the amplitude"
-            f" at {fastest:.4g} Hz, the fastest mode; up to {100 * MOST_AVERAGED:g} % is allowed; try: a step of"
+            f"warning: a record acts with its mean over each step, which removes {100 * lost:.2g} % of the amplitude"
+            f" at {fastest:.4g} Hz, the fastest mode; up to {100 * MAX_AVERAGING_LOSS:g} % is allowed; try: a step of"
             f" {shorter:.2g} s"
         )
 
 
-def warnings_of(diagnostics: Mapping[str, float]) -> list[str]:
-    """Return in what a run left its bounds, names of `WARNINGS`.
+def exceeded_limits(diagnostics: Mapping[str, float]) -> list[str]:
+    """Return the names of the validity limits that the run exceeded (see `WARNINGS`).
 
     Parameters
     ----------
     diagnostics
-        From `outcome`.
+        Diagnostics from `step_diagnostics`.
+
+    Returns
+    -------
+    list of str
+        Keys of `WARNINGS`.
     """
     steps = diagnostics["steps_per_contact"]
-    found = (
-        math.isfinite(steps) and steps < FEWEST_STEPS,
-        diagnostics["largest_overlap"] > MOST_OVERLAP,
-        diagnostics.get("softening_change", 0.0) > MOST_CHANGE,
-        diagnostics.get("softened_enduring_share", 0.0) > MOST_ENDURING,
+    exceeded = (
+        math.isfinite(steps) and steps < MIN_STEPS_PER_CONTACT,
+        diagnostics["largest_overlap"] > MAX_OVERLAP,
+        diagnostics.get("softening_change", 0.0) > MAX_CHANGE,
+        diagnostics.get("softened_enduring_share", 0.0) > MAX_ENDURING_SHARE,
     )
-    return [name for name, is_so in zip(WARNINGS, found, strict=True) if is_so]
+    return [name for name, is_exceeded in zip(WARNINGS, exceeded, strict=True) if is_exceeded]
 
 
 def largest_softening(case: Case, damper: ParticleDamper, speed: float) -> float:
-    """Return the softening at which the overlaps of a damper that is not softened reach `MOST_OVERLAP`.
+    """Return the softening at which the overlaps in a damper reach `MAX_OVERLAP`.
 
     Parameters
     ----------
     case, damper
-        The case, and one of its dampers.
+        The case, and one of its dampers, without softening.
     speed
-        Largest approach speed to expect [m/s].
+        Largest expected approach speed [m/s].
+
+    Returns
+    -------
+    float
+        Softening; infinite without contacts.
     """
     smallest, table = float(damper.contents.radius.min()), damper.contact_table
     longest = max((limit.duration for limit in contact_limits(case, damper, table, speed, 1.0)), default=0.0)
     overlap = speed * longest / HERTZ_TIME / smallest if math.isfinite(longest) else 0.0
-    return (MOST_OVERLAP / overlap) ** 2 if overlap else math.inf
+    return (MAX_OVERLAP / overlap) ** 2 if overlap else math.inf
 
 
-def _limited(case: Case, step: Step) -> str:
-    """What the step is, and what limits it: steps are no longer than samples are apart."""
+def _step_note(case: Case, step: Step) -> str:
+    """Return a note on the step and its limit, which may be the interval between samples."""
     method = instance(case.method, Dem)
-    told = f"step {_time(step.dt)}, "
+    text = f"step {_time(step.dt)}, "
     if method.dt == "auto":
-        longest, why = step.limit.step, f"the {step.limit.what}"
-        limited, else_ = f"limited by {why}", f"for {why}"
+        longest = step.limit.step
+        reason, otherwise = f"limited by the {step.limit.what}", f"for the {step.limit.what}"
     else:
         longest = float(method.dt)
-        limited = else_ = f"as given; an automatic one would be limited by the {step.limit.what}"
+        reason = otherwise = f"as given; an automatic one would be limited by the {step.limit.what}"
     if step.every == 1 and step.dt < (1 - 1e-9) * longest:
-        return f"{told}limited by the samples; without them {_time(longest)}, {else_}"
-    return told + limited
+        return f"{text}limited by the samples; without them {_time(longest)}, {otherwise}"
+    return text + reason
 
 
-def _softened(case: Case) -> list[str]:
-    """What softening does, told once for all dampers that are alike."""
-    told: dict[str, list[str]] = {}
+def _softening_notes(case: Case) -> list[str]:
+    """Return notes on the effects of softening, one for all dampers with the same effects."""
+    dampers_by_note: dict[str, list[str]] = {}
     for index, damper in enumerate(case.particle_dampers):
-        exponents = {exponent_of_force(entry.contact) for entry in damper.contact_table.entries}
+        exponents = {force_exponent(entry.contact) for entry in damper.contact_table.entries}
         factors = {damper.softening_factor ** (1 / (exponent + 1)) for exponent in exponents}
-        many = " and ".join(f"{factor:.3g}" for factor in sorted(factors))
-        does = f"contacts last {many} times as long, and overlap {many} times as much"
+        times = " and ".join(f"{factor:.3g}" for factor in sorted(factors))
+        effect = f"contacts last {times} times as long, and overlap {times} times as much"
         softening = damper.softening_factor
-        what = f"moduli are divided by {softening:g}: {does}" if softening > 1 else ""
-        told.setdefault(what, []).append(damper.label(index))
-    whose = len(told) > 1
-    return [f"{', '.join(names)}: {what}" if whose else what for what, names in told.items() if what]
+        note = f"moduli are divided by {softening:g}: {effect}" if softening > 1 else ""
+        dampers_by_note.setdefault(note, []).append(damper.label(index))
+    differ = len(dampers_by_note) > 1
+    return [f"{', '.join(names)}: {note}" if differ else note for note, names in dampers_by_note.items() if note]
 
 
 def _time(seconds: float) -> str:
     from rattlebox.results.quantities import quantity
 
-    return quantity(seconds, "s", 3) if math.isfinite(seconds) else "for ever"
+    return quantity(seconds, "s", 3) if math.isfinite(seconds) else "unlimited"

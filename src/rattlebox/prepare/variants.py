@@ -1,4 +1,4 @@
-"""Variants of a case: arrays in place of numbers, problems merged into a batch, a variant compared with its batch."""
+"""Variants of a case: arrays in place of numbers, merged problems, comparison of a variant with its batch."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ Index = tuple[int, ...]
 Packed = TypeVar("Packed", bound=_core.Node)
 
 _ULPS = 4
-_DRAWN = 8  # variants that are compared besides the extreme ones
+_DRAWN = 8  # random variants that are compared, besides the extreme ones
 _CORNERS = 16
 
 
 def column(path: str, values: Any, shape: Sequence[int]) -> NDArray[Any]:
     """Return the values of a parameter as numbers or objects, with the axes of the grid."""
-    found = np.asarray(values)
-    found = np.asarray(found, dtype=float if found.dtype.kind in "fiu" else object, order="C")
-    if found.ndim != len(shape) or any(n not in (1, whole) for n, whole in zip(found.shape, shape, strict=True)):
-        raise ValueError(f"{path}: values of shape {found.shape} do not broadcast to {tuple(shape)}")
-    return found
+    array = np.asarray(values)
+    array = np.asarray(array, dtype=float if array.dtype.kind in "fiu" else object, order="C")
+    if array.ndim != len(shape) or any(n not in (1, whole) for n, whole in zip(array.shape, shape, strict=True)):
+        raise ValueError(f"{path}: values of shape {array.shape} do not broadcast to {tuple(shape)}")
+    return array
 
 
 def is_number(case: Case, path: str, values: NDArray[Any]) -> bool:
-    """Tell whether an array can stand in place of the number at a path."""
+    """Return whether an array can replace the number at a path."""
     if values.dtype == object or isinstance(get(case, path), int):
         return False
     place = place_of(case, path)
@@ -47,7 +47,7 @@ def is_number(case: Case, path: str, values: NDArray[Any]) -> bool:
 
 
 def with_value(node: Any, place: Place, value: Any) -> Any:
-    """Return the same with another value at a place, unseen by any validation."""
+    """Return a copy with another value at a place, without validation."""
     if not place:
         return value
     step, *rest = place
@@ -58,11 +58,11 @@ def with_value(node: Any, place: Place, value: Any) -> Any:
     return node.model_copy(update={step: with_value(getattr(node, step), tuple(rest), value)})
 
 
-# ---- variants that are packed apart
+# ---- merging of variants that are packed separately
 
 
-def alike(values: NDArray[Any], axis: int) -> list[NDArray[np.intp]]:
-    """Return the places along an axis, grouped by what stands there."""
+def group_equal(values: NDArray[Any], axis: int) -> list[NDArray[np.intp]]:
+    """Return the indices along an axis, grouped by equal values."""
     if values.dtype == object:
         different = {id(value): value for value in values.flat}
         number = {text: n for n, text in enumerate(dict.fromkeys(map(full_text, different.values())))}
@@ -75,74 +75,74 @@ def alike(values: NDArray[Any], axis: int) -> list[NDArray[np.intp]]:
     return np.split(np.argsort(which.ravel(), kind="stable"), np.cumsum(counts)[:-1])
 
 
-class Unlike(Hint):
-    """Says of variants that they differ in more than numbers."""
+class NotMergeable(Hint):
+    """Variants that differ in more than numbers and cannot be merged."""
 
 
-class Joint:
-    """Puts packed variants together that differ in what stands at a path.
+class Merger:
+    """Merger of packed variants that differ in the value at one path.
 
     Parameters
     ----------
     path
-        Where they differ.
+        Path of the value.
     groups
-        Places of each along the axis.
+        Indices along the axis of the grid, for each value.
     axis, shape
-        Axis of the grid along which they differ, and shape of the grid.
+        Axis of the grid along which the value varies, and shape of the grid.
     """
 
     def __init__(self, path: str, groups: Sequence[NDArray[np.intp]], axis: int, shape: Sequence[int]) -> None:
         self._path, self._groups, self._axis, self._shape = path, groups, axis, shape
 
-    def of(self, parts: Sequence[Packed], *where: str) -> Packed:
-        """Return a part of a problem for the whole grid of the variants, given that of each group.
+    def merge(self, parts: Sequence[Packed], *where: str) -> Packed:
+        """Return a part of a problem for the whole grid, from that of each group.
 
         Raises
         ------
-        Unlike
-            When the parts differ in more than numbers.
+        NotMergeable
+            If the parts differ in more than numbers.
         """
         first = parts[0]
         if any(type(part) is not type(first) for part in parts):
-            raise self._unlike(where)
+            raise self._obstacle(where)
         fields = first.fields().items()
         return first.replace(
             **{
-                name: self._field([getattr(part, name) for part in parts], varies, (*where, name))
+                name: self._merge_field([getattr(part, name) for part in parts], varies, (*where, name))
                 for name, varies in fields
             }
         )
 
-    def points(self, parts: Sequence[Mapping[str, NDArray[np.float64]]]) -> dict[str, NDArray[np.float64]]:
-        """Return vectors by name for the whole grid of the variants, given those of each group."""
+    def merge_points(self, parts: Sequence[Mapping[str, NDArray[np.float64]]]) -> dict[str, NDArray[np.float64]]:
+        """Return vectors by name for the whole grid, from those of each group."""
         if any(part.keys() != parts[0].keys() for part in parts):
-            raise self._unlike(("points",))
-        return {name: self._joined([part[name] for part in parts], (name,)) for name in parts[0]}
+            raise self._obstacle(("points",))
+        return {name: self._merge_arrays([part[name] for part in parts], (name,)) for name in parts[0]}
 
-    def _field(self, values: Sequence[Any], varies: _core.Varies, where: Sequence[str]) -> Any:
+    def _merge_field(self, values: Sequence[Any], varies: _core.Varies, where: Sequence[str]) -> Any:
         first = values[0]
         if varies is not _core.Varies.never:
             if any((value is None) != (first is None) for value in values):
-                raise self._unlike(where)
-            return None if first is None else self._joined(values, where)
+                raise self._obstacle(where)
+            return None if first is None else self._merge_arrays(values, where)
         if isinstance(first, _core.Node):
-            return self.of(values, *where)
+            return self.merge(values, *where)
         if isinstance(first, list):
             if any(len(value) != len(first) for value in values):
-                raise self._unlike(where)
-            return [self.of(members, *where) for members in zip(*values, strict=True)]
+                raise self._obstacle(where)
+            return [self.merge(items, *where) for items in zip(*values, strict=True)]
         if any(not np.array_equal(value, first) for value in values):
-            raise self._unlike(where)
+            raise self._obstacle(where)
         return first
 
-    def _joined(self, parts: Sequence[Any], where: Sequence[str]) -> Any:
+    def _merge_arrays(self, parts: Sequence[Any], where: Sequence[str]) -> Any:
         axes = len(self._shape)
         arrays = [part if isinstance(part, np.ndarray) else np.full((1,) * axes, part) for part in parts]
         first = arrays[0]
-        own = first.ndim - axes  # axes of a vector
+        own = first.ndim - axes  # 1 for a vector, 0 for a number
         if any(array.shape[:own] != first.shape[:own] for array in arrays):
-            raise self._unlike(where)
+            raise self._obstacle(where)
         axis = own + self._axis
         if all(array.shape[axis] == 1 and np.array_equal(array, first) for array in arrays):
             return parts[0]
@@ -153,8 +153,8 @@ class Joint:
             whole[(slice(None),) * axis + (group,)] = array
         return whole
 
-    def _unlike(self, where: Sequence[str]) -> Unlike:
-        return Unlike(
+    def _obstacle(self, where: Sequence[str]) -> NotMergeable:
+        return NotMergeable(
             f"{self._path}: its values make cases that differ in more than numbers ({' of '.join(reversed(where))})",
             "one sweep for each",
         )
@@ -163,40 +163,42 @@ class Joint:
 # ---- checks
 
 
-def misplaced(packed: _core.Problem, shape: Sequence[int]) -> Iterator[Index]:
-    """Find a variant of each damper whose balls start in a wall, in each other or in a cavity too short, if there is one."""
+def invalid_starts(packed: _core.Problem, shape: Sequence[int]) -> Iterator[Index]:
+    """Yield a variant of each damper whose balls start in a wall, in each other or in too short a cavity, if one exists."""
     for damper in packed.dampers:
         position, half = damper.position, 0.5 * np.asarray(damper.clearance)
         cavity = np.sum(damper.shape * packed.mode_displacement, axis=0)
         overlap = np.argwhere(np.diff(position, axis=0) < 0)
         if len(overlap):
-            yield _member(overlap[0][1:], shape)
+            yield _grid_index(overlap[0][1:], shape)
         whole = np.broadcast_shapes(position.shape, half.shape, cavity.shape)
         with np.nditer(
             [position, half, cavity], ["external_loop", "buffered"], buffersize=1 << 16, order="C"
         ) as pieces:
             done = 0
-            for place, room, centre in pieces:
-                outside = np.abs(place - centre) - room > 4e-16 * (room + np.abs(centre))
+            for ball, room, centre in pieces:
+                outside = np.abs(ball - centre) - room > 4e-16 * (room + np.abs(centre))
                 if outside.any():
-                    yield _member(np.unravel_index(done + int(outside.argmax()), whole)[1:], shape)
+                    yield _grid_index(np.unravel_index(done + int(outside.argmax()), whole)[1:], shape)
                     break
                 done += outside.size
 
 
-def _member(index: Sequence[Any], shape: Sequence[int]) -> Index:
+def _grid_index(index: Sequence[Any], shape: Sequence[int]) -> Index:
     return tuple(map(int, index)) if len(index) else (0,) * len(shape)
 
 
 def examples(columns: Columns, shape: Sequence[int]) -> list[Index]:
-    """Choose variants: corners of the grid, those where a number is extreme, and a few more."""
-    found = list(itertools.islice(itertools.product(*({0, n - 1} for n in shape)), _CORNERS))
+    """Choose variants to be compared: corners of the grid, extremes of each number, and a few random ones."""
+    chosen = list(itertools.islice(itertools.product(*({0, n - 1} for n in shape)), _CORNERS))
     for values in columns.values():
         if values.dtype != object:
-            found += [_member(np.unravel_index(i, values.shape), shape) for i in (values.argmin(), values.argmax())]
+            chosen += [
+                _grid_index(np.unravel_index(i, values.shape), shape) for i in (values.argmin(), values.argmax())
+            ]
     drawn = np.random.default_rng(0).integers(np.array(shape, dtype=int), size=(_DRAWN, len(shape)))
-    found += [_member(index, shape) for index in drawn]
-    return list(dict.fromkeys(found))
+    chosen += [_grid_index(index, shape) for index in drawn]
+    return list(dict.fromkeys(chosen))
 
 
 def variant(case: Case, columns: Columns, index: Index) -> Case:
@@ -205,23 +207,23 @@ def variant(case: Case, columns: Columns, index: Index) -> Case:
     Raises
     ------
     CaseError
-        When it does not fit, with its values.
+        If the values of the variant are invalid.
     """
-    values = {path: values[_inside(values.shape, index)] for path, values in columns.items()}
+    values = {path: values[_broadcast_index(values.shape, index)] for path, values in columns.items()}
     plain = {path: value.item() if isinstance(value, np.generic) else value for path, value in values.items()}
     try:
         return replaced(case, plain)
     except RattleboxError as error:
-        told = ", ".join(f"{path} = {value!r:.60}" for path, value in plain.items())
-        raise CaseError(f"the variant with {told} does not fit\n{error}") from None
+        text = ", ".join(f"{path} = {value!r:.60}" for path, value in plain.items())
+        raise CaseError(f"the variant with {text} is invalid\n{error}") from None
 
 
-def _inside(shape: Sequence[int], index: Index) -> Index:
+def _broadcast_index(shape: Sequence[int], index: Index) -> Index:
     return tuple(0 if n == 1 else i for n, i in zip(shape, index, strict=True))
 
 
 def compare(one: Any, batch: Any, index: Index, *where: str) -> None:
-    """Find the numbers of one packed variant in a batch.
+    """Compare the numbers of one packed variant with those in a batch.
 
     Parameters
     ----------
@@ -233,11 +235,11 @@ def compare(one: Any, batch: Any, index: Index, *where: str) -> None:
     Raises
     ------
     RuntimeError
-        When one is not there: a formula of the model is not elementwise.
+        If a number differs, because a formula of the model is not elementwise.
     """
     if isinstance(one, _core.Node):
         if type(one) is not type(batch):
-            raise _absent(one, batch, index, where)
+            raise _mismatch(one, batch, index, where)
         for name, varies in one.fields().items():
             mine, theirs = getattr(one, name), getattr(batch, name)
             if varies is _core.Varies.never:
@@ -254,23 +256,23 @@ def compare(one: Any, batch: Any, index: Index, *where: str) -> None:
             compare(item, other, index, *where, str(number))
         return
     if not np.array_equal(one, batch):
-        raise _absent(one, batch, index, where)
+        raise _mismatch(one, batch, index, where)
 
 
 def _compare_numbers(one: Any, batch: Any, index: Index, where: Sequence[str]) -> None:
     if one is None or batch is None:
         if one is not batch:
-            raise _absent(one, batch, index, where)
+            raise _mismatch(one, batch, index, where)
         return
     own = np.ndim(one)
     one, batch = np.asarray(one, dtype=float), np.asarray(batch, dtype=float)
     if batch.ndim > own:
-        batch = batch[(slice(None),) * own + _inside(batch.shape[own:], index)]
-    with np.errstate(invalid="ignore"):  # infinite ones, which must be equal
+        batch = batch[(slice(None),) * own + _broadcast_index(batch.shape[own:], index)]
+    with np.errstate(invalid="ignore"):  # The differences of infinite numbers are NaN; these must be equal.
         near = np.abs(one - batch) <= _ULPS * np.spacing(np.maximum(np.abs(one), np.abs(batch)))
     if not np.all((one == batch) | near):
-        raise _absent(one, batch, index, where)
+        raise _mismatch(one, batch, index, where)
 
 
-def _absent(one: object, batch: object, index: Index, where: Sequence[str]) -> RuntimeError:
+def _mismatch(one: object, batch: object, index: Index, where: Sequence[str]) -> RuntimeError:
     return RuntimeError(f"{'.'.join(where)} of variant {index} is {one}, in the batch {batch}: see model.elementwise")

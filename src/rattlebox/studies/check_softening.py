@@ -12,7 +12,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.packing import Lattice, Settled
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.units import whole_number
-from rattlebox.prepare.particles import resolved
+from rattlebox.prepare.particles import resolve_softening
 from rattlebox.studies.kinds.sweep import sweep
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def check_softening(
     count = whole_number(packings, "packings", 2)
     if not case.particle_dampers:
         raise Hint("softening is of particle dampers, and the case has none", "a case with rb.ParticleDamper")
-    case, _ = resolved(case)
+    case, _ = resolve_softening(case)
     own = max(damper.softening_factor for damper in case.particle_dampers)
     values = _values(own, softenings)
     index = next(k for k, each in enumerate(case.dampers) if isinstance(each, ParticleDamper))

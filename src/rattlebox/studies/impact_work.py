@@ -264,8 +264,8 @@ class ImpactWork:
             When they differ in more than numbers.
         """
         part = self._prepared[0][0]
-        if part.unlike:
-            raise part.unlike
+        if part.obstacle:
+            raise part.obstacle
         return part.packed
 
     @property
@@ -282,12 +282,12 @@ class ImpactWork:
             balls = sum(len(damper.mass) for damper in part.packed.dampers)
             modes = len(part.packed.mode_decay)
             if (
-                part.unlike
+                part.obstacle
                 and (self.motion or self.state)
                 and (balls, modes) != (self._balls, len(self.case.modes.decay))
             ):
-                raise part.unlike
-            numbers = part.numbers(self.grid.shape) if len(parts) > 1 else None
+                raise part.obstacle
+            numbers = part.flat_indices(self.grid.shape) if len(parts) > 1 else None
             found.append((*self._seen(part), numbers))
         return found
 

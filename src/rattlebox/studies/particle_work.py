@@ -22,8 +22,8 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.methods import Output
 from rattlebox.model.space import unit_vector
-from rattlebox.prepare.particles import objection, settled
-from rattlebox.prepare.time_step import WARNINGS, warnings_of
+from rattlebox.prepare.particles import refusal_reason, settle_all
+from rattlebox.prepare.time_step import WARNINGS, exceeded_limits
 from rattlebox.results import Run
 from rattlebox.results.schema import variables
 
@@ -234,7 +234,7 @@ class ParticleWork(ImpactWork):
         for index in range(start, stop):
             try:
                 case = self.variant(index)
-                run = simulate_dem(case, threads=threads, progress=go_on) if settled(case, go_on) else None
+                run = simulate_dem(case, threads=threads, progress=go_on) if settle_all(case, go_on) else None
             except RattleboxError:  # one corner of many; run alone it says why
                 continue
             if run is None or run.status == "interrupted":
@@ -244,7 +244,7 @@ class ParticleWork(ImpactWork):
 
     def row(self, case: Case, run: Run, index: int) -> dict[str, float]:
         """Return what is kept of a run, and of what was run, by name."""
-        warned = warnings_of(run.diagnostics)
+        warned = exceeded_limits(run.diagnostics)
         row: dict[str, float] = {
             "status": Status[run.status],
             "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in warned),
@@ -269,7 +269,7 @@ class ParticleWork(ImpactWork):
     def why_refused(self, index: int) -> str:
         """Return why a variant is refused; nothing where it is not."""
         try:
-            return objection(self.variant(index))
+            return refusal_reason(self.variant(index))
         except RattleboxError as error:
             return str(error)
 

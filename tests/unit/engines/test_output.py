@@ -125,5 +125,5 @@ def test_run_of_very_many_events_is_sampled_evenly(monkeypatch: pytest.MonkeyPat
     """Beyond the limit of events only the times known before the run are recorded."""
     case = example("steel_ball.toml", duration=0.5)
     for module in ("prepare.pack", "engines.simulate"):
-        monkeypatch.setattr(f"rattlebox.{module}.MOST_EVENTS", 10)
+        monkeypatch.setattr(f"rattlebox.{module}.MAX_EVENTS", 10)
     assert np.array_equal(rb.simulate(case).arrays.time, case.sample_times())

@@ -308,7 +308,7 @@ def test_what_does_not_fit_is_refused(complaint: str) -> None:
 
 def test_other_studies_say_that_they_are_for_impact_dampers() -> None:
     """Maps that follow a motion refuse particles in space, and say which studies do not."""
-    with pytest.raises(rb.CaseError, match=r"not particles in space\n  try: a sweep, a loss map"):
+    with pytest.raises(rb.CaseError, match=r"not particle dampers\n  try: a sweep, a loss map"):
         rb.bifurcation(shaken(), AMPLITUDE, [10.0, 20.0], progress=False)
 
 
@@ -318,7 +318,7 @@ def test_stops_are_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     task = particle_work.ParticleWork(case, read_axes(case, {AMPLITUDE: [60.0]}), ["work"])
     assert task.run(0, 1, cancelled=lambda: True) is None
     asked: list[bool] = []
-    monkeypatch.setattr(particle_work, "settled", lambda case, go_on: True)
+    monkeypatch.setattr(particle_work, "settle_all", lambda case, proceed: True)
     assert task.run(0, 1, cancelled=lambda: (asked.append(True), len(asked) > 3)[1]) is None
 
 
@@ -326,8 +326,8 @@ def test_beds_are_settled_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """What does not touch the fall starts from the same bed; another seed, size or friction has a bed of its own."""
     settle._beds.clear()
     falls = []
-    fall = settle._Bed.fall
-    monkeypatch.setattr(settle._Bed, "fall", lambda self, *args: (falls.append(1), fall(self, *args))[1])
+    fall = settle._SettlingBed.fall
+    monkeypatch.setattr(settle._SettlingBed, "fall", lambda self, *args: (falls.append(1), fall(self, *args))[1])
     first = settle.settle(box())
     for same in (box(contact=rb.Thornton()), box(direction="z", velocity=(0, 0, 1), softening=3)):
         assert np.array_equal(settle.settle(same), first)
