@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from reproduction.__main__ import main
+
 FOUND = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
 """Environment in which the package is found from any folder."""
 COMMAND = [sys.executable, "-m", "reproduction"]
@@ -43,23 +45,32 @@ def test_report_on_chosen_figures(tmp_path: Path) -> None:
         (("-o", "full/notes.txt/report"), "notes.txt"),
     ],
 )
-def test_bad_input_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str], said: str) -> None:
+def test_bad_input_is_told(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: tuple[str],
+    said: str,
+) -> None:
     """What cannot be done is told on one screen, before anything is computed, with exit code 2 and no traceback."""
     monkeypatch.chdir(tmp_path)
     Path("full").mkdir()
     Path("full/notes.txt").write_text("mine")
-    done = reproduce(*arguments)
-    assert done.returncode == 2
-    assert said in " ".join(done.stderr.replace("│", " ").split())
-    assert "Traceback" not in done.stderr
-    assert len(done.stderr.splitlines()) < 24
+    monkeypatch.setattr(sys, "argv", ["reproduction", *arguments])
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 2
+    error = capsys.readouterr().err
+    assert said in " ".join(error.replace("│", " ").split())
+    assert "Traceback" not in error
+    assert len(error.splitlines()) < 24
     assert [path.name for path in tmp_path.rglob("*")] == ["full", "notes.txt"]
 
 
 def test_ctrl_c_stops_at_once(tmp_path: Path) -> None:
     """Ctrl-C ends command and workers with one word, and the unfinished report can be written again."""
     process = subprocess.Popen(
-        [*COMMAND, "-o", str(tmp_path)],
+        [*COMMAND, "-o", str(tmp_path), "--only", "2", "--only", "A5", "--workers", "2"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -1,7 +1,6 @@
 """Errors of the package: their classes, their messages, and how the command line ends with them."""
 
 import pickle
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -11,6 +10,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.cli.commands import carry_out
+from rattlebox.cli.main import main
 
 CASE = """
 duration = "1 s"
@@ -74,18 +74,22 @@ def test_a_message_has_its_parts() -> None:
     "arguments",
     [["run", "case.toml"], ["run", "nothing.toml"], ["show", "nothing"], ["show", "text.nc"], ["plot", "study.zarr"]],
 )
-def test_the_command_line_prints_errors_without_a_traceback(tmp_path: Path, arguments: list[str]) -> None:
+def test_the_command_line_prints_errors_without_a_traceback(
+    tmp_path: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Errors of every class end the program with exit code 2, a message, and nothing else."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["rattlebox", *arguments])
     (tmp_path / "case.toml").write_text(CASE.format(file="nothing.csv", more=""))
     (tmp_path / "text.nc").write_text("text")
     (tmp_path / "study.zarr").mkdir()
-    done = subprocess.run(
-        [sys.executable, "-m", "rattlebox.cli", *arguments], capture_output=True, text=True, cwd=tmp_path, check=False
-    )
-    assert done.returncode == 2
-    assert done.stderr.startswith("error: ")
-    assert "Traceback" not in done.stderr
-    assert done.stdout == ""
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 2
+    printed, error = capsys.readouterr()
+    assert error.startswith("error: ")
+    assert "Traceback" not in error
+    assert printed == ""
 
 
 @pytest.mark.parametrize("kind", [rb.CaseError, rb.DataError, rb.StoreError, rb.ResourceError, rb.MissingDependency])

@@ -39,7 +39,7 @@ def test_run_writes_what_it_says(tmp_path: Path) -> None:
         assert (tmp_path / name).stat().st_size > 0
 
 
-def test_run_states_the_unit_that_a_record_lacks(tmp_path: Path) -> None:
+def test_run_states_the_unit_that_a_record_lacks(tmp_path: Path, answer: Answer) -> None:
     """The unit assumed for a record without one is printed with its peak in g, and so is the loss of a coarse record."""
     rows = "".join(f"{k / 100},{(-1) ** (k // 3)}\n" for k in range(101))
     (tmp_path / "quake.csv").write_text("t,a\n" + rows)
@@ -47,19 +47,19 @@ def test_run_states_the_unit_that_a_record_lacks(tmp_path: Path) -> None:
         "duration = 1\n[structure]\nkind = 'sdof'\nmass = 1\nstiffness = '11 kN/m'\ndamping_ratio = 0.02\n"
         "[base]\nkind = 'record'\nfile = 'quake.csv'\n"
     )
-    done = rattlebox("run", tmp_path / "quake.toml", "-o", tmp_path / "out")
-    assert done.returncode == 0, done.stderr
-    printed = " ".join(done.stdout.split())
+    code, printed, error = answer("run", tmp_path / "quake.toml", "-o", tmp_path / "out")
+    assert code == 0, error
+    printed = " ".join(printed.split())
     assert "m/s^2 is assumed, with a peak of 1 m/s^2 = 0.102 g" in printed
     assert "straight lines" in printed
 
 
-def test_demo_sets_both_models_side_by_side(tmp_path: Path) -> None:
+def test_demo_sets_both_models_side_by_side(tmp_path: Path, answer: Answer) -> None:
     """The demo prints one column a model and leaves a figure and netCDF and case files that reproduce its runs."""
-    done = rattlebox("demo", "-o", tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert "constant alpha" in done.stdout
-    assert "Jackson-Green" in done.stdout
+    code, printed, error = answer("demo", "-o", tmp_path)
+    assert code == 0, error
+    assert "constant alpha" in printed
+    assert "Jackson-Green" in printed
     assert (tmp_path / "demo.png").stat().st_size > 10_000
     again = rb.simulate(rb.Case.from_file(tmp_path / "jackson_green.toml"))
     assert again.arrays.impacts == rb.load(tmp_path / "jackson_green.nc").arrays.impacts
@@ -73,29 +73,29 @@ def test_demo_sets_both_models_side_by_side(tmp_path: Path) -> None:
         ("duration = \n", "not TOML"),
     ],
 )
-def test_bad_case_is_told_on_one_screen(tmp_path: Path, text: str, said: str) -> None:
+def test_bad_case_is_told_on_one_screen(tmp_path: Path, text: str, said: str, answer: Answer) -> None:
     """Bad input names the file and what is wrong, with exit code 2 and no traceback."""
     path = tmp_path / "bad.toml"
     path.write_text(text)
-    done = rattlebox("run", path)
-    assert done.returncode == 2
-    assert "bad.toml" in done.stderr
-    assert said in done.stderr
-    assert "Traceback" not in done.stderr
-    assert len(done.stderr.splitlines()) < 24
+    code, _, error = answer("run", path)
+    assert code == 2
+    assert "bad.toml" in error
+    assert said in error
+    assert "Traceback" not in error
+    assert len(error.splitlines()) < 24
 
 
-def test_missing_file_and_unknown_option_are_told() -> None:
+def test_missing_file_and_unknown_option_are_told(answer: Answer) -> None:
     """A file that is not there and an option that does not exist end with exit code 2 and no traceback."""
     for arguments in (("run", "nowhere.toml"), ("run", "--sideways"), ("fly",)):
-        done = rattlebox(*arguments)
-        assert done.returncode == 2
-        assert "Traceback" not in done.stderr
+        code, _, error = answer(*arguments)
+        assert code == 2
+        assert "Traceback" not in error
 
 
-def test_help_tells_what_particles_draw() -> None:
+def test_help_tells_what_particles_draw(answer: Answer) -> None:
     """The help of run names impacts as figures of impact dampers only."""
-    told = " ".join(rattlebox("run", "--help").stdout.replace("│", " ").split())
+    told = " ".join(answer("run", "--help")[1].replace("│", " ").split())
     assert "Draw motion and energy, and the impacts of impact dampers." in told
 
 
@@ -127,26 +127,25 @@ def test_figures_of_a_run_load_no_xarray() -> None:
     assert done.stdout == "False\n", done.stderr
 
 
-def test_schema_is_a_schema(tmp_path: Path) -> None:
+def test_schema_is_a_schema(tmp_path: Path, answer: Answer) -> None:
     """The exported schema is JSON and knows the structures."""
-    done = rattlebox("schema", "-o", tmp_path / "schema.json")
-    assert done.returncode == 0
+    assert answer("schema", "-o", tmp_path / "schema.json")[0] == 0
     schema = json.loads((tmp_path / "schema.json").read_text())
     assert {"SDOF", "Modal", "Matrices"} <= set(schema["$defs"])
 
 
-def test_schema_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+def test_schema_that_cannot_be_written_is_told(tmp_path: Path, answer: Answer) -> None:
     """The message names the file, the reason and what to try."""
-    done = rattlebox("schema", "-o", tmp_path)
-    assert done.returncode == 2
-    assert done.stderr == f"error: {tmp_path} cannot be written: Is a directory\n  try: another folder\n"
+    code, _, error = answer("schema", "-o", tmp_path)
+    assert code == 2
+    assert error == f"error: {tmp_path} cannot be written: Is a directory\n  try: another folder\n"
 
 
-def test_doctor_and_materials_say_what_they_have(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_doctor_and_materials_say_what_they_have(monkeypatch: pytest.MonkeyPatch, answer: Answer) -> None:
     """Doctor names the core and why; materials lists the library, in a narrow terminal on some two screens."""
-    assert "core" in rattlebox("doctor").stdout
+    assert "core" in answer("doctor")[1]
     monkeypatch.setenv("COLUMNS", "80")
-    shown = rattlebox("materials").stdout
+    shown = answer("materials")[1]
     assert "tungsten_carbide" in shown
     assert len(shown.splitlines()) < 80
 

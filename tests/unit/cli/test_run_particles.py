@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import rattlebox as rb
 from rattlebox.cli.main import main
+
+from .conftest import Answer
 
 CASE = """
 name = "beads"
@@ -27,18 +29,25 @@ softening = 100
 """
 
 
-def run(folder: Path, *options: str, case: str = CASE) -> subprocess.CompletedProcess[str]:
-    """Run a case file in a process of its own."""
-    (folder / "case.toml").write_text(case, encoding="utf-8")
-    command = [sys.executable, "-m", "rattlebox.cli", "run", str(folder / "case.toml"), "-o", str(folder / "out")]
-    return subprocess.run([*command, *options], capture_output=True, text=True, timeout=100, check=False)
+Run = Callable[..., tuple[int | str | None, str, str]]
 
 
-def test_a_case_with_particles_runs_from_its_file(tmp_path: Path) -> None:
+@pytest.fixture
+def run(tmp_path: Path, answer: Answer) -> Run:
+    """Run a case file with options; return the exit code, the output and the errors."""
+
+    def run(*options: str, case: str = CASE) -> tuple[int | str | None, str, str]:
+        (tmp_path / "case.toml").write_text(case, encoding="utf-8")
+        return answer("run", tmp_path / "case.toml", "-o", tmp_path / "out", *options)
+
+    return run
+
+
+def test_a_case_with_particles_runs_from_its_file(tmp_path: Path, run: Run) -> None:
     """The terminal shows particles, contacts, energy, its residual, the step with its limit, and the speed; files exist."""
-    done = run(tmp_path, "--csv")
-    assert done.returncode == 0, done.stderr
-    told = " ".join(done.stdout.split())
+    code, printed, error = run("--csv")
+    assert code == 0, error
+    told = " ".join(printed.split())
     for said in (
         "particles",
         "mean number of contacts",
@@ -55,7 +64,7 @@ def test_a_case_with_particles_runs_from_its_file(tmp_path: Path) -> None:
     assert rb.load(tmp_path / "out" / "run.nc").ok
 
 
-def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
+def test_bad_input_is_told_without_a_traceback(tmp_path: Path, run: Run) -> None:
     """Too many particles, none, and too long or short a step, are told on one screen with file, field, and exit code 2."""
     particles = 'particles = { material = "glass", diameter = "3 mm", fill_ratio = 0.3 }\n'
     for old, new, field, said in (
@@ -71,11 +80,11 @@ def test_bad_input_is_told_without_a_traceback(tmp_path: Path) -> None:
             "cannot be inserted at random",
         ),
     ):
-        done = run(tmp_path, case=CASE.replace(old, new))
-        assert done.returncode == 2
-        assert f"case.toml: {field}\n" in done.stderr
-        assert said in done.stderr
-        assert "Traceback" not in done.stderr
+        code, _, error = run(case=CASE.replace(old, new))
+        assert code == 2
+        assert f"case.toml: {field}\n" in error
+        assert said in error
+        assert "Traceback" not in error
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -106,29 +115,29 @@ def test_a_stop_is_told_wherever_it_comes(
     assert capfd.readouterr().err == f"stopped; {kept}\n"
 
 
-def test_a_run_that_fails_says_so_beside_its_results(tmp_path: Path) -> None:
+def test_a_run_that_fails_says_so_beside_its_results(tmp_path: Path, run: Run) -> None:
     """A particle that leaves ends the command with code 1, and errors tell it, and what is kept; results are written."""
     fast = CASE.replace("fill_ratio = 0.3", "count = 1").replace(
         "softening = 100",
         'softening = 1e6\nvelocity = ["100 m/s", 0, 0]\n[method]\nkind = "dem"\ncheckpoint_every = "20 us"',
     )
-    done = run(tmp_path, case=fast)
-    assert done.returncode == 1
-    assert done.stderr.startswith("escaped: Particle 0, in 'damper', left its cavity at")
+    code, _, error = run(case=fast)
+    assert code == 1
+    assert error.startswith("escaped: Particle 0, in 'damper', left its cavity at")
     checkpoint = tmp_path / "out" / "run.checkpoint"
-    assert f"{checkpoint} is kept; a case that you have changed needs another -o folder, or --replace\n" in done.stderr
+    assert f"{checkpoint} is kept; a case that you have changed needs another -o folder, or --replace\n" in error
     assert checkpoint.is_file() and rb.load(tmp_path / "out" / "run.nc").status == "escaped"
 
 
-def test_only_snapshots_that_are_asked_for_are_written(tmp_path: Path) -> None:
+def test_only_snapshots_that_are_asked_for_are_written(tmp_path: Path, run: Run) -> None:
     """With an empty list of snapshots no file of them is written or told."""
-    done = run(tmp_path, "--no-figures", case=CASE.replace('rate = "5 kHz"', 'rate = "5 kHz", snapshots = []'))
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.endswith("run.nc\n")
+    code, printed, error = run("--no-figures", case=CASE.replace('rate = "5 kHz"', 'rate = "5 kHz", snapshots = []'))
+    assert code == 0, error
+    assert printed.endswith("run.nc\n")
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"rattlebox.json", "run.nc"}
 
 
-def test_files_that_collide_are_refused(tmp_path: Path) -> None:
+def test_files_that_collide_are_refused(tmp_path: Path, run: Run) -> None:
     """A checkpoint that is a folder, or a file that results are written to, is refused before anything is computed."""
     case = CASE.replace('rate = "5 kHz"', 'rate = "5 kHz", snapshots = 3')
     out = tmp_path / "out"
@@ -143,8 +152,8 @@ def test_files_that_collide_are_refused(tmp_path: Path) -> None:
         ),
         (out / ".." / "out" / "run.nc", "results are written there"),
     ):
-        done = run(tmp_path, "--checkpoint", str(checkpoint), case=case)
-        assert done.returncode == 2
-        assert said in done.stderr
-        assert "going on" not in done.stderr
+        code, _, error = run("--checkpoint", str(checkpoint), case=case)
+        assert code == 2
+        assert said in error
+        assert "going on" not in error
         assert not out.exists() or not any(out.iterdir())
