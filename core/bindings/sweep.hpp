@@ -49,18 +49,20 @@ struct Worker {
 struct Block : Node {
     nb::ndarray<nb::numpy, std::int8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu> status;
     std::vector<Doubles<1>> measures;
-    std::optional<Doubles<2>> displacement, velocity, state, last_time, last_approach_speed, last_contact;
+    std::vector<Doubles<2>> batches;
+    std::optional<Doubles<2>> batch_length, displacement, velocity, state, last_time, last_approach_speed,
+        last_contact;
     std::optional<Doubles<3>> ball_place, ball_speed;
 };
 
-inline Wanted wanted(const std::vector<std::string>& names, bool motion, bool state, std::size_t last) {
-    Wanted found{{}, motion, state, last};
+inline std::vector<int> numbers_of(const std::vector<std::string>& names) {
+    std::vector<int> found;
     for (const std::string& name : names) {
         int number = -1;
         for (int m = 0; m < static_cast<int>(std::size(measures)); ++m)
             if (name == measures[m].name) number = m;
         if (number < 0) throw std::invalid_argument("the core has no measure named '" + name + "'");
-        found.measures.push_back(number);
+        found.push_back(number);
     }
     return found;
 }
@@ -68,9 +70,10 @@ inline Wanted wanted(const std::vector<std::string>& names, bool motion, bool st
 // Variants start to stop of a batch; none when `progress` has returned False.
 inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vector<std::size_t>& grid,
                                   std::size_t start, std::size_t stop, const WindowNumbers& window,
-                                  const std::vector<std::string>& names, bool motion, bool state,
+                                  const std::vector<std::string>& names,
+                                  const std::vector<std::string>& batched, bool motion, bool state,
                                   std::size_t last, int threads, const Progress& progress) {
-    const Wanted keep = wanted(names, motion, state, last);
+    const Wanted keep{numbers_of(names), numbers_of(batched), motion, state, last};
     std::vector<std::unique_ptr<Worker>> workers;
     for (int t = 0; t < threads; ++t) workers.push_back(std::make_unique<Worker>(packed, grid, window, keep));
     Kept kept;
@@ -102,6 +105,9 @@ inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vecto
     block.status = owned<decltype(block.status)>(std::move(status));
     for (std::size_t m = 0; m < keep.measures.size(); ++m)
         block.measures.push_back(part({n}, kept.measures + m * n));
+    for (std::size_t m = 0; m < keep.batched.size(); ++m)
+        block.batches.push_back(part({n, most_batches}, kept.batches + m * n * most_batches));
+    if (!keep.batched.empty()) block.batch_length = part({n, most_batches}, kept.batch_length);
     if (motion) {
         block.displacement = part({n, samples}, kept.displacement);
         block.velocity = part({n, samples}, kept.velocity);
@@ -127,14 +133,16 @@ inline void add_sweep(nb::module_& module) {
         field("samples", &W::samples));
     using B = Block;
     define<B>(module, "Block", "What is kept of the variants of a batch, one row for each.",
-              field("status", &B::status), field("measures", &B::measures),
-              field("displacement", &B::displacement), field("velocity", &B::velocity),
-              field("ball_place", &B::ball_place), field("ball_speed", &B::ball_speed),
-              field("state", &B::state), field("last_time", &B::last_time),
-              field("last_approach_speed", &B::last_approach_speed), field("last_contact", &B::last_contact));
+              field("status", &B::status), field("measures", &B::measures), field("batches", &B::batches),
+              field("batch_length", &B::batch_length), field("displacement", &B::displacement),
+              field("velocity", &B::velocity), field("ball_place", &B::ball_place),
+              field("ball_speed", &B::ball_speed), field("state", &B::state),
+              field("last_time", &B::last_time), field("last_approach_speed", &B::last_approach_speed),
+              field("last_contact", &B::last_contact));
     module.def("sweep", &sweep, nb::arg("problem"), nb::arg("grid"), nb::arg("start"), nb::arg("stop"),
-               nb::arg("window"), nb::arg("measures"), nb::arg("motion") = false, nb::arg("state") = false,
-               nb::arg("last") = 0, nb::arg("threads") = 1, nb::arg("progress") = nb::none(),
+               nb::arg("window"), nb::arg("measures"), nb::arg("batched") = std::vector<std::string>(),
+               nb::arg("motion") = false, nb::arg("state") = false, nb::arg("last") = 0,
+               nb::arg("threads") = 1, nb::arg("progress") = nb::none(),
                "Run variants start to stop of a batch over a grid and return what is kept of them; None when "
                "`progress` "
                "has returned False.");

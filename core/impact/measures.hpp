@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 
 #include "impact/batch.hpp"
 #include "impact/log.hpp"
@@ -25,10 +26,14 @@ struct ImpactSums {
     }
 };
 
+// Largest number of batches of which the interval of a mean is computed.
+inline constexpr std::size_t most_batches = 64;
+
 class Observer {
     const Problem& problem_;
     const Result& run_;
     const Window& window_;
+    std::size_t first_, count_; // samples that are evaluated
 
     const Samples& samples() const { return run_.samples; }
     std::size_t balls() const { return problem_.ball_mass.size(); }
@@ -36,19 +41,26 @@ class Observer {
     real sum(const std::vector<real>& by_damper, std::size_t i) const {
         real total = 0;
         const std::size_t d = problem_.dampers.size();
-        for (std::size_t k = 0; k < d; ++k) total += by_damper[i * d + k];
+        for (std::size_t k = 0; k < d; ++k) total += by_damper[(first_ + i) * d + k];
         return total;
     }
 
 public:
     Observer(const Problem& problem, const Result& run, const Window& window)
-        : problem_(problem), run_(run), window_(window) {}
+        : problem_(problem), run_(run), window_(window), first_(0), count_(run.samples.time.size()) {}
 
-    std::size_t count() const { return samples().time.size(); }
+    // The same run between two samples, both included.
+    Observer part(std::size_t first, std::size_t last) const {
+        Observer found = *this;
+        found.first_ = first_ + first, found.count_ = last - first + 1;
+        return found;
+    }
+
+    std::size_t count() const { return count_; }
     std::size_t last() const { return count() - 1; }
-    real time(std::size_t i) const { return samples().time[i]; }
+    real time(std::size_t i) const { return samples().time[first_ + i]; }
     const real* state(std::size_t i) const {
-        return samples().state.data() + i * 2 * (problem_.modes.size() + balls());
+        return samples().state.data() + (first_ + i) * 2 * (problem_.modes.size() + balls());
     }
     real length() const { return time(last()) - time(0); }
     real cycles() const { return length() / window_.period; }
@@ -130,9 +142,12 @@ public:
         for (std::size_t b = 0; b < balls(); ++b) total += 0.5 * problem_.ball_mass[b] * square(v[b]);
         return total;
     }
-    real load_work(std::size_t i) const { return samples().load_work[i] - samples().load_work[0]; }
-    real base_work(std::size_t i) const { return samples().base_work[i] - samples().base_work[0]; }
-    real viscous(std::size_t i) const { return samples().viscous[i] - samples().viscous[0]; }
+    real since_begin(const std::vector<real>& total, std::size_t i) const {
+        return total[first_ + i] - total[first_];
+    }
+    real load_work(std::size_t i) const { return since_begin(samples().load_work, i); }
+    real base_work(std::size_t i) const { return since_begin(samples().base_work, i); }
+    real viscous(std::size_t i) const { return since_begin(samples().viscous, i); }
     real impact(std::size_t i) const {
         return sum(samples().normal, i) - sum(samples().normal, 0) + sum(samples().plastic, i) -
                sum(samples().plastic, 0);
@@ -156,9 +171,10 @@ public:
                 motion(i) + gravity(i) - before - load_work(i) - base_work(i) + viscous(i) + impact(i);
             if (!(std::fabs(residual) <= found.residual)) found.residual = std::fabs(residual); // or NaN
             if (!std::isfinite(residual)) break;
-            found.handled = std::fmax(
-                found.handled, motion(i) + std::fabs(gravity(i)) + samples().viscous[i] +
-                                   std::fabs(samples().load_work[i]) + std::fabs(samples().base_work[i]));
+            found.handled =
+                std::fmax(found.handled, motion(i) + std::fabs(gravity(i)) + samples().viscous[first_ + i] +
+                                             std::fabs(samples().load_work[first_ + i]) +
+                                             std::fabs(samples().base_work[first_ + i]));
             load = std::fmax(load, std::fabs(load_work(i)));
             base = std::fmax(base, std::fabs(base_work(i)));
             height = std::fmax(height, std::fabs(gravity(i) - gravity(0)));
@@ -187,8 +203,10 @@ public:
 
     ImpactSums impacts() const {
         ImpactSums found;
+        const bool to_the_end = first_ + count_ == samples().time.size();
+        const real from = first_ == 0 ? window_.from : time(0);
         for (const Impact& i : run_.impacts)
-            if (i.time >= window_.from) found.add(i);
+            if (i.time >= from && (to_the_end || i.time < time(last()))) found.add(i);
         return found;
     }
 
@@ -293,6 +311,31 @@ public:
         for (real m : problem_.ball_mass) mass += m;
         const real speed = std::abs(cavity_acceleration(problem_.dampers[0])) * window_.period / (2 * pi);
         return impact(last()) / cycles() / (mass * square(speed));
+    }
+
+    // ---- batches: equal parts of the window, of whole cycles if it has cycles, up to its end
+
+    // Number of batches; 0 if the window holds no whole cycle.
+    std::size_t batches() const {
+        constexpr real most = most_batches;
+        if (std::isnan(window_.period)) return most_batches;
+        const real whole = std::floor(cycles() + 1e-9);
+        return whole < 1 ? 0 : static_cast<std::size_t>(std::floor(whole / std::ceil(whole / most)));
+    }
+
+    // Batch k of n; samples that lie beside its limits are included. Empty if the samples are too few.
+    std::optional<Observer> batch(std::size_t k, std::size_t n) const {
+        if (last() < n) return {};
+        const real step = length() / static_cast<real>(last());
+        const real whole = std::floor(cycles() + 1e-9);
+        const real each = std::isnan(window_.period)
+                              ? length() / static_cast<real>(n)
+                              : std::floor(whole / static_cast<real>(n)) * window_.period;
+        const real end = static_cast<real>(last()) - static_cast<real>(n - 1 - k) * each / step;
+        const real begin = std::fmax(end - each / step, 0);
+        constexpr real slack = 1e-6; // of a sample step
+        const auto to = static_cast<std::size_t>(std::ceil(end - slack));
+        return part(static_cast<std::size_t>(std::floor(begin + slack)), std::min(to, last()));
     }
 };
 

@@ -9,6 +9,7 @@ namespace rattlebox {
 
 struct Wanted {
     std::vector<int> measures; // places in the table of measures
+    std::vector<int> batched;  // of these, those that are evaluated in batches, too
     bool motion = false, state = false;
     std::size_t last = 0; // impacts at the end
 };
@@ -19,6 +20,7 @@ struct Kept {
     std::int8_t* status = nullptr;
     real* numbers = nullptr;
     std::size_t measures = 0;                                         // one after the other
+    std::size_t batches = 0, batch_length = 0;                        // batches one after the other
     std::size_t displacement = 0, velocity = 0, place = 0, speed = 0; // of the motion
     std::size_t state = 0, last_time = 0, last_speed = 0, last_contact = 0;
 
@@ -33,6 +35,8 @@ struct Kept {
         const std::size_t samples = static_cast<std::size_t>(window.samples),
                           balls = problem.ball_mass.size();
         measures = take(true, wanted.measures.size());
+        batches = take(true, wanted.batched.size() * most_batches);
+        batch_length = take(!wanted.batched.empty(), most_batches);
         displacement = take(wanted.motion, samples);
         velocity = take(wanted.motion, samples);
         place = take(wanted.motion, samples * balls);
@@ -56,6 +60,7 @@ struct Kept {
             if (end == Status::finished || measure.of_energy_residual)
                 numbers[measures + m * members + i] = measure.value(seen);
         }
+        if (end == Status::finished && !wanted.batched.empty()) keep_batches(i, seen, wanted);
         const std::size_t samples = seen.count(), balls = problem.ball_mass.size();
         for (std::size_t s = 0; wanted.motion && s < samples; ++s) {
             const ModeState z = seen.point(s);
@@ -78,6 +83,18 @@ struct Kept {
             numbers[last_time + at] = impact.time;
             numbers[last_speed + at] = impact.approach_speed;
             numbers[last_contact + at] = impact.contact;
+        }
+    }
+
+    void keep_batches(std::size_t i, const Observer& seen, const Wanted& wanted) const {
+        const std::size_t n = seen.batches();
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::optional<Observer> batch = seen.batch(k, n);
+            if (!batch) return;
+            numbers[batch_length + i * most_batches + k] = batch->length();
+            for (std::size_t m = 0; m < wanted.batched.size(); ++m)
+                numbers[batches + (m * members + i) * most_batches + k] =
+                    rattlebox::measures[wanted.batched[m]].value(*batch);
         }
     }
 };

@@ -88,20 +88,21 @@ def statuses(study: xr.Dataset) -> dict[str, int]:
 
 
 def warned(study: xr.Dataset) -> list[str]:
-    """Tell how many runs of a study left their bounds, and in what.
+    """Return the warnings of a study: how many runs exceeded validity limits, and which measures lack an interval.
 
     Parameters
     ----------
     study
         From `open_study` or `sweep`.
     """
+    short = [f"warning: {study.attrs['too_short']}"] if "too_short" in study.attrs else []
     if "warnings" not in study or "flag_masks" not in study.warnings.attrs:
-        return []
+        return short
     about = study.warnings.attrs
     flags = np.concatenate([_there(part) for part in _parts(study.warnings)])
     counts = [np.count_nonzero(flags & mask) for mask in about["flag_masks"]]
     names = [WARNINGS.get(name, name) for name in about["flag_meanings"].split()]
-    return [f"warning: {count:,} with {name}" for count, name in zip(counts, names, strict=True) if count]
+    return short + [f"warning: {count:,} with {name}" for count, name in zip(counts, names, strict=True) if count]
 
 
 def _how_far(progress: Progress) -> str:

@@ -754,13 +754,19 @@ class Window(Node):
 class Block(Node):
     """What is kept of the variants of a batch, one row for each."""
 
-    def __init__(self, *, status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')], measures: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]], displacement: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, ball_place: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, ball_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_time: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_approach_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_contact: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None) -> None: ...
+    def __init__(self, *, status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')], measures: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]], batches: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]], batch_length: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, displacement: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, ball_place: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, ball_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_time: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_approach_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_contact: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None) -> None: ...
 
     @property
     def status(self) -> Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')]: ...
 
     @property
     def measures(self) -> list[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]]: ...
+
+    @property
+    def batches(self) -> list[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]]: ...
+
+    @property
+    def batch_length(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None: ...
 
     @property
     def displacement(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None: ...
@@ -789,7 +795,7 @@ class Block(Node):
     @staticmethod
     def fields() -> dict[str, Varies]: ...
 
-def sweep(problem: Problem, grid: Sequence[int], start: int, stop: int, window: Window, measures: Sequence[str], motion: bool = False, state: bool = False, last: int = 0, threads: int = 1, progress: Callable[[int], object] | None = None) -> Block | None:
+def sweep(problem: Problem, grid: Sequence[int], start: int, stop: int, window: Window, measures: Sequence[str], batched: Sequence[str] = [], motion: bool = False, state: bool = False, last: int = 0, threads: int = 1, progress: Callable[[int], object] | None = None) -> Block | None:
     """
     Run variants start to stop of a batch over a grid and return what is kept of them; None when `progress` has returned False.
     """

@@ -33,6 +33,8 @@ class BlockOutput:
         Number of impacts to return, counted from the end of the run.
     state
         Whether to return the state at the end.
+    batched
+        Names of measures that are evaluated in up to 64 equal parts of the window, of whole cycles, too.
     """
 
     measures: Sequence[str] = ()
@@ -43,6 +45,7 @@ class BlockOutput:
     motion: bool = False
     last: int = 0
     state: bool = False
+    batched: Sequence[str] = ()
 
 
 def run_block(
@@ -78,8 +81,9 @@ def run_block(
     dict of str to array, or None
         Arrays by name, variants along the first axis: `status` and each measure (n,); `displacement` and `velocity`
         (n, samples), `ball_place` and `ball_speed` (n, samples, balls) of the motion; `last_time`,
-        `last_approach_speed`, `last_contact` (n, last); `state` (n, 2 (modes + balls)). Everything but the status is
-        NaN for runs that did not finish. None if `progress` stopped the block.
+        `last_approach_speed`, `last_contact` (n, last); `state` (n, 2 (modes + balls)); `batches` (measures, n, 64) and
+        `batch_length` (n, 64) [s] of the parts, NaN for parts that there are not. Everything but the
+        status is NaN for runs that did not finish. None if `progress` stopped the block.
     """
     grid = list(shape) or [1]
     window = _core.Window(
@@ -95,6 +99,7 @@ def run_block(
         stop,
         window,
         list(output.measures),
+        list(output.batched),
         motion=output.motion,
         state=output.state,
         last=output.last,
@@ -103,8 +108,10 @@ def run_block(
     )
     if block is None:
         return None
-    arrays = {name: getattr(block, name) for name in block.fields() if name != "measures"}
+    arrays = {name: getattr(block, name) for name in block.fields() if name not in ("measures", "batches")}
     measures = dict(zip(output.measures, block.measures, strict=True))
+    if output.batched:
+        arrays["batches"] = np.array(block.batches)
     return {name: values for name, values in arrays.items() if values is not None} | measures
 
 

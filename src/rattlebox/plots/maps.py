@@ -58,8 +58,9 @@ def plot_map(
     """Draw a measure of a study over one or two of its axes.
 
     Axes whose values grow by a factor are logarithmic. Of replicas, and along an axis of seeds, a map shows the median, and
-    lines the median within the band from 10 to 90 %. Points of a line are marked where there are at most 30. Runs that did
-    not finish are hatched in a map and crossed on the axis below lines, and named.
+    lines the median within the band from 10 to 90 %; without replicas, a line lies within its 95 % interval, if the measure
+    has one. Points of a line are marked where there are at most 30. Runs that did not finish are hatched in a map and
+    crossed on the axis below lines, and named.
 
     Parameters
     ----------
@@ -403,14 +404,16 @@ def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: l
     for other in others:
         looks = _series(figure, axes, study[other])
         values = values.transpose(other, ...)
-    for member, look in zip(values if others else [values], looks, strict=True):
+    halves = study.get(f"{name}_interval")
+    for number, (member, look) in enumerate(zip(values if others else [values], looks, strict=True)):
         if across.shown.names:
             look |= {"linestyle": "", "marker": "o"}
         elif across.shown.numbers.size <= _FEW:
             look |= {"markersize": pen(2.4)}
         else:
             del look["marker"]
-        _draw_line(axes, across.shown.numbers, member / measure.divisor, look)
+        half = None if halves is None else halves.transpose(*values.dims)[number if others else ...] / measure.divisor
+        _draw_line(axes, across.shown.numbers, member / measure.divisor, half, look)
     marks = _cut_leaps(axes, name, values, along, across) + _mark_gaps(axes, study, name, along, across)
     across.finish(axes, "x")
     measure.along(axes, "y")
@@ -432,12 +435,17 @@ def _cut_leaps(axes: Axes, name: str, values: xr.DataArray, along: str, across: 
     return [Line2D([], [], label="beyond the scale", **look)]
 
 
-def _draw_line(axes: Axes, places: Vector, member: xr.DataArray, look: dict[str, Any]) -> None:
-    """Draw a line, or the median of replicas within their band."""
+def _draw_line(
+    axes: Axes, places: Vector, member: xr.DataArray, half: xr.DataArray | None, look: dict[str, Any]
+) -> None:
+    """Draw a line, with its interval of given half width; or the median of replicas within their band."""
     middle = member
     if _BAND in member.dims:
         some = member.notnull().any(_BAND)
         low, middle, high = member.where(some, 0.0).quantile([0.1, 0.5, 0.9], _BAND).where(some)
+        axes.fill_between(places, low.values, high.values, color=look["color"], alpha=0.25, linewidth=0)
+    elif half is not None:
+        low, high = member - half, member + half
         axes.fill_between(places, low.values, high.values, color=look["color"], alpha=0.25, linewidth=0)
     axes.plot(places, middle.values, clip_on="marker" not in look, **look)
     if "marker" in look:

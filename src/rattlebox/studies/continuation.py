@@ -20,7 +20,7 @@ from .axes import Axes, read_axes
 from .blocks import Blocks
 from .gather_variants import gather_values, gather_variants
 from .grid import Grid
-from .impact_work import Extra, ImpactWork
+from .impact_work import Extra, ImpactWork, with_intervals
 from .measures import MEASURES, check_names
 from .runner import run_work
 from .work import Values
@@ -121,6 +121,7 @@ def follow(
         last=last,
         ways=ways,
         turning=turning,
+        intervals=True,
     )
     work.validate()
     return without_states(run_work(work, store=store, backend=backend, workers=workers, progress=progress))
@@ -327,7 +328,7 @@ class _Step:
             output,
             progress=lambda _: not (self._cancelled and self._cancelled()),
         )
-        return None if found is None else dict(found)
+        return None if found is None else with_intervals(found, output)
 
     def _begun(self, at: At) -> _core.Problem:
         """What the core runs from where the walks are."""
@@ -398,7 +399,7 @@ class _Step:
             For which an earlier moment is needed, (walks,).
         """
         settings, waiting = self._packed.settings, closed
-        bare = replace(self.output, measures=(), start=0.0, samples=2, motion=False, last=0)
+        bare = replace(self.output, measures=(), batched=(), start=0.0, samples=2, motion=False, last=0)
         for early in _EARLIER:
             if not waiting.any():
                 break

@@ -17,11 +17,13 @@ from rattlebox.core import _core
 from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
+from rattlebox.model.harmonics import Harmonic
+from rattlebox.model.random_vibration import Random
 from rattlebox.prepare.pack import Batch, pack_parts
 
 from .case_digest import describe_case
 from .fingerprint import fingerprint
-from .measures import MEASURES, name_of
+from .measures import INTERVAL, MEASURES, interval_of, name_of
 from .work import Values
 
 if TYPE_CHECKING:
@@ -55,6 +57,8 @@ class ImpactWork:
         Name of the observed point of the structure; default that of the first damper.
     motion, last, state
         Whether to keep the samples of the motion, number of the last impacts to keep, whether to keep the final state.
+    intervals
+        Whether measures of steady motion carry their 95 % interval.
     """
 
     case: Case
@@ -67,6 +71,7 @@ class ImpactWork:
     motion: bool = False
     last: int = 0
     state: bool = False
+    intervals: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
@@ -91,6 +96,13 @@ class ImpactWork:
         """Measures that are functions of a Run, by name."""
         return {name_of(measure): measure for measure in self.measures if not isinstance(measure, str)}
 
+    @property
+    def steady(self) -> list[str]:
+        """Measures that carry an interval: averages over a motion that is driven for good."""
+        if not self.intervals or not _is_driven(self.case):
+            return []
+        return [name for name in self.named if MEASURES[name].average]
+
     @cached_property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:
         """Further dimensions, number type and attributes of each output."""
@@ -100,6 +112,9 @@ class ImpactWork:
         for name in self.named:
             measure = MEASURES[name]
             found[name] = ((), "float64", {"units": measure.units, "long_name": measure.long_name})
+        for name in self.steady:
+            half = f"half of the 95 % interval, {MEASURES[name].long_name}"
+            found[name + INTERVAL] = ((), "float64", {"units": MEASURES[name].units, "long_name": half})
         for name in self.own:
             found[name] = ((), "float64", {"units": "", "long_name": name.replace("_", " ")})
         balls = self._balls
@@ -225,6 +240,8 @@ class ImpactWork:
             if first == last:
                 continue
             values = run_block(part.packed, part.shape, first, last, output, threads=threads, progress=go_on)
+            if values is not None:
+                values = with_intervals(values, output)
             if values is None or numbers is None:
                 return values
             for name, array in values.items():
@@ -310,6 +327,10 @@ class ImpactWork:
             )
         dense = self.motion or any(MEASURES[name].samples for name in self.named)
         usual = 2001 if self.cycles is None else 1 + int(np.ceil(64 * self.cycles[1]))
+        ends = 2
+        if self.steady and not dense:  # energies at the ends of cycles, or of equal parts
+            seen = 64.0 if period is None else np.max((settings.duration - np.asarray(start)) / period)
+            ends = 1 + int(np.clip(np.ceil(seen - 1e-9), 1, 2000))
         harmonic = [name for name in self.named if MEASURES[name].samples and MEASURES[name].cyclic]
         if harmonic:
             seen = (settings.duration - np.asarray(start)) / period
@@ -325,10 +346,11 @@ class ImpactWork:
             shape=part.points[self._point],
             start=start,
             period=np.nan if period is None else period,
-            samples=self.samples or (usual if dense else 2),
+            samples=self.samples or (usual if dense else ends),
             motion=self.motion,
             last=self.last,
             state=self.state,
+            batched=self.steady,
         )
         return replace(part, packed=packed.replace(settings=settings)), output
 
@@ -341,6 +363,22 @@ class ImpactWork:
         if self.point is None and self.case.dampers:
             return self.case.modes.point(self.case.dampers[0].point)
         return self.case.modes.point(self.point)
+
+
+def with_intervals(values: Values, output: BlockOutput) -> dict[str, NDArray[Any]]:
+    """Return the outputs of runs with the intervals of their measures in place of the batches."""
+    found = dict(values)
+    if output.batched:
+        batches, lengths = found.pop("batches"), found.pop("batch_length")
+        for name, part in zip(output.batched, batches, strict=True):
+            found[name + INTERVAL] = interval_of(name, found[name], part, lengths)
+    return found
+
+
+def _is_driven(case: Case) -> bool:
+    """Return whether a harmonic or random vibration acts to the end of every run."""
+    signals = (*case.loads, *case.base, *case.shaker_motion)
+    return any(isinstance(s, Random) or (isinstance(s, Harmonic) and s.stop is None) for s in signals)
 
 
 def _period(packed: _core.Problem) -> Any:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from rattlebox.results import Run
 from rattlebox.results.schema import variables
 
 from .impact_work import Extra, ImpactWork
-from .measures import MEASURES
+from .measures import INTERVAL, MEASURES, MOST_BATCHES, interval_of
 from .work import Values
 
 if TYPE_CHECKING:
@@ -254,6 +255,7 @@ class ParticleWork(ImpactWork):
         if run.ok:
             seen = self._seen_in(run, case)
             row |= {name: seen.value(name) for name in self.named}
+            row |= self._intervals(run, case, row)
             row |= self.own_of(run, index)
         return row
 
@@ -263,7 +265,8 @@ class ParticleWork(ImpactWork):
         def column(name: str, missing: float, kind: str) -> NDArray[Any]:
             return np.array([rows.get(index, {}).get(name, missing) for index in range(start, stop)], kind)
 
-        values = {name: column(name, np.nan, "float64") for name in (*self.named, *self.own)}
+        names = (*self.named, *(name + INTERVAL for name in self.steady), *self.own)
+        values = {name: column(name, np.nan, "float64") for name in names}
         return {"status": column("status", Status.refused, "int8"), "warnings": column("warnings", 0, "int8"), **values}
 
     def why_refused(self, index: int) -> str:
@@ -313,9 +316,25 @@ class ParticleWork(ImpactWork):
                 _check_dense(case, name)
         return case
 
-    def _seen_in(self, run: Run, case: Case) -> Seen:
+    def _intervals(self, run: Run, case: Case, row: Mapping[str, float]) -> dict[str, float]:
+        """Return half of the 95 % intervals of the measures of steady motion."""
+        limits = _batch_limits(self._begin(case), float(run.arrays.time[-1]), _frequency(case), run.arrays.time)
+        lengths = np.diff(limits)[None]
+        parts = [self._seen_in(until(run, end), case, begin) for begin, end in pairwise(limits)] if self.steady else []
+        return {
+            name + INTERVAL: float(
+                interval_of(name, [row[name]], np.array([[p.value(name) for p in parts]]), lengths)[0]
+            )
+            for name in self.steady
+        }
+
+    def _begin(self, case: Case) -> float:
+        """Begin of the window [s]."""
+        return self.skip if self.cycles is None else self.cycles[0] / _frequency(case)
+
+    def _seen_in(self, run: Run, case: Case, start: float | None = None) -> Seen:
         frequency = _frequency(case)
-        start = self.skip if self.cycles is None else self.cycles[0] / frequency
+        start = self._begin(case) if start is None else start
         window = since(run, start)
         if (driver := _driver(case)) and driver.amplitude == 0:
             frequency = math.nan  # nothing has cycles
@@ -354,6 +373,28 @@ def since(run: Run, start: float) -> Run:
                 values = values[first:]
             cut[variable.name] = values - values[0] if variable.cumulative else values
     return replace(run, arrays=arrays.replaced(**cut)) if first else run
+
+
+def until(run: Run, end: float) -> Run:
+    """Return a run up to the first sample at or after a time [s]."""
+    arrays = run.arrays
+    count = min(int(np.searchsorted(arrays.time, end * (1 - 1e-9))) + 1, arrays.time.size)
+    names = (v.name for v in variables(arrays.engine) if v.dims[0] == "time" and not v.derived)
+    cut = {name: getattr(arrays, name)[:count] for name in names}
+    return replace(run, arrays=arrays.replaced(time=arrays.time[:count], **cut))
+
+
+def _batch_limits(start: float, end: float, frequency: float, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return limits of up to 64 equal parts of a window, of whole cycles up to its end; none if samples are too few."""
+    if math.isnan(frequency):
+        limits = np.linspace(start, end, MOST_BATCHES + 1)
+    else:
+        whole = math.floor((end - start) * frequency + 1e-9)
+        if whole < 1:
+            return np.zeros(1)
+        each = math.ceil(whole / MOST_BATCHES)
+        limits = end - np.arange(whole // each, -1, -1) * each / frequency
+    return limits if np.count_nonzero(times >= start) > limits.size else np.zeros(1)
 
 
 def _driver(case: Case) -> Harmonic | None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from rattlebox._util.batch_means import half_widths
 from rattlebox.analysis import mean_interval
 
 
@@ -40,3 +41,27 @@ def test_the_mean_of_a_periodic_series():
     found = mean_interval(series)
     assert found.lower < 0 < found.upper
     assert found.half_width < 2 * 1.96 * series.std() / np.sqrt(series.size) + 0.02
+
+
+def test_many_series_at_once():
+    """Series that are evaluated together have the intervals that each has alone; one with a gap has none."""
+    rng = np.random.default_rng(5)
+    series = np.array([lfilter([1], [1, -memory], rng.normal(size=64)) for memory in np.linspace(0, 0.95, 30)])
+    series[3, 7] = np.nan
+    half, batches = half_widths(series)
+    for k, row in enumerate(series):
+        if k == 3:
+            assert np.isnan(half[k]) and batches[k] == 0
+        else:
+            alone = mean_interval(row)
+            assert batches[k] == alone.batches
+            assert half[k] == pytest.approx(alone.half_width, rel=1e-12, nan_ok=True)
+    assert 0 < np.count_nonzero(batches) < 30
+
+
+def test_the_end_of_a_transient():
+    """A trend below 0.1 % of the mean gives the range of ten means; one of 1 % gives no interval."""
+    decay = np.exp(-np.arange(200) / 60)
+    found = mean_interval(5 + 2e-3 * decay)
+    assert found.lower < 5.0 < found.upper and found.half_width < 2e-3
+    assert np.isnan(mean_interval(5 + 5e-2 * decay).half_width)

@@ -20,7 +20,7 @@ from rattlebox.studies.axes import read_axes
 from rattlebox.studies.continuation import ContinuationWork, without_states
 from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.measures import with_required
+from rattlebox.studies.measures import interval_warning, with_required
 from rattlebox.studies.orbits import period_of
 from rattlebox.studies.store import keep_map
 from rattlebox.studies.study import (
@@ -135,6 +135,7 @@ class FrequencyResponse(Study):
             "samples": self.samples * self.cycles[1] + 1,
             "point": self.point,
             "motion": True,
+            "intervals": True,
         }
         if self.direction == "fresh":
             return ImpactWork(self.case, self.grid, **options)
@@ -160,7 +161,8 @@ class FrequencyResponse(Study):
         found.frequency.attrs["long_name"] = "frequency"
         load = "load" if place.startswith("load") else "base"
         found.level.attrs["long_name"] = f"amplitude of the {load}"
-        found.attrs = {"title": "Frequency response", "case": self.case.to_toml(), "cycles": list(self.cycles)}
+        about = {"title": "Frequency response", "case": self.case.to_toml(), "cycles": list(self.cycles)}
+        found.attrs = about | interval_warning(found)
         return keep_map(found, self.kind, self.store)
 
 

@@ -15,7 +15,7 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.units import Whole
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork
-from rattlebox.studies.measures import MEASURES
+from rattlebox.studies.measures import MEASURES, interval_warning
 from rattlebox.studies.particle_work import ParticleWork
 from rattlebox.studies.store import add_attributes
 from rattlebox.studies.study import (
@@ -72,7 +72,9 @@ class Sweep(Study):
         Over the axes: `status` and each measure with its unit; NaN where a run did not finish, or ended
         with the status "energy_error" (except `energy_residual`). A variant with particles in
         space whose particles do not fit or settle, or whose step is too long, has the status "refused"; `attrs["refused"]`
-        says why the first of them was. There `warnings` tells of each run in what it left its bounds (`flag_meanings`).
+        says why the first of them was. Averages over a motion that is driven to the end have a companion such as
+        `rms_interval`, half of their 95 % interval; NaN if the window is too short, and then `attrs["too_short"]` names the
+        measures. There `warnings` tells of each run in what it left its bounds (`flag_meanings`).
 
     Raises
     ------
@@ -114,6 +116,7 @@ class Sweep(Study):
             point=self.point,
             motion=self.motion,
             last=self.last,
+            intervals=True,
         )
 
     def validate(self) -> None:
@@ -125,12 +128,12 @@ class Sweep(Study):
     def compute(self) -> xarray.Dataset:
         """Run the variants; see `Study.compute`."""
         result = self.run_work(self.work)
-        if not isinstance(self.work, ParticleWork):
-            return result
-        refused = _first_refused(self.work, result)
+        added = interval_warning(result)
+        if isinstance(self.work, ParticleWork):
+            added |= _first_refused(self.work, result)
         if self.store is not None:
-            add_attributes(self.store, refused)
-        return result.assign_attrs(refused)
+            add_attributes(self.store, added)
+        return result.assign_attrs(added)
 
 
 sweep = study_function(Sweep)
