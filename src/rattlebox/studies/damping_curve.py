@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from functools import partial
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rattlebox.analysis.damping_curve import band_edges, damping_over_amplitude, mean_over_period
-from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint, nearest
 from rattlebox.model.harmonics import Harmonic
@@ -19,6 +19,7 @@ from rattlebox.model.methods import Output
 from rattlebox.model.packing import Lattice, Settled
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
+from rattlebox.studies.evaluate_cases import evaluate_cases
 
 if TYPE_CHECKING:
     import xarray
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from rattlebox.results.run import Run
 
 FloatArray = NDArray[np.float64]
+Evaluate = Callable[..., list[Any]]
 Way = Literal["decay", "energy", "shaking"]
 WAYS: tuple[Way, ...] = ("decay", "energy", "shaking")
 
@@ -79,7 +81,8 @@ def damping_curve(
     point: str | None = None,
     packings: int = 4,
     cycles: tuple[int, int] = (20, 40),
-    threads: int | None = None,
+    workers: int | None = None,
+    backend: Any = "threads",
     progress: Callable[[int, int], object] | None = None,
 ) -> xarray.Dataset:
     """Compute the damping ratio of a mode, with its dampers, over the amplitude of vibration.
@@ -106,8 +109,9 @@ def damping_curve(
         Number of random starts.
     cycles
         Cycles to be skipped and to be evaluated; for "shaking" only.
-    threads
-        Number of threads; default all cores.
+    workers, backend
+        Number of threads or processes (default as many as there are cores), and "threads", "processes" or the client of a
+        Dask cluster, as of `rb.sweep`.
     progress
         Called with the number of finished runs and of all runs.
 
@@ -155,10 +159,11 @@ def damping_curve(
     about = _mode(case, mode, point)
     cases = _starts(case, count)
     warnings: dict[str, None] = {}
+    run = partial(evaluate_cases, backend=backend, workers=workers, progress=progress)
     if way == "shaking":
-        ratios = _shaken(cases, about, levels, cycles, threads, progress, warnings)
+        ratios = _shaken(cases, about, levels, cycles, run, warnings)
     else:
-        ratios = _decayed(cases, about, levels, way, threads, progress, warnings)
+        ratios = _decayed(cases, about, levels, way, run, warnings)
     return _dataset(ratios, levels, about, way).assign_attrs(warnings=list(warnings))
 
 
@@ -234,20 +239,39 @@ def _decayed(
     mode: _Mode,
     levels: FloatArray,
     way: Way,
-    threads: int | None,
-    progress: Callable[[int, int], object] | None,
+    evaluate: Evaluate,
     warnings: dict[str, None],
 ) -> FloatArray:
     highest = float(band_edges(levels)[-1]) * _MARGIN
     variants = [_set_off(case, mode, highest) for case in cases]
-    rows = []
-    for number, run in enumerate(_runs(variants, threads, progress)):
-        _check(run, number, warnings)
-        time = run.motion.time.values
-        bands = damping_over_amplitude(time, _along(run, mode), levels)
-        _check_frequency(bands.frequency.values, mode, warnings)
-        rows.append(bands.damping_ratio.values if way == "decay" else _by_energy(run, time, bands, mode))
-    return np.array(rows)
+    rows = evaluate(variants, partial(_decay, mode=mode, levels=levels, way=way))
+    for number, row in enumerate(rows):
+        _check(row, number, warnings)
+    return np.array([row.values for row in rows])
+
+
+class _Row(NamedTuple):
+    """What is needed of a run: why it failed, if it did, its warnings, and damping ratios or the energy that was lost."""
+
+    failure: str
+    warnings: tuple[str, ...]
+    values: FloatArray
+
+
+def _decay(run: Run, mode: _Mode, levels: FloatArray, way: Way) -> _Row:
+    """Return the damping ratio of a free decay at each amplitude."""
+    row = _row(run)
+    if row.failure:
+        return row
+    time = run.motion.time.values
+    bands = damping_over_amplitude(time, _along(run, mode), levels)
+    ratios = bands.damping_ratio.values if way == "decay" else _by_energy(run, time, bands, mode)
+    return row._replace(values=ratios, warnings=row.warnings + _other_motion(bands.frequency.values, mode))
+
+
+def _row(run: Run) -> _Row:
+    notes = tuple(note for note in run.notes if note.startswith("warning: "))
+    return _Row("" if run.ok else run.message, notes, np.zeros(0))
 
 
 def _set_off(case: Case, mode: _Mode, amplitude: float) -> Case:
@@ -272,15 +296,16 @@ def _along(run: Run, mode: _Mode) -> FloatArray:
     )
 
 
-def _check_frequency(found: FloatArray, mode: _Mode, warnings: dict[str, None]) -> None:
-    """Add a warning if what decays is not the mode."""
+def _other_motion(found: FloatArray, mode: _Mode) -> tuple[str, ...]:
+    """Return a warning if what decays is not the mode."""
     change = np.abs(found / mode.frequency - 1)
-    if np.nanmax(change, initial=0.0) > _OTHER_MOTION:
-        other = found[np.nanargmax(change)]
-        warnings[
-            f"warning: the decay has {other:.4g} Hz, the mode {mode.frequency:.4g} Hz; within {100 * _OTHER_MOTION:g} % the "
-            "damping ratio is that of the mode; try: a lighter damper, or way='shaking'"
-        ] = None
+    if not np.nanmax(change, initial=0.0) > _OTHER_MOTION:
+        return ()
+    other = found[np.nanargmax(change)]
+    return (
+        f"warning: the decay has {other:.4g} Hz, the mode {mode.frequency:.4g} Hz; within {100 * _OTHER_MOTION:g} % the "
+        "damping ratio is that of the mode; try: a lighter damper, or way='shaking'",
+    )
 
 
 def _by_energy(run: Run, time: FloatArray, bands: xarray.Dataset, mode: _Mode) -> FloatArray:
@@ -302,8 +327,7 @@ def _shaken(
     mode: _Mode,
     levels: FloatArray,
     cycles: tuple[int, int],
-    threads: int | None,
-    progress: Callable[[int, int], object] | None,
+    evaluate: Evaluate,
     warnings: dict[str, None],
 ) -> FloatArray:
     skip, kept = whole_number(cycles[0], "cycles[0]", 1), whole_number(cycles[1], "cycles[1]", 1)
@@ -319,13 +343,18 @@ def _shaken(
                 variants.append(_on_shaker(case, damper, mode, moved, (skip + kept) / mode.frequency))
                 owners.append((number, k))
     ratios = np.full((len(cases), levels.size), mode.ratio + _tuned(cases[0], mode))
-    for (number, k), run in zip(owners, _runs(variants, threads, progress), strict=True):
-        _check(run, number, warnings)
-        losses = run.energy.losses
-        begin = skip / mode.frequency
-        work = float(losses[-1]) - float(np.interp(begin, losses.time.values, losses.values))
-        ratios[number, k] += work / kept / (2 * math.pi * (mode.omega * levels[k] / mode.shape) ** 2)
+    rows = evaluate(variants, partial(_lost_since, begin=skip / mode.frequency))
+    for (number, k), row in zip(owners, rows, strict=True):
+        _check(row, number, warnings)
+        ratios[number, k] += float(row.values[0]) / kept / (2 * math.pi * (mode.omega * levels[k] / mode.shape) ** 2)
     return ratios
+
+
+def _lost_since(run: Run, begin: float) -> _Row:
+    """Return the energy that a run lost from a time on."""
+    losses = run.energy.losses
+    work = float(losses[-1]) - float(np.interp(begin, losses.time.values, losses.values))
+    return _row(run)._replace(values=np.array([work]))
 
 
 def _on_shaker(case: Case, damper: Any, mode: _Mode, moved: FloatArray, duration: float) -> Case:
@@ -360,20 +389,10 @@ def _tuned(case: Case, mode: _Mode) -> float:
 # ---- results
 
 
-def _runs(cases: list[Case], threads: int | None, progress: Callable[[int, int], object] | None) -> list[Run]:
-    """Run cases in groups, so that progress can be shown."""
-    group, runs = max(threads or 0, 8), []
-    for first in range(0, len(cases), group):
-        runs += simulate_many(cases[first : first + group], threads=threads)
-        if progress is not None:
-            progress(len(runs), len(cases))
-    return runs
-
-
-def _check(run: Run, number: int, warnings: dict[str, None]) -> None:
-    warnings |= dict.fromkeys(note for note in run.notes if note.startswith("warning: "))
-    if not run.ok:
-        raise Hint(f"the run of start {number + 1} failed: {run.message}", "rb.simulate(case), to see where")
+def _check(row: _Row, number: int, warnings: dict[str, None]) -> None:
+    warnings |= dict.fromkeys(row.warnings)
+    if row.failure:
+        raise Hint(f"the run of start {number + 1} failed: {row.failure}", "rb.simulate(case), to see where")
 
 
 def _dataset(ratios: FloatArray, levels: FloatArray, mode: _Mode, way: Way) -> xarray.Dataset:

@@ -152,3 +152,25 @@ def test_a_heavy_damper_that_changes_the_motion_is_warned_of() -> None:
     tuned = rb.TunedMass(mass=3, frequency=50, damping_ratio=0.02)
     found = rb.damping_curve(rb.Case(structure=structure, tuned_mass=tuned, duration="2 s"), LEVELS, packings=1)
     assert any("Hz" in warning for warning in found.attrs["warnings"])
+
+
+@pytest.mark.parametrize("way", ["decay", "shaking"])
+def test_backends(way: Any) -> None:
+    """Processes and one or several threads give the same bits."""
+    first = rb.damping_curve(ball_case(), LEVELS, way=way, packings=3, cycles=(5, 10), workers=1)
+    for options in ({"workers": 3}, {"workers": 2, "backend": "processes"}):
+        again = rb.damping_curve(ball_case(), LEVELS, way=way, packings=3, cycles=(5, 10), **options)
+        assert again.identical(first)
+    with pytest.raises(rb.CaseError, match="backend"):
+        rb.damping_curve(ball_case(), LEVELS, backend="cluster")
+
+
+def test_the_interval_covers_random_starts() -> None:
+    """Intervals of four starts hold the mean of forty at nearly all amplitudes."""
+    levels = np.geomspace(1e-4, 4e-4, 4)
+    many = rb.damping_curve(ball_case(), levels, packings=40)
+    inside = []
+    for seed in range(8):
+        few = rb.damping_curve(ball_case(seed=seed), levels, packings=4)
+        inside += [*((few.lower < many.damping_ratio) & (many.damping_ratio < few.upper)).values]
+    assert np.mean(inside) > 0.75

@@ -1,0 +1,74 @@
+"""Runs of single cases on a backend, each reduced to what is needed of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.engines.simulate import simulate_many
+
+from .backends import make_backend
+from .work import Block, Cancelled, Chain, Values
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+    from rattlebox.results.run import Run
+
+
+def evaluate_cases(
+    cases: Sequence[Case],
+    evaluate: Callable[[Run], Any],
+    *,
+    backend: Any = "threads",
+    workers: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> list[Any]:
+    """Simulate cases and return what a function makes of each run, in the order of the cases.
+
+    Parameters
+    ----------
+    cases
+        The cases.
+    evaluate
+        Function of a Run; with processes or a cluster it is sent to them, and so is what it returns.
+    backend, workers
+        Backend that runs the cases, see `make_backend`.
+    progress
+        Called with the number of finished runs and of all runs.
+
+    Raises
+    ------
+    CaseError
+        If there is no such backend, or `evaluate` raises it.
+    ResourceError
+        If workers fail.
+    """
+    work = _Cases(cases, evaluate)
+    chains = [Chain([Block(number, number, number + 1)]) for number in range(len(cases))]
+    found: dict[int, Any] = {}
+    # Work on cases has neither a grid nor outputs, which backends do not use.
+    with closing(make_backend(backend, workers).run(work, chains)) as finished:  # type: ignore[arg-type]
+        for block, values in finished:
+            found[block.number] = values["found"][0]
+            if progress is not None:
+                progress(len(found), len(cases))
+    return [found[number] for number in range(len(cases))]
+
+
+@dataclass(frozen=True)
+class _Cases:
+    cases: Sequence[Case]
+    evaluate: Callable[[Run], Any]
+
+    def run(self, start: int, stop: int, *, threads: int, cancelled: Cancelled) -> Values | None:
+        found = np.empty(stop - start, object)
+        for number in range(start, stop):
+            if cancelled is not None and cancelled():
+                return None
+            (run,) = simulate_many([self.cases[number]], threads=threads)
+            found[number - start] = self.evaluate(run)
+        return {"found": found}
