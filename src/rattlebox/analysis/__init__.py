@@ -3,7 +3,7 @@
 from rattlebox._util.batch_means import Interval, mean_interval
 
 from .chaos import lyapunov_exponent
-from .damping_curve import damping_over_amplitude
+from .damping_curve import damping_over_amplitude, equivalent_damping
 from .decay import damping_ratio, decay_envelope
 from .drift import drift
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
@@ -30,6 +30,7 @@ __all__ = [
     "decay_envelope",
     "drift",
     "energy_shares",
+    "equivalent_damping",
     "impacts_per_cycle",
     "loss_factor",
     "lyapunov_exponent",

@@ -8,11 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rattlebox.results.free_decay import free_decay
+
 from .decay import analytic_signal, oscillation
-from .signals import FloatArray, finite, labelled, units_of
+from .signals import FloatArray, finite, labelled, positive, units_of
 
 if TYPE_CHECKING:
     import xarray
+
+    from rattlebox.results.run import Run
 
 SKIPPED = 2.0
 """Cycles at the start that are left out: particles that rest are thrown first."""
@@ -107,6 +111,53 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
             ),
         }
     )
+
+
+def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str | None = None) -> float:
+    """Return the damping ratio of the free decay in a run, at one amplitude.
+
+    It is a measure for studies: `functools.partial(analysis.equivalent_damping, amplitude=0.5e-3)`. One run of chaotic
+    motion gives one value of several that are possible; vary the start or the packing for its scatter, as
+    `rattlebox.damping_curve` does.
+
+    Parameters
+    ----------
+    run
+        Run in which loads and base come to rest.
+    amplitude
+        Displacement amplitude of the point [m]; default half of the largest one of the decay, or the middle of a shorter
+        decay.
+    point
+        Point whose amplitude is meant; default the one that the mode moves most.
+
+    Returns
+    -------
+    float
+        Damping ratio; NaN if there is no free decay, or it does not pass the amplitude, or passes it in less than a cycle.
+
+    Raises
+    ------
+    ValueError
+        If there is no such point, or the amplitude is not above zero.
+
+    Notes
+    -----
+    The energy E of the mode with the largest energy falls from E_1 to E_2 = E_1 / 4 about the amplitude in the time t:
+    zeta = ln(E_1 / E_2) / (2 omega t). For a smooth decay that is the ratio of `damping_over_amplitude` to 2 %.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> structure = rb.SDOF(mass="3 kg", frequency="50 Hz", damping_ratio=0.02, velocity="0.3 m/s")
+    >>> run = rb.simulate(rb.Case(structure=structure, duration="1 s"))
+    >>> round(rb.analysis.equivalent_damping(run, 0.3e-3), 3)
+    0.02
+    """
+    if point is not None and point not in run.arrays.points:
+        raise ValueError(f"point is {point!r}, but the run has {', '.join(run.arrays.points) or 'none'}")
+    level = None if amplitude is None else positive("amplitude", amplitude, "m")
+    decay = free_decay(run.arrays, level, point)
+    return math.nan if decay is None else decay.damping_ratio
 
 
 def band_edges(levels: FloatArray) -> FloatArray:

@@ -12,6 +12,7 @@ import numpy as np
 from rattlebox._util.batch_means import mean_interval
 from rattlebox._util.html import bullets, paragraph, table
 
+from .free_decay import free_decay
 from .quantities import MISSING, digits, quantity
 from .schema import PARTNERS
 
@@ -45,16 +46,19 @@ class _Row:
     """One line of the table: key of the value, label and unit.
 
     The unit is "%" for a share, "order" for an order of magnitude, "" for a count or a text. `error` is the key of half
-    the width of the 95 % interval, if the value has one.
+    the width of the 95 % interval, if the value has one, `at` that of the amplitude [m] at which it holds.
     """
 
     key: str
     label: str
     unit: str
     error: str = ""
+    at: str = ""
 
     def text(self, values: Mapping[str, Value]) -> str:
         value = values.get(self.key)
+        if self.at and isinstance(value, float):
+            return f"{quantity(value, self.unit)} at {quantity(float(values[self.at]), 'm')}"
         if self.error and isinstance(value, float):
             return self._with_error(value, values[self.error])
         if value is None:
@@ -100,6 +104,9 @@ def _main_results(run: Record) -> dict[str, Value]:
         if is_driven(arrays):
             for k, point in enumerate(arrays.points):
                 values |= _steady(arrays.time, arrays.displacement[:, k], point)
+        elif (decay := free_decay(arrays)) is not None:
+            values["equivalent_damping_ratio"] = decay.damping_ratio
+            values["damping_amplitude"] = decay.amplitude
     force = arrays.interface_force.reshape(arrays.time.size, -1)
     if np.isfinite(force).all() and force.any():
         values["rms_interface_force"] = _rms(arrays.time, np.linalg.norm(force, axis=1))
@@ -250,6 +257,7 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         rows.append(_Row(f"rms_acceleration[{point}]", f"RMS acceleration{where}", "m/s^2"))
         rows.append(_Row(f"peak_reduction[{point}]", f"reduction of the peak{where}", "%"))
         rows.append(_Row(f"rms_reduction[{point}]", f"reduction of the RMS{where}", "%"))
+    rows.append(_Row("equivalent_damping_ratio", "equivalent damping ratio", "%", at="damping_amplitude"))
     rows.append(_Row("rms_interface_force", "RMS force on the base", "N"))
     rows.append(_Row("computing_time", "computing time", "s"))
     rows.append(_Row("particle_steps_per_second", "particle steps per second", "million"))
@@ -371,7 +379,9 @@ class Summary(_Report):
         `peak_contact_force`, `largest_approach_speed`, `peak_displacement[point]`, `rms_displacement[point]`,
         `rms_acceleration[point]` (absolute, mean over each output step), `rms_interface_force`, `computing_time`. For runs
         that are driven to their end `steady_rms_displacement[point]` over the second half, and
-        `steady_rms_displacement_error[point]`, half of its 95 % interval by batch means (NaN: the run is too short).
+        `steady_rms_displacement_error[point]`, half of its 95 % interval by batch means (NaN: the run is too short). For
+        runs that end in a free decay `equivalent_damping_ratio` of the mode with the largest energy, and
+        `damping_amplitude`, at which it holds: see `rattlebox.analysis.equivalent_damping`.
         For 3-D runs instead of the impacts: `particles`, `particle_mass`,
         `first_touches`, `contacts`, `step`, `steps_per_contact`, `share_sliding`, `share_rolling`, shares by partner as
         `share_at_particle` and `share_at_wall`, `largest_overlap` (of the smaller radius), `particle_steps_per_second`.
