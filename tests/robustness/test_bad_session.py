@@ -307,8 +307,8 @@ ANSWERS = {
     "open bracket": (changed("[load]", "[load"), "at line 9, column 6)\n  [load"),
     "the same field twice": (changed('"20 kg"', '"20 kg"\nmass = 3'), "not TOML: Cannot overwrite a value (at line 6"),
     "another language": ('{"duration": 1}', "not TOML: Invalid statement (at line 1, column 1)"),
-    "nothing": ("", "there is nothing in it\n  try: rattlebox demo"),
-    "a comment alone": ("# todo\n", "there is nothing in it\n  try: rattlebox demo"),
+    "nothing": ("", "the file is empty\n  try: rattlebox demo"),
+    "a comment alone": ("# todo\n", "the file is empty\n  try: rattlebox demo"),
     "no structure": (LOAD, "structure\n  this field is needed"),
 }
 

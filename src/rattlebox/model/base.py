@@ -1,4 +1,4 @@
-"""What all parts of a case share."""
+"""Base class of the parts of a case."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ else:
     _ModelType = type(BaseModel)
 
 
-class _Explaining(_ModelType):
-    """Makes wrong values raise CaseError at construction, and leaves validation inside a larger part to pydantic."""
+class _CaseErrorMeta(_ModelType):
+    """Metaclass that raises CaseError in place of pydantic's error when a part is constructed directly."""
 
     def __call__(cls, *args: Any, **values: Any) -> Any:  # noqa: N805
         if args:
-            names: tuple[str, ...] = getattr(cls, "unnamed", ())
+            names: tuple[str, ...] = getattr(cls, "positional", ())
             if len(args) > len(names) or set(names[: len(args)]) & set(values):
                 raise Hint(f"{cls.__name__} takes its fields by name: {', '.join(getattr(cls, 'model_fields', ()))}")
             values = dict(zip(names, args, strict=False)) | values
@@ -66,18 +66,16 @@ _SHORT.maxstring = 60
 _SHORT.maxother = 10_000  # parts inside parts shorten themselves
 
 
-class Part(BaseModel, metaclass=_Explaining):
-    """A frozen part of a case. Wrong values raise CaseError, whoever gives them."""
+class Part(BaseModel, metaclass=_CaseErrorMeta):
+    """Immutable part of a case. Invalid values raise CaseError."""
 
-    held_as: ClassVar[tuple[str, ...]] = ()
-    spellings: ClassVar[dict[str, str]] = {}  # other names of fields, such as that for one instead of several
-    unnamed: ClassVar[tuple[str, ...]] = ()  # fields that may be given without their names
-    alternatives: ClassVar[tuple[tuple[str, str], ...]] = ()  # fields that say the same thing: one of each pair
-    in_file: ClassVar[tuple[str, ...]] = ()  # fields that a file stands for
-    elementwise: ClassVar[bool] = True  # whether arrays of variants may stand in place of its numbers
-    examples_in: ClassVar[
-        dict[str, dict[str, str]]
-    ] = {}  # of fields, as a file has them, where the part is held as such
+    field_names: ClassVar[tuple[str, ...]] = ()  # fields of a case file that hold a part of this class
+    aliases: ClassVar[dict[str, str]] = {}  # other names of fields, such as the singular for one item
+    positional: ClassVar[tuple[str, ...]] = ()  # fields that are also positional arguments
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = ()  # pairs of fields of which only one is allowed
+    file_fields: ClassVar[tuple[str, ...]] = ()  # fields that are read from a file
+    elementwise: ClassVar[bool] = True  # whether arrays of variants may replace its numbers
+    examples_in: ClassVar[dict[str, dict[str, str]]] = {}  # TOML examples of fields, by the field that holds the part
     model_config = ConfigDict(
         frozen=True,
         extra="forbid",
@@ -88,22 +86,22 @@ class Part(BaseModel, metaclass=_Explaining):
 
     @model_validator(mode="after")
     def _check_names(self) -> Self:
-        """Refuse control characters in names, which results, figures and terminals show."""
+        """Raise if a name has control characters, which would reach figures and terminals."""
         for field in type(self).model_fields:
             value = getattr(self, field)
             names = value if isinstance(value, Mapping) else [value] if field in _NAMES else ()
             for name in names:
                 if isinstance(name, str) and has_controls(name):
-                    raise Hint(f"{name!r} holds a control character", "printable characters only", [field])
+                    raise Hint(f"{name!r} contains a control character", "printable characters only", [field])
         return self
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return a copy with other values, unchecked; what was computed from the former ones is forgotten.
+        """Return a copy with other values, which are not validated; cached properties are computed anew.
 
         Raises
         ------
         CaseError
-            When there is no such field.
+            If a field does not exist.
         """
         for name in (update or {}).keys() - type(self).model_fields.keys():
             raise Hint(f"{type(self).__name__} has no field {name!r}", nearest(name, type(self).model_fields))
@@ -114,8 +112,8 @@ class Part(BaseModel, metaclass=_Explaining):
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise Hint(
-            f"{name}: a {type(self).__name__} stays as it is",
-            'another one; or a new case with other values, case.replaced({"duration": "2 s", "damper.friction": 0.5})',
+            f"{name}: a {type(self).__name__} cannot be changed",
+            'another one, or a new case with other values, case.replaced({"duration": "2 s", "damper.friction": 0.5})',
         )
 
     @classmethod
@@ -135,27 +133,27 @@ class Part(BaseModel, metaclass=_Explaining):
 
     def fields_from_file(self) -> tuple[str, ...]:
         """Return the fields whose values were read from a file."""
-        return type(self).in_file if getattr(self, "file", None) is not None else ()
+        return type(self).file_fields if getattr(self, "file", None) is not None else ()
 
     @classmethod
-    def in_full(cls, values: dict[str, Any]) -> dict[str, Any]:
-        """Return the values under the names of the fields.
+    def expand_aliases(cls, values: dict[str, Any]) -> dict[str, Any]:
+        """Return values with the names of fields in place of aliases.
 
         Raises
         ------
         Hint
-            When one is given twice.
+            If a field is given under both names.
         """
-        for other, name in cls.spellings.items():
+        for other, name in cls.aliases.items():
             if other in values and name in values:
                 raise Hint(f"give {other} or {name}, not both")
-        return {cls.spellings.get(name, name): value for name, value in values.items()}
+        return {cls.aliases.get(name, name): value for name, value in values.items()}
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         schema = handler(core)
         content = handler.resolve_ref_schema(schema)
-        for other, name in cls.spellings.items():
+        for other, name in cls.aliases.items():
             content["properties"][other] = content["properties"][name]
             if name in content.get("required", []):
                 content["required"].remove(name)
@@ -180,7 +178,7 @@ def full_text(value: Any) -> str:
 
 
 def vocabulary() -> dict[str, dict[str, dict[str, str]]]:
-    """Return names of fields, each with an example or "", by the field that holds a part or its class, and by its kind."""
+    """Return the fields of parts, each with an example or "", by field or class of the part and by its kind."""
     known: dict[str, dict[str, dict[str, str]]] = {}
     stack: list[type[Part]] = [Part]
     while stack:
@@ -188,30 +186,30 @@ def vocabulary() -> dict[str, dict[str, dict[str, str]]]:
         stack.extend(reversed(part.__subclasses__()))
         kind = part.model_fields.get("kind")
         if kind is not None and kind.is_required():
-            continue  # what several kinds share
-        for holder in (*part.held_as, part.__name__):
+            continue  # a base class of several kinds
+        for holder in (*part.field_names, part.__name__):
             tag = "" if kind is None else str(kind.default)
             fields = known.setdefault(holder, {}).setdefault(tag, {})
-            fields |= dict.fromkeys(part.spellings, "") | examples(part) | part.examples_in.get(holder, {})
+            fields |= dict.fromkeys(part.aliases, "") | examples(part) | part.examples_in.get(holder, {})
     return known
 
 
 def examples(part: type[Any]) -> dict[str, str]:
-    """Return the names of fields as they are written, each with an example as a file would hold it, or ""."""
+    """Return the names of fields, each with an example in TOML, or ""."""
     fields: dict[str, FieldInfo] = getattr(part, "model_fields", None) or part.__pydantic_fields__
     return {field.alias or name: _example(field) for name, field in fields.items()}
 
 
 def _example(field: FieldInfo) -> str:
-    schemas = [told.json_schema or {} for told in field.metadata if isinstance(told, WithJsonSchema)]
-    told = [*(field.examples or []), *(example for schema in schemas for example in schema.get("examples", []))]
-    return _in_a_file(told[0]) if told else ""
+    schemas = [item.json_schema or {} for item in field.metadata if isinstance(item, WithJsonSchema)]
+    values = [*(field.examples or []), *(example for schema in schemas for example in schema.get("examples", []))]
+    return _toml_value(values[0]) if values else ""
 
 
-def _in_a_file(value: Any) -> str:
+def _toml_value(value: Any) -> str:
     if isinstance(value, Mapping):
         rows = (
-            f"{name if name.isidentifier() else json.dumps(name)} = {_in_a_file(row)}" for name, row in value.items()
+            f"{name if name.isidentifier() else json.dumps(name)} = {_toml_value(row)}" for name, row in value.items()
         )
         return "{ " + ", ".join(rows) + " }"
     return json.dumps(value)

@@ -1,4 +1,4 @@
-"""Uniform beams, by the exact modes of Euler and Bernoulli."""
+"""Uniform Euler-Bernoulli beams with their exact modes."""
 
 from __future__ import annotations
 
@@ -28,16 +28,17 @@ HEAVIEST = 1e9
 """Largest tip mass, in masses of the beam, for which the modes are accurate."""
 
 ROUNDING = 1e-9
-"""Of the length: what places may lie beyond the end."""
+"""Tolerance for positions of points beyond the end, relative to the length."""
 
 NEGLECTED = 0.05
-"""Largest change of a natural frequency by shear and rotary inertia, which the theory neglects, without a warning."""
+"""Largest relative change of a natural frequency by shear and rotary inertia without a warning."""
 
 
 class Beam(DampedModes):
-    """A uniform beam in bending, after Euler and Bernoulli, of which the lowest modes are kept.
+    """Uniform Euler-Bernoulli beam in bending, represented by its lowest modes.
 
-    Its points move along one line, across the beam. "tip" is a free second end (x = length), "middle" is at half the length.
+    Its points move along one line, perpendicular to the beam. The points "tip", the free second end (x = length), and
+    "middle", at half the length, are predefined.
 
     Parameters
     ----------
@@ -47,17 +48,17 @@ class Beam(DampedModes):
         First end (x = 0) and second end (x = L): "clamped-free", "clamped-clamped", "clamped-pinned", "pinned-pinned",
         "pinned-free" or "free-free".
     material
-        Of the cross-section that the next fields give.
+        Material of the beam; needs a cross-section.
     diameter, inner_diameter
-        Of a round bar or tube [m].
+        Diameters of a round bar or tube [m].
     width, height
-        Of a rectangular cross-section [m]; the height is in the direction of the motion.
+        Edges of a rectangular cross-section [m]; the height is in the direction of the motion.
     bending_stiffness, mass_per_length
-        E I [N m^2] and rho A [kg/m], instead of material and cross-section.
+        E I [N m^2] and rho A [kg/m], in place of material and cross-section.
     tip_mass
         Mass of a point at the free second end [kg].
     mode_count
-        Number of modes, with those of a rigid body, of which "pinned-free" has one and "free-free" two.
+        Number of modes, including rigid-body modes: one for "pinned-free", two for "free-free".
     points
         Named points by their distance x from the first end [m].
 
@@ -76,7 +77,7 @@ class Beam(DampedModes):
     ===============  ===================================================
 
     Shear and rotary inertia lower the frequencies by about (beta r)^2 (1 + E / (kappa G)) / 2, with the radius of gyration r
-    and the shear coefficient kappa; a run warns where this is more than 5 % and the cross-section is known.
+    and the shear coefficient kappa; a run has a warning if this exceeds 5 % and the cross-section is known.
 
     References
     ----------
@@ -109,10 +110,10 @@ class Beam(DampedModes):
     points: dict[str, Length] = Field(default_factory=dict, examples=[{"cavity": "0.15 m"}])
 
     @model_validator(mode="after")
-    def _sound(self) -> Self:
+    def _validate(self) -> Self:
         if self.material is not None:
             if self.bending_stiffness is not None or self.mass_per_length is not None:
-                raise Hint("a material, and bending_stiffness or mass_per_length besides", "one or the other")
+                raise Hint("a material and bending_stiffness or mass_per_length exclude each other", "one or the other")
             one_of('diameter = "20 mm", or width and height', diameter=self.diameter, height=self.height)
             if self.height is not None and self.width is None:
                 raise Hint("a rectangular cross-section needs a width", 'width = "30 mm"', ["width"])
@@ -164,10 +165,10 @@ class Beam(DampedModes):
         return np.sqrt(self.modes().stiffness) / (2 * math.pi)
 
     def modes(self) -> ModalModel:
-        """Compute the modes."""
+        """Compute the lowest mass-normalised modes."""
         stiffness, per_length = self.section
-        own = per_length * self.length
-        mu = self.tip_mass / own
+        mass = per_length * self.length
+        mu = self.tip_mass / mass
         shapes = _rigid_shapes(self.ends, mu)[: self.mode_count]
         roots = np.zeros(len(shapes))
         if len(shapes) < self.mode_count:
@@ -182,20 +183,20 @@ class Beam(DampedModes):
             [shape(np.array([*x, 1.0, *(place / self.length for place in places.values())])) for shape in shapes]
         )
         inside, tip, at_points = rows[:, : x.size], rows[:, x.size], rows[:, x.size + 1 :]
-        norm = np.sqrt(own * (inside**2 @ weight + mu * tip**2))
+        norm = np.sqrt(mass * (inside**2 @ weight + mu * tip**2))
         squared = roots**4 * stiffness / (per_length * self.length**4)
         zero = np.zeros(roots.size)
         return ModalModel(
             decay=self.decay_rates(squared),
             stiffness=squared,
             shapes={name: at_points[:, k] / norm for k, name in enumerate(places)},
-            participation=own * (inside @ weight + mu * tip) / norm,
+            participation=mass * (inside @ weight + mu * tip) / norm,
             q0=zero,
             p0=zero,
         )
 
     def warnings(self) -> Iterator[str]:
-        """Return modes whose frequencies shear and rotary inertia would change."""
+        """Yield a warning if shear and rotary inertia would change the frequency of a mode by more than 5 %."""
         if self.material is None:
             return
         area, inertia = self._area_and_inertia()
@@ -219,7 +220,7 @@ class Beam(DampedModes):
 
 
 def wave_numbers(ends: Ends, count: int, mu: float = 0.0) -> Vector:
-    """Compute beta L of the lowest elastic modes of a beam.
+    """Compute the dimensionless wave numbers beta L of the lowest elastic modes of a beam.
 
     Parameters
     ----------
@@ -233,12 +234,12 @@ def wave_numbers(ends: Ends, count: int, mu: float = 0.0) -> Vector:
     Returns
     -------
     (count,) float
-        Roots of the characteristic equation (see `Beam`), rising, to rounding.
+        Roots of the characteristic equation (see `Beam`), ascending, to rounding.
     """
     free = np.array([_root(ends, 0.0, *_bracket(ends, n)) for n in range(1, count + 1)])
     if mu == 0:
         return free
-    # A mass at an end lowers each frequency, at most to that of a beam which is pinned there.
+    # A mass at an end lowers each frequency; the limit is that of a beam pinned there.
     if ends == "clamped-free":
         pinned = [0.0, *wave_numbers("clamped-pinned", count, 0.0)]
     else:
@@ -250,7 +251,7 @@ def wave_numbers(ends: Ends, count: int, mu: float = 0.0) -> Vector:
 
 
 def _bracket(ends: str, n: int) -> tuple[float, float]:
-    """Interval with the elastic root number n, from 1, without tip mass."""
+    """Return an interval that contains the n-th elastic root (n from 1) without tip mass."""
     if ends == "pinned-pinned":
         return (n - 0.5) * math.pi, (n + 0.5) * math.pi
     if ends == "clamped-free":
@@ -274,7 +275,7 @@ def _root(ends: str, mu: float, low: float, high: float) -> float:
 
 
 def _rigid_shapes(ends: Ends, mu: float) -> list[Callable[[Vector], Vector]]:
-    """Motions of the beam as a rigid body over x / L, orthogonal to each other."""
+    """Return the orthogonal rigid-body shapes as functions of x / L."""
     if ends == "pinned-free":
         return [np.array]
     if ends == "free-free":
@@ -284,7 +285,7 @@ def _rigid_shapes(ends: Ends, mu: float) -> list[Callable[[Vector], Vector]]:
 
 
 def _shape(ends: Ends, z: float) -> Callable[[Vector], Vector]:
-    """Shape of an elastic mode over x / L, of any scale, without differences of large numbers."""
+    """Return the shape of an elastic mode as a function of x / L, in a form without differences of large numbers."""
     if ends == "pinned-pinned":
         return lambda x: np.sin(z * x)
     decayed, sin, cos = math.exp(-z), math.sin(z), math.cos(z)

@@ -1,4 +1,4 @@
-"""The case: everything a run needs, in one object and one file."""
+"""The case: complete description of a run, as an object and as a file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import CaseError, DataError, ResourceError
 from rattlebox._util.html import code_block, paragraph
 
-from .also_takes import AlsoTakes
+from .also_accepts import AlsoAccepts
 from .any_signal import AnySignal
 from .any_structure import AnyStructure
 from .base import Part, vocabulary
@@ -48,10 +48,10 @@ _USUAL = "numbers of usual sizes"
 
 
 def _kind_of_damper(value: Any) -> str:
-    """A damper with particles needs no kind in a file."""
+    """Return the kind of a damper; by default it follows from the fields."""
     kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
-    in_space = isinstance(value, dict) and not value.keys().isdisjoint(("particles", "cavity", "packing"))
-    return str(kind or ("particle" if in_space else "impact"))
+    has_particles = isinstance(value, dict) and not value.keys().isdisjoint(("particles", "cavity", "packing"))
+    return str(kind or ("particle" if has_particles else "impact"))
 
 
 AnyDamper = Annotated[
@@ -61,7 +61,7 @@ AnyDamper = Annotated[
 
 
 class Case(Part):
-    """A structure, its loads, its dampers, and how long to look.
+    """A structure, its loads and dampers, and the settings of a run.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class Case(Part):
     damper, dampers
         One ImpactDamper or ParticleDamper, several of one kind, or none.
     tuned_mass, tuned_masses
-        One TunedMass, several, or none; beside the dampers or in their place.
+        One TunedMass, several, or none; with or without dampers.
     load, loads
         Forces on the structure: one signal, several (they add), or none.
     base
@@ -78,39 +78,46 @@ class Case(Part):
     duration
         Length of the run [s].
     method, output
-        How it is computed, EventDriven or, with particle dampers, Dem if left out; and at which times it is recorded.
+        Numerical method, default EventDriven, or Dem with particle dampers; and the times of the output.
     name, seed
-        For the record; nothing in one run is random. A seed is an integer from 0 to 2^63 - 1, as files of runs hold.
+        Labels that are stored with the result; a run itself has no random numbers. A seed is an integer from 0 to 2^63 - 1.
 
     Raises
     ------
     CaseError
-        When something does not fit, with a message that says what and where.
+        If a value is invalid, or values are inconsistent.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> structure = rb.SDOF(mass="1 kg", frequency="10 Hz", damping_ratio=0.01, displacement="1 mm")
+    >>> case = rb.Case(structure=structure, duration="1 s")
+    >>> run = rb.simulate(case)
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("",)
-    spellings: ClassVar[dict[str, str]] = {"damper": "dampers", "tuned_mass": "tuned_masses", "load": "loads"}
+    field_names: ClassVar[tuple[str, ...]] = ("",)
+    aliases: ClassVar[dict[str, str]] = {"damper": "dampers", "tuned_mass": "tuned_masses", "load": "loads"}
     name: str = ""
     structure: AnyStructure
-    dampers: Annotated[tuple[AnyDamper, ...], BeforeValidator(as_several), AlsoTakes()] = ()
-    tuned_masses: Annotated[tuple[TunedMass, ...], BeforeValidator(as_several), AlsoTakes()] = ()
-    loads: Annotated[tuple[AnySignal, ...], signals_in("N"), AlsoTakes()] = ()
-    base: Annotated[tuple[AnySignal, ...], signals_in("m/s^2"), AlsoTakes()] = ()
+    dampers: Annotated[tuple[AnyDamper, ...], BeforeValidator(as_several), AlsoAccepts()] = ()
+    tuned_masses: Annotated[tuple[TunedMass, ...], BeforeValidator(as_several), AlsoAccepts()] = ()
+    loads: Annotated[tuple[AnySignal, ...], signals_in("N"), AlsoAccepts()] = ()
+    base: Annotated[tuple[AnySignal, ...], signals_in("m/s^2"), AlsoAccepts()] = ()
     duration: PositiveTime
     method: AnyMethod = Field(default_factory=EventDriven)
     output: Output = Field(default_factory=Output)
-    seed: Annotated[Whole, Field(ge=0, le=2**63 - 1)] = 0  # what files of runs hold
+    seed: Annotated[Whole, Field(ge=0, le=2**63 - 1)] = 0  # the range of integers in result files
 
     @model_validator(mode="before")
     @classmethod
-    def _spellings(cls, values: Any) -> Any:
-        return cls.in_full(values) if isinstance(values, dict) else values
+    def _expand_aliases(cls, values: Any) -> Any:
+        return cls.expand_aliases(values) if isinstance(values, dict) else values
 
     @model_validator(mode="after")
-    def _fits_together(self) -> Case:
+    def _check_consistency(self) -> Case:
         put = object.__setattr__
-        put(self, "loads", self._placed("loads", "N", "a load"))
-        put(self, "base", self._placed("base", "m/s^2", "the base"))
+        put(self, "loads", self._signals_in_unit("loads", "N", "a load"))
+        put(self, "base", self._signals_in_unit("base", "m/s^2", "the base"))
         if self.particle_dampers and "method" not in self.model_fields_set:
             put(self, "method", Dem())
         self._check_signals()
@@ -123,15 +130,15 @@ class Case(Part):
                     raise Hint(f"two dampers are called {damper.label(index)!r}", "different names")
                 names.add(damper.label(index))
                 if isinstance(damper, ImpactDamper):
-                    self._check_play(damper)
-                    self._check_places(damper)
+                    self._check_clearance(damper)
+                    self._check_starts(damper)
                     self._check_laws(damper, index)
                 else:
-                    self._check_entries(damper)
+                    self._check_particle_laws(damper)
         return self
 
-    def _placed(self, field: str, unit: Unit, place: str) -> tuple[Signal, ...]:
-        """The signals of a field in the unit that it takes."""
+    def _signals_in_unit(self, field: str, unit: Unit, place: str) -> tuple[Signal, ...]:
+        """Return the signals of a field in its unit."""
         signals = []
         for index, signal in enumerate(getattr(self, field)):
             with at(field, index):
@@ -142,7 +149,7 @@ class Case(Part):
         modes = self.modes
         for numbers in (modes.decay, modes.stiffness, modes.q0, modes.p0, *modes.shapes.values()):
             if not np.isfinite(numbers).all():
-                raise Hint("its modes are no finite numbers", "masses and stiffnesses of usual sizes", ["structure"])
+                raise Hint("its modes are not finite", "masses and stiffnesses of usual sizes", ["structure"])
         for field, signals in (("loads", self.loads), ("base", self.base), ("motion", self.shaker_motion)):
             for index, signal in enumerate(signals):
                 with at(*(("structure",) if field == "motion" else ()), field, index):
@@ -162,8 +169,8 @@ class Case(Part):
         if self.base and modes.participation is None:
             if isinstance(self.structure, Matrices):
                 raise Hint(
-                    "how do the degrees of freedom move with the base along x, y and z?",
-                    "three rows of numbers, 1 where one moves with it",
+                    "base motion needs the motion of each degree of freedom with the base along x, y and z",
+                    "three rows of numbers, 1 for a degree of freedom that moves with the base",
                     ["structure", "influence"],
                 )
             raise Hint(
@@ -173,18 +180,18 @@ class Case(Part):
             raise Hint("a shaker is its own base", "add the signal to its motion", ["base"])
 
     def _check_directions(self) -> None:
-        """Look at the kinds of dampers and at what moves where."""
+        """Check that dampers, method, output and directions of motion are consistent."""
         if self.particle_dampers:
             check_particle_case(self)
             self._check_snapshots()
             return
         if self.output.snapshots is not None:
-            raise Hint("snapshots are of particles in space, and there are none", "rate", ["output", "snapshots"])
+            raise Hint("snapshots need a particle damper, and the case has none", "rate", ["output", "snapshots"])
         if isinstance(self.method, Dem):
             raise Hint(
-                "dem computes particles in space, and there is no damper with particles"
+                "dem computes particle dampers, and the case has none"
                 if not self.dampers
-                else "dem computes particles in space, not impact dampers",
+                else "dem computes particle dampers, not impact dampers",
                 'kind = "event_driven", or a ParticleDamper',
                 ["method"],
             )
@@ -195,24 +202,24 @@ class Case(Part):
                     raise Hint("without particle dampers all motion is along one line", "leave direction out", place)
         if self.base and self.modes.spatial:
             raise Hint(
-                f"the point {min(self.modes.spatial)!r} moves in space, where the base of a case without particle dampers"
+                f"the point {min(self.modes.spatial)!r} moves in 3-D, and the base of a case without particle dampers"
                 " has no direction",
                 "points that move along one line, with one participation for each mode",
                 ["base"],
             )
 
     def _check_snapshots(self) -> None:
-        """Refuse snapshots after the end."""
+        """Raise if a snapshot is after the end of the run."""
         times = self.output.snapshots if isinstance(self.output.snapshots, tuple) else ()
         if late := [time for time in times if time > self.duration * (1 + 1e-9)]:
             raise Hint(
-                f"a snapshot is asked for at {late[0]:.6g} s, after the end of the run at {self.duration:.6g} s",
+                f"the snapshot at {late[0]:.6g} s is after the end of the run at {self.duration:.6g} s",
                 "times up to the end, or a longer duration",
                 ["output", "snapshots"],
             )
 
     def _check_size(self) -> None:
-        """Refuse an output that no memory holds."""
+        """Raise if the output would exceed the memory."""
         samples = self.duration * (self.output.rate or 0.0)
         columns = 20 + 6 * self.modes.decay.size + 10 * sum(len(damper.balls) for damper in self.impact_dampers)
         columns += 50 * len(self.particle_dampers)
@@ -234,16 +241,16 @@ class Case(Part):
                 record.where,
             )
 
-    def _check_play(self, damper: ImpactDamper) -> None:
+    def _check_clearance(self, damper: ImpactDamper) -> None:
         if isinstance(self.method, Newton) and damper.clearance <= 1e-14 * damper.row:
             raise Hint(
-                "hard impacts need some play: what the walls hold on both sides never flies",
-                'gap = "1 um", or the EventDriven method, whose contacts carry it',
+                "hard impacts need a clearance greater than zero: balls in contact with both walls never fly",
+                'gap = "1 um", or the EventDriven method, whose contacts have a duration',
                 ["gap"],
             )
 
-    def _check_places(self, damper: ImpactDamper) -> None:
-        """Refuse balls that start inside a wall of the cavity, which may be displaced at the start."""
+    def _check_starts(self, damper: ImpactDamper) -> None:
+        """Raise if a ball starts inside a wall of the cavity, which may be displaced at the start."""
         with at("point"):
             shape = self.modes.shape(damper.point)
         cavity = float(shape @ self.modes.q0)
@@ -261,11 +268,11 @@ class Case(Part):
                 )
 
     def _check_laws(self, damper: ImpactDamper, index: int) -> None:
-        """Let every law look at the pair of bodies that it is used for."""
+        """Check that the coefficients of the contact laws are finite for their pairs of bodies."""
         for number, pair in enumerate(contact_pairs(self, index)):
             between = 0 < number < len(damper.balls) and damper.ball_contact is not None
             law = damper.ball_contact if between and damper.ball_contact is not None else damper.contact
-            with at("ball_contact" if between else "contact"), _computable():
+            with at("ball_contact" if between else "contact"), _raise_if_not_finite():
                 _, values = law.coefficients(pair)
                 _check_finite(values)
                 if law.impact_restitution is not None:
@@ -273,10 +280,10 @@ class Case(Part):
                         _, values = law.impact_restitution.coefficients(pair)
                         _check_finite(values)
 
-    def _check_entries(self, damper: ParticleDamper) -> None:
-        """Let every law look at the pairs of bodies that it is used for."""
+    def _check_particle_laws(self, damper: ParticleDamper) -> None:
+        """Check that the coefficients of all laws of a particle damper are finite for their pairs of bodies."""
         for entry in damper.contact_table.entries:
-            with at(*entry.place), _computable():
+            with at(*entry.place), _raise_if_not_finite():
                 _check_finite(damper.softened(entry)[1])
                 _check_finite(damper.softened_friction(entry)[1])
                 _check_finite(damper.rolling_of(entry).coefficients())
@@ -286,23 +293,23 @@ class Case(Part):
 
     @property
     def impact_dampers(self) -> tuple[ImpactDamper, ...]:
-        """The dampers that are impact dampers."""
+        """The impact dampers."""
         return tuple(damper for damper in self.dampers if isinstance(damper, ImpactDamper))
 
     @property
     def particle_dampers(self) -> tuple[ParticleDamper, ...]:
-        """The dampers that hold particles in space."""
+        """The particle dampers."""
         return tuple(damper for damper in self.dampers if isinstance(damper, ParticleDamper))
 
     @property
     def shaker_motion(self) -> tuple[Signal, ...]:
-        """The signals that a shaker moves by."""
+        """The signals of the motion of a shaker; empty for other structures."""
         return self.structure.motion if isinstance(self.structure, Shaker) else ()
 
     @cached_property
     def modes(self) -> ModalModel:
         """The structure in modal form, with its tuned masses."""
-        with np.errstate(all="ignore"):  # non-finite numbers are refused when the case is checked
+        with np.errstate(all="ignore"):  # _check_signals raises for non-finite numbers
             return with_tuned_masses(self.structure.modes(), self.tuned_masses)
 
     def base_acceleration(self) -> tuple[Signal, ...]:
@@ -323,14 +330,14 @@ class Case(Part):
         return times[times <= self.duration]
 
     def even_samples(self) -> int:
-        """Return how many equal parts the samples divide the duration into, for a run in equal steps.
+        """Return the number of equal intervals between samples, for a run in equal steps.
 
-        A rate that does not divide it is raised a little.
+        If the rate does not divide the duration, the next larger rate that does is used.
         """
         return self.output.sample_times(self.duration, self._fastest()).size - 1
 
     def _fastest(self) -> float:
-        """Highest frequency of modes, harmonics and sweeps [Hz]."""
+        """Return the highest frequency of modes, harmonics and sweeps [Hz]."""
         signals = (*self.loads, *self.base_acceleration())
         frequencies = [signal.frequency for signal in signals if isinstance(signal, Harmonic)]
         sweeps = [signal for signal in signals if isinstance(signal, SineSweep)]
@@ -352,7 +359,7 @@ class Case(Part):
         Raises
         ------
         CaseError
-            When the file cannot be read or the case does not fit.
+            If the file cannot be read, or a value is invalid.
         """
         file = Path(path)
         try:
@@ -373,16 +380,16 @@ class Case(Part):
         Parameters
         ----------
         content
-            TOML.
+            Text in TOML.
         source
-            What messages call it.
+            Name of the file in messages.
         folder
-            Where files named in it are looked for; default the current folder.
+            Folder of files named in it; default the current folder.
 
         Raises
         ------
         CaseError
-            When the case does not fit.
+            If a value is invalid.
         """
         return cls.from_dict(read_toml(content, source), source=source, folder=folder)
 
@@ -405,7 +412,7 @@ class Case(Part):
             If a value is not allowed.
         """
         if not given:
-            raise CaseError(f"{source}: there is nothing in it\n  try: rattlebox demo, which writes two case files")
+            raise CaseError(f"{source}: the file is empty\n  try: rattlebox demo, which writes two case files")
         if "case" in given and "structure" not in given:
             raise CaseError(f"{source}: this is a study of a case, not a case\n  try: rattlebox sweep {source}")
         try:
@@ -437,29 +444,34 @@ class Case(Part):
         return text if len(text) <= most else f"{text[:most]}\n... {len(text) - most} more characters"
 
     def replaced(self, values: Mapping[str, Any]) -> Case:
-        """Return a case with other values in places; this one stays as it is.
+        """Return a copy of the case with other values.
 
-        What excludes a value goes: a case with damping becomes one with a damping ratio when that is given.
+        A new value removes alternatives that exclude it: a damping ratio replaces a damping.
 
         Parameters
         ----------
         values
-            New values by path, as studies name them and as one would write them in the case:
+            New values by path, in the notation of case files:
             `case.replaced({"damper.friction": 0.5, "duration": "2 s"})`.
+
+        Returns
+        -------
+        Case
+            The new case.
 
         Raises
         ------
         CaseError
-            When a path leads nowhere, or the new case does not fit, with the reason.
+            If a path does not exist, or the new case is invalid.
         """
         return replaced(self, values)
 
     def to_toml(self) -> str:
-        """Return the case as the text of a case file that reads back equal; files in it are named by their full path."""
+        """Return the text of a case file from which an equal case is read; it has the full paths of other files."""
         return self._toml(str)
 
     def to_file(self, path: str | os.PathLike[str]) -> None:
-        """Write a case file that reads back equal; files in it are named as seen from its folder."""
+        """Write a case file from which an equal case is read; it has the paths of other files relative to its folder."""
         folder = Path(path).absolute().parent
         text = self._toml(lambda file: _relative(file, folder))
         with atomic_write(path, "make room and write the case again") as name:
@@ -469,7 +481,7 @@ class Case(Part):
         import tomli_w
 
         data = self.model_dump(mode="json", exclude_none=True, exclude_defaults=False)
-        return tomli_w.dumps(change(_tidy(_with_files(data, name_of))))
+        return tomli_w.dumps(change(_without_empty(_with_files(data, name_of))))
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
@@ -485,8 +497,8 @@ class Case(Part):
 
 
 @contextmanager
-def _computable() -> Iterator[None]:
-    """Complain where formulas divide by zero or leave double precision."""
+def _raise_if_not_finite() -> Iterator[None]:
+    """Raise if a formula divides by zero or overflows."""
     try:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             yield
@@ -497,15 +509,17 @@ def _computable() -> Iterator[None]:
 def _check_finite(values: Mapping[str, Any]) -> None:
     for name, value in values.items():
         if not np.isfinite(value).all():
-            raise Hint(f"{_NOT_COMPUTABLE}: its {name.replace('_', ' ')} is no finite number", _USUAL)
+            raise Hint(f"{_NOT_COMPUTABLE}: its {name.replace('_', ' ')} is not finite", _USUAL)
 
 
-def _tidy(value: Any) -> Any:
-    """Drop what is empty: TOML has no null."""
+def _without_empty(value: Any) -> Any:
+    """Remove empty values, since TOML has no null."""
     if isinstance(value, dict):
-        return {key: _tidy(item) for key, item in value.items() if item is not None and item not in ("", [], {})}
+        return {
+            key: _without_empty(item) for key, item in value.items() if item is not None and item not in ("", [], {})
+        }
     if isinstance(value, list):
-        return [_tidy(item) for item in value]
+        return [_without_empty(item) for item in value]
     return value
 
 
@@ -522,7 +536,7 @@ def _shortened(value: Any) -> Any:
 class _Library(Part):
     """The materials of a case file."""
 
-    held_as: ClassVar[tuple[str, ...]] = ("",)
+    field_names: ClassVar[tuple[str, ...]] = ("",)
     materials: dict[str, Material] = Field(default_factory=dict)
 
     @field_validator("materials", mode="before")
@@ -537,7 +551,7 @@ class _Library(Part):
 
 
 def _with_files(node: Any, name_of: Callable[[str], str]) -> Any:
-    """The same with other names of files."""
+    """Return a copy of a tree with `name_of` applied to the names of files."""
     if isinstance(node, dict):
         return {
             key: _renamed(item, name_of) if key == "file" else _with_files(item, name_of) for key, item in node.items()
@@ -546,7 +560,7 @@ def _with_files(node: Any, name_of: Callable[[str], str]) -> Any:
 
 
 def _renamed(file: Any, name_of: Callable[[str], str]) -> Any:
-    """The name of a file, or a table of them, with other names."""
+    """Return `name_of` of the name of a file, or of each name in a table."""
     if isinstance(file, dict):
         return {key: _renamed(item, name_of) for key, item in file.items()}
     return name_of(file) if isinstance(file, str) else file

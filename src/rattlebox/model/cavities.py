@@ -1,4 +1,4 @@
-"""Cavities in space: box, cylinder, sphere, as exact walls."""
+"""Cavities of particle dampers: box, cylinder, sphere, with exact walls."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class Walls:
     Attributes
     ----------
     names : tuple of str
-        One for each wall.
+        Names of the walls.
     axis : (w, 3) float
         Outward normal of a plane, axis of a cylinder's side; zeros for a sphere.
     offset : (w,) float
         Distance of a plane from the centre, radius of a cylinder or a sphere [m].
     form : tuple of str
-        "plane", "cylinder" for the side of one, or "sphere".
+        "plane", "cylinder" for the side of a cylinder, or "sphere".
     """
 
     names: tuple[str, ...]
@@ -52,9 +52,9 @@ class Walls:
 
 
 class Cavity(Part):
-    """What all cavities share; positions count from the centre."""
+    """Base class of cavities; positions are relative to the centre."""
 
-    held_as: ClassVar[tuple[str, ...]] = ("cavity",)
+    field_names: ClassVar[tuple[str, ...]] = ("cavity",)
     kind: str
 
     def walls(self) -> Walls:
@@ -68,17 +68,17 @@ class Cavity(Part):
 
     @property
     def lengths(self) -> Vector:
-        """Edges of the box around it along its own axes, (3,) [m]."""
+        """Edges of the bounding box along the axes of the cavity, (3,) [m]."""
         raise NotImplementedError
 
     @property
     def inside(self) -> Vector:
-        """Edges of a box inside it along its own axes, (3,) [m]."""
+        """Edges of an inscribed box along the axes of the cavity, (3,) [m]."""
         raise NotImplementedError
 
     @property
     def frame(self) -> Vector:
-        """Its own axes, (3, 3), one a row."""
+        """Axes of the cavity, (3, 3), one in each row."""
         return np.eye(3)
 
     def depth(self, positions: Vector) -> Vector:
@@ -86,11 +86,11 @@ class Cavity(Part):
         return np.asarray(self.walls().distances(positions).min(axis=1))
 
     def room(self, positions: Vector, radii: Vector) -> Vector:
-        """Return the distances of spheres' surfaces from the nearest wall, (n,) [m], positive when wholly inside."""
+        """Return the distances of the surfaces of spheres from the nearest wall, (n,) [m], positive inside."""
         return np.asarray(self.depth(positions) - radii)
 
     def extent(self, direction: Vector) -> float:
-        """Return its width along a unit vector [m]."""
+        """Return the width of the cavity along a unit vector [m]."""
         return float(np.abs(self.frame @ direction) @ self.lengths)
 
 
@@ -126,12 +126,12 @@ class Box(Cavity):
 
     @property
     def lengths(self) -> Vector:
-        """Its edges, (3,) [m]."""
+        """Edges, (3,) [m]."""
         return np.array(self.size)
 
     @property
     def inside(self) -> Vector:
-        """Its edges, (3,) [m]."""
+        """Edges, (3,) [m]."""
         return self.lengths
 
 
@@ -152,7 +152,7 @@ class _Round(Cavity):
 
 
 class Cylinder(_Round):
-    """A round can with flat ends.
+    """A circular cylinder with flat ends.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ class Cylinder(_Round):
     length
         Inner length along the axis [m].
     axis
-        "z" for an upright can, "x" or "y" for a lying one, or any direction.
+        "x", "y", "z" or three components; gravity usually acts along z.
     """
 
     kind: Literal["cylinder"] = "cylinder"
@@ -169,7 +169,7 @@ class Cylinder(_Round):
     axis: Direction = "z"
 
     def walls(self) -> Walls:
-        """Return the side and two planes."""
+        """Return the side and the two ends."""
         along = unit_vector(self.axis)
         offset = np.array([self.radius, self.length / 2, self.length / 2])
         return Walls(
@@ -186,7 +186,7 @@ class Cylinder(_Round):
 
     @property
     def lengths(self) -> Vector:
-        """Diameter twice, and length, (3,) [m]."""
+        """Diameter, diameter and length, (3,) [m]."""
         return np.array([2 * self.radius, 2 * self.radius, self.length])
 
     @property
@@ -196,14 +196,14 @@ class Cylinder(_Round):
 
     @property
     def frame(self) -> Vector:
-        """Two directions across, and the axis, (3, 3)."""
+        """Two directions perpendicular to the axis, and the axis, (3, 3)."""
         along = unit_vector(self.axis)
         first = np.cross(np.eye(3)[np.abs(along).argmin()], along)
         first /= np.linalg.norm(first)
         return np.array([first, np.cross(along, first), along])
 
     def extent(self, direction: Vector) -> float:
-        """Return its width along a unit vector [m]."""
+        """Return the width of the cavity along a unit vector [m]."""
         along = unit_vector(self.axis)
         across = np.linalg.norm(np.cross(along, direction))
         return float(self.length * abs(along @ direction) + 2 * self.radius * across)
@@ -221,7 +221,7 @@ class SphericalCavity(_Round):
     kind: Literal["sphere"] = "sphere"
 
     def walls(self) -> Walls:
-        """Return one wall."""
+        """Return the spherical wall."""
         return Walls(("sphere",), np.zeros((1, 3)), np.array([self.radius]), ("sphere",))
 
     @property
@@ -231,7 +231,7 @@ class SphericalCavity(_Round):
 
     @property
     def lengths(self) -> Vector:
-        """The diameter three times, (3,) [m]."""
+        """Edges of the bounding cube, (3,) [m]."""
         return np.full(3, 2 * self.radius)
 
     def extent(self, direction: Vector) -> float:
@@ -240,7 +240,7 @@ class SphericalCavity(_Round):
 
     @property
     def inside(self) -> Vector:
-        """Edges of a cube in it, (3,) [m]."""
+        """Edges of the inscribed cube, (3,) [m]."""
         return np.full(3, 2 * self.radius / math.sqrt(3))
 
 

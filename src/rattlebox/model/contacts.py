@@ -1,4 +1,4 @@
-"""Normal contact laws; the formulas themselves are in core/contact/normal, one file each."""
+"""Normal contact laws; their formulas are in core/contact/normal, one file each."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ Ending = Literal["zero_force", "zero_overlap"]
 
 
 class FixedDamping(NamedTuple):
-    """A dashpot that gives the same restitution at every speed.
+    """A dashpot with the same restitution at every speed.
 
     Attributes
     ----------
     ratio
         Damping ratio of the contact.
     ending
-        Where the contact ends.
+        End of the contact: "zero_force" or "zero_overlap".
     """
 
     ratio: Any
@@ -49,36 +49,36 @@ class FixedDamping(NamedTuple):
 
 
 class Contact(Part):
-    """What all contact laws share."""
+    """Base class of normal contact laws."""
 
-    held_as: ClassVar[tuple[str, ...]] = ("contact", "ball_contact")
+    field_names: ClassVar[tuple[str, ...]] = ("contact", "ball_contact")
     kind: str
 
     @property
     def impact_restitution(self) -> Restitution | None:
-        """The restitution law that sets the dashpot of each impact; None of a law that needs none."""
+        """The restitution law from which the dashpot of each impact is computed; None if the law needs none."""
         return None
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
-        """Return the core's name of the law and its coefficients for a pair of bodies."""
+        """Return the name of the law in the core and its coefficients for a pair of bodies, in SI units."""
         raise NotImplementedError
 
     def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
-        """Return the same with moduli divided by a factor; dashpots and limits keep the restitution."""
+        """Return `coefficients` with moduli divided by a factor; dashpots are scaled so that the restitution is the same."""
         name, values = self.coefficients(pair)
         scale = {"stiffness": 1.0, "modulus": 1.0, "damping": 0.5, "yield_pressure": 0.8}
         return name, {key: value / softening ** scale.get(key, 0.0) for key, value in values.items()}
 
     def equivalent_restitution(self, pair: Pair) -> Restitution | FixedDamping:
-        """Return what hard impacts of the same loss obey: a restitution law, or the dashpot that sets it."""
+        """Return the restitution law of hard impacts with the same loss, or the dashpot from which it follows."""
         raise NotImplementedError
 
 
-def _soft(restitution: Any) -> None:
+def _check_soft(restitution: Any) -> None:
     if isinstance(restitution, Constant) and restitution.e < 1e-6:
         raise Hint(
             "a contact with duration needs a restitution of at least 1e-6",
-            "restitution = 1e-6, or for balls in a row method = Newton(), whose impacts may be fully plastic",
+            "restitution = 1e-6, or for impact dampers method = Newton(), which allows fully plastic impacts",
             ["restitution"],
         )
 
@@ -89,11 +89,20 @@ class Tsuji(Contact):
     Parameters
     ----------
     restitution
-        A law, or a number for a constant; the contact gives back exactly this.
+        Restitution law, or a number for a constant restitution; the contact has exactly this restitution.
     alpha
-        Instead: the damping coefficient itself.
+        Damping coefficient, in place of the restitution.
     ending
-        "zero_force": the contact ends when its force vanishes, it never pulls; "zero_overlap": at zero overlap.
+        "zero_force": the contact ends when its force vanishes and never pulls; "zero_overlap": it ends at zero overlap.
+
+    Notes
+    -----
+    N = K d^(3/2) + alpha (m* K)^(1/2) d^(1/4) d', with Hertz's stiffness K = 4/3 E* R*^(1/2), the effective mass m* and the
+    overlap d.
+
+    References
+    ----------
+    Y. Tsuji, T. Tanaka, T. Ishida, Powder Technology 71 (1992) 239, doi:10.1016/0032-5910(92)88030-L.
     """
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("restitution", "alpha"),)
@@ -107,12 +116,12 @@ class Tsuji(Contact):
         one_of("restitution = 0.9", restitution=self.restitution, alpha=self.alpha)
         if self.alpha is not None and self.ending == "zero_overlap" and self.alpha >= math.sqrt(5):
             raise Hint("above alpha = sqrt(5) an overlap never returns to zero", 'ending = "zero_force"')
-        _soft(self.restitution)
+        _check_soft(self.restitution)
         return self
 
     @property
     def impact_restitution(self) -> Restitution | None:
-        """The restitution law that sets the dashpot of each impact."""
+        """The restitution law from which the dashpot of each impact is computed."""
         return self.restitution
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
@@ -127,7 +136,7 @@ class Tsuji(Contact):
         return "hertz_tsuji", values
 
     def equivalent_restitution(self, pair: Pair) -> Restitution | FixedDamping:
-        """Return the law itself, or the damping that alpha amounts to."""
+        """Return the restitution law, or the damping ratio of alpha."""
         if self.restitution is not None:
             return self.restitution
         return FixedDamping(present(self.alpha) / math.sqrt(5), self.ending)
@@ -141,11 +150,21 @@ class Linear(Contact):
     stiffness
         k [N/m].
     contact_time
-        Instead: the duration of an undamped contact, pi sqrt(m*/k) [s].
-    restitution, damping
-        A law or a number; or instead the dashpot's coefficient c [N s/m].
+        Duration of an undamped contact, pi (m*/k)^(1/2) [s], in place of the stiffness.
+    restitution
+        Restitution law, or a number for a constant restitution.
+    damping
+        Coefficient c of the dashpot [N s/m], in place of the restitution.
     ending
         "zero_force": the contact never pulls; "zero_overlap": it ends at zero overlap.
+
+    Notes
+    -----
+    N = k d + c d', with the overlap d.
+
+    References
+    ----------
+    P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.
     """
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("stiffness", "contact_time"), ("restitution", "damping"))
@@ -160,12 +179,12 @@ class Linear(Contact):
     def _determined(self) -> Linear:
         one_of('stiffness = "1 MN/m"', stiffness=self.stiffness, contact_time=self.contact_time)
         one_of("restitution = 0.9", restitution=self.restitution, damping=self.damping)
-        _soft(self.restitution)
+        _check_soft(self.restitution)
         return self
 
     @property
     def impact_restitution(self) -> Restitution | None:
-        """The restitution law that sets the dashpot of each impact."""
+        """The restitution law from which the dashpot of each impact is computed."""
         return self.restitution
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
@@ -187,7 +206,7 @@ class Linear(Contact):
         return "linear", values
 
     def equivalent_restitution(self, pair: Pair) -> Restitution | FixedDamping:
-        """Return the law itself, or the damping that the dashpot amounts to."""
+        """Return the restitution law, or the damping ratio of the dashpot."""
         if self.restitution is not None:
             return self.restitution
         _, values = self.coefficients(pair)
@@ -195,12 +214,21 @@ class Linear(Contact):
 
 
 class Thornton(Contact):
-    """Elastic, perfectly plastic contact with hysteresis: it dissipates by yielding.
+    """Elastic, perfectly plastic contact with hysteresis, which dissipates by yielding.
 
     Parameters
     ----------
     yield_pressure
-        Limiting contact pressure p_y [Pa]; default 1.6 yield stress of the body that yields first.
+        Limiting contact pressure p_y [Pa]; default 1.6 times the smaller yield stress of the two bodies.
+
+    Notes
+    -----
+    Loading follows Hertz up to the overlap at which the pressure at the centre reaches p_y, and is linear beyond it, with
+    the slope pi R* p_y. Unloading follows Hertz with a larger effective radius.
+
+    References
+    ----------
+    C. Thornton, J. Appl. Mech. 64 (1997) 383, doi:10.1115/1.2787319.
     """
 
     kind: Literal["thornton"] = "thornton"
@@ -217,17 +245,17 @@ class Thornton(Contact):
         }
 
     def equivalent_restitution(self, pair: Pair) -> Restitution:
-        """Return the closed form of this contact's restitution."""
+        """Return the restitution law of this contact in closed form."""
         return ThorntonRestitution.model_construct(yield_pressure=self.yield_pressure)
 
 
 class PowerLaw(Contact):
-    """Contact whose elastic force and dashpot are powers of the overlap, N = k d^n + c d^p d'.
+    """Contact law with powers of the overlap in the elastic force and the dashpot, N = k d^n + c d^p d'.
 
     Parameters
     ----------
     stiffness
-        k [N/m^n]; default that of a Hertz contact of the materials, with n = 3/2 only.
+        k [N/m^n]; default that of a Hertz contact of the materials, which needs n = 3/2.
     exponent
         n, from 0.5 to 10.
     damping_exponent
@@ -235,15 +263,15 @@ class PowerLaw(Contact):
     damping
         c [N s/m^(p+1)].
     restitution, impact_speed
-        Instead of c: the restitution of an impact at this speed [m/s], met exactly. With p = (n - 1)/2 restitution is the
-        same at every speed and no speed is needed.
+        Restitution of an impact at this speed [m/s], in place of c. With p = (n - 1)/2 the restitution is the same at every
+        speed, and no speed is needed.
     ending
         "zero_force": the contact ends when its force vanishes and never pulls; "zero_overlap": it ends at zero overlap and
         may pull before.
 
     Notes
     -----
-    The dashpot is a constant of the pair: unless p = (n - 1)/2, impacts at other speeds have another restitution.
+    c is constant for the pair: unless p = (n - 1)/2, the restitution depends on the speed.
 
     References
     ----------
@@ -275,7 +303,7 @@ class PowerLaw(Contact):
         same_at_every_speed = 2 * self.damping_exponent == self.exponent - 1
         if self.restitution is not None and self.impact_speed is None and not same_at_every_speed:
             raise Hint(
-                "with these exponents restitution depends on the speed, so the speed it holds at is needed",
+                "with these exponents the restitution depends on the speed, so that the speed of the impact is needed",
                 'impact_speed = "1 m/s"',
                 ["impact_speed"],
             )
@@ -283,11 +311,11 @@ class PowerLaw(Contact):
 
     @property
     def _similarity(self) -> Any:
-        """Power of the stiffness in a dashpot that keeps the restitution."""
+        """Exponent of the stiffness in a dashpot coefficient with the same restitution."""
         return (self.damping_exponent + 1) / (self.exponent + 1)
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
-        """Return stiffness, mass, exponents and the dashpot's coefficient."""
+        """Return stiffness, mass, exponents and the coefficient of the dashpot."""
         stiffness = pair.hertz_stiffness if self.stiffness is None else self.stiffness
         zero_overlap = self.ending == "zero_overlap"
         if self.damping is not None:
@@ -316,7 +344,7 @@ class PowerLaw(Contact):
         return name, values
 
     def equivalent_restitution(self, pair: Pair) -> Restitution:
-        """Return the restitution of this contact at each speed, as a table where it depends on the speed."""
+        """Return the restitution of this contact: a constant, or a table if it depends on the speed."""
         if self.restitution is not None and 2 * self.damping_exponent == self.exponent - 1:
             return Constant.model_construct(e=self.restitution)
         _, values = self.coefficients(pair)
@@ -345,7 +373,7 @@ class Curve(Part):
     force: tuple[Force, ...] = Field(examples=[["0 N", "50 N", "140 N"]])
 
     @model_validator(mode="after")
-    def _sound(self) -> Curve:
+    def _validate(self) -> Curve:
         check_curve(self.overlap, self.force)
         return self
 
@@ -361,7 +389,7 @@ def check_curve(overlap: tuple[float, ...], force: tuple[float, ...]) -> None:
 
 
 class TabulatedNormal(Contact):
-    """Contact with a measured curve of force against overlap, and another one for unloading.
+    """Contact with a measured curve of force against overlap, and another curve for unloading.
 
     Parameters
     ----------
@@ -375,9 +403,9 @@ class TabulatedNormal(Contact):
 
     Notes
     -----
-    Between points the curves are monotone piecewise cubics (Fritsch and Carlson); beyond the last point the force keeps the
-    last slope. The unloading curve keeps its shape for other largest overlaps: F = f(d_max) g(d/d_max). The curve belongs to
-    the pair, whatever its materials and sizes.
+    Between points the curves are monotone piecewise cubics (Fritsch and Carlson); beyond the last point the force continues
+    with the last slope. The unloading curve is scaled to other largest overlaps: F = f(d_max) g(d/d_max). The curves hold
+    for the pair, independent of materials and sizes.
 
     References
     ----------
@@ -390,7 +418,7 @@ class TabulatedNormal(Contact):
     unloading: Curve | None = None
 
     @model_validator(mode="after")
-    def _sound(self) -> TabulatedNormal:
+    def _validate(self) -> TabulatedNormal:
         check_curve(self.overlap, self.force)
         if self.overlap[0] != 0 or self.force[0] != 0:
             raise Hint("a loading curve begins with no overlap and no force", "overlap = [0, ...], force = [0, ...]")
@@ -406,8 +434,8 @@ class TabulatedNormal(Contact):
                         f"{there:.4g} N; it must be within 1 %",
                         "the point at which the measurement turned from loading to unloading",
                     )
-                if self._returned(top) > 1.001:
-                    raise Hint("unloading gives back more energy than loading took up", "swap the two curves")
+                if self._returned_share(top) > 1.001:
+                    raise Hint("unloading returns more energy than loading absorbed", "swap the two curves")
         return self
 
     @cached_property
@@ -419,7 +447,7 @@ class TabulatedNormal(Contact):
 
     @cached_property
     def _unloading(self) -> Any:
-        """Share of the largest force against share of the largest overlap, while unloading."""
+        """Unloading curve, normalised by the largest force and the largest overlap."""
         from scipy.interpolate import PchipInterpolator
 
         if self.unloading is None:
@@ -427,22 +455,22 @@ class TabulatedNormal(Contact):
         overlap, force = np.array(self.unloading.overlap), np.array(self.unloading.force)
         return PchipInterpolator(overlap / overlap[-1], force / force[-1])
 
-    def _returned(self, deepest: Any) -> Any:
-        """Share of the work of loading that unloading from these overlaps gives back."""
+    def _returned_share(self, deepest: Any) -> Any:
+        """Return the ratio of the work of unloading from these overlaps to the work of loading."""
         if self._unloading is None:
             return np.ones_like(deepest)
         area = self._unloading.integrate(self._unloading.x[0], 1.0)
         return self._loading(deepest) * deepest * area / self._loading.antiderivative()(deepest)
 
     def secant_stiffness(self, force: float) -> float:
-        """Return the force over the overlap at which loading reaches it [N/m]."""
+        """Return the secant stiffness of the loading curve at a force [N/m]."""
         if force >= self.force[-1]:
             return self.force[-1] / self.overlap[-1]
         largest = next(k for k, other in enumerate(self.force) if other > force)
         return self.force[largest] / self.overlap[largest]
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, Any]]:
-        """Return the pieces of both curves."""
+        """Return the piecewise cubics of both curves."""
         values: dict[str, Any] = {"stiffness": 1.0, "mass": pair.mass, **_pieces("loading", self._loading)}
         if self._unloading is None:
             empty = ("unloading_knots", "unloading_coefficients", "unloading_integral")
@@ -450,24 +478,24 @@ class TabulatedNormal(Contact):
         return "tabulated", values | _pieces("unloading", self._unloading)
 
     def softened(self, pair: Pair, softening: float) -> tuple[str, dict[str, Any]]:
-        """Return the same with forces divided by a factor."""
+        """Return `coefficients` with forces divided by a factor."""
         name, values = self.coefficients(pair)
         return name, values | {"stiffness": 1.0 / softening}
 
     def equivalent_restitution(self, pair: Pair) -> Restitution:
-        """Return the restitution of this contact, as a table over the speed."""
+        """Return the restitution of this contact as a table over the speed."""
         if isinstance(pair.mass, np.ndarray):
             raise Hint(
                 "hard impacts cannot vary masses of measured contacts within one study", "method = EventDriven()"
             )
         deepest = np.linspace(0, self.overlap[-1], 181)[1:]
         work = self._loading.antiderivative()(deepest)
-        returned = np.minimum(self._returned(deepest), 1.0)
+        returned = np.minimum(self._returned_share(deepest), 1.0)
         return Tabulated(speeds=tuple(np.sqrt(2 * work / pair.mass)), values=tuple(np.sqrt(returned)))
 
 
 def _pieces(name: str, curve: Any) -> dict[str, Any]:
-    """Return knots, coefficients and integrals of a piecewise cubic, as the core reads them."""
+    """Return knots, coefficients and integrals of a piecewise cubic for the core."""
     return {
         f"{name}_knots": np.ascontiguousarray(curve.x),
         f"{name}_coefficients": np.ascontiguousarray(curve.c.T).ravel(),

@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rattlebox._util.narrow import present
 
-from .also_takes import AlsoTakes
+from .also_accepts import AlsoAccepts
 from .base import Part
 from .contacts import AnyContact
 from .elementwise import Vector, power, stacked
@@ -24,19 +24,19 @@ from .units import SI, Acceleration, NotNegativeLength, PositiveLength, Positive
 
 
 class Sphere(Part):
-    """A ball.
+    """A ball of an impact damper.
 
     Parameters
     ----------
     radius, diameter
         One of them [m].
     material
-        Name in the library, or a Material.
+        Name of a material in the library, or a Material.
     mass
-        Instead of density times volume [kg].
+        Mass [kg]; default density times volume.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("ball", "balls")
+    field_names: ClassVar[tuple[str, ...]] = ("ball", "balls")
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("radius", "diameter"),)
     radius: PositiveLength | None = None
     diameter: PositiveLength | None = Field(default=None, exclude=True)
@@ -57,7 +57,7 @@ class Sphere(Part):
 
     @property
     def half(self) -> float:
-        """Radius [m], whichever way the size was given."""
+        """Radius [m]."""
         return present(self.radius)
 
     @property
@@ -70,7 +70,7 @@ class Sphere(Part):
 
 
 def _each(values: Sequence[Any], read: Callable[[Any], Any]) -> list[Any]:
-    """Read a list; a complaint tells the number in it."""
+    """Read each item of a list; an error names the index of the item."""
     result = []
     for index, value in enumerate(values):
         with at(index):
@@ -79,7 +79,7 @@ def _each(values: Sequence[Any], read: Callable[[Any], Any]) -> list[Any]:
 
 
 def _are_several(value: Any) -> bool:
-    """Tell a list from one quantity (number, unit)."""
+    """Return whether a value is a list, as opposed to one quantity (number, unit)."""
     return isinstance(value, (list, tuple)) and not (
         len(value) == 2
         and isinstance(value[0], (int, float))
@@ -106,7 +106,7 @@ def _speeds(value: Any) -> Any:
 
 
 class ImpactDamper(Part):
-    """Balls in a row in a cavity that moves with a point of the structure.
+    """Balls on a line in a cavity that moves with a point of the structure.
 
     Parameters
     ----------
@@ -115,28 +115,36 @@ class ImpactDamper(Part):
     gap, cavity_length
         Clearance on each side when the row is packed and centred, or inner length of the cavity [m]; one of them.
     wall
-        Material of the walls, "rigid", or None: the same as the ball beside.
+        Material of the walls, or "rigid"; default that of the adjacent ball.
     start
         Reduced position of each ball: fraction of the gap in [-1, 1] (-1 at the trailing, +1 at the leading wall), or
-        a length. One number for the whole row packed together, or one for each ball, rising.
+        a length. One number for a row of balls in contact, or one for each ball, ascending.
     velocity
-        Of each ball at the start, relative to the base [m/s].
+        Initial velocity of the balls, relative to the base [m/s]; one for all, or one for each.
     contact, ball_contact
-        Law of the walls, and of the balls among themselves; left out, the latter is the same.
+        Contact laws between balls and walls, and between balls; the default of the second is the first.
     gravity
-        Along the line, with sign [m/s^2].
+        Component of gravity along the line [m/s^2].
     point
-        Of the structure; not needed where there is one only.
+        Point of the structure; needed if there are several.
     name
-        What results and messages call it; "damper", "damper2", ... if left out.
+        Name in results and messages; default "damper", "damper2", ...
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> ball = rb.Sphere(diameter="20 mm", material="steel")
+    >>> damper = rb.ImpactDamper(ball=ball, gap="0.4 mm", contact=rb.Tsuji(restitution=0.9))
+    >>> damper.clearance
+    0.0008
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")
-    spellings: ClassVar[dict[str, str]] = {"ball": "balls"}
+    field_names: ClassVar[tuple[str, ...]] = ("damper", "dampers")
+    aliases: ClassVar[dict[str, str]] = {"ball": "balls"}
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("gap", "cavity_length"),)
     kind: Literal["impact"] = "impact"
     name: str = ""
-    balls: Annotated[tuple[Sphere, ...], BeforeValidator(as_several), AlsoTakes()] = Field(
+    balls: Annotated[tuple[Sphere, ...], BeforeValidator(as_several), AlsoAccepts()] = Field(
         examples=[{"radius": "10 mm", "material": "steel"}]
     )
     gap: NotNegativeLength | None = None
@@ -160,10 +168,10 @@ class ImpactDamper(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _spellings(cls, values: Any) -> Any:
+    def _expand_aliases(cls, values: Any) -> Any:
         if not isinstance(values, dict):
             return values
-        values = cls.in_full(values)
+        values = cls.expand_aliases(values)
         if values.get("gap") is not None and values.get("cavity_length") is not None:
             raise Hint("give gap or cavity_length, not both", 'gap = "0.4 mm"')
         return values
@@ -181,7 +189,7 @@ class ImpactDamper(Part):
                 )
             put = object.__setattr__
             put(self, "gap", (self.cavity_length - row) / 2)
-            put(self, "cavity_length", None)  # equal to a damper that is given by its gap
+            put(self, "cavity_length", None)  # Equal to a damper that has a gap from the outset.
         return self
 
     @model_validator(mode="after")
@@ -200,18 +208,18 @@ class ImpactDamper(Part):
             if places[i + 1] < places[i]:
                 raise Hint(
                     f"balls {i + 1} and {i + 2} overlap by {1e3 * (places[i] - places[i + 1]):.4g} mm",
-                    "a start that rises from ball to ball",
+                    "start positions in ascending order",
                     ["start"],
                 )
         return self
 
     def label(self, index: int) -> str:
-        """Return the damper's name, or one made from its number in the case."""
+        """Return the name of the damper; by default it has the number of the damper in the case."""
         return self.name or ("damper" if index == 0 else f"damper{index + 1}")
 
     @property
     def row(self) -> float:
-        """Length of the balls side by side [m]."""
+        """Length of the row of balls in contact [m]."""
         return reduce(add, [2 * ball.half for ball in self.balls])
 
     @property
@@ -221,12 +229,12 @@ class ImpactDamper(Part):
 
     @property
     def masses(self) -> Vector:
-        """Of the balls, (n,) [kg]."""
+        """Masses of the balls, (n,) [kg]."""
         return stacked([ball.weight for ball in self.balls])
 
     @property
     def centres(self) -> Vector:
-        """Places of the ball centres from the cavity's centre in the packed, centred row, (n,) [m]."""
+        """Centres of the balls in the packed and centred row, relative to the centre of the cavity, (n,) [m]."""
         radii = np.array([ball.half for ball in self.balls])
         edges = np.concatenate([[0.0], np.cumsum(2 * radii)])
         centres: Vector = edges[:-1] + radii - radii.sum()

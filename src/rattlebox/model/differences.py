@@ -1,4 +1,4 @@
-"""What two descriptions of something on disk do not share, for messages."""
+"""Differences between two descriptions, for messages."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from contextlib import suppress
 from itertools import chain, islice, takewhile
 from typing import Any
 
-_TOLD = 8  # on one screen
+_MAX_LINES = 8
 _NOTHING = object()
 
 
 def differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:
-    """Tell where two trees differ, as far as one screen holds it.
+    """Describe the differences between two trees in a few lines.
 
     Parameters
     ----------
     there, here
-        Of JSON's types; texts may be TOML. "There" is what is on disk.
+        Trees of JSON types, on disk and in memory; texts may be TOML.
 
     Returns
     -------
     list of str
-        A line for each difference; of a list, the first place only, and of tables that are not as many, their numbers.
+        A line for each difference, at most eight; the first difference only of two lists of equal length.
     """
     lines = [f"  {line}" for line in _differences(there, here)]
-    return lines if len(lines) <= _TOLD else [*lines[:_TOLD], f"  and {len(lines) - _TOLD} more"]
+    return lines if len(lines) <= _MAX_LINES else [*lines[:_MAX_LINES], f"  and {len(lines) - _MAX_LINES} more"]
 
 
 def _differences(there: Any, here: Any, path: str = "") -> Iterator[str]:
-    """Where two trees differ; of a list, the first place."""
+    """Yield the differences between two trees; of lists, the first one."""
     if isinstance(there, str) and isinstance(here, str) and "\n" in there:
         with suppress(tomllib.TOMLDecodeError):
             there, here = tomllib.loads(there), tomllib.loads(here)
@@ -46,16 +46,16 @@ def _differences(there: Any, here: Any, path: str = "") -> Iterator[str]:
         yield f"{path}: {len(there)} there, {len(here)} here"
     elif there is not here and _shown(there) != _shown(here):
         sides = _shown(there), _shown(here)
-        parted = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(*sides, strict=False)))
-        yield f"{path}: {_cut(sides[0], parted)} there, {_cut(sides[1], parted)} here"
+        common = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(*sides, strict=False)))
+        yield f"{path}: {_cut(sides[0], common)} there, {_cut(sides[1], common)} here"
 
 
 def _shown(value: Any) -> str:
     return "nothing" if value is _NOTHING else json.dumps(value, default=str, ensure_ascii=False)
 
 
-def _cut(text: str, parted: int) -> str:
-    """As much as fits a line, with the place where it parts from another text."""
-    begin = max(0, min(parted - 12, len(text) - 37)) if len(text) > 40 else 0
+def _cut(text: str, common: int) -> str:
+    """Return the part of a text around its first difference from another one, after `common` equal characters."""
+    begin = max(0, min(common - 12, len(text) - 37)) if len(text) > 40 else 0
     end = len(text) if len(text) <= begin + 40 else begin + 37
     return "..." * (begin > 0) + text[begin:end] + "..." * (end < len(text))

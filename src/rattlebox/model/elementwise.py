@@ -1,8 +1,8 @@
-"""Formulas for one number and, to the same bits, for arrays of them.
+"""Functions of numbers or arrays, with bitwise equal results.
 
 Parts of a case hold numbers. In a batch (see rattlebox.prepare.pack) some of them are arrays that broadcast against each
-other, so that one formula serves one case and a million; what is called a number here, `float`, may then be an array.
-Vectors have their components along the first axis.
+other, so that the same formulas compute one case and a million; a `float` may then be an array. Vectors have their
+components along the first axis.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Vector = NDArray[np.float64]
 
 
 def _one_by_one(function: Callable[..., float], x: NDArray[Any], *others: Iterable[Any]) -> Any:
-    """NumPy's own exponentials and powers of arrays can differ in the last bit from those of one number."""
+    """Apply a function to each number: exponentials and powers of NumPy arrays can differ in the last bit."""
     return np.fromiter(map(function, x.ravel().data, *others), float, x.size).reshape(x.shape)
 
 
@@ -29,7 +29,7 @@ def power(x: Any, exponent: float) -> Any:
 
 
 def powers(x: Any, exponents: Any) -> Any:
-    """Return x ** exponents, of which either may be an array."""
+    """Return x ** exponents; both may be arrays."""
     if not isinstance(exponents, np.ndarray):
         return power(x, exponents)
     x, exponents = np.broadcast_arrays(np.asarray(x, dtype=float), exponents)
@@ -37,7 +37,7 @@ def powers(x: Any, exponents: Any) -> Any:
 
 
 def mapped(function: Callable[..., float], *arguments: Any) -> Any:
-    """Return function(*arguments); of arrays, element by element, each combination computed once."""
+    """Return function(*arguments); element by element for arrays, with each combination computed once."""
     if not any(isinstance(argument, np.ndarray) for argument in arguments):
         return function(*arguments)
     given = np.broadcast_arrays(*arguments)
@@ -52,7 +52,7 @@ def exp(x: Any) -> Any:
 
 
 def sqrt(x: Any) -> Any:
-    """Return the square root, which is rounded exactly everywhere."""
+    """Return the square root, which is correctly rounded on every platform."""
     return np.sqrt(x) if isinstance(x, np.ndarray) else math.sqrt(x)
 
 
@@ -71,12 +71,12 @@ def pick(condition: Any, one: Any, other: Any) -> Any:
 
 
 def less(one: Any, other: Any, if_equal_one: Any, if_equal_other: Any) -> Any:
-    """Return whether a number is less than another one; where they are equal, others decide."""
+    """Return whether one < other; for equal numbers, whether if_equal_one < if_equal_other."""
     return (one < other) | ((one == other) & (if_equal_one < if_equal_other))
 
 
 def stacked(components: Sequence[Any]) -> Vector:
-    """Put components together to a vector, (n,) or (n, ...)."""
+    """Return a vector of components, (n,) or (n, ...)."""
     for component in components:
         if isinstance(component, np.ndarray):
             return np.stack(np.broadcast_arrays(*components))
@@ -84,7 +84,7 @@ def stacked(components: Sequence[Any]) -> Vector:
 
 
 def total(vector: Vector) -> Any:
-    """Return the sum of the components, added in the same order for one vector and for many."""
+    """Return the sum of the components, in the same order for one vector and for many."""
     if vector.ndim == 1:
         return float(vector.sum())
     return np.ascontiguousarray(np.moveaxis(vector, 0, -1)).sum(axis=-1)

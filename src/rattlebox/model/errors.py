@@ -1,4 +1,4 @@
-"""What is said of bad input: where, which value, what is allowed, what to try."""
+"""Messages about invalid input: place, value, what is allowed, what to try."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
     from pydantic import ValidationError
 
 Vocabulary = Mapping[str, Mapping[str, Mapping[str, str]]]
-"""Names of fields with an example where there is one, by the field that holds the part and by the part's kind."""
+"""Names of fields with an example or "", by the field that holds the part and by the kind of the part."""
 
-_LIMIT = 4  # findings that are told
+_LIMIT = 4  # errors in a message
 _SPELLINGS = {"loads": "load", "dampers": "damper", "balls": "ball", "radius": "diameter"}
 _NOTHING = object()
 
 
 class Hint(CaseError):
-    """A CaseError of a validator, which lacks the file and the place in the case until `at` and `translate` add them."""
+    """CaseError of a validator; `at` and `translate` add the place in the case and the file."""
 
 
 @contextmanager
 def at(*place: str | int) -> Iterator[None]:
-    """Add to a complaint raised inside where it belongs."""
+    """Add a place in the case to an error that is raised in the block."""
     try:
         yield
     except (Hint, DataError, ResourceError) as error:
@@ -37,12 +37,12 @@ def at(*place: str | int) -> Iterator[None]:
 
 
 def one_of(advice: str, **alternatives: Any) -> None:
-    """Refuse alternatives of which none is given, or more than one.
+    """Raise unless exactly one of the alternatives is not None.
 
     Raises
     ------
     Hint
-        That one is needed, and what to try.
+        If none or more than one is given; `advice` is the suggestion.
     """
     given = [name for name, value in alternatives.items() if value is not None]
     if not given:
@@ -57,45 +57,52 @@ def several(number: int, thing: str) -> str:
 
 
 def nearest(name: str, known: Iterable[str], *, listed: bool = False) -> str:
-    """Return "did you mean ...?" for the known names that are meant or closest; else, or if `listed`, the list of them."""
+    """Return "did you mean ...?" with synonyms or the closest known names; without any, or if `listed`, list all names."""
     known = sorted(known)
     close = _close(name, known)
-    told = ["did you mean " + " or ".join(repr(word) for word in close) + "?"] if close else []
+    parts = ["did you mean " + " or ".join(repr(word) for word in close) + "?"] if close else []
     if listed or not close:
-        told.append("known: " + ", ".join(known))
-    return " ".join(told)
+        parts.append("known: " + ", ".join(known))
+    return " ".join(parts)
 
 
 def _close(name: str, known: Sequence[str]) -> list[str]:
-    """Known names that others call so, or else those that look alike."""
+    """Return the known names of which a name is a synonym, or else those with a similar spelling."""
     meant = [
         word
         for word in (*MEANT.get(name, ()), *MEANT.get(name.lower().replace("-", "_"), ()))
         if word.split(".")[0] in known
     ]
-    same = [word for word in known if word.lower() == name.lower()]  # Kg is kg rather than g
-    alike = list(dict.fromkeys(meant)) or same or difflib.get_close_matches(name, known, n=2, cutoff=0.6)
-    folded = {} if alike else {word.lower(): word for word in known}
-    return alike or [folded[word] for word in difflib.get_close_matches(name.lower(), folded, n=2, cutoff=0.6)]
+    same = [word for word in known if word.lower() == name.lower()]  # Kg is closer to kg than to g.
+    similar = list(dict.fromkeys(meant)) or same or difflib.get_close_matches(name, known, n=2, cutoff=0.6)
+    folded = {} if similar else {word.lower(): word for word in known}
+    return similar or [folded[word] for word in difflib.get_close_matches(name.lower(), folded, n=2, cutoff=0.6)]
 
 
 def translate(
     error: ValidationError, source: str | os.PathLike[str], vocabulary: Vocabulary, given: Any = None
 ) -> RattleboxError:
-    """Turn pydantic's findings into one error: a DataError or ResourceError if all findings are one, else a CaseError.
+    """Translate the errors of pydantic into one error of Rattlebox.
 
     Parameters
     ----------
     error
-        What pydantic found.
+        Error of pydantic.
     source
-        The file or the class that was read.
+        Name of the file or class that was validated.
     vocabulary
         Known fields.
     given
-        What was read, as it was written: messages speak in its names and values.
+        Input as it was written; the message has its names and values.
+
+    Returns
+    -------
+    RattleboxError
+        A DataError or ResourceError if all errors are one, else a CaseError.
     """
-    findings = _without_echoes(_spelt(error.errors(include_url=False), str(source), vocabulary), vocabulary)
+    findings = _without_echoes(
+        _misspelt_fields_first(error.errors(include_url=False), str(source), vocabulary), vocabulary
+    )
     blocks: list[str] = []
     for finding in findings:
         location = (*finding["loc"], *getattr(_raised(finding), "place", ()))
@@ -106,7 +113,7 @@ def translate(
         head = f"{source}: {place}" if place else f"{source}:"
         if not missing and value is not _NOTHING and not _holds_tables(value):
             head += f" = {_shown(value)}"
-        block = message(head, *_said(finding, value, str(source), vocabulary, place))
+        block = message(head, *_complaint_and_suggestion(finding, value, str(source), vocabulary, place))
         if block not in blocks:
             blocks.append(block)
     if len(blocks) > _LIMIT:
@@ -120,8 +127,8 @@ def _raised(finding: Any) -> Any:
     return (finding.get("ctx") or {}).get("error")
 
 
-def _spelt(findings: Sequence[Any], source: str, vocabulary: Vocabulary) -> list[Any]:
-    """Where a part as a whole is refused, look for misspelt fields in it first: they are the likelier cause."""
+def _misspelt_fields_first(findings: Sequence[Any], source: str, vocabulary: Vocabulary) -> list[Any]:
+    """Replace the error of a whole part by the unknown fields in it, which are the likelier cause."""
     result: list[Any] = []
     for finding in findings:
         values = finding["input"]
@@ -135,7 +142,7 @@ def _spelt(findings: Sequence[Any], source: str, vocabulary: Vocabulary) -> list
 
 
 def _without_echoes(findings: Sequence[Any], vocabulary: Vocabulary) -> list[Any]:
-    """Leave out that a field is missing where it is there by another name."""
+    """Remove errors about missing fields that are present under a similar name."""
     extra = [finding["loc"] for finding in findings if finding["type"] == "extra_forbidden"]
     return [
         finding
@@ -146,9 +153,9 @@ def _without_echoes(findings: Sequence[Any], vocabulary: Vocabulary) -> list[Any
 
 
 def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[str, Any]:
-    """The place under the names that the user gave it, and the value that stands there.
+    """Return the place in the names of the input, and its value.
 
-    Of the names that are not there, those before number `sure` are pydantic's own and left out.
+    Names before index `sure` that the input lacks are tags of pydantic and are omitted.
     """
     words: list[str] = []
     node, tag = given, None
@@ -157,11 +164,11 @@ def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[str, An
             if isinstance(node, (list, tuple)) and part < len(node):
                 node, tag = node[part], None
                 words[-1:] = [f"{words[-1] if words else ''}[{part}]"]
-            continue  # one stands for a list of one
+            continue  # The input has one item in place of a list.
         if part == _get(node, "kind") and part != tag:
             tag = part
             continue
-        name = next((name for name in (part, _SPELLINGS.get(part, part)) if _is_told(node, name)), None)
+        name = next((name for name in (part, _SPELLINGS.get(part, part)) if _has(node, name)), None)
         if name is not None:
             words.append(name)
             node, tag = _get(node, name), None
@@ -171,7 +178,7 @@ def _as_written(given: Any, location: Sequence[Any], sure: int) -> tuple[str, An
     return ".".join(words), node if words else _NOTHING
 
 
-def _is_told(node: Any, name: Any) -> bool:
+def _has(node: Any, name: Any) -> bool:
     return name in node if isinstance(node, Mapping) else _get(node, name) is not None
 
 
@@ -192,13 +199,13 @@ def _holds_tables(value: Any) -> bool:
 def _shown(value: Any) -> str:
     try:
         text = repr(value)
-    except ValueError:  # an integer of thousands of digits
+    except ValueError:  # Python does not convert integers with more than 4300 digits.
         return "a number of thousands of digits"
     return text if len(text) <= 60 else f"{text[:28]}...{text[-28:]}"
 
 
 def _kinds(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> Mapping[str, Mapping[str, str]]:
-    """Kinds that a place takes, with their fields; only the one that is written there, if it is known."""
+    """Return the kinds that a place accepts, with their fields; only that of the input, if it is known."""
     for number in range(len(location) - 1, -1, -1):
         if location[number] in vocabulary:
             kinds = vocabulary[location[number]]
@@ -234,20 +241,22 @@ _TAGS = ("union_tag_not_found", "union_tag_invalid")
 
 
 def _table_of(name: str, vocabulary: Vocabulary, kind: str | None = None) -> str:
-    """What a table of this name looks like; "" where it has no kinds."""
+    """Return an example of a table of this name; "" if it has no kinds."""
     kind = kind or next(iter(vocabulary.get(name, ())), "")
     return f'{_SPELLINGS.get(name, name)} = {{ kind = "{kind}", ... }}' if kind else ""
 
 
 def _example_of(location: Sequence[Any], source: str, vocabulary: Vocabulary) -> str:
-    """What a value of this name looks like; "" where that is not told."""
+    """Return an example of a value of this name; "" if there is none."""
     parts = _kinds(location[:-1], source, vocabulary).values()
     example = next((part[location[-1]] for part in parts if part.get(location[-1])), "")
     return example and f"{location[-1]} = {example}"
 
 
-def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: str) -> tuple[str, str]:
-    """Complaint and suggestion."""
+def _complaint_and_suggestion(
+    finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: str
+) -> tuple[str, str]:
+    """Return what is wrong with a value, and what to try."""
     raised, what, context = _raised(finding), finding["type"], finding.get("ctx") or {}
     if isinstance(raised, RattleboxError):
         return raised.complaint, raised.suggestion
@@ -260,11 +269,11 @@ def _said(finding: Any, value: Any, source: str, vocabulary: Vocabulary, place: 
     if what in (*_TAGS, *_TABLES) and _is_table(value) and not isinstance(value, Mapping):
         return f"{type(value).__name__} does not belong here", f"one of kind {' or '.join(kinds)}" if kinds else ""
     if what in (*_TAGS, *_TABLES) and callable(value) and "record" in kinds:
-        return "a function is no signal that a file could hold", "rb.Record(times=t, values=f(t)) with many times t"
+        return "a function cannot be stored in a case file", "rb.Record(times=t, values=f(t)) with many times t"
     if what in _TAGS:
         apart = f"wall_{location[-1]}" if location else ""
         if what == "union_tag_not_found" and "wall" in value and apart in _fields(location[:-1], source, vocabulary):
-            return f"laws at walls have a field of their own, {apart}", f"{location[-1]} = ... and {apart} = ..."
+            return f"laws at walls have a separate field, {apart}", f"{location[-1]} = ... and {apart} = ..."
         if what == "union_tag_not_found":
             return f"'kind' is needed: {', '.join(kinds)}", f'kind = "{kinds[0]}"' if kinds else ""
         return "there is no such kind here", nearest(str(value), kinds, listed=True)

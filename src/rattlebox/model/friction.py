@@ -1,4 +1,4 @@
-"""Friction and rolling resistance; the formulas themselves are in core/contact."""
+"""Friction and rolling resistance; their formulas are in core/contact."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from .also_takes import AlsoTakes
+from .also_accepts import AlsoAccepts
 from .base import Part
 from .errors import one_of
 from .materials import Material
@@ -17,45 +17,53 @@ NotNegative = Annotated[Number, Field(ge=0, le=LARGEST)]
 
 
 def _shear_compliance(material: Material | None) -> float:
-    """(2 - nu) / G [1/Pa], 0 for a rigid body."""
+    """Return (2 - nu) / G [1/Pa]; 0 for a rigid body."""
     if material is None:
         return 0.0
     return (2 - material.poisson) * 2 * (1 + material.poisson) / material.young
 
 
 class Friction(Part):
-    """What all friction laws share."""
+    """Base class of friction laws."""
 
-    held_as: ClassVar[tuple[str, ...]] = ("friction", "wall_friction")
+    field_names: ClassVar[tuple[str, ...]] = ("friction", "wall_friction")
     kind: str
     coefficient: NotNegative = Field(examples=[0.3])
     damping: NotNegative = 1.0
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
-        """Return the core's name of the law and its coefficients for a pair of bodies."""
+        """Return the name of the law in the core and its coefficients for a pair of bodies, in SI units."""
         raise NotImplementedError
 
 
 class Mindlin(Friction):
-    """Coulomb friction with Mindlin's stiffness, 8 G* sqrt(R* overlap), and the history of the contact.
+    """Coulomb friction with Mindlin's tangential stiffness and the tangential displacement as history.
 
     Parameters
     ----------
     coefficient
-        Of friction.
+        Coefficient of friction.
     damping
         Damping ratio of the tangential dashpot over that of the normal one.
+
+    Notes
+    -----
+    k_t = 8 G* (R* d)^(1/2), with the overlap d and 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2.
+
+    References
+    ----------
+    R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327, doi:10.1115/1.4010702.
     """
 
-    unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
+    positional: ClassVar[tuple[str, ...]] = ("coefficient",)
     kind: Literal["mindlin"] = "mindlin"
 
-    if TYPE_CHECKING:  # the first field may be given without its name
+    if TYPE_CHECKING:  # The first field is also a positional argument.
 
         def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
-        """Return 8 G* [Pa] besides coefficient and damping."""
+        """Return 8 G* [Pa], the coefficient of friction and the damping."""
         compliance = _shear_compliance(pair.below.material) + _shear_compliance(pair.above.material)
         return "mindlin", {"friction": self.coefficient, "shear_modulus": 8 / compliance, "damping": self.damping}
 
@@ -66,15 +74,21 @@ class LinearSpring(Friction):
     Parameters
     ----------
     coefficient
-        Of friction.
-    stiffness, ratio
-        Of the tangential spring [N/m]; or its ratio to the stiffness of the linear contact of the pair that touches.
+        Coefficient of friction.
+    stiffness
+        Stiffness of the tangential spring [N/m].
+    ratio
+        Ratio of the tangential stiffness to that of the linear contact, in place of `stiffness`.
     damping
         Damping ratio of the tangential dashpot over that of the normal one.
+
+    References
+    ----------
+    P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.
     """
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("stiffness", "ratio"),)
-    unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
+    positional: ClassVar[tuple[str, ...]] = ("coefficient",)
     kind: Literal["spring"] = "spring"
     stiffness: PositiveStiffness | None = None
     ratio: Annotated[Number, Field(gt=0, le=10)] | None = None
@@ -89,7 +103,7 @@ class LinearSpring(Friction):
         return self
 
     def coefficients(self, pair: Pair) -> tuple[str, dict[str, float]]:
-        """Return stiffness and ratio besides coefficient and damping."""
+        """Return stiffness, ratio, the coefficient of friction and the damping."""
         return "spring", {
             "friction": self.coefficient,
             "stiffness": self.stiffness or 0.0,
@@ -104,15 +118,19 @@ class Rolling(Part):
     Parameters
     ----------
     coefficient
-        Limit of the moment over normal force times R*.
+        Largest moment over the product of normal force and R*.
     stiffness
-        Of the spring, as a multiple of the tangential stiffness times R*^2.
+        Stiffness of the spring over the product of tangential stiffness and R*^2.
     damping
         Damping ratio of the dashpot.
+
+    References
+    ----------
+    J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi, Powder Technology 206 (2011) 269, doi:10.1016/j.powtec.2010.09.030.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("rolling", "wall_rolling")
-    unnamed: ClassVar[tuple[str, ...]] = ("coefficient",)
+    field_names: ClassVar[tuple[str, ...]] = ("rolling", "wall_rolling")
+    positional: ClassVar[tuple[str, ...]] = ("coefficient",)
     coefficient: NotNegative = Field(examples=[0.02])
     stiffness: Annotated[Number, Field(gt=0, le=LARGEST)] = 1.0
     damping: NotNegative = 0.0
@@ -122,7 +140,7 @@ class Rolling(Part):
         def __init__(self, coefficient: Any = ..., **values: Any) -> None: ...
 
     def coefficients(self) -> dict[str, float]:
-        """Return what the core reads."""
+        """Return the coefficients for the core."""
         return {"coefficient": self.coefficient, "stiffness": self.stiffness, "damping": self.damping}
 
 
@@ -136,7 +154,7 @@ def _rolling(value: Any) -> Any:
 
 
 _NEED = "a number is needed, or a table"
-_number = AlsoTakes({"type": "number", "minimum": 0})
+_number = AlsoAccepts({"type": "number", "minimum": 0})
 FrictionKind = Mindlin | LinearSpring
 AnyFriction = Annotated[
     Annotated[FrictionKind, Field(discriminator="kind")], SI("1"), BeforeValidator(_mindlin), _number

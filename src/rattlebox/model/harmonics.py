@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 
 
 class Harmonic(Signal):
-    """A harmonic, amplitude sin(2 pi frequency t + phase) for start <= t < stop.
+    """Harmonic signal, amplitude sin(2 pi frequency t + phase) for start <= t < stop.
 
     Parameters
     ----------
     amplitude
         Peak value, with its unit.
     frequency
-        In Hz; text in "rad/s" is an angular frequency.
+        Frequency [Hz]; text in "rad/s" is an angular frequency.
     phase
-        In rad, or text in "deg".
+        Phase [rad], or text in "deg".
     start, stop
-        When it acts [s]; stop is left out for good.
+        Begin and end [s]; default unlimited from 0.
     """
 
     kind: Literal["harmonic"] = "harmonic"
@@ -57,10 +57,10 @@ class Harmonic(Signal):
         return np.where(inside, self.amplitude * np.sin(2 * math.pi * self.frequency * t + self.phase), 0.0)
 
     def coefficients(self) -> dict[str, Any]:
-        """Return what the core reads."""
+        """Return the coefficients for the core."""
         return {
             "kind": "harmonic",
-            "amplitude": +self.amplitude,  # a plain number
+            "amplitude": +self.amplitude,  # a float without the unit of the input
             "frequency": 2 * math.pi * self.frequency,
             "phase": self.phase,
             "start": self.start,
@@ -68,7 +68,7 @@ class Harmonic(Signal):
         }
 
     def acceleration(self) -> Harmonic:
-        """Return the acceleration that belongs to a harmonic displacement."""
+        """Return the acceleration of a harmonic displacement."""
         factor = -power(2 * math.pi * self.frequency, 2)
         return self.model_copy(update={"amplitude": self.amplitude * factor, "unit": "m/s^2"})
 
@@ -76,8 +76,8 @@ class Harmonic(Signal):
 POINTS_PER_CYCLE = 32
 """Points of a sine sweep in each cycle."""
 
-MOST_POINTS = 20_000_000
-"""Most points of a sine sweep."""
+MAX_POINTS = 20_000_000
+"""Largest number of points of a sine sweep."""
 
 _RATE = re.compile(r"^\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(oct(?:ave)?s?|dec(?:ade)?s?|Hz)\s*/\s*(s|sec|min)\s*$")
 
@@ -87,9 +87,7 @@ def _sweep_rate(value: Any) -> str:
     if match is None:
         raise Hint("a sweep rate is text with a unit: oct/min, oct/s, dec/min, Hz/s or Hz/min", '"2 oct/min"')
     if not 0 < float(match[1]) < 1e30:
-        raise Hint(
-            "must be greater than zero; a sweep goes down where it begins at its highest frequency", '"2 oct/min"'
-        )
+        raise Hint("must be greater than zero; a downward sweep has the larger first_frequency", '"2 oct/min"')
     return match[0].strip()
 
 
@@ -103,29 +101,29 @@ SweepRate = Annotated[
 
 
 class SineSweep(Polyline):
-    """A sine sweep of constant level, up or down, of which the frequency grows or falls by a constant rate.
+    """Sine sweep of constant amplitude, upward or downward, with a constant sweep rate.
 
     Parameters
     ----------
     amplitude
         Peak value at all frequencies, with its unit.
     first_frequency, last_frequency
-        Frequencies at the begin and at the end [Hz]; a sweep goes down where the last is lower.
+        Frequencies at the begin and at the end [Hz]; a downward sweep has the lower one last.
     sweep_rate
         "2 oct/min", "1 oct/s", "1 dec/min" (logarithmic), "5 Hz/s" or "100 Hz/min" (linear).
     duration
-        Length [s] of a logarithmic sweep, instead of a rate.
+        Duration of a logarithmic sweep [s], in place of a rate.
     start
         Begin [s]; before it and after its end the sweep is zero.
 
     Notes
     -----
     With f = f_1 2^(r t) the phase is 2 pi f_1 (2^(r t) - 1) / (r ln 2), with f = f_1 + r t it is 2 pi (f_1 t + r t^2 / 2);
-    r is negative on the way down. The sweep ends with the half cycle in which it reaches the last frequency.
+    r is negative for a downward sweep. The sweep ends with the half cycle in which it reaches the last frequency.
 
-    The sweep is drawn by straight lines between 32 points a cycle, at equal steps of phase. Their values are divided by
-    sinc^2(1/32), so that the amplitude of the sine is the one given at all frequencies; what remains are harmonics 31 and
-    33, of 0.1 % each, and a peak that is 0.3 % too high.
+    The sweep consists of straight lines between 32 points in each cycle, at equal steps of phase. Their values are divided
+    by sinc^2(1/32), so that the amplitude of the fundamental is exact at all frequencies; the remaining errors are the
+    harmonics 31 and 33, of 0.1 % each, and a peak that is 0.3 % too high.
     """
 
     kind: Literal["sine_sweep"] = "sine_sweep"
@@ -137,17 +135,17 @@ class SineSweep(Polyline):
     start: NotNegativeTime = 0.0
 
     @model_validator(mode="after")
-    def _sound(self) -> Self:
+    def _validate(self) -> Self:
         if (self.sweep_rate is None) == (self.duration is None):
-            raise Hint("a sweep needs a rate or a duration, one of them", 'sweep_rate = "2 oct/min"', ["sweep_rate"])
+            raise Hint("a sweep needs either a rate or a duration", 'sweep_rate = "2 oct/min"', ["sweep_rate"])
         if self.first_frequency == self.last_frequency:
             raise Hint(
-                "a sweep needs two frequencies that differ", 'kind = "harmonic" for one frequency', ["last_frequency"]
+                "a sweep needs two different frequencies", 'kind = "harmonic" for one frequency', ["last_frequency"]
             )
         cycles = self._cycles()
-        if cycles * POINTS_PER_CYCLE > MOST_POINTS:
+        if cycles * POINTS_PER_CYCLE > MAX_POINTS:
             raise Hint(
-                f"the sweep has {cycles:.3g} cycles; at most {MOST_POINTS // POINTS_PER_CYCLE} are allowed",
+                f"the sweep has {cycles:.3g} cycles; at most {MAX_POINTS // POINTS_PER_CYCLE} are allowed",
                 "a faster sweep, or parts of it one after the other",
                 ["sweep_rate" if self.duration is None else "duration"],
             )
@@ -155,7 +153,7 @@ class SineSweep(Polyline):
 
     @property
     def _rate(self) -> tuple[float, bool]:
-        """Rate with its sign [oct/s or Hz/s], and whether it is linear."""
+        """Signed rate [oct/s or Hz/s], and whether the sweep is linear."""
         if self.duration is not None:
             return math.log2(self.last_frequency / self.first_frequency) / self.duration, False
         match = present(_RATE.match(self.sweep_rate or ""))
@@ -175,14 +173,14 @@ class SineSweep(Polyline):
         return math.log2(self.last_frequency / self.first_frequency) / rate
 
     def _cycles(self) -> float:
-        """Number of cycles from the first to the last frequency."""
+        """Return the number of cycles from the first to the last frequency."""
         rate, linear = self._rate
         if linear:
             return (self.first_frequency + self.last_frequency) / 2 * self.length
         return (self.last_frequency - self.first_frequency) / (rate * math.log(2))
 
     def frequency_at(self, time: Any) -> NDArray[np.float64]:
-        """Return the frequency at the given times [Hz], which stays at its ends before and after the sweep."""
+        """Return the frequency at the given times [Hz]; before and after the sweep, the first and the last one."""
         rate, linear = self._rate
         t = np.clip(np.asarray(time, dtype=float) - self.start, 0.0, self.length)
         if linear:
@@ -190,7 +188,7 @@ class SineSweep(Polyline):
         return np.asarray(self.first_frequency * np.exp2(rate * t))
 
     def polyline(self) -> tuple[Vector, Vector]:
-        """Return times [s] and values of its points."""
+        """Return times [s] and values of the points."""
         return self._points.times, self._points.values
 
     @cached_property
@@ -199,7 +197,7 @@ class SineSweep(Polyline):
         first = self.first_frequency
         halves = math.ceil(2 * self._cycles() * (1 - 1e-12))
         cycle = np.arange(halves * POINTS_PER_CYCLE // 2 + 1) / POINTS_PER_CYCLE
-        if linear:  # the root that is right for small rates
+        if linear:  # this form of the root is accurate for small rates
             inside = first * first + 2 * rate * cycle
             times = 2 * cycle / (first + np.sqrt(np.maximum(inside, 0.0)))
         else:

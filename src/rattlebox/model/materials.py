@@ -1,4 +1,4 @@
-"""Materials: a small library with sources, and the user's own beside it."""
+"""Materials: a small library with sources, and user-defined materials."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo,
 
 from rattlebox._util.html import Catalogue
 
-from .also_takes import AlsoTakes
+from .also_accepts import AlsoAccepts
 from .base import Part
 from .errors import Hint, nearest
 from .units import Density, Modulus, Number
@@ -29,17 +29,17 @@ class Material(Part):
     poisson
         Poisson's ratio, above -1 and at most 0.5.
     yield_stress
-        Yield stress [Pa]; left out for a body that breaks before it flows.
+        Yield stress [Pa]; None for brittle materials.
     name, title, source
-        What it is called, what it is, where the values come from.
+        Name, description, and source of the values.
 
     Raises
     ------
     CaseError
-        When a value is not physical.
+        If a value is not physical.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("material", "wall", "materials")
+    field_names: ClassVar[tuple[str, ...]] = ("material", "wall", "materials")
     name: str = ""
     title: str = ""
     density: Density
@@ -52,7 +52,7 @@ class Material(Part):
     @classmethod
     def _physical(cls, value: float) -> float:
         if not -1 < value <= 0.5:
-            raise Hint("Poisson's ratio lies above -1 and at most at 0.5 for an isotropic solid", "poisson = 0.3")
+            raise Hint("Poisson's ratio of an isotropic solid is above -1 and at most 0.5", "poisson = 0.3")
         return value
 
 
@@ -97,7 +97,7 @@ def find_material(value: Any, info: ValidationInfo) -> Any:
 
 
 AnyMaterial = Annotated[
-    Material, BeforeValidator(find_material), AlsoTakes({"type": "string", "not": {"const": "rigid"}})
+    Material, BeforeValidator(find_material), AlsoAccepts({"type": "string", "not": {"const": "rigid"}})
 ]
 AnyWall = Annotated[
     Annotated[AnyMaterial, Tag("of a material")] | Annotated[Literal["rigid"], Tag("rigid")],

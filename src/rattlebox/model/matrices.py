@@ -55,7 +55,7 @@ class Matrices(DampedModes):
         ("C", "rayleigh"),
         ("damping_ratio", "rayleigh"),
     )
-    in_file: ClassVar[tuple[str, ...]] = ("M", "C", "K")
+    file_fields: ClassVar[tuple[str, ...]] = ("M", "C", "K")
     kind: Literal["matrices"] = "matrices"
     M: Annotated[Matrix, SI("kg")] = Field(examples=[[[2, 0], [0, 1]]])
     C: Annotated[Matrix | None, SI("N s/m")] = None
@@ -88,7 +88,7 @@ class Matrices(DampedModes):
         return {**values, **matrices, "points": points | (own or {}), "file": path}
 
     @model_validator(mode="after")
-    def _sound(self) -> Self:
+    def _validate(self) -> Self:
         mass, damping, stiffness = self.matrices()
         n = len(self.M)
         for name, matrix in (("M", mass), ("C", damping), ("K", stiffness)):
@@ -136,7 +136,7 @@ class Matrices(DampedModes):
     def _file_stands_for_matrices(self, handler: Any) -> Any:
         data = handler(self)
         if self.file is not None:
-            for name in self.in_file:
+            for name in self.file_fields:
                 data.pop(name, None)
         return data
 

@@ -1,4 +1,4 @@
-"""How a case is computed, and what comes out."""
+"""Numerical methods and output times."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from .units import Number, PositiveFrequency, PositiveTime, Whole, numbers, pars
 
 
 class EventDriven(Part):
-    """Exact flights, contacts integrated with error control. The method to use.
+    """Exact flights and contacts integrated with error control: the default method of impact dampers.
 
     Parameters
     ----------
     tolerance
-        Relative error of one step through a contact.
+        Relative error of one step of the integration of a contact.
     max_events
-        Budget of flights and contacts; a run that spends it ends with a status.
+        Largest number of flights and contacts; a run that reaches it ends with the status "too_many_events".
     collocation
-        Solve lone Hertz contacts whole; False integrates all of them step by step (slower, for comparison).
+        Whether single Hertz contacts are solved by collocation; False integrates them step by step, which is slower.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("method",)
+    field_names: ClassVar[tuple[str, ...]] = ("method",)
     kind: Literal["event_driven"] = "event_driven"
     tolerance: Annotated[Number, Field(ge=1e-14, le=1e-3)] = 1e-12
     max_events: Annotated[Whole, Field(ge=1)] = 10_000_000
@@ -36,17 +36,18 @@ class EventDriven(Part):
 
 
 class TwoStep(Part):
-    """Fixed steps, long in flight and short in contact, as in discrete-element programs. For comparison.
+    """Fixed steps, long in flight and short in contact, as in discrete-element programs; for comparison.
 
     Parameters
     ----------
     dt_flight, dt_contact
-        Steps [s].
+        Time steps in flight and in contact [s].
     inner
-        "rk4": one Runge-Kutta step each; "dopri5": an adaptive solution of each with MATLAB's ode45 defaults.
+        "rk4": one Runge-Kutta step; "dopri5": an adaptive solution within each step, with the default tolerances of MATLAB's
+        ode45.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("method",)
+    field_names: ClassVar[tuple[str, ...]] = ("method",)
     kind: Literal["two_step"] = "two_step"
     dt_flight: PositiveTime = 5e-6
     dt_contact: PositiveTime = 3e-8
@@ -54,20 +55,20 @@ class TwoStep(Part):
 
 
 class Newton(Part):
-    """Hard impacts without duration. For theory.
+    """Instantaneous (hard) impacts, for comparison with theory.
 
     Parameters
     ----------
     restitution
-        A law or a number from 0 to 1; default the contact's own law.
+        Restitution law, or a number from 0 to 1; default that of the contact.
     stick
-        A contact whose next bounce would last less than this part of the shortest period sticks, and one that closes
-        more slowly than this part of the largest speed so far of a ball in its cavity does not rebound.
+        Threshold of sticking. Two bodies stick if their next flight would be shorter than this part of the shortest period;
+        they do not rebound if they approach more slowly than this part of the largest speed of a ball in its cavity so far.
     max_events
-        Budget of flights and impacts.
+        Largest number of flights and impacts.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("method",)
+    field_names: ClassVar[tuple[str, ...]] = ("method",)
     kind: Literal["newton"] = "newton"
     restitution: AnyRestitution | None = None
     stick: Annotated[Number, Field(ge=0, le=0.1)] = 1e-6
@@ -79,26 +80,25 @@ def _step(value: Any) -> Any:
 
 
 class Dem(Part):
-    """Fixed steps of all particles in space. The method of particle dampers.
+    """Discrete-element method with fixed steps: the method of particle dampers.
 
     Parameters
     ----------
     dt
-        Step [s], or "auto". Either is shortened a little so that samples fall on steps. A step too long for any contact that
-        is to be expected is refused.
+        Time step [s], or "auto". It is shortened slightly so that samples fall on steps. A step that is too long for an
+        expected contact raises an error.
     fraction
-        With "auto": of the shortest contact and of the period of the fastest mode.
+        Automatic step over the duration of the shortest contact or the period of the fastest mode.
     threads
-        How many at once; default as many as there are cores and enough particles for. The results do not depend on it, to
-        the last bit.
+        Number of threads; by default it depends on the cores and the number of particles. Results are bitwise independent of
+        it.
     checkpoint
-        How often the state is kept from which the run can go on, where a file for it is given: by the clock [s]; default ten
-        minutes.
+        Interval between checkpoints in wall-clock time [s], if the run has a checkpoint file; default ten minutes.
     checkpoint_every
-        Instead: in simulated time [s].
+        Interval between checkpoints in simulated time [s], in place of `checkpoint`.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("method",)
+    field_names: ClassVar[tuple[str, ...]] = ("method",)
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("checkpoint", "checkpoint_every"),)
     kind: Literal["dem"] = "dem"
     dt: Annotated[
@@ -128,7 +128,7 @@ class Dem(Part):
 AnyMethod = Annotated[EventDriven | TwoStep | Newton | Dem, Field(discriminator="kind")]
 
 
-USUAL_SNAPSHOTS = 101
+DEFAULT_SNAPSHOTS = 101
 
 
 def _times(value: Any) -> Any:
@@ -151,30 +151,29 @@ def _count_or_times(value: Any) -> Any:
     except TypeError:
         return _times(value)
     if count < 2:
-        raise Hint("two snapshots are the least: at 0 and at the end", "snapshots = 100")
+        raise Hint("at least two snapshots are needed, at 0 and at the end", "snapshots = 100")
     return count
 
 
 class Output(Part):
-    """At which times motion and energies are recorded; 0 and the end always are. Output does not change the run.
+    """Times at which motion and energies are recorded, always with 0 and the end. They do not affect the run.
 
-    Without a choice the times are such that pictures of the motion are true: evenly spaced, 2001 of them or 20 in each
-    period of the fastest mode or harmonic (up to 100 001); 20 in each pulse; and, in runs of up to 200 000 events, begin,
-    deepest overlap and end of every contact and the middle of the flights beside it. Spectra and the like need evenly spaced
-    times: give a rate.
+    The default times resolve the motion for figures: evenly spaced, 2001 of them or 20 in each period of the fastest mode or
+    harmonic (up to 100 001); 20 in each pulse; and, in runs of up to 200 000 events, begin, deepest overlap and end of every
+    contact and the middle of the flights before and after it. Spectra need evenly spaced times, set by a rate.
 
     Parameters
     ----------
     rate
-        Samples per second [Hz].
+        Sampling rate [Hz].
     times
-        Instead: the times themselves [s]; with particles in space evenly spaced, together with 0 and the end.
+        Sample times [s], in place of a rate. With particle dampers they are evenly spaced, together with 0 and the end.
     snapshots
-        Of particles in space: how many snapshots, evenly spaced from 0 to the end, go to the file that is given for them, or
-        their times [s], up to the end; default 101. An empty list asks for none.
+        Number of snapshots of the particles, evenly spaced from 0 to the end, or their times [s], in runs with particle
+        dampers and a snapshot file; default 101. An empty list is none.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("output",)
+    field_names: ClassVar[tuple[str, ...]] = ("output",)
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("rate", "times"),)
     rate: PositiveFrequency | None = None
     times: Annotated[tuple[float, ...] | None, BeforeValidator(_times)] = None
@@ -195,37 +194,41 @@ class Output(Part):
 
     @property
     def is_chosen(self) -> bool:
-        """Whether the user has chosen the times."""
+        """Whether a rate or times are set."""
         return self.rate is not None or self.times is not None
 
     def sample_times(self, duration: float, fastest: float = 0.0) -> Vector:
-        """Return the times for a run, (T,) [s]; without a choice the evenly spaced ones.
+        """Return the sample times of a run that are known in advance; by default the evenly spaced ones.
 
         Parameters
         ----------
         duration
-            Of the run [s].
+            Duration of the run [s].
         fastest
-            Highest frequency in it [Hz], which matters where the user has made no choice.
+            Highest frequency of the case [Hz], for the default times.
+
+        Returns
+        -------
+        (T,) float
+            Times [s].
         """
         if self.times is not None:
-            inside = [t for t in self.times if 0 < t < duration * (1 - 1e-12)]  # 8 x 0.1 may be a little less than 0.8
+            inside = [t for t in self.times if 0 < t < duration * (1 - 1e-12)]  # 8 x 0.1 may be slightly less than 0.8
             return np.array([0.0, *inside, duration])
         if self.rate is None:
             return np.linspace(0.0, duration, 1 + int(np.clip(20 * duration * fastest, 2000, 100_000)))
-        before = max(
-            1, int(np.ceil(duration * self.rate - 1e-6))
-        )  # 10 000 steps of 0.1 ms may be a little less than 1 s
+        # The tolerance is for rounding: 10 000 steps of 0.1 ms may be slightly less than 1 s.
+        before = max(1, int(np.ceil(duration * self.rate - 1e-6)))
         return np.append(np.arange(before) / self.rate, duration)
 
     def snapshot_times(self, duration: float) -> Vector:
-        """Return the times of snapshots of a run, (n,) [s].
+        """Return the times of the snapshots of a run, (n,) [s].
 
         Parameters
         ----------
         duration
-            Of the run [s].
+            Duration of the run [s].
         """
         if isinstance(self.snapshots, tuple):
             return np.array(self.snapshots)
-        return np.linspace(0.0, duration, self.snapshots or USUAL_SNAPSHOTS)
+        return np.linspace(0.0, duration, self.snapshots or DEFAULT_SNAPSHOTS)

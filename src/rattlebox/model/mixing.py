@@ -1,4 +1,4 @@
-"""Laws of two unlike species from those that each has among its own kind."""
+"""Mixing rules: laws between two species from the laws within each species."""
 
 from __future__ import annotations
 
@@ -21,26 +21,31 @@ _MEANS: dict[Mixing, Callable[[float, float], float]] = {
 
 
 def mixed(one: Any, other: Any, rule: Mixing) -> Any:
-    """Return a law whose numbers lie between those of two laws of the same kind.
+    """Return the law with the means of the numbers of two laws of the same kind.
 
     Parameters
     ----------
     one, other
-        Laws of contact, friction or rolling resistance; None stands for a coefficient of zero.
+        Laws of contact, friction or rolling resistance; None is a coefficient of zero.
     rule
-        Which mean is taken.
+        Kind of mean.
+
+    Returns
+    -------
+    Part or None
+        The law between the two species.
 
     Raises
     ------
     TypeError
-        When the laws differ in more than numbers.
+        If the laws differ in more than numbers.
     """
     if one is None or other is None:
         law = other if one is None else one
         if law is None:
             return None
         if not isinstance(law, (Friction, Rolling)):
-            raise TypeError("laws that are told by other fields")
+            raise TypeError("only laws of friction and rolling resistance can be missing")
         one, other = law, law.model_copy(update={"coefficient": 0.0})
     if one == other:
         return one

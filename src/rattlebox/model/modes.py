@@ -1,4 +1,4 @@
-"""The modal form that every structure reduces to."""
+"""The modal form of all structures."""
 
 from __future__ import annotations
 
@@ -20,14 +20,18 @@ class ModalModel:
     decay, stiffness : (m,) float
         Decay rate a [1/s] and squared natural frequency k [1/s^2].
     shapes : dict of str to (m,) or (m, 3) float
-        Mass-normalised mode shapes at the named points [kg^-1/2]; with three components where the point moves in space.
+        Mass-normalised mode shapes at the named points [kg^-1/2]; with three components for a point in 3-D.
     coupling : (m, m) float or None
-        Modal damping matrix D [1/s] without its diagonal, which is 2 decay; None where damping is proportional. The
+        Modal damping matrix D [1/s] without its diagonal, which is 2 decay; None for proportional damping. The
         modes are those of the undamped structure: q'' + D q' + stiffness q = shape . F.
     participation : (m,) or (m, 3) float or None
-        Inertia of each mode per unit of base acceleration [kg^1/2], for each direction where points move in space.
+        Inertia of each mode per unit of base acceleration [kg^1/2]; three components for points in 3-D.
     q0, p0 : (m,) float
-        Modal displacement and velocity at the start [kg^1/2 m], [kg^1/2 m/s].
+        Initial modal displacement and velocity [kg^1/2 m], [kg^1/2 m/s].
+    spatial : frozenset of str
+        Names of the points that move in 3-D.
+    attached : frozenset of str
+        Names of the points of tuned masses; the others are those of the structure.
     """
 
     decay: Vector
@@ -37,18 +41,16 @@ class ModalModel:
     q0: Vector
     p0: Vector
     spatial: frozenset[str] = frozenset()
-    """Points that move in space."""
     coupling: Vector | None = None
     attached: frozenset[str] = frozenset()
-    """Points of tuned masses; the others are those of the structure itself."""
 
     def point(self, name: str | None) -> str:
-        """Return the name of a point; None stands for the only one.
+        """Return the name of a point; None is the only point of the structure.
 
         Raises
         ------
         CaseError
-            When there is no such point, or None and more than one.
+            If the point does not exist, or the name is None and there are several.
         """
         if name is None:
             own = [known for known in self.shapes if known not in self.attached]
@@ -60,41 +62,41 @@ class ModalModel:
         return name
 
     def shape(self, name: str | None, direction: str | Triple | None = None) -> Vector:
-        """Return the mode shapes at a point, (m,), along a direction where the point moves in space.
+        """Return the mode shapes at a point, (m,); along a direction if the point moves in 3-D.
 
         Raises
         ------
         CaseError
-            When there is no such point, or it moves in space and there is no direction, or the other way round.
+            If the point does not exist, moves in 3-D and the direction is None, or moves along a line and it is not.
         """
         point = self.point(name)
         if point not in self.spatial:
             if direction is not None:
-                advice = 'leave it out; direction = "z" of a damper with particles is that of the line'
+                advice = 'leave it out; direction = "z" of a particle damper sets the direction of the line'
                 raise Hint(f"the point {point!r} moves along one line only", advice, ["direction"])
             return self.shapes[point]
         if direction is None:
-            raise Hint(f"the point {point!r} moves in space", 'direction = "z"', ["direction"])
+            raise Hint(f"the point {point!r} moves in 3-D and needs a direction", 'direction = "z"', ["direction"])
         return np.asarray(self.shapes[point] @ unit_vector(direction))
 
     def space_shape(self, name: str | None, direction: str | Triple) -> Vector:
-        """Return the mode shapes at a point in space, (m, 3); a point on a line moves along the direction."""
+        """Return the mode shapes at a point in 3-D, (m, 3); those of a point on a line are along the direction."""
         point = self.point(name)
         if point in self.spatial:
             return self.shapes[point]
         return np.multiply.outer(self.shapes[point], unit_vector(direction))
 
     def lines(self) -> dict[str, Vector]:
-        """Return the mode shapes of all points on lines, (m,) each: "tip x", "tip y" and "tip z" of one in space."""
-        found: dict[str, Vector] = {}
+        """Return the scalar mode shapes of all points, (m,) each; a point "tip" in 3-D has "tip x", "tip y" and "tip z"."""
+        lines: dict[str, Vector] = {}
         for name, shape in self.shapes.items():
             if name in self.spatial:
-                found |= {f"{name} {axis}": shape[:, k] for k, axis in enumerate(AXES)}
+                lines |= {f"{name} {axis}": shape[:, k] for k, axis in enumerate(AXES)}
             else:
-                found[name] = shape
-        return found
+                lines[name] = shape
+        return lines
 
     def effective_mass(self, name: str | None) -> float:
-        """Return the mass that an impact at a point feels, 1 / sum(shape^2) [kg]; infinite where nothing moves."""
+        """Return the effective mass for an impact at a point, 1 / sum(shape^2) [kg]; infinite for a fixed structure."""
         mass: float = inverse(total(self.shape(name) ** 2))
         return mass

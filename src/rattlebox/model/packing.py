@@ -1,4 +1,4 @@
-"""Where particles start: on a lattice with noise, settled under gravity, or at given positions."""
+"""Initial packings of particles: on a lattice with noise, settled under gravity, or at given positions."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ from .files import BINARY, absolute, check_finite, existing, read_arrays
 from .records import read_table
 from .units import SI, Number, Whole, in_si, numbers
 
-TOUCHING = 1e-9  # overlap, in parts of a radius, that rounding may make
-_FAR = 100.0  # times the size of the cavity: places are in other units
+TOUCHING = 1e-9  # tolerance for overlaps by rounding, relative to the radius
+_FAR = 100.0  # distance over the size of the cavity from which positions are probably in other units
 
 
 class Packing(Part):
-    """What all packings share."""
+    """Base class of packings."""
 
-    held_as: ClassVar[tuple[str, ...]] = ("packing",)
+    field_names: ClassVar[tuple[str, ...]] = ("packing",)
     kind: str
 
 
 class Lattice(Packing):
-    """Particles spread over the whole cavity on a lattice, each with some noise in its own cell.
+    """Particles on a lattice that fills the cavity, with random displacements within their cells.
 
     Parameters
     ----------
     noise
-        How far a particle may be off its place: 0 for none, 1 for as far as no other can be touched.
+        Largest displacement, from 0 to 1; 1 is the largest one at which particles cannot touch.
     seed
-        Of the noise, and of which particle is where.
+        Random seed of the displacements and of the order of particles.
     """
 
     kind: Literal["lattice"] = "lattice"
@@ -50,21 +50,26 @@ class Lattice(Packing):
     seed: Annotated[Whole, Field(ge=0)] = 0
 
     def place(self, cavity: AnyCavity, radii: Vector, *, settles: bool = True) -> Vector:
-        """Return positions for spheres, (n, 3) [m].
+        """Return positions for spheres.
 
         Parameters
         ----------
         cavity
-            Where.
+            Cavity around the spheres.
         radii
-            Of the spheres, (n,) [m].
+            Radii of the spheres, (n,) [m].
         settles
-            Whether there is gravity, so that they may settle instead.
+            Whether there is gravity, so that the error may suggest a settled packing.
+
+        Returns
+        -------
+        (n, 3) float
+            Positions relative to the centre of the cavity [m].
 
         Raises
         ------
         Hint
-            When there are more than such a lattice holds.
+            If the lattice has too few sites.
         """
         generator = np.random.default_rng(self.seed)
         sites, cell = _sites(cavity, radii, settles)
@@ -76,17 +81,18 @@ class Lattice(Packing):
 
 
 class Settled(Packing):
-    """Particles inserted at random, then settled under gravity until they rest.
+    """Particles inserted at random and settled under gravity.
 
-    The fall is computed beforehand with soft, sticky contacts and the largest friction of the damper. What nothing slows,
-    such as one ball in a round cavity, is stopped. In the end particles almost touch, without overlap.
+    The fall is computed before the run with soft, strongly damped contacts and the largest friction of the damper. Motion
+    that nothing slows, such as that of one ball in a round cavity, is stopped. In the end particles almost touch, without
+    overlap.
 
     Parameters
     ----------
     seed
-        Of the insertion.
+        Random seed of the insertion.
     at_rest
-        The bed rests when its kinetic energy is below this part of what a fall by the mean radius gives.
+        Kinetic energy of a bed at rest, relative to the energy of a fall by the mean radius.
     """
 
     kind: Literal["settled"] = "settled"
@@ -112,22 +118,22 @@ Row = tuple[float, float, float]
 
 
 class Positions(Packing):
-    """Particles at given positions, species after species, counted from the centre of the cavity.
+    """Particles at given positions, species after species.
 
     Parameters
     ----------
     positions
-        Centres, (n, 3) [m].
+        Centres, relative to the centre of the cavity, (n, 3) [m].
     radii
-        Of each particle [m], where the species do not tell them.
+        Radii, (n,) [m], if the species have no size.
     velocities, spins
-        At the start, (n, 3) [m/s] and [rad/s]; default 0.
+        Initial velocities [m/s] and angular velocities [rad/s], (n, 3); default 0.
     file
-        Instead of all: a CSV, NPY, NPZ or MAT file with columns x, y, z and, if it likes, radius, vx, vy, vz, wx, wy, wz, by
-        name or, without names, in this order.
+        CSV, NPY, NPZ or MAT file in place of the arrays, with columns x, y, z and optionally radius, vx, vy, vz, wx, wy, wz;
+        without names, in this order.
     """
 
-    in_file: ClassVar[tuple[str, ...]] = ("positions", "radii", "velocities", "spins")
+    file_fields: ClassVar[tuple[str, ...]] = ("positions", "radii", "velocities", "spins")
     kind: Literal["positions"] = "positions"
     positions: Annotated[tuple[Row, ...], *_table(3, "m", "centres")] = Field(examples=[[["0 mm", "0 mm", "5 mm"]]])
     radii: Annotated[tuple[float, ...] | None, *_table(1, "m", "radii")] = None
@@ -140,7 +146,7 @@ class Positions(Packing):
     def _from_file(cls, values: Any) -> Any:
         if not isinstance(values, dict) or values.get("file") is None:
             return values
-        twice = sorted(set(cls.in_file) & set(values))
+        twice = sorted(set(cls.file_fields) & set(values))
         if twice:
             raise Hint(f"give {twice[0]} or a file, not both")
         with at("file"):
@@ -150,7 +156,7 @@ class Positions(Packing):
     @model_validator(mode="after")
     def _as_many(self) -> Positions:
         if not self.positions:
-            raise Hint("there is nothing in it", "one row x, y, z for each particle", [self.where])
+            raise Hint("no positions are given", "one row x, y, z for each particle", [self.where])
         for name in ("radii", "velocities", "spins"):
             rows = getattr(self, name)
             if rows is not None and len(rows) != len(self.positions):
@@ -162,14 +168,14 @@ class Positions(Packing):
 
     @property
     def where(self) -> str:
-        """The field that gives the numbers, for messages."""
+        """Field with the positions, for messages."""
         return "file" if self.file else "positions"
 
     @model_serializer(mode="wrap")
-    def _file_stands_for_numbers(self, handler: Any) -> Any:
+    def _without_file_fields(self, handler: Any) -> Any:
         data = handler(self)
         if self.file is not None:
-            for name in self.in_file:
+            for name in self.file_fields:
                 data.pop(name, None)
         return data
 
@@ -182,10 +188,15 @@ class Positions(Packing):
         path
             The file.
 
+        Returns
+        -------
+        Positions
+            The packing.
+
         Raises
         ------
         CaseError
-            When the file cannot be read, naming the line that is wrong or the columns that there are.
+            If the file cannot be read; the message names the line or the columns.
         """
         return cls.model_validate({"file": os.fspath(path)})
 
@@ -196,7 +207,7 @@ _COLUMNS = ("x", "y", "z", "radius", "vx", "vy", "vz", "wx", "wy", "wz")
 
 
 def _read_positions(path: str) -> dict[str, Any]:
-    """Fields of Positions in a file."""
+    """Return the fields of `Positions` from a file."""
     file = existing(path)
     columns = _from_arrays(file, read_arrays(file)) if file.suffix.lower() in BINARY else read_table(file, _COLUMNS)
     if not set("xyz") <= set(columns):
@@ -208,8 +219,8 @@ def _read_positions(path: str) -> dict[str, Any]:
     if unknown:
         raise DataError(f"{file} has a column {unknown[0]!r}", f"columns of {', '.join(_COLUMNS)}")
     if len({column.size for column in columns.values()}) > 1:
-        told = ", ".join(f"{name} {column.size}" for name, column in columns.items())
-        raise DataError(f"{file} has arrays of different lengths: {told}", "a number for each particle in each of them")
+        sizes = ", ".join(f"{name} {column.size}" for name, column in columns.items())
+        raise DataError(f"{file} has arrays of different lengths: {sizes}", "a number for each particle in each array")
     values: dict[str, Any] = {"positions": np.column_stack([columns[name] for name in "xyz"])}
     if "radius" in columns:
         values["radii"] = columns["radius"]
@@ -231,15 +242,15 @@ def _from_arrays(file: Path, arrays: dict[str, Vector]) -> dict[str, Vector]:
     return {name: array.ravel() for name, array in arrays.items()}
 
 
-_LOOSE = 0.56  # of a large cavity, by spheres that are inserted at random
-_COUNTABLE = 1_000_000  # sites of a lattice
+_LOOSE = 0.56  # fill ratio of randomly inserted spheres in a large cavity
+_COUNTABLE = 1_000_000  # lattices with more sites are not built to count them
 
 
 @dataclass(frozen=True)
 class _Grid:
-    """A lattice of sites for so many particles, at least one cell apart: cubic, or face-centred.
+    """A cubic or face-centred lattice of sites for `count` particles, at least one cell apart.
 
-    Where there are two across a round cavity, all are outside; there may be one in the middle instead.
+    Two sites across a round cavity lie outside it; with `middle` they are replaced by one in the middle.
     """
 
     count: int
@@ -247,9 +258,9 @@ class _Grid:
     middle: bool
 
     def axes(self, cavity: AnyCavity, cell: float) -> list[Vector]:
-        """Places along the axes of the cavity [m]."""
+        """Return the coordinates of sites along the axes of the cavity [m]."""
         step = cell / np.sqrt(2) if self.centred else cell
-        most = max(1000, 4 * self.count)  # in cavities far wider than high there would be too many
+        most = max(1000, 4 * self.count)  # limits the memory in cavities that are far wider than high
         axes = []
         for length, inside in zip(cavity.lengths, cavity.inside, strict=True):
             count = int(np.floor((length - cell) / step * (1 + 1e-12) + 1e-9)) + 1
@@ -260,7 +271,7 @@ class _Grid:
         return axes
 
     def __call__(self, cavity: AnyCavity, cell: float) -> Vector:
-        """Sites around which a sphere as large as the cell lies wholly inside, (n, 3) [m]."""
+        """Return the sites at which a sphere as large as the cell is inside the cavity, (n, 3) [m]."""
         axes = self.axes(cavity, cell)
         index = np.indices([axis.size for axis in axes]).reshape(3, -1)
         if self.centred:
@@ -270,7 +281,7 @@ class _Grid:
         return sites if isinstance(cavity, Box) else sites[cavity.depth(sites) >= cell / 2 * (1 - 1e-12)]
 
     def at_least(self, cavity: AnyCavity, cell: float) -> int:
-        """How many sites there surely are, without making them: those in a box inside the cavity."""
+        """Return a lower bound of the number of sites, those in the inscribed box, without building them."""
         reach = (cavity.inside - cell) / 2
         axes = zip(self.axes(cavity, cell), reach, strict=True)
         number = math.prod(int(np.sum(np.abs(axis) <= end)) for axis, end in axes)
@@ -278,12 +289,12 @@ class _Grid:
 
 
 def _coarsest(cavity: AnyCavity, count: int, least: float, middle: bool) -> Iterator[tuple[float, _Grid]]:
-    """The coarsest lattices of both kinds that have enough sites, and their cells."""
+    """Yield the coarsest lattice of each kind with enough sites, with its cell."""
     widest = float(cavity.lengths.min()) * (1 + 1e-12)
     plenty = 1.01 * count
 
     def size(grid: _Grid, cell: float) -> int:
-        sure = grid.at_least(cavity, cell)  # where it is plenty, the sites are too many to be made
+        sure = grid.at_least(cavity, cell)  # Sites far above the number needed are not built.
         return sure if sure >= plenty else len(grid(cavity, cell))
 
     for centred in (False, True):
@@ -303,28 +314,28 @@ def _coarsest(cavity: AnyCavity, count: int, least: float, middle: bool) -> Iter
 
 
 def _sites(cavity: AnyCavity, radii: Vector, settles: bool) -> tuple[Vector, float]:
-    """Places for spheres, at least as many, and the size of the cell that each has for itself."""
+    """Return at least as many sites as spheres, and the size of the cell around each."""
     count, radius, mixed = radii.size, float(radii.max()), bool(radii.min() < radii.max())
     for middle in (False, True):
-        found = list(_coarsest(cavity, count, 2 * radius, middle))
-        if found:
-            cell, grid = max(found, key=lambda pair: pair[0])
+        lattices = list(_coarsest(cavity, count, 2 * radius, middle))
+        if lattices:
+            cell, grid = max(lattices, key=lambda pair: pair[0])
             return grid(cavity, cell), cell
     raise lattice_is_full(cavity, Crowd.of(radii), settles=mixed and settles)
 
 
 @dataclass(frozen=True)
 class Crowd:
-    """Particles that may be too many, without a number for each of them.
+    """Summary of a set of particles, which may be too many for arrays.
 
     Attributes
     ----------
     count
         Number of particles.
     volume
-        Mean volume of one [m^3].
+        Mean volume of a particle [m^3].
     largest
-        Radius of the largest one [m].
+        Radius of the largest particle [m].
     """
 
     count: int
@@ -333,11 +344,11 @@ class Crowd:
 
     @classmethod
     def of(cls, radii: Vector) -> Crowd:
-        """Return the crowd of spheres with radii [m]."""
+        """Return the summary of spheres with these radii [m]."""
         return cls(radii.size, 4 / 3 * math.pi * float(np.mean(radii**3)), float(radii.max()))
 
     def on_lattice(self, cavity: AnyCavity) -> int:
-        """Return how many of them a lattice holds; at least the number of them where it holds them all."""
+        """Return the number of particles that a lattice holds; a lower bound if it holds all of them."""
         grids = [_Grid(self.count, *kind) for kind in product((False, True), repeat=2)]
         sure = max(grid.at_least(cavity, 2 * self.largest) for grid in grids)
         if sure >= self.count or sure > _COUNTABLE:
@@ -345,13 +356,13 @@ class Crowd:
         return max(len(grid(cavity, 2 * self.largest)) for grid in grids)
 
     def at_random(self, cavity: AnyCavity) -> int:
-        """Return how many of them can be inserted at random, on the safe side: near walls there is less room."""
+        """Return a safe estimate of the number that can be inserted at random; walls reduce it."""
         walls = 2 * float(np.sum(1 / cavity.lengths))
         return max(1, math.floor(_LOOSE / (1 + 0.3 * self.largest * walls) * cavity.volume / self.volume))
 
 
 def lattice_is_full(cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> Hint:
-    """Return the complaint about more particles than a lattice holds; `settles` allows settled ones as a way out."""
+    """Return the error for more particles than a lattice holds; `settles` permits a settled packing as suggestion."""
     most = crowd.on_lattice(cavity)
     settled = (
         'packing = { kind = "settled" }, which suits many sizes, '
@@ -366,7 +377,7 @@ def lattice_is_full(cavity: AnyCavity, crowd: Crowd, *, settles: bool) -> Hint:
 
 
 def fewer_at_random(cavity: AnyCavity, crowd: Crowd) -> str:
-    """Return what to try with more particles than can be inserted at random: only what holds."""
+    """Return suggestions for more particles than can be inserted at random."""
     lattice = 'packing = { kind = "lattice" }, or ' if crowd.on_lattice(cavity) >= crowd.count else ""
     most = min(crowd.at_random(cavity), max(1, crowd.count - 1))
     filled = most * crowd.volume / cavity.volume
@@ -374,7 +385,7 @@ def fewer_at_random(cavity: AnyCavity, crowd: Crowd) -> str:
 
 
 def check_size(cavity: AnyCavity, radius: float) -> None:
-    """Refuse a sphere that is larger than the cavity, or fills it."""
+    """Raise if a sphere is as large as the cavity or larger."""
     widest = float(cavity.lengths.min())
     if 2 * radius > widest or 4 / 3 * math.pi * radius**3 >= cavity.volume:
         large = "larger than" if 2 * radius > widest else "as large as"
@@ -385,12 +396,12 @@ def check_size(cavity: AnyCavity, radius: float) -> None:
 
 
 def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
-    """Refuse spheres that overlap or are not wholly inside.
+    """Raise if spheres overlap or extend beyond the cavity.
 
     Parameters
     ----------
     cavity
-        Around them.
+        Cavity around the spheres.
     positions
         Centres, (n, 3) [m].
     radii
@@ -399,7 +410,7 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
     Raises
     ------
     Hint
-        Naming the particles (counted from 0 within their damper) and by how much.
+        With the indices of the particles in their damper (from 0), and the overlap.
     """
     room = cavity.room(positions, radii)
     worst = int(room.argmin())
@@ -408,7 +419,7 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
         far = float(np.abs(positions).max()) > _FAR * cavity.volume ** (1 / 3)
         raise Hint(
             f"particle {worst} at ({place}) mm sticks out of the cavity by {-1e3 * room[worst]:.4g} mm",
-            "positions in metres, or with units" if far else "positions counted from the centre of the cavity",
+            "positions in metres, or with units" if far else "positions relative to the centre of the cavity",
         )
     first, second, apart = overlapping(positions, radii)
     if apart.size:
@@ -419,7 +430,7 @@ def check_packing(cavity: AnyCavity, positions: Vector, radii: Vector) -> None:
 
 
 def overlapping(positions: Vector, radii: Vector, within: float = 0.0) -> tuple[Any, Any, Vector]:
-    """Return the pairs of spheres that overlap: first, second (p,) int, and their distances (p,) [m], below zero.
+    """Return the pairs of spheres that overlap.
 
     Parameters
     ----------
@@ -428,21 +439,28 @@ def overlapping(positions: Vector, radii: Vector, within: float = 0.0) -> tuple[
     radii
         Radii, (n,) [m].
     within
-        Pairs nearer than this too [m].
+        Largest distance between the surfaces of a pair [m].
+
+    Returns
+    -------
+    first, second : (p,) int
+        Indices of the pairs.
+    distance : (p,) float
+        Distance between the surfaces [m], negative for an overlap.
     """
     from scipy.spatial import cKDTree
 
-    octave = np.log2(radii / radii.min()).astype(int)  # so that small ones need not look as far as large ones
+    octave = np.log2(radii / radii.min()).astype(int)  # small spheres have a smaller search radius
     classes = [np.flatnonzero(octave == k) for k in np.unique(octave)]
     trees = [cKDTree(positions[members]) for members in classes]
-    found = []
+    pairs = []
     for k, (members, tree) in enumerate(zip(classes, trees, strict=True)):
         for others, other in zip(classes[k:], trees[k:], strict=True):
             reach = float(radii[members].max() + radii[others].max()) + within
             near = tree.sparse_distance_matrix(other, reach, output_type="ndarray")
             i, j = members[near["i"]], others[near["j"]]
             apart = near["v"] - radii[i] - radii[j]
-            kept = (apart < within) & ((i < j) if other is tree else True)
-            found.append((i[kept], j[kept], apart[kept]))
-    first, second, apart = (np.concatenate(parts) for parts in zip(*found, strict=True))
+            mask = (apart < within) & ((i < j) if other is tree else True)
+            pairs.append((i[mask], j[mask], apart[mask]))
+    first, second, apart = (np.concatenate(parts) for parts in zip(*pairs, strict=True))
     return first, second, apart

@@ -1,4 +1,4 @@
-"""What two bodies in contact share: effective modulus, radius and mass."""
+"""Pairs of bodies in contact: effective modulus, radius and mass."""
 
 from __future__ import annotations
 
@@ -21,7 +21,12 @@ if TYPE_CHECKING:
 
 
 def hardness(poisson: float, yield_stress: float) -> float:
-    """Return C S_y with C = 1.295 exp(0.736 nu) [Pa], the pressure in the middle of a contact at which yield begins."""
+    """Return the pressure at the centre of a contact at which yield begins, C S_y with C = 1.295 exp(0.736 nu) [Pa].
+
+    References
+    ----------
+    R. L. Jackson, I. Green, J. Tribol. 127 (2005) 343, doi:10.1115/1.1866166.
+    """
     factor: float = 1.295 * exp(0.736 * poisson)
     return factor * yield_stress
 
@@ -35,7 +40,7 @@ class Body:
     material
         None for a rigid body.
     radius, mass
-        Of the surface [m] and of the body [kg]; infinite for a wall (radius) and for what cannot move (mass).
+        Radius of the surface [m], infinite for a wall; mass of the body [kg], infinite for a fixed body.
     """
 
     material: Material | None
@@ -44,7 +49,7 @@ class Body:
 
     @property
     def is_flat(self) -> bool:
-        """True for a wall."""
+        """Whether the body is a wall."""
         return isinstance(self.radius, float) and math.isinf(self.radius)
 
     @property
@@ -54,13 +59,13 @@ class Body:
 
     @property
     def hardness(self) -> float:
-        """Hardness [Pa]: the body with the lower one yields first."""
+        """Hardness [Pa]; the body with the lower hardness yields first."""
         if self.material is None or self.material.yield_stress is None:
             return math.inf
         return hardness(self.material.poisson, self.material.yield_stress)
 
     def or_weaker(self, other: Body) -> Body:
-        """Return the body that yields first, of two that can; for arrays one of the material that does in each place."""
+        """Return the body of two that yields first; for arrays, a body with the weaker material of each element."""
         own, others = present(self.material), present(other.material)
         weaker = less(other.hardness, self.hardness, others.young, own.young)
         if not isinstance(weaker, np.ndarray):
@@ -87,37 +92,37 @@ class Pair:
 
     @property
     def is_wall(self) -> bool:
-        """True for a ball against a wall."""
+        """Whether one of the bodies is a wall."""
         return self.below.is_flat or self.above.is_flat
 
     @property
     def modulus(self) -> float:
-        """E* [Pa]."""
+        """Effective modulus E* [Pa]."""
         return 1 / (self.below.compliance + self.above.compliance)
 
     @property
     def radius(self) -> float:
-        """R* [m]."""
+        """Effective radius R* [m]."""
         return 1 / (1 / self.below.radius + 1 / self.above.radius)
 
     @property
     def mass(self) -> float:
-        """Reduced mass m* [kg]."""
+        """Effective mass m* [kg]."""
         return 1 / (1 / self.below.mass + 1 / self.above.mass)
 
     @property
     def hertz_stiffness(self) -> float:
-        """A = (4/3) E* sqrt(R*) [N/m^1.5]."""
+        """Stiffness of Hertz's law, 4/3 E* R*^(1/2) [N/m^1.5]."""
         stiffness: float = 4 / 3 * self.modulus * sqrt(self.radius)
         return stiffness
 
     def first_to_yield(self, need: str) -> Body:
-        """Return the body that yields first, the softer one where both do.
+        """Return the body that yields first; the softer one of two with equal hardness.
 
         Raises
         ------
         Hint
-            When neither material has a yield stress; `need` says who asks.
+            If neither material has a yield stress; `need` names the law in the message.
         """
         bodies = [b for b in (self.below, self.above) if b.material is not None and b.material.yield_stress is not None]
         if not bodies:
@@ -125,7 +130,7 @@ class Pair:
         return reduce(Body.or_weaker, bodies)
 
     def against(self, wall: Material | str | None) -> Pair:
-        """Return the pair with another wall: a material or "rigid"; None and pairs of balls are left as they are."""
+        """Return the pair with another wall, a material or "rigid"; None and pairs of balls are unchanged."""
         if wall is None or not self.is_wall:
             return self
         material = None if isinstance(wall, str) else wall
@@ -135,21 +140,26 @@ class Pair:
 
 
 def contact_pairs(case: Case, index: int) -> list[Pair]:
-    """Return the pairs of a damper in order: left wall, ball 1 - ball 2, ..., right wall.
+    """Return the pairs of an impact damper in order: trailing wall, ball 1 - ball 2, ..., leading wall.
 
     Parameters
     ----------
     case
         The case.
     index
-        Number of the damper, from 0. Walls count with the structure's effective mass at its point.
+        Index of the impact damper, from 0.
+
+    Returns
+    -------
+    list of Pair
+        The pairs. Walls have the effective mass of the structure at the point of the damper.
     """
     damper = case.impact_dampers[index]
     wall_mass = case.modes.effective_mass(damper.point)
     balls = [Body(ball.material, ball.half, ball.weight) for ball in damper.balls]
 
-    def wall(beside: Body) -> Body:
-        material = beside.material if damper.wall is None else damper.wall
+    def wall(ball: Body) -> Body:
+        material = ball.material if damper.wall is None else damper.wall
         return Body(None if isinstance(material, str) else material, mass=wall_mass)
 
     row = [wall(balls[0]), *balls, wall(balls[-1])]

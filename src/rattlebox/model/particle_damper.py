@@ -1,4 +1,4 @@
-"""Particle dampers: many spheres in a cavity in space."""
+"""Particle dampers: many spheres in a cavity, in 3-D."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pydantic import BeforeValidator, Field, TypeAdapter, WithJsonSchema, model_
 from rattlebox._util.exceptions import ResourceError, named
 from rattlebox._util.narrow import instance
 
-from .also_takes import AlsoTakes
+from .also_accepts import AlsoAccepts
 from .base import Part
 from .cavities import AnyCavity
 from .contacts import AnyContact, Linear
@@ -36,16 +36,16 @@ from .packing import (
     lattice_is_full,
 )
 from .pairs import Body, Pair
-from .particles import MOST_PARTICLES, Particles, as_species
+from .particles import MAX_PARTICLES, Particles, as_species
 from .space import Accelerations, Direction, Velocities
 from .units import Number
 
 WALL = "wall"
-_BYTES = 1000  # of a particle and its contacts, at least
+_BYTES = 1000  # smallest memory of a particle and its contacts
 
 
 def memory() -> float:
-    """Return the memory of this machine [bytes], infinite where it is not known."""
+    """Return the memory of this machine [bytes]; infinite if it is unknown."""
     try:
         return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
     except (AttributeError, OSError, ValueError):  # not on every system
@@ -53,7 +53,7 @@ def memory() -> float:
 
 
 def _two_names(value: Any) -> Any:
-    """One name is no pair: not even of a species with itself."""
+    """Raise if a pair has one name; a pair of equal particles has the same name twice."""
     names = [value] if isinstance(value, str) else value
     if isinstance(names, (list, tuple)) and len(names) == 1 and isinstance(names[0], str):
         one = names[0]
@@ -71,17 +71,17 @@ _FACTOR: TypeAdapter[float] = TypeAdapter(Annotated[Number, Field(ge=1, le=1e6)]
 
 
 class PairLaws(Part):
-    """Laws of two species, or of a species and the wall, instead of those of all.
+    """Laws between two species, or a species and the wall, in place of the laws of the damper.
 
     Parameters
     ----------
     between
-        Names of two species, or of one and "wall".
+        Names of two species, or of a species and "wall".
     contact, friction, rolling
-        What is left out stays as it is for all; friction = 0 is none.
+        Laws of the pair; default those of the damper. friction = 0 is no friction.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("pairs",)
+    field_names: ClassVar[tuple[str, ...]] = ("pairs",)
     between: Annotated[tuple[str, str], BeforeValidator(_two_names)] = Field(examples=[["shot", "wall"]])
     contact: AnyContact | None = None
     friction: AnyFriction | None = None
@@ -95,9 +95,9 @@ class Contents:
     Attributes
     ----------
     radius, mass, inertia : (n,) float
-        [m], [kg], [kg m^2].
+        Radius [m], mass [kg], moment of inertia [kg m^2].
     species : (n,) int
-        Number of the species.
+        Index of the species.
     """
 
     radius: Vector
@@ -108,12 +108,12 @@ class Contents:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """State of the particles at the start.
+    """Initial state of the particles.
 
     Attributes
     ----------
     position, velocity, spin : (n, 3) float
-        From the centre of the cavity [m], relative to the base [m/s], [rad/s].
+        Position relative to the centre of the cavity [m], velocity relative to the base [m/s], angular velocity [rad/s].
     """
 
     position: Vector
@@ -123,18 +123,18 @@ class Start:
 
 @dataclass(frozen=True)
 class Entry:
-    """How one kind of pair touches.
+    """Laws of one kind of pair.
 
     Attributes
     ----------
     pair
-        The bodies of reference: of a species that has several sizes, particles of its mean radius; a wall that cannot move.
+        Reference bodies: particles of the mean radius of a species, or a fixed wall.
     contact, friction, rolling
         The laws.
     names
-        Of the two sides.
+        Names of the two species, or of a species and the wall.
     place, friction_place, rolling_place
-        Where the laws are given, for messages.
+        Places of the laws in the damper, for messages.
     """
 
     pair: Pair
@@ -156,9 +156,9 @@ class ContactTable:
     entries
         The entries.
     particle_entry : (k, k) int
-        Entry of two species.
+        Index of the entry of two species.
     wall_entry : (k, w) int
-        Entry of a species and a kind of wall.
+        Index of the entry of a species and a kind of wall.
     wall_kind : (walls,) int
         Kind of each wall.
     """
@@ -170,11 +170,11 @@ class ContactTable:
 
 
 def _check_alike(what: str, given: Sequence[tuple[str, tuple[str | int, ...]]]) -> None:
-    """Refuse what is not computed side by side: words, with the places where they are given."""
+    """Raise if the words differ, which are given with their places: these laws cannot be combined in a damper."""
     for word, place in given:
         if word != given[0][0]:
             raise Hint(
-                f"{word} beside {given[0][0]}: one {what} is needed among particles, and one at walls",
+                f"{word} and {given[0][0]} cannot be combined: one {what} is needed among particles, and one at walls",
                 f"{given[0][0]} in both",
                 place,
             )
@@ -186,44 +186,44 @@ class ParticleDamper(Part):
     Parameters
     ----------
     particles
-        One kind of Particles, or several.
+        Particles of one species, or a list of several.
     cavity
         Box, Cylinder or SphericalCavity.
     wall
-        Material of the walls, "rigid", or None: that of the first particles.
+        Material of the walls, or "rigid"; default that of the first species.
     contact, wall_contact
-        Law among particles, and at walls if it is another one.
+        Contact laws among particles and at walls; the default of the second is the first.
     friction, wall_friction
-        A law or a coefficient; none if left out. At walls the same unless given.
+        Friction laws or coefficients among particles and at walls; default none, and that of the particles at walls.
     rolling, wall_rolling
-        Resistance to rolling, or its coefficient; none if left out. At walls the same unless given.
+        Rolling resistances or their coefficients among particles and at walls; defaults as for friction.
     pairs
-        Exceptions for pairs of species, or of a species and the wall.
+        Laws for pairs of species, or a species and the wall, that differ from the laws above.
     mixing
-        How two unlike species meet that `pairs` does not tell: with the "arithmetic", "geometric" or "harmonic" mean of the
-        numbers in the laws that each has among its own kind, or the "smaller" or "larger" ones. Left out, as all do.
+        Rule for two different species without an entry in `pairs`: the "arithmetic", "geometric" or "harmonic" mean of the
+        numbers in the laws of each species, or the "smaller" or "larger" number. By default all species have the same laws.
     gravity
-        [m/s^2], along x, y and z.
+        Gravity along x, y and z [m/s^2].
     point
-        Of the structure; not needed where there is one only.
+        Point of the structure; needed if there are several.
     direction
-        Along which a point moves whose mode shapes have one component, and the base.
+        Direction of the base motion, and of a point whose mode shapes have one component.
     packing
         Lattice, Settled or Positions.
     velocity
-        Of all particles at the start [m/s], relative to the base; Positions may give them one by one.
+        Initial velocity of all particles [m/s], relative to the base; Positions may add individual velocities.
     softening
-        Factor by which moduli are divided in contacts (not in laws of restitution), which allows longer steps, or "auto":
-        the largest one that is estimated to change the loss in a cycle by at most 0.1 m V^2. Contacts last longer and
-        overlap more, and beds under their own weight are more compliant; a run warns where that matters.
+        Factor by which moduli in contacts are divided (not in restitution laws), which allows longer steps; or "auto", the
+        largest one with an estimated change of the loss in a cycle of at most 0.1 m V^2. Contacts last longer and overlap
+        more, and beds under their own weight are more compliant; a run has a warning if that affects the result.
     name
-        What results and messages call it; "damper", "damper2", ... if left out.
+        Name in results and messages; default "damper", "damper2", ...
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("damper", "dampers")
+    field_names: ClassVar[tuple[str, ...]] = ("damper", "dampers")
     kind: Literal["particle"] = "particle"
     name: str = ""
-    particles: Annotated[tuple[Particles, ...], BeforeValidator(as_species), AlsoTakes()] = Field(
+    particles: Annotated[tuple[Particles, ...], BeforeValidator(as_species), AlsoAccepts()] = Field(
         examples=[{"material": "steel", "diameter": "4 mm", "count": 100}]
     )
     cavity: AnyCavity
@@ -260,7 +260,7 @@ class ParticleDamper(Part):
     def _check_amounts(self) -> None:
         if not self.particles:
             raise Hint(
-                "an empty damper damps nothing",
+                "a particle damper needs particles",
                 "particles = { material = ..., radius = ..., count = ... }",
                 ["particles"],
             )
@@ -268,14 +268,13 @@ class ParticleDamper(Part):
         for index, species in enumerate(self.particles):
             place = self._place(index)
             if labels.index(species.label) != index or species.label == WALL:
-                raise Hint(f"the name {species.label!r} is taken", "a name of its own", [*place, "name"])
-            given = isinstance(self.packing, Positions)
-            if not species.has_amount and (not given or len(labels) > 1):
+                raise Hint(f"the name {species.label!r} is taken", "another name", [*place, "name"])
+            if not species.has_amount and (not isinstance(self.packing, Positions) or len(labels) > 1):
                 raise Hint("count, mass or fill_ratio is needed", "count = 200", place)
             radii = isinstance(self.packing, Positions) and self.packing.radii is not None
             if species.has_size == radii:
                 raise Hint(
-                    "the size is told twice, here and by the packing's radii"
+                    "the size is given twice, here and by the radii of the packing"
                     if radii
                     else "radius, diameter or distribution is needed",
                     "" if radii else 'radius = "2 mm"',
@@ -283,7 +282,7 @@ class ParticleDamper(Part):
                 )
 
     def _place(self, index: int) -> list[str | int]:
-        """Where a species is given, for messages."""
+        """Return the place of a species in the damper, for messages."""
         return ["particles", index] if len(self.particles) > 1 else ["particles"]
 
     def _check_pairs(self) -> None:
@@ -296,7 +295,7 @@ class ParticleDamper(Part):
                         raise Hint(f"there are no particles {name!r} here", " or ".join(known), ["between", number])
                 both = frozenset(pair.between)
                 if both in seen or both == {WALL}:
-                    raise Hint("each pair of species, or of one and the wall, is told once", place=["between"])
+                    raise Hint("each pair of species, or of a species and the wall, may occur once", place=["between"])
                 seen.add(both)
         for walls in (False, True):
             entries = [entry for entry in self._laws() if (WALL in entry.names) == walls]
@@ -322,24 +321,24 @@ class ParticleDamper(Part):
             )
         if isinstance(entry.friction, Mindlin) and entry.friction.coefficient and isinstance(entry.contact, Linear):
             raise Hint(
-                f"Mindlin's stiffness belongs to Hertz contacts, but that of {between} is linear",
+                f"Mindlin's stiffness needs a Hertz contact, but that of {between} is linear",
                 f'friction = {{ kind = "spring", coefficient = {entry.friction.coefficient:g}, ratio = 0.286 }}',
                 entry.friction_place,
             )
         if isinstance(entry.friction, LinearSpring) and entry.friction.ratio and not isinstance(entry.contact, Linear):
             raise Hint(
-                f"a ratio of stiffnesses belongs to linear contacts, but that of {between} is not",
+                f"a ratio of stiffnesses needs a linear contact, but that of {between} is not linear",
                 "friction = 0.3, for Mindlin's stiffness, or stiffness",
                 entry.friction_place,
             )
 
     def _check_room(self) -> None:
-        """Refuse more particles than the cavity has room for, or memory holds, before there is a number for each."""
+        """Raise if the particles exceed the volume of the cavity or the memory, before arrays are allocated."""
         if isinstance(self.packing, Positions):
             return
         crowds = [species.crowd(self.cavity.volume) for species in self.particles]
         count = sum(crowd.count for crowd in crowds)
-        if not 0 < count <= MOST_PARTICLES:  # said where the number is found
+        if not 0 < count <= MAX_PARTICLES:  # `Particles.number` raises.
             return
         filled = sum(crowd.count * crowd.volume for crowd in crowds) / self.cavity.volume
         largest = max((crowd.largest for crowd in crowds), default=0.0)
@@ -375,14 +374,14 @@ class ParticleDamper(Part):
             check_size(self.cavity, float(contents.radius[largest]))
         filled = float(contents.radius @ contents.radius**2) * 4 / 3 * math.pi / self.cavity.volume
         crowd = Crowd.of(contents.radius)
-        if filled >= 1 and not isinstance(self.packing, Lattice):  # which tells how many it holds
+        if filled >= 1 and not isinstance(self.packing, Lattice):  # A lattice has a separate message.
             raise self._too_many(crowd)
         if isinstance(self.packing, Settled):
             if not any(self.gravity):
                 held = crowd.on_lattice(self.cavity)
                 some = "" if held >= crowd.count else f" with at most {held} of them"
                 raise Hint(
-                    "nothing settles without gravity",
+                    "particles do not settle without gravity",
                     f'packing = {{ kind = "lattice" }}{some}, or gravity = [0, 0, -9.81]',
                     ["packing"],
                 )
@@ -397,7 +396,7 @@ class ParticleDamper(Part):
             _ = self.start
 
     def label(self, index: int) -> str:
-        """Return the damper's name, or one made from its number in the case."""
+        """Return the name of the damper; by default it has the number of the damper in the case."""
         return self.name or ("damper" if index == 0 else f"damper{index + 1}")
 
     @cached_property
@@ -431,12 +430,12 @@ class ParticleDamper(Part):
 
     @cached_property
     def start(self) -> Start:
-        """Where particles are at the start, and how they move; positions of settled ones are for the engine to find.
+        """Initial state of the particles; the positions of settled packings are NaN until `prepare` computes them.
 
         Raises
         ------
         Hint
-            When particles overlap, stick out, or do not fit.
+            If particles overlap, extend beyond the cavity, or do not fit.
         """
         packing, radius = self.packing, self.contents.radius
         velocity: Vector = np.tile(self.velocity, (radius.size, 1))
@@ -457,7 +456,7 @@ class ParticleDamper(Part):
     # ---- contacts
 
     def _law(self, field: str, first: str, second: str) -> tuple[Any, tuple[str | int, ...]]:
-        """The law that a pair has, and where it is given."""
+        """Return the law of a pair, and its place in the damper."""
         for index, pair in enumerate(self.pairs):
             law = getattr(pair, field)
             if law is not None and frozenset(pair.between) == frozenset((first, second)):
@@ -476,7 +475,7 @@ class ParticleDamper(Part):
         return (wall, (f"wall_{field}",)) if wall is not None else (getattr(self, field), (field,))
 
     def _laws(self) -> Iterator[Entry]:
-        """Entries of all pairs of species, then of each species with the wall, which stands as if immovable."""
+        """Yield the entries of all pairs of species, then of each species and the fixed wall."""
         names = [species.label for species in self.particles]
         bodies = [self._body(index) for index in range(len(names))]
         wall = self.particles[0].material if self.wall is None else self.wall
@@ -513,23 +512,23 @@ class ParticleDamper(Part):
 
     @property
     def softening_factor(self) -> float:
-        """The softening as a number: 1 for "auto", which a run replaces by its choice."""
+        """The softening as a number; 1 for "auto", which a run replaces by a number."""
         return 1.0 if self.softening == "auto" else self.softening
 
     def softened(self, entry: Entry) -> tuple[str, dict[str, Any]]:
-        """Return the core's name of a contact law and its coefficients, with moduli divided by the softening.
+        """Return the name of a contact law in the core and its coefficients, with moduli divided by the softening.
 
-        Restitution stays: dashpots and limiting pressures are lowered as far as that needs.
+        Dashpots and limiting pressures are reduced so that the restitution is the same.
         """
         return entry.contact.softened(entry.pair, self.softening_factor)
 
     def softened_friction(self, entry: Entry) -> tuple[str, dict[str, Any]]:
-        """Return the core's name of a friction law and its coefficients, with moduli divided by the softening."""
+        """Return the name of a friction law in the core and its coefficients, with moduli divided by the softening."""
         friction = Mindlin(coefficient=0.0) if entry.friction is None else entry.friction
         law, values = friction.coefficients(entry.pair)
         soft = dict.fromkeys(("shear_modulus", "stiffness"), self.softening_factor)
         return law, {key: value / soft.get(key, 1.0) for key, value in values.items()}
 
     def rolling_of(self, entry: Entry) -> Rolling:
-        """Return the rolling resistance of a pair, 0 where there is none."""
+        """Return the rolling resistance of a pair; by default one with coefficient 0."""
         return Rolling(coefficient=0.0) if entry.rolling is None else entry.rolling

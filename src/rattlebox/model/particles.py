@@ -1,4 +1,4 @@
-"""What is filled into a cavity: material, size or distribution of sizes, and how much of it."""
+"""Particles of one species: material, size or distribution of sizes, and amount."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from .materials import AnyMaterial
 from .packing import Crowd
 from .units import SI, Number, PositiveLength, PositiveMass, Whole, parse, radius_of_diameter
 
-MOST_PARTICLES = 100_000_000  # of one kind
-_MANY = 4096  # sizes from which the mean volume is guessed
+MAX_PARTICLES = 100_000_000  # of one kind
+_MANY = 4096  # sizes from which the mean volume is estimated
 
 
 class Distribution(Part):
-    """What all distributions of diameters share."""
+    """Base class of distributions of diameters."""
 
-    held_as: ClassVar[tuple[str, ...]] = ("distribution",)
+    field_names: ClassVar[tuple[str, ...]] = ("distribution",)
     kind: str
 
     def diameters(self, share: Vector) -> Vector:
-        """Return the diameters [m] below which these shares of the number of particles are, (n,)."""
+        """Return quantiles of the diameter by number [m], (n,), for shares of the number of particles."""
         raise NotImplementedError
 
 
@@ -48,24 +48,24 @@ class _Bounded(Distribution):
         return self
 
     def _between(self, share: Vector, low: float, high: float) -> Vector:
-        """Quantiles of the standard normal distribution, cut off at two of them."""
+        """Return quantiles of the standard normal distribution, truncated at `low` and `high`."""
         from scipy.special import ndtr, ndtri
 
         first, last = ndtr(low), ndtr(high)
         if not last - first > 1e-12:
-            raise Hint("there is next to nothing of the distribution between smallest and largest", "a wider range")
+            raise Hint("the distribution is zero between smallest and largest", "a wider range")
         return np.clip(ndtri(first + share * (last - first)), low, high)
 
 
 class NormalSizes(_Bounded):
-    """Diameters normally distributed by number, cut off on both sides.
+    """Normal distribution of diameters by number, truncated on both sides.
 
     Parameters
     ----------
     mean, deviation
-        Mean and standard deviation of the diameter before it is cut off [m].
+        Mean and standard deviation of the diameter before truncation [m].
     smallest, largest
-        Diameters between which all particles lie [m].
+        Smallest and largest diameter [m].
     """
 
     kind: Literal["normal"] = "normal"
@@ -79,16 +79,16 @@ class NormalSizes(_Bounded):
 
 
 class LogNormal(_Bounded):
-    """Diameters whose logarithms are normally distributed by number, cut off on both sides.
+    """Log-normal distribution of diameters by number, truncated on both sides.
 
     Parameters
     ----------
     median
-        Median of the diameter before it is cut off [m].
+        Median of the diameter before truncation [m].
     geometric_standard_deviation
         Geometric standard deviation s, greater than 1: two thirds of the diameters lie between median / s and median x s.
     smallest, largest
-        Diameters between which all particles lie [m].
+        Smallest and largest diameter [m].
     """
 
     kind: Literal["log_normal"] = "log_normal"
@@ -117,7 +117,7 @@ def _lengths(value: Any) -> Any:
 
 
 class Sieve(Distribution):
-    """Diameters by a sieve table, in which mass is spread evenly over the sizes between two sieves.
+    """Distribution of diameters from a sieve table, with mass evenly distributed over the sizes between two sieves.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ class Sieve(Distribution):
     passing: tuple[Number, ...] = Field(examples=[[0, 0.4, 1]])
 
     @model_validator(mode="after")
-    def _sound(self) -> Sieve:
+    def _validate(self) -> Sieve:
         if len(self.sizes) != len(self.passing) or len(self.sizes) < 2:
             raise Hint(f"{len(self.sizes)} sizes, but {len(self.passing)} shares", "as many of both, at least two")
         if self.sizes[0] <= 0 or np.any(np.diff(self.sizes) <= 0):
@@ -145,7 +145,7 @@ class Sieve(Distribution):
         """Return quantiles of the diameter [m], (n,)."""
         edges = np.array(self.sizes)
         squares = edges**-2
-        # mass evenly over the diameter: number goes with d^-3
+        # Mass is even over the diameter, so that number is proportional to d^-3.
         number = np.diff(self.passing) / np.diff(edges) * -np.diff(squares)
         below = np.concatenate([[0.0], np.cumsum(number)]) / number.sum()
         return np.asarray(np.interp(share, below, squares) ** -0.5)
@@ -160,17 +160,23 @@ class Particles(Part):
     Parameters
     ----------
     material
-        Name in the library, or a Material.
+        Name of a material in the library, or a Material.
     radius, diameter, distribution
-        One of them: one size for all [m], or a distribution of diameters.
+        One of them: the size of all particles [m], or a distribution of diameters.
     count, mass, fill_ratio
-        One of them: how many, their mass in all [kg], or their volume over that of the cavity. Mass and fill ratio are met
-        as closely as a whole number of particles can.
+        One of them: number of particles, total mass [kg], or volume over that of the cavity. Mass and fill ratio are rounded
+        to a whole number of particles.
     name
-        By which a table of pairs speaks of them; default the material's name.
+        Name of the species in `pairs`; default that of the material.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> rb.Particles(material="steel", diameter="4 mm", mass="100 g").number(volume=1e-3)
+    380
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("particles",)
+    field_names: ClassVar[tuple[str, ...]] = ("particles",)
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
         ("radius", "diameter"),
         ("radius", "distribution"),
@@ -184,7 +190,7 @@ class Particles(Part):
     radius: PositiveLength | None = None
     diameter: PositiveLength | None = Field(default=None, exclude=True)
     distribution: AnyDistribution | None = None
-    count: Annotated[Whole, Field(ge=0, le=MOST_PARTICLES)] | None = None
+    count: Annotated[Whole, Field(ge=0, le=MAX_PARTICLES)] | None = None
     mass: PositiveMass | None = None
     fill_ratio: Number | None = None
 
@@ -194,14 +200,14 @@ class Particles(Part):
         return radius_of_diameter(values)
 
     @model_validator(mode="after")
-    def _sound(self) -> Particles:
+    def _validate(self) -> Particles:
         if self.radius is not None and self.distribution is not None:
             raise Hint("one size is needed: radius, diameter or distribution", 'radius = "2 mm"')
         amounts = [name for name in ("count", "mass", "fill_ratio") if getattr(self, name) is not None]
         if len(amounts) > 1:
-            raise Hint(f"{amounts[0]} and {amounts[1]} say the same thing twice", "give one of them")
+            raise Hint(f"{amounts[0]} and {amounts[1]} exclude each other", "give one of them")
         if self.count == 0:
-            raise Hint("there is nothing in it", "at least one particle", ["count"])
+            raise Hint("must be at least one", "at least one particle", ["count"])
         if self.fill_ratio is not None and not 0 < self.fill_ratio < 1:
             raise Hint(
                 "a fill ratio lies between 0 and 1: loose beds reach about 0.58, packed ones 0.64",
@@ -220,27 +226,27 @@ class Particles(Part):
 
     @property
     def has_size(self) -> bool:
-        """Whether a size is given; else positions must tell the radii."""
+        """Whether a size is given; otherwise the packing needs radii."""
         return self.radius is not None or self.distribution is not None
 
     @property
     def has_amount(self) -> bool:
-        """Whether it is given how much there is; else positions tell it."""
+        """Whether an amount is given; otherwise the packing needs positions."""
         return self.count is not None or self.mass is not None or self.fill_ratio is not None
 
     def diameters(self, count: int) -> Vector:
-        """Return the diameters of so many particles, (n,) [m], rising: the middles of n equal shares of the distribution."""
+        """Return the diameters of n particles, (n,) [m], ascending: the medians of n equal shares of the distribution."""
         if self.distribution is None:
             return np.full(count, 2 * present(self.radius))
         return self.distribution.diameters((np.arange(count) + 0.5) / count)
 
     def number(self, volume: float) -> int:
-        """Return how many particles there are in a cavity of a volume [m^3].
+        """Return the number of particles in a cavity of this volume [m^3].
 
         Raises
         ------
         Hint
-            When mass or fill ratio amount to less than one, or to more than a hundred million.
+            If mass or fill ratio are less than one particle, or more than a hundred million.
         """
         if self.count is not None:
             return self.count
@@ -249,15 +255,15 @@ class Particles(Part):
             count = self._closest(filled)
             if count < 1:
                 mass = self._volume(1) * self.material.density
-                told = f"{mass:.4g} kg" if mass >= 1 else f"{1e3 * mass:.4g} g"
+                weight = f"{mass:.4g} kg" if mass >= 1 else f"{1e3 * mass:.4g} g"
                 raise Hint(
-                    f"this is less than one particle of {told} and {1e3 * float(self.diameters(1)[0]):.4g} mm in diameter",
+                    f"this is less than one particle of {weight} and {1e3 * float(self.diameters(1)[0]):.4g} mm in diameter",
                     "more of them, or smaller ones",
                 )
         return count
 
     def crowd(self, volume: float) -> Crowd:
-        """Return about how many there are in a cavity of a volume [m^3], before any number is made for each of them."""
+        """Return a summary of the particles in a cavity of this volume [m^3], without arrays; the count is approximate."""
         some = self.diameters(1 if self.distribution is None else _MANY)
         each = float(np.mean(math.pi / 6 * some**3))
         if self.count is not None:
@@ -268,20 +274,21 @@ class Particles(Part):
         return Crowd(count, each, 0.5 * float(some.max()))
 
     def _volume(self, count: int) -> float:
-        """The volume of so many [m^3]."""
+        """Return the volume of this number of particles [m^3]."""
         return float(np.sum(math.pi / 6 * self.diameters(count) ** 3))
 
     def _closest(self, filled: float) -> int:
-        """How many have the volume that is closest to one [m^3]."""
+        """Return the number of particles whose volume is closest to a volume [m^3]."""
         some = 1 if self.distribution is None else _MANY
         guess = filled * some / self._volume(some)
-        if guess > MOST_PARTICLES:
-            raise Hint(f"this is {guess:.3g} particles; {MOST_PARTICLES:.0e} at most", "less of them, or larger ones")
+        if guess > MAX_PARTICLES:
+            raise Hint(f"this is {guess:.3g} particles; {MAX_PARTICLES:.0e} at most", "less of them, or larger ones")
         if self.distribution is None:
             return round(guess)
         from scipy.optimize import brentq
 
-        volume = cache(self._volume)  # rises with the number: of n + 1 quantiles each but the first is above one of n
+        # The volume increases with the number: each of n + 1 quantiles but the first exceeds one of n.
+        volume = cache(self._volume)
         most = max(1, round(guess))
         while volume(most) < filled:
             most *= 2
@@ -290,7 +297,7 @@ class Particles(Part):
 
 
 def as_species(value: Any) -> Any:
-    """Let one stand for a list of one."""
+    """Return a tuple of species; a single one becomes a tuple of one."""
     if isinstance(value, Sequence) and not isinstance(value, str):
         return tuple(value)
     return (value,)

@@ -64,9 +64,9 @@ def place_of(case: Case, path: str) -> Place:
             place.append(step)
             node = node[step]
         elif isinstance(node, Part):
-            alias = type(node).spellings.get(step)
+            alias = type(node).aliases.get(step)
             if (alias or step) not in type(node).model_fields:
-                known = {*type(node).model_fields, *type(node).spellings} - {"kind"}
+                known = {*type(node).model_fields, *type(node).aliases} - {"kind"}
                 raise Hint(f"{path}: there is no {step!r} in {so_far or 'a case'}", _suggested(case, path, step, known))
             place.append(alias or step)
             node = get_field(node, alias or step)
@@ -91,7 +91,7 @@ def spelt(case: Case, place: Place) -> str:
         if isinstance(step, int) and _is_row_of_parts(row) and len(row) == 1:
             holder = part_at(case, place[: number - 1])
             words[number] = ""
-            others = [other for other, name in type(holder).spellings.items() if name == place[number - 1]]
+            others = [other for other, name in type(holder).aliases.items() if name == place[number - 1]]
             if others:
                 words[number - 1] = words[number - 1].replace(str(place[number - 1]), others[0])
     return "".join(words)
@@ -271,7 +271,7 @@ def _briefly(node: Any, kinds: Sequence[type[Part]]) -> Any:
         return node
     tree = {name: _briefly(item, kinds) for name, item in node.items()}
     for part in kinds:
-        for other, name in part.spellings.items():
+        for other, name in part.aliases.items():
             if isinstance(tree.get(name), list) and len(tree[name]) == 1:
                 tree[other] = tree.pop(name)[0]
     return tree

@@ -1,4 +1,4 @@
-"""Rectangular plates, simply supported, by the exact modes of Kirchhoff's theory."""
+"""Simply supported rectangular plates with the exact modes of Kirchhoff's theory."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ Place = Annotated[tuple[Length, Length], Field(examples=[["0.1 m", "0.1 m"]])]
 
 
 class Plate(DampedModes):
-    """A thin rectangular plate in bending, simply supported on all edges, of which the lowest modes are kept.
+    """Thin rectangular plate in bending, simply supported on all edges, represented by its lowest modes.
 
-    Its points move along one line, normal to the plate. "middle" is its centre.
+    Its points move along one line, normal to the plate. The point "middle", the centre, is predefined.
 
     Parameters
     ----------
     length, width
         Edges a, along x, and b, along y [m].
     thickness, material
-        Thickness h [m], and what the plate is made of.
+        Thickness h [m], and material of the plate.
     bending_stiffness, mass_per_area
-        D [N m] and rho h [kg/m^2], instead of thickness and material: those of a sandwich, for example.
+        D [N m] and rho h [kg/m^2], in place of thickness and material, for example those of a sandwich.
     mode_count
         Number of modes, in the order of their frequencies.
     points
@@ -46,10 +46,10 @@ class Plate(DampedModes):
     Notes
     -----
     The modes sin(m pi x / a) sin(n pi y / b), m, n = 1, 2, ..., have the angular frequencies
-    pi^2 (m^2 / a^2 + n^2 / b^2) sqrt(D / (rho h)), D = E h^3 / (12 (1 - nu^2)). Edges do not deflect, and turn freely.
+    pi^2 (m^2 / a^2 + n^2 / b^2) sqrt(D / (rho h)), D = E h^3 / (12 (1 - nu^2)). Edges do not deflect but rotate freely.
 
     Shear and rotary inertia lower the frequencies by about k^2 h^2 (1 / 12 + 1 / (5 (1 - nu))) / 2, with the wave number
-    k^2 = pi^2 (m^2 / a^2 + n^2 / b^2); a run warns where this is more than 5 % and the thickness is known.
+    k^2 = pi^2 (m^2 / a^2 + n^2 / b^2); a run has a warning if this exceeds 5 % and the thickness is known.
 
     References
     ----------
@@ -78,7 +78,7 @@ class Plate(DampedModes):
     points: dict[str, Place] = Field(default_factory=dict, examples=[{"cavity": ["0.1 m", "0.1 m"]}])
 
     @model_validator(mode="after")
-    def _sound(self) -> Self:
+    def _validate(self) -> Self:
         of_material = [self.material, self.thickness]
         of_numbers = [self.bending_stiffness, self.mass_per_area]
         if any(of_material) == any(of_numbers) or None in (of_material if any(of_material) else of_numbers):
@@ -114,7 +114,7 @@ class Plate(DampedModes):
     @property
     def half_waves(self) -> tuple[tuple[int, int], ...]:
         """Number of half waves of each mode along x and y, (m, n)."""
-        # The lowest modes are among those with m n <= mode_count: any other has as many below it.
+        # The lowest modes are among those with m n <= mode_count: any other has at least m n - 1 modes below it.
         count = self.mode_count
         pairs = [(m, n) for m in range(1, count + 1) for n in range(1, count // m + 1)]
         return tuple(sorted(pairs, key=lambda pair: (self._squared_wave_number(*pair), pair))[:count])
@@ -123,13 +123,13 @@ class Plate(DampedModes):
         return math.pi**2 * ((m / self.length) ** 2 + (n / self.width) ** 2)
 
     def modes(self) -> ModalModel:
-        """Compute the modes."""
+        """Compute the lowest mass-normalised modes."""
         stiffness, per_area = self.section
         pairs = np.array(self.half_waves)
         squared = stiffness / per_area * np.array([self._squared_wave_number(m, n) for m, n in self.half_waves]) ** 2
         mass = per_area * self.length * self.width
         places = {"middle": (self.length / 2, self.width / 2)} | self.points
-        means = np.where(pairs % 2 == 1, 2 / (math.pi * pairs), 0.0)  # of a half-wave sine over the edge
+        means = np.where(pairs % 2 == 1, 2 / (math.pi * pairs), 0.0)  # means of the half waves over the edges
         zero = np.zeros(len(pairs))
         return ModalModel(
             decay=self.decay_rates(squared),
@@ -147,7 +147,7 @@ class Plate(DampedModes):
         )
 
     def warnings(self) -> Iterator[str]:
-        """Return modes whose frequencies shear and rotary inertia would change."""
+        """Yield a warning if shear and rotary inertia would change the frequency of a mode by more than 5 %."""
         if self.material is None or self.thickness is None:
             return
         for (m, n), frequency in zip(self.half_waves, self.frequencies, strict=True):

@@ -1,4 +1,4 @@
-"""The dashpot of a power law that gives a restitution at a speed."""
+"""Dashpot coefficient of a power law for a restitution at a speed."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from rattlebox._util.narrow import present
 from .errors import Hint
 
 SMALLEST = 1e-3
-"""Smallest restitution for which a dashpot is searched."""
+"""Smallest restitution for which a dashpot coefficient is computed."""
 
 
 @cache
 def dimensionless_damping(restitution: float, exponent: float, damping_exponent: float, zero_overlap: bool) -> float:
-    """Return the dashpot coefficient that gives a restitution, in the units of the impact.
+    """Compute the dimensionless dashpot coefficient for a restitution.
 
     Parameters
     ----------
     restitution
         Restitution at the speed V, from 0.001 to 1.
     exponent, damping_exponent
-        Powers n and p of the overlap in N = k d^n + c d^p d'.
+        Exponents n and p of the overlap in N = k d^n + c d^p d'.
     zero_overlap
         Whether the contact ends at zero overlap; else it ends at zero force.
 
@@ -36,7 +36,7 @@ def dimensionless_damping(restitution: float, exponent: float, damping_exponent:
     Raises
     ------
     Hint
-        When no dashpot gives this restitution.
+        If no dashpot coefficient has this restitution.
 
     Notes
     -----
@@ -64,7 +64,7 @@ def dimensionless_damping(restitution: float, exponent: float, damping_exponent:
 
 
 def rebound(damping: float, exponent: float, damping_exponent: float, zero_overlap: bool) -> float:
-    """Return the restitution of an impact with this dimensionless damping (see dimensionless_damping)."""
+    """Return the restitution of an impact with a dimensionless dashpot coefficient (see `dimensionless_damping`)."""
     from scipy.integrate import solve_ivp
 
     def force(x: float, speed: float) -> float:
@@ -84,5 +84,5 @@ def rebound(damping: float, exponent: float, damping_exponent: float, zero_overl
         rtol=1e-12,
         atol=1e-14,
     )
-    found = present(motion.y_events)[0]
-    return max(0.0, -float(found[-1][1])) if len(found) else 0.0
+    states = present(motion.y_events)[0]
+    return max(0.0, -float(states[-1][1])) if len(states) else 0.0

@@ -102,7 +102,7 @@ class Random(Sampled):
     4.45
     """
 
-    unnamed: ClassVar[tuple[str, ...]] = ("psd", "duration", "rate")
+    positional: ClassVar[tuple[str, ...]] = ("psd", "duration", "rate")
     kind: Literal["random"] = "random"
     psd: Density
     duration: PositiveTime

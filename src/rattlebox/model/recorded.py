@@ -150,7 +150,7 @@ class Record(Sampled):
         neither states a unit, the run notes the unit that is assumed, and the peak.
     """
 
-    in_file: ClassVar[tuple[str, ...]] = ("times", "values")
+    file_fields: ClassVar[tuple[str, ...]] = ("times", "values")
     kind: Literal["record"] = "record"
     times: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
     values: Annotated[tuple[float, ...], BeforeValidator(_column)] = ()
@@ -209,7 +209,7 @@ class Record(Sampled):
         return {**values, **_in_si(found, values), "file": path}
 
     @model_validator(mode="after")
-    def _sound(self) -> Record:
+    def _validate(self) -> Record:
         if len(self.times) != len(self.values):
             raise Hint(f"{len(self.times)} times, but {len(self.values)} values", "as many of both")
         if len(self.times) < 2:
@@ -238,7 +238,7 @@ class Record(Sampled):
     def _file_stands_for_numbers(self, handler: Any) -> Any:
         data = handler(self)
         if self.file is not None:
-            for name in self.in_file:
+            for name in self.file_fields:
                 data.pop(name, None)
         if self._unit_is_assumed:
             data.pop("unit", None)

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from rattlebox._util.narrow import present
 
-from .also_takes import AlsoTakes
+from .also_accepts import AlsoAccepts
 from .base import Part
 from .elementwise import less, pick, power, sqrt
 from .errors import Hint
@@ -45,7 +45,7 @@ class Restitution(Part):
         Cap on e.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("restitution",)
+    field_names: ClassVar[tuple[str, ...]] = ("restitution",)
     kind: str
     maximum: Fraction = 1.0
 
@@ -63,7 +63,7 @@ class Constant(Restitution):
         Rebound speed over approach speed.
     """
 
-    unnamed: ClassVar[tuple[str, ...]] = ("e",)
+    positional: ClassVar[tuple[str, ...]] = ("e",)
     kind: Literal["constant"] = "constant"
     e: Fraction = Field(examples=[0.8])
 
@@ -93,7 +93,7 @@ class Tabulated(Restitution):
     values: tuple[Fraction, ...] = Field(examples=[[0.9, 0.8]])
 
     @model_validator(mode="after")
-    def _sound(self) -> Tabulated:
+    def _validate(self) -> Tabulated:
         if len(self.speeds) != len(self.values) or not self.speeds:
             raise Hint(f"{len(self.speeds)} speeds, but {len(self.values)} values", "as many of both, at least one")
         if any(b <= a for a, b in zip(self.speeds, self.speeds[1:], strict=False)):
@@ -229,5 +229,5 @@ AnyRestitution = Annotated[
     Annotated[RestitutionKind, Field(discriminator="kind")],
     SI("1"),
     BeforeValidator(as_restitution),
-    AlsoTakes({"type": "number", "minimum": 0, "maximum": 1}),
+    AlsoAccepts({"type": "number", "minimum": 0, "maximum": 1}),
 ]

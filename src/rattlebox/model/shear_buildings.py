@@ -54,7 +54,7 @@ class ShearBuilding(DampedModes):
     stiffnesses: list[PositiveStiffness] = Field(examples=[["60 MN/m", "60 MN/m"]])
 
     @model_validator(mode="after")
-    def _sound(self) -> Self:
+    def _validate(self) -> Self:
         if not self.masses:
             raise Hint("at least one storey is needed", 'masses = ["50 t"]', ["masses"])
         if len(self.masses) != len(self.stiffnesses):

@@ -61,7 +61,7 @@ class Signal(Part):
         numbers. Left out, the base moves along the direction of the dampers.
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("load", "loads", "base", "motion")
+    field_names: ClassVar[tuple[str, ...]] = ("load", "loads", "base", "motion")
     examples_in: ClassVar[dict[str, dict[str, str]]] = {
         "base": {"amplitude": '"9.81 m/s^2"'},
         "motion": {"amplitude": '"1 mm"'},

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_
 
 from pydantic import WithJsonSchema
 
-from .also_takes import AlsoTakes
+from .also_accepts import AlsoAccepts
 from .units import SI
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def _members(annotation: Any, metadata: tuple[Any, ...] = ()) -> list[str]:
     for each in metadata:
         if _takes_text(each):
             members = [re.sub(r"\bfloat\b(?! \| str)", "float | str", name) for name in members]
-        elif isinstance(each, AlsoTakes):
+        elif isinstance(each, AlsoAccepts):
             members += [_JSON_TYPES[each.schema["type"]]] if each.schema else []
             members = members if each.schema else [*_members(arguments[0]), *members]
     return members
@@ -85,10 +85,10 @@ def part_signature(part: type[Part]) -> Signature:
     part
         The class.
     """
-    singular = {field: name for name, field in part.spellings.items()}
+    singular = {field: name for name, field in part.aliases.items()}
     alternatives = {name for pair in part.alternatives for name in pair}
     named: list[Parameter] = []
-    unnamed: list[Parameter] = []
+    positional: list[Parameter] = []
     for name, field in part.model_fields.items():
         if name == "kind":
             continue
@@ -101,13 +101,13 @@ def part_signature(part: type[Part]) -> Signature:
             annotation, metadata, default = Annotated[annotation, *metadata] | None, (), None
         if name in singular:
             # Both names are shown: the plural takes several, and may be left out if the singular is given.
-            metadata = tuple(each for each in metadata if not isinstance(each, AlsoTakes))
+            metadata = tuple(each for each in metadata if not isinstance(each, AlsoAccepts))
             default = () if default is Parameter.empty else default
             one = _Plain(f"{type_text(get_args(annotation)[0])} | None")
             named.append(Parameter(singular[name], Parameter.KEYWORD_ONLY, default=None, annotation=one))
-        kind = Parameter.POSITIONAL_OR_KEYWORD if name in part.unnamed else Parameter.KEYWORD_ONLY
+        kind = Parameter.POSITIONAL_OR_KEYWORD if name in part.positional else Parameter.KEYWORD_ONLY
         shown = Parameter(
             field.alias or name, kind, default=default, annotation=_Plain(type_text(annotation, metadata))
         )
-        (unnamed if name in part.unnamed else named).append(shown)
-    return Signature([*sorted(unnamed, key=lambda each: part.unnamed.index(each.name)), *named])
+        (positional if name in part.positional else named).append(shown)
+    return Signature([*sorted(positional, key=lambda each: part.positional.index(each.name)), *named])

@@ -22,7 +22,7 @@ from pydantic import (
 
 from rattlebox._util.narrow import present
 
-from .also_takes import AlsoTakes
+from .also_accepts import AlsoAccepts
 from .any_signal import AnySignal
 from .base import Part
 from .elementwise import Vector, power, stacked
@@ -98,7 +98,7 @@ Ratio = Annotated[Number, Field(ge=0, le=LARGEST), _ratio_schema]
 class StructurePart(Part):
     """What all structures share."""
 
-    held_as: ClassVar[tuple[str, ...]] = ("structure",)
+    field_names: ClassVar[tuple[str, ...]] = ("structure",)
     kind: str
 
     def modes(self) -> ModalModel:
@@ -276,7 +276,7 @@ class Modal(StructurePart):
         Modal mass of each mode of the file [kg], where it states none; "1 kg" for shapes that are mass-normalised.
     """
 
-    in_file: ClassVar[tuple[str, ...]] = ("frequencies", "damping_ratios", "shapes", "participation")
+    file_fields: ClassVar[tuple[str, ...]] = ("frequencies", "damping_ratios", "shapes", "participation")
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
         ("damping_ratios", "damping_ratio"),
         ("damping_ratios", "damping_matrix"),
@@ -482,7 +482,7 @@ class Shaker(StructurePart):
     """
 
     kind: Literal["shaker"] = "shaker"
-    motion: Annotated[tuple[AnySignal, ...], signals_in("m", "m/s^2"), AlsoTakes()]
+    motion: Annotated[tuple[AnySignal, ...], signals_in("m", "m/s^2"), AlsoAccepts()]
 
     @field_validator("motion")
     @classmethod

@@ -56,7 +56,7 @@ class TunedMass(Part):
     (9.5865, 0.1336)
     """
 
-    held_as: ClassVar[tuple[str, ...]] = ("tuned_mass", "tuned_masses")
+    field_names: ClassVar[tuple[str, ...]] = ("tuned_mass", "tuned_masses")
     kind: Literal["tuned_mass"] = "tuned_mass"
     mass: PositiveMass
     frequency: PositiveFrequency

@@ -44,13 +44,13 @@ def _filed(case: Case) -> Iterator[tuple[str, Part]]:
     for path in all_paths(case):
         found = get(case, path)
         for number, part in enumerate(found if isinstance(found, tuple) else (found,)):
-            if isinstance(part, Part) and part.in_file and getattr(part, "file", None) is not None:
+            if isinstance(part, Part) and part.file_fields and getattr(part, "file", None) is not None:
                 yield (f"{path}[{number}].file" if isinstance(found, tuple) else f"{path}.file"), part
 
 
 def _of_numbers(part: Part) -> str:
     digest = sha256()
-    for name in part.in_file:
+    for name in part.file_fields:
         value = getattr(part, name)
         if isinstance(value, dict):
             value = [row for point in sorted(value) for row in np.ravel(value[point])]

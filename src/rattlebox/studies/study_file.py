@@ -25,7 +25,7 @@ from .kinds import KINDS
 from .study import Axes, SpacedTable, Study, Table, make_study, table_shape
 
 _EXAMPLE = '[axes]\n       "damper.gap" = { from = "0.1 mm", to = "2 mm", count = 20 }'
-_ROOTS = {*Case.model_fields, *Case.spellings}
+_ROOTS = {*Case.model_fields, *Case.aliases}
 
 
 def read_study(path: str | os.PathLike[str]) -> Study:

@@ -455,7 +455,7 @@ def test_runs_without_particles_take_no_files(tmp_path: Path) -> None:
     plain = rb.Case(structure=rb.SDOF(mass=1, stiffness=1e4, velocity=1), duration="1 ms")
     with pytest.raises(rb.CaseError, match="are for particle dampers only"):
         rb.simulate(plain, checkpoint=tmp_path / "run.checkpoint")
-    with pytest.raises(rb.CaseError, match=r"snapshots are of particles in space"):
+    with pytest.raises(rb.CaseError, match="snapshots"):
         rb.Case(structure=rb.SDOF(mass=1, stiffness=1e4), duration="1 ms", output=rb.Output(snapshots=5))
     with pytest.raises(rb.CaseError, match=r'no file is given\n  try: snapshots="run\.vtkhdf"'):
         rb.simulate(case())

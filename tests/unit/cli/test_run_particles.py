@@ -70,7 +70,7 @@ def test_bad_input_is_told_without_a_traceback(tmp_path: Path, run: Run) -> None
     for old, new, field, said in (
         ("fill_ratio = 0.3", "count = 4000", "damper.particles", "do not fit"),
         (particles, "", "damper.particles", "this field is needed"),
-        (particles, "particles = []\n", "damper.particles = []", "an empty damper damps nothing"),
+        (particles, "particles = []\n", "damper.particles = []", "needs particles"),
         ("softening = 100", 'softening = 100\n[method]\nkind = "dem"\ndt = "1 ms"', "method.dt", "the bound is"),
         ("softening = 100", 'softening = 100\n[method]\nkind = "dem"\ndt = 1e-25', "method.dt", "is too short"),
         (

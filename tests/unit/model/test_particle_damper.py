@@ -305,7 +305,7 @@ def test_arrays_of_positions_of_different_lengths_are_reported(tmp_path: Path) -
     place, said, hint = str(caught.value).splitlines()
     assert place.startswith("Positions: file = ")
     assert said == f"  {tmp_path / 'p.npz'} has arrays of different lengths: x 2, y 2, z 1"
-    assert hint == "  try: a number for each particle in each of them"
+    assert hint.startswith("  try: a number for each particle")
 
 
 def test_contacts_without_rebound_are_told() -> None:
@@ -428,9 +428,9 @@ REFUSED = {
     r"between = 'steel'\n  two names are needed\n  try: \[\"steel\", \"wall\"\]": lambda: rb.PairLaws(
         between="steel", friction=0.1
     ),
-    r"friction\n  laws at walls have a field of their own, wall_friction": lambda: damper(friction={"wall": 0.1}),
-    "an empty damper": lambda: damper(particles=[]),
-    "there is nothing in it": lambda: balls(count=0),
+    r"friction\n  .*wall_friction": lambda: damper(friction={"wall": 0.1}),
+    "particles": lambda: damper(particles=[]),
+    "count = 0": lambda: balls(count=0),
     "their volume is 1.05 times that of the cavity\n  try: at most 9": lambda: damper(
         particles=balls(2000), packing=rb.Settled(), gravity=(0, 0, -9.81)
     ),
@@ -482,20 +482,20 @@ REFUSED = {
     r"Damper: particles\n.* do not fit.*\n  try: packing = { kind = \"settled\" }, which suits many sizes": lambda: (
         damper(particles=[balls(700), rb.Particles(material="glass", diameter="6 mm", count=10)])
     ),
-    "Mindlin's stiffness belongs to Hertz contacts": lambda: damper(contact=rb.Linear(stiffness=1e6, restitution=0.9)),
-    "thornton beside tsuji: one kind of law is needed": lambda: two_kinds(
+    "Mindlin's stiffness .* is linear": lambda: damper(contact=rb.Linear(stiffness=1e6, restitution=0.9)),
+    "thornton and tsuji .* one kind of law is needed": lambda: two_kinds(
         "wall", contact=rb.Thornton(yield_pressure="1 GPa")
     ),
-    "zero_overlap beside zero_force: one ending is needed": lambda: two_kinds(
+    "zero_overlap and zero_force .* one ending is needed": lambda: two_kinds(
         "steel", contact=rb.Tsuji(restitution=0.9, ending="zero_overlap")
     ),
-    "spring beside mindlin: one kind of friction is needed": lambda: two_kinds(
+    "spring and mindlin .* one kind of friction is needed": lambda: two_kinds(
         "steel", friction=rb.LinearSpring(0.2, stiffness=1e5)
     ),
-    "spring beside mindlin: one kind of friction .* at walls": lambda: two_kinds(
+    "spring and mindlin .* one kind of friction .* at walls": lambda: two_kinds(
         "wall", friction=rb.LinearSpring(0.2, stiffness=1e5)
     ),
-    "nothing settles without gravity": lambda: damper(packing=rb.Settled(), gravity=(0, 0, 0)),
+    "without gravity": lambda: damper(packing=rb.Settled(), gravity=(0, 0, 0)),
     "there are no particles 'wood' here": lambda: damper(pairs=[rb.PairLaws(between=("wood", "wall"))]),
     "this is less than one particle": lambda: damper(particles=balls(count=None, mass="1 mg")),
     r"particles.mass = .*\n  this is 7.64e\+11 particles; 1e\+08 at most": lambda: damper(
@@ -515,7 +515,7 @@ REFUSED = {
         damper(), rb.ImpactDamper(ball=rb.Sphere(radius=0.01, material="steel"), gap=1e-3, contact=rb.Thornton())
     ),
     "event_driven computes impact dampers": lambda: case(method=rb.EventDriven()),
-    "dem computes particles in space, and there is no": lambda: rb.Case(
+    "dem computes particle dampers, and the case has none": lambda: rb.Case(
         structure=rb.Fixed(), duration=1, method=rb.Dem()
     ),
     "in another damper of this case": lambda: case(damper(), damper(name="b", gravity=(0, 0, 0))),
@@ -525,7 +525,7 @@ REFUSED = {
         damper(name="b", direction="y"),
         structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=10)),
     ),
-    "the point 'tip' moves in space": lambda: case(
+    "the point 'tip' moves in 3-D": lambda: case(
         structure=rb.Modal(frequencies=[10], damping_ratios=[0], shapes={"tip": [[0, 0, 1]]}),
         load=rb.HalfSine(amplitude="1 N", duration="1 ms"),
     ),
@@ -608,7 +608,7 @@ def test_points_of_matrices_move_in_space(tmp_path: Path) -> None:
     np.savez(tmp_path / "beam.npz", **BEAM, point_tip=TIP)
     read = rb.Matrices.from_file(tmp_path / "beam.npz")
     assert read.points == {"tip": TIP}
-    with pytest.raises(rb.CaseError, match="how do the degrees of freedom move with the base"):
+    with pytest.raises(rb.CaseError, match=r"structure\.influence"):
         case(structure=read, base=[sweeping])
     with pytest.raises(rb.CaseError, match="influence has three rows"):
         rb.Matrices(**BEAM, points={"tip": TIP}, influence=[1, 1, 1, 1])

@@ -394,7 +394,7 @@ def test_a_ball_that_was_weighed_and_timed() -> None:
 
 def test_parts_do_not_change() -> None:
     """A part of a case cannot be assigned to, nor copied with a field that there is not; the message tells another way."""
-    with pytest.raises(rb.CaseError, match=r"^radius: a Sphere stays as it is\n  try: .*case\.replaced"):
+    with pytest.raises(rb.CaseError, match=r"^radius: a Sphere .*\n  try: .*case\.replaced"):
         BALL.radius = 1.0  # type: ignore[misc]
     with pytest.raises(rb.CaseError, match=r"Case has no field 'damper'\n  try: did you mean 'dampers'"):
         rb.Case(structure=rb.Fixed(), duration=1).model_copy(update={"damper": None})

@@ -1,4 +1,4 @@
-"""What fields of a case take besides their type."""
+"""Additional JSON Schemas of fields."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pydantic_core import CoreSchema
 
 
 @dataclass(frozen=True)
-class AlsoTakes:
-    """Adds to the JSON Schema of a field what a validator takes besides; None stands for one instead of a list."""
+class AlsoAccepts:
+    """Annotation with another JSON Schema that a field accepts; None is one item in place of a list."""
 
     schema: dict[str, Any] | None = None
 
