@@ -7,6 +7,7 @@ from .damping_curve import damping_over_amplitude, equivalent_damping
 from .decay import damping_ratio, decay_envelope
 from .drift import drift
 from .energy import complex_power, energy_shares, loss_factor, specific_damping_capacity
+from .measured import read_frequency_response
 from .measures import peak_reduction, rms_reduction, settling_time
 from .power_spectra import (
     band_levels,
@@ -40,6 +41,7 @@ __all__ = [
     "phase_portrait",
     "poincare_section",
     "power_spectral_density",
+    "read_frequency_response",
     "rms_reduction",
     "settling_time",
     "shaken_cavity",

@@ -18,6 +18,9 @@ Column = int | str
 """Number of a column, counted from 1, or its name."""
 
 
+_NEEDED = {1: "one is", 2: "two are", 3: "three are"}
+
+
 class Columns(NamedTuple):
     """A column of times and one of values, (n,) float, and what is written above each: names, units."""
 
@@ -153,7 +156,7 @@ def _numbers(
         if len(names) != needed:
             advice = 'dt = "0.01 s", the time between samples' if (needed, len(names)) == (2, 1) else ""
             raise DataError(
-                f"{file} has {several(len(names), what)} ({available}), {'two are' if needed == 2 else 'one is'} needed",
+                f"{file} has {several(len(names), what)} ({available}), {_NEEDED[needed]} needed",
                 f"columns = {list(range(1, needed + 1))}" if len(names) > needed else advice,
             )
         columns = range(1, needed + 1)
@@ -201,6 +204,36 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
     if twice is not None:
         raise DataError(f"{file} has two columns {twice!r}")
     return dict(zip(names, _rows(file, lines, list(range(len(names)))).T, strict=True))
+
+
+def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tuple[Array, list[list[str]]]:
+    """Read some columns of a text file.
+
+    Parameters
+    ----------
+    path
+        File as for `read_columns`.
+    columns
+        Columns; may be left out if there are as many as are needed.
+    count
+        Number of columns that are needed.
+
+    Returns
+    -------
+    (n, count) float
+        Numbers.
+    list of list of str
+        What is written above each column.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read, naming the line that is wrong, or the columns that there are.
+    """
+    file = existing(path)
+    lines, names, heads = _data(file, asked=[str(column) for column in columns or ()])
+    places = _numbers(file, columns, names, needed=count)
+    return _rows(file, lines, places), [[cells[place] for cells in heads] for place in places]
 
 
 def _from_text(file: Path, columns: Sequence[Column] | None) -> Columns:

@@ -37,8 +37,11 @@ class Function:
         Type of the function: 1 time response, 4 frequency response, 9 power spectral density.
     abscissa, values : (n,) float or complex
         Times [s] or frequencies [Hz], and values, in `unit`.
-    unit
-        Unit of the values as the file states it; "" if it states none.
+    unit, source_unit
+        Unit of the values and of what they are divided by, as the file states it; "" if it states none.
+    quantities
+        Codes of the quantities of response and source: 8 displacement, 11 velocity, 12 acceleration, 9 and 13 force,
+        0 unknown.
     """
 
     name: str
@@ -46,6 +49,8 @@ class Function:
     abscissa: FloatArray
     values: Any
     unit: str
+    source_unit: str = ""
+    quantities: tuple[int, int] = (0, 0)
 
 
 def _sets(path: Path, kinds: tuple[int, ...]) -> list[dict[str, Any]]:
@@ -203,14 +208,21 @@ def read_functions(path: Path) -> list[Function]:
                 f"{path}: function {number} has values that no measurement has, up to {size.max(initial=0.0):.3g}",
                 "the other order of bytes: the header may state the wrong one",
             )
-        unit = str(each.get("ordinate_axis_units_lab", "")).strip()
         functions.append(
             Function(
                 name=str(each.get("rsp_ent_name") or each.get("id1", "")).strip(),
                 kind=int(each["func_type"]),
                 abscissa=np.asarray(each["x"], dtype=float),
                 values=values,
-                unit="" if unit.upper() == "NONE" else unit,
+                unit=_label(each, "ordinate"),
+                source_unit=_label(each, "orddenom"),
+                quantities=(int(each["ordinate_spec_data_type"]), int(each["orddenom_spec_data_type"])),
             )
         )
     return functions
+
+
+def _label(each: dict[str, Any], axis: str) -> str:
+    """Return the unit of an axis; pyuff puts a replacement character for the superscript 2 of other encodings."""
+    unit = str(each.get(f"{axis}_axis_units_lab", "")).strip().replace("\ufffd", "²")
+    return "" if unit.upper() == "NONE" else unit

@@ -1,0 +1,210 @@
+"""Measured frequency response functions, read from files."""
+
+from __future__ import annotations
+
+import os
+import re
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox._util.exceptions import DataError
+from rattlebox.exchange.read.universal import Function, read_functions
+from rattlebox.model.errors import Hint
+from rattlebox.model.files import existing
+from rattlebox.model.records import Column, as_columns, read_numbers
+from rattlebox.model.units import factor_of, unit_above
+
+from .signals import FloatArray, labelled
+
+if TYPE_CHECKING:
+    import xarray
+
+_FREQUENCY_RESPONSE = 4  # type of a function in the sets 58
+_SI = ("m", "m/s", "m/s^2", "N")
+_QUANTITIES = {8: "m", 9: "N", 11: "m/s", 12: "m/s^2", 13: "N"}
+_INVERSE = re.compile(r"^\(?\s*1\s*/\s*([^()*]+?)\s*\)?\s*\*\s*\(?([^()]+)\)?$")  # (1/N)*(m/s^2)
+_QUOTIENT = re.compile(r"^\(?([^()]+?)\)?\s*/\s*\(?([^/()]+)\)?$")  # m/s^2/N, (m/s^2)/N
+_PARTS = {
+    "imaginary": re.compile(r"imag|\bim\b", re.I),
+    "phase": re.compile(r"phase|angle|arg", re.I),
+}
+_BRACKETS = re.compile(r"[(\[]([^)\]]*)[)\]]")
+
+
+def read_frequency_response(
+    path: str | os.PathLike[str],
+    *,
+    function: str | int | None = None,
+    columns: Sequence[Column] | None = None,
+    unit: str | None = None,
+) -> xarray.Dataset:
+    r"""Read a measured frequency response function, in the form that `transfer_function` returns.
+
+    Parameters
+    ----------
+    path
+        Universal file (.uff, .unv, .uf) with functions of type 4 in sets 58 or 58b; or a text file (CSV and the like) with
+        three columns: frequency, real and imaginary part, or frequency, magnitude and phase. The headings say which: "imag"
+        or "phase" above the third column, "dB" for decibels, "rad" or "deg" for the phase, Hz or kHz.
+    function
+        Name or number (from 1) of the function of a universal file; needed if there are several.
+    columns
+        Numbers (from 1) or names of the three columns of a text file; needed if there are more.
+    unit
+        Unit of the values, response over source such as "m/s^2/N", "g_0/N" or "mm/N", in place of the one in the file.
+
+    Returns
+    -------
+    xarray.Dataset
+        Complex `transfer` over `frequency` [Hz], in the SI unit. `attrs["warnings"]` lists what is assumed.
+
+    Warns
+    -----
+    UserWarning
+        If the file does not state a unit of values or phase: the unit that is assumed, and the peak in it.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read, is damaged, holds no such function, states a unit that is unknown, or its frequencies do
+        not rise.
+
+    Notes
+    -----
+    Compare it with a run by `transfer_function` of force and response, at the same amplitude: the response function of a
+    structure with a particle damper depends on amplitude. Phases follow exp(+i omega t): a response behind the force has a
+    negative one.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "frf.csv"
+    >>> _ = path.write_text("frequency (Hz), magnitude (mm/N), phase (deg)\\n10, 0.2, -5\\n20, 1.5, -90\\n30, 0.3, -175\\n")
+    >>> measured = read_frequency_response(path)
+    >>> measured.transfer.attrs["units"], float(abs(measured.transfer).max())
+    ('m/N', 0.0015)
+    """
+    import xarray
+
+    file = existing(path)
+    if file.suffix.lower() in (".uff", ".unv", ".uf"):
+        frequency, values, stated, guessed = _from_universal(file, function)
+        notes: list[str] = []
+    else:
+        frequency, values, stated, notes = _from_text(file, columns)
+        guessed = None
+    if frequency.size < 2 or np.any(np.diff(frequency) <= 0) or frequency[0] < 0:
+        raise DataError(f"{file}: frequencies do not rise from each to the next", "two points or more, in their order")
+    where = "unit" if unit is not None else str(file)
+    factor, si = _ratio_in_si(unit or stated, where) if unit or stated else (1.0, guessed or "")
+    values = factor * values
+    if not (unit or stated):
+        peak = int(np.argmax(np.abs(values)))
+        largest = f"{abs(values[peak]):.4g} {si}".rstrip()
+        notes.insert(
+            0,
+            f"{file} states no unit; {si or 'SI'} is assumed: the largest magnitude is {largest} "
+            f'at {frequency[peak]:.4g} Hz; if not, try: unit = "g_0/N"',
+        )
+    for note in notes:
+        warnings.warn(note, stacklevel=2)
+    axis = ("frequency", frequency, {"units": "Hz", "long_name": "frequency"})
+    return xarray.Dataset(
+        {"transfer": labelled("transfer", values, si, "measured transfer function", frequency=axis)},
+        attrs={"file": file.name, "warnings": notes},
+    )
+
+
+def _from_universal(file: Path, wanted: str | int | None) -> tuple[FloatArray, Any, str, str | None]:
+    """Return frequencies, values, the unit that is stated, and the SI unit of the quantities that are."""
+    functions = [each for each in read_functions(file) if each.kind == _FREQUENCY_RESPONSE]
+    if not functions:
+        raise DataError(f"{file} holds no frequency response function", "a function of type 4 in a set 58")
+    names = [each.name for each in functions]
+    if wanted is None and len(functions) > 1:
+        raise DataError(
+            f"{file} holds {len(functions)} frequency response functions ({', '.join(names)})", "function = 1"
+        )
+    if isinstance(wanted, str) and names.count(wanted) > 1:
+        raise DataError(f"{file} holds {names.count(wanted)} functions {wanted!r}", "its number, counted from 1")
+    place = names.index(wanted) if wanted in names else (wanted or 1) - 1 if not isinstance(wanted, str) else -1
+    if not 0 <= place < len(functions):
+        raise DataError(f"{file} holds no function {wanted!r}, but {', '.join(names)}", "function = 1")
+    found = functions[place]
+    return found.abscissa, np.asarray(found.values, complex), _stated(found), _guessed(found)
+
+
+def _stated(found: Function) -> str:
+    if found.unit and found.source_unit:
+        return f"({found.unit})/({found.source_unit})"
+    return found.unit
+
+
+def _guessed(found: Function) -> str | None:
+    response, source = (_QUANTITIES.get(code) for code in found.quantities)
+    return f"{response}/{source}" if response and source else None
+
+
+def _from_text(file: Path, columns: Sequence[Column] | None) -> tuple[FloatArray, Any, str, list[str]]:
+    """Return frequencies, values, the unit that is stated, and what is assumed."""
+    try:
+        chosen = None if columns is None else tuple(columns)
+        if chosen is not None and len(chosen) != 3:
+            as_columns(chosen, 3)
+        table, heads = read_numbers(str(file), chosen, 3)
+        slower, _ = unit_above(heads[0], ("Hz",)) or (1.0, "Hz")
+    except Hint as hint:
+        raise DataError(f"{file}: {hint.complaint}", hint.suggestion) from None
+    above = [" ".join(head) for head in heads]
+    kind = next((kind for kind, pattern in _PARTS.items() if pattern.search(above[2])), None)
+    if kind is None:
+        raise DataError(
+            f"{file}: the heading of the third column, {above[2]!r}, is neither an imaginary part nor a phase",
+            "the line frequency (Hz), real (m/s^2/N), imag (m/s^2/N) above the numbers",
+        )
+    unit = _bracketed(above[1])
+    if kind == "imaginary":
+        other = _bracketed(above[2])
+        if unit and other and unit != other:
+            raise DataError(f"{file}: the real part is in {unit}, the imaginary part in {other}", "one unit for both")
+        return slower * table[:, 0], table[:, 1] + 1j * table[:, 2], unit or other, []
+    magnitude = table[:, 1]
+    if "db" in above[1].lower():
+        magnitude, unit = 10 ** (magnitude / 20), re.sub(r"(?i)\s*(re\.?\s*1?|db)\s*", "", unit)
+    elif (magnitude < 0).any():
+        raise DataError(f"{file}: a magnitude is negative", "dB in the heading, if these are decibels")
+    phase, angle = table[:, 2], _bracketed(above[2]).lower()
+    if angle.startswith("rad"):
+        return slower * table[:, 0], magnitude * np.exp(1j * phase), unit, []
+    notes: list[str] = []
+    if not (angle.startswith("deg") or angle == "°"):
+        notes.append(
+            f"{file} states no unit of the phase; degrees are assumed: the largest is {np.abs(phase).max():.4g} deg"
+        )
+    return slower * table[:, 0], magnitude * np.exp(1j * np.radians(phase)), unit, notes
+
+
+def _bracketed(head: str) -> str:
+    """Return what a heading holds in its last brackets, which may hold brackets themselves."""
+    start = min((k for k in (head.find("("), head.find("[")) if k >= 0), default=-1)
+    return head[start + 1 : max(head.rfind(")"), head.rfind("]"))].strip() if start >= 0 else ""
+
+
+def _ratio_in_si(unit: str, where: str) -> tuple[float, str]:
+    """Return the factor to SI and the SI unit of a response over a source."""
+    inverse, quotient = _INVERSE.match(unit.strip()), _QUOTIENT.match(unit.strip())
+    parts = (inverse[2], inverse[1]) if inverse else (quotient[1], quotient[2]) if quotient else None
+    if parts is not None:
+        known = [factor_of(part.strip(), _SI) for part in parts]
+        if known[0] and known[1]:
+            response, source = known[0][1], known[1][1]
+            return known[0][0] / known[1][0], "1" if response == source else f"{response}/{source}"
+    if unit.strip() in ("1", "-", "g/g", "dimensionless"):
+        return 1.0, "1"
+    raise DataError(
+        f"{where}: {unit!r} is not a unit of a response over a source", 'unit = "m/s^2/N", "g_0/N", "mm/N" or "1"'
+    )
