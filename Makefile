@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*.hpp' -o -name '*.cpp')
 
-.PHONY: setup demo test verify lint stub docs bench format clean
+.PHONY: setup demo test verify lint stub docs bench bench-guard format clean
 
 setup: $(VENV)/.installed
 
@@ -29,6 +29,10 @@ verify: setup
 
 bench: setup
 	$(BIN)/python benchmarks/bench.py
+
+# Speed against the last tag, or against SINCE=COMMIT.
+bench-guard: setup
+	$(BIN)/python benchmarks/guard.py $(if $(SINCE),--since $(SINCE))
 
 lint: setup
 	$(BIN)/ruff check .

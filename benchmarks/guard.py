@@ -1,9 +1,12 @@
-"""Compares the speed of this source tree with that of another one, in pairs: `python benchmarks/guard.py OTHER`.
+"""Compares the speed of this source tree with that of an earlier commit, in pairs: `make bench-guard [SINCE=COMMIT]`.
 
-OTHER is a source tree with compiled cores, such as a worktree of the commit before. Each
-measurement runs in a process of its own, the two trees in turns. The median ratio of the pairs is printed: the CPU time of
-the other tree over that of this one, so that 1.1 means that this one is 10 % faster. The range that holds half of the
-pairs shows how steady the machine is. All jobs run on one thread.
+SINCE is a commit or a tag; without it, it is the last tag, and as long as there is none, the commit that began the current
+version. Both trees are compiled with the same options for this processor into build/guard, and each measurement runs in
+a process of its own, the two packages in turns. The median ratio of the pairs is printed: the CPU time of the earlier
+package over that of this one, so that 1.1 means that this one is 10 % faster. The range that holds half of the pairs shows
+how steady the machine is. All jobs run on one thread.
+
+The exit code is 1 if this tree is slower by more than 5 % in any job: the upper end of the range is below 0.95.
 
 impact      ensemble of 2000 starts of the reference case, 5 s each, in a sweep
 dem N       N spheres in a box that is shaken along z with 10 g, fill 0.36, from a lattice
@@ -14,6 +17,7 @@ from __future__ import annotations
 import argparse
 import inspect
 import os
+import re
 import statistics
 import subprocess
 import sys
@@ -24,6 +28,9 @@ from pathlib import Path
 from typing import Any
 
 HERE = Path(__file__).resolve().parents[1]
+BUILDS = HERE / "build" / "guard"
+SLOWER = 0.95
+"""Ratio below which a job is slower."""
 
 IMPACT = """
 duration = "5 s"
@@ -118,57 +125,102 @@ def measure(job: str) -> None:
     print(seconds, rattlebox.__file__)
 
 
-def seconds_of(job: str, tree: Path) -> float:
-    """Return the CPU time that a job takes [s], in a process with the package of a source tree.
+def seconds_of(job: str, package: Path) -> float:
+    """Return the CPU time that a job takes [s], in a process with the package in a folder.
 
     Raises
     ------
     SystemExit
-        When the job fails, or another package than the tree's is imported.
+        When the job fails, or another package than that of the folder is imported.
     """
-    environment = {**os.environ, "PYTHONPATH": str(tree / "src")}
-    command = [sys.executable, str(Path(__file__).resolve()), "--measure", job]
+    # Without `site`, no editable installation comes before the folder.
+    libraries = [path for path in sys.path if path.endswith("site-packages")]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(package), *libraries])}
+    command = [sys.executable, "-S", str(Path(__file__).resolve()), "--measure", job]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise SystemExit(f"{job} failed with the package of {tree}:\n{done.stderr[-2000:]}")
+        raise SystemExit(f"{job} failed with the package of {package}:\n{done.stderr[-2000:]}")
     seconds, file = done.stdout.split(maxsplit=1)
-    if (tree / "src") not in Path(file.strip()).parents:
-        raise SystemExit(
-            f"{file.strip()} was imported instead of the package of {tree}: an editable installation comes first\n"
-            "  try: a Python environment with the dependencies alone"
-        )
+    if package not in Path(file.strip()).parents:
+        raise SystemExit(f"{file.strip()} was imported instead of the package in {package}")
     return float(seconds)
 
 
-def compare(job: str, other: Path, pairs: int) -> str:
-    """Return in words how a job of this tree compares with the other tree's.
+def git(*arguments: str) -> str:
+    """Return what a git command prints; nothing where it fails."""
+    return subprocess.run(["git", *arguments], cwd=HERE, capture_output=True, text=True, check=False).stdout.strip()
+
+
+def reference() -> tuple[str, str]:
+    """Return the commit to compare with by default, and why."""
+    if tag := git("describe", "--tags", "--abbrev=0"):
+        return tag, "the last tag"
+    version = re.search(r'^version = ".*"$', (HERE / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)
+    begun = git("log", "-1", "--format=%h", "-S", version[0] if version else "", "--", "pyproject.toml")
+    return begun, "the commit that began this version, since there is no tag"
+
+
+def installed(tree: Path, folder: Path) -> Path:
+    """Compile a source tree for this processor; return the folder with its package."""
+    options = ["--no-deps", "--no-build-isolation", "--quiet", "--disable-pip-version-check", "--upgrade"]
+    from rattlebox.core.choose import choice  # not in the processes that measure: the other package may lack it
+
+    level = choice()[0]
+    settings = [f"-Cbuild-dir={folder / 'cmake'}", f"-Ccmake.define.RATTLEBOX_LEVELS={level}"]
+    command = [sys.executable, "-m", "pip", "install", *options, *settings, "--target", folder / "package", tree]
+    subprocess.run(command, check=True)
+    return folder / "package"
+
+
+def installed_commit(commit: str) -> Path:
+    """Compile a commit for this processor, once; return the folder with its package.
+
+    Raises
+    ------
+    SystemExit
+        When there is no such commit.
+    """
+    number = git("rev-parse", "--verify", f"{commit}^{{commit}}")
+    if not number:
+        raise SystemExit(f"{commit!r} is no commit or tag of this repository\n  try: git log --oneline")
+    folder = BUILDS / number
+    if not (folder / "package").exists():
+        tree = folder / "tree"
+        tree.mkdir(parents=True, exist_ok=True)
+        archive = subprocess.run(["git", "archive", number], cwd=HERE, capture_output=True, check=True)
+        subprocess.run(["tar", "-x"], cwd=tree, input=archive.stdout, check=True)
+        installed(tree, folder)
+    return folder / "package"
+
+
+def compare(job: str, ours: Path, theirs: Path, pairs: int) -> tuple[str, bool]:
+    """Return in words how a job of one package compares with that of another, and whether it is slower by 5 %.
 
     Parameters
     ----------
     job
         Name.
-    other
-        Source tree.
+    ours, theirs
+        Folders with the packages.
     pairs
-        Number of pairs; the first tree changes from pair to pair.
+        Number of pairs; the first package changes from pair to pair.
     """
-    ratios, ours = [], []
+    ratios, seconds = [], []
     for turn in range(pairs):
         times = {}
-        for tree in (HERE, other) if turn % 2 else (other, HERE):
-            times[tree] = seconds_of(job, tree)
-        ratios.append(times[other] / times[HERE])
-        ours.append(times[HERE])
+        for package in (ours, theirs) if turn % 2 else (theirs, ours):
+            times[package] = seconds_of(job, package)
+        ratios.append(times[theirs] / times[ours])
+        seconds.append(times[ours])
     low, middle, high = statistics.quantiles(ratios, n=4) if pairs > 1 else ratios * 3
-    return (
-        f"{job:12} {middle:.3f} (half of {pairs} pairs: {low:.3f} to {high:.3f}), {statistics.median(ours):.2f} s a run"
-    )
+    spread = f"half of {pairs} pairs: {low:.3f} to {high:.3f}"
+    return f"{job:12} {middle:.3f} ({spread}), {statistics.median(seconds):.2f} s a run", high < SLOWER
 
 
 def main() -> None:
-    """Print the median ratio of each job."""
+    """Print the median ratio of each job; exit with 1 if one is slower."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("other", type=Path, nargs="?", metavar="OTHER")
+    parser.add_argument("--since", metavar="COMMIT", help="commit or tag to compare with")
     parser.add_argument("--pairs", type=int, default=10)
     parser.add_argument("--job", action="append", choices=JOBS, help="only these jobs")
     parser.add_argument("--measure", choices=JOBS, help=argparse.SUPPRESS)
@@ -176,14 +228,16 @@ def main() -> None:
     if options.measure:
         measure(options.measure)
         return
-    if options.other is None:
-        parser.error("a source tree to compare with is needed")
-    other = options.other.resolve()
-    if other == HERE or not (other / "src/rattlebox").is_dir():
-        parser.error(f"{other} is not another source tree with the package in src/rattlebox")
-    print(f"time of {other} over that of {HERE}")
+    commit, why = (options.since, "as asked") if options.since else reference()
+    theirs, ours = installed_commit(commit), installed(HERE, BUILDS / "this")
+    print(f"time of {commit} ({why}) over that of this tree")
+    slower = []
     for job in options.job or JOBS:
-        print(compare(job, other, options.pairs), flush=True)
+        words, is_slower = compare(job, ours, theirs, options.pairs)
+        print(words, flush=True)
+        slower += [job] * is_slower
+    if slower:
+        raise SystemExit(f"slower by more than 5 %: {', '.join(slower)}")
 
 
 if __name__ == "__main__":
