@@ -18,9 +18,9 @@ struct Job {
 };
 
 // Runs all problems on `threads` threads. Each result is computed by one thread alone: the same bits for any
-// number. Ctrl-C ends the runs in progress with a status of their own.
-std::vector<bindings::RunResult> simulate(const std::vector<bindings::ProblemNumbers>& problems,
-                                          int threads) {
+// number. Ctrl-C, and a `progress` that returns False, end the runs in progress with a status of their own.
+std::vector<bindings::RunResult> simulate(const std::vector<bindings::ProblemNumbers>& problems, int threads,
+                                          const bindings::Progress& progress) {
     std::vector<Job> jobs(problems.size());
     for (std::size_t i = 0; i < jobs.size(); ++i) bindings::fill_problem(jobs[i].problem, problems[i]);
     const auto work = [&](std::size_t i, int, const std::atomic<bool>& stop) {
@@ -30,13 +30,16 @@ std::vector<bindings::RunResult> simulate(const std::vector<bindings::ProblemNum
         jobs[i].seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
     };
     try {
-        bindings::run_jobs(jobs.size(), threads, 1, work, [](std::size_t) { return true; });
+        bindings::run_jobs(jobs.size(), threads, 1, work, [&](std::size_t done) {
+            return !progress || !(*progress)(done).is(nb::bool_(false));
+        });
     } catch (nb::python_error& error) {
         if (!error.matches(PyExc_KeyboardInterrupt)) throw;
     }
     std::vector<bindings::RunResult> results;
+    const std::atomic<bool> stopped{true};
     for (Job& job : jobs) {
-        if (!job.begun) job.result.status = Status::interrupted;
+        if (!job.begun) job.result = run(job.problem, &stopped); // the state at the start
         results.emplace_back(job.problem, std::move(job.result), job.seconds);
     }
     return results;
@@ -56,6 +59,8 @@ NB_MODULE(RATTLEBOX_MODULE, module) {
     bindings::add_dem(module);
     module.attr("worst_energy_residual") = worst_energy_residual;
     module.attr("speed_at_rest") = speed_at_rest;
-    module.def("simulate", &simulate, nb::arg("problems"), nb::arg("threads") = 1,
-               "Run problems of the 1-D engine and return their results.");
+    module.def(
+        "simulate", &simulate, nb::arg("problems"), nb::arg("threads") = 1, nb::arg("progress") = nb::none(),
+        "Run problems of the 1-D engine and return their results. `progress` is called with the number of "
+        "finished runs; False stops.");
 }

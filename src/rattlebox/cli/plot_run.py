@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
-from rich.progress import Progress
 
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.exit_codes import STOPPED
@@ -118,14 +117,11 @@ def _check_film(out: Path, kind: str | None, number: int | None) -> None:
 def _film(of: Any, out: Path, options: dict[str, Any]) -> None:
     if not isinstance(of, Snapshots):
         raise CaseError(f"-o {out}: a film needs snapshots\n  try: run.vtkhdf, with output.snapshots in the case")
-    console = terminal(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        line = bar.add_task("pictures", total=len(of))
-        try:
-            film_particles(of, out, progress=lambda done, _: bar.update(line, completed=done), **options)
-        except KeyboardInterrupt:
-            typer.echo(f"stopped; {out} is not written", err=True)
-            sys.exit(STOPPED)
+    try:
+        film_particles(of, out, **options)
+    except KeyboardInterrupt:
+        typer.echo(f"stopped; {out} is not written", err=True)
+        sys.exit(STOPPED)
 
 
 def _figure(of: Any, kind: str | None, number: int, options: dict[str, Any]) -> Figure:

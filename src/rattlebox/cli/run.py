@@ -10,10 +10,10 @@ from time import monotonic
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
 from rattlebox._util.exceptions import CaseError, DataError
+from rattlebox._util.progress import progress_bar
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, Place, check_own, note_begun, taken
@@ -55,9 +55,7 @@ def _simulated(case: Case, place: Place) -> Run:
         return simulate(case)
     console = terminal(stderr=True)
     checkpoint, snapshots = place.checkpoint, place.snapshots if case.output.snapshots else None
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        line = bar.add_task("filling in", total=None)
+    with progress_bar(True, "steps") as bar:
         lines = _Lines(console)
         going_on = checkpoint.is_file()
 
@@ -71,7 +69,7 @@ def _simulated(case: Case, place: Place) -> Run:
         def progress(done: int, total: int) -> None:
             tell()
             lines.tell(done, total)
-            bar.update(line, description="steps", completed=done, total=total)
+            bar(done, total)
 
         run = simulate(case, checkpoint=checkpoint, snapshots=snapshots, progress=progress)
         tell()

@@ -1213,5 +1213,7 @@ worst_energy_residual: float = 0.01
 
 speed_at_rest: float = 1e-09
 
-def simulate(problems: Sequence[Problem], threads: int = 1) -> list[Result]:
-    """Run problems of the 1-D engine and return their results."""
+def simulate(problems: Sequence[Problem], threads: int = 1, progress: Callable[[int], object] | None = None) -> list[Result]:
+    """
+    Run problems of the 1-D engine and return their results. `progress` is called with the number of finished runs; False stops.
+    """

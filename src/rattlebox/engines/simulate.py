@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox._util.progress import Report, progress_bar
 from rattlebox.core import _core
 from rattlebox.core._core import Status
 from rattlebox.engines.responses import responses
@@ -33,7 +35,7 @@ def simulate(
     *,
     checkpoint: str | os.PathLike[str] | None = None,
     snapshots: str | os.PathLike[str] | None = None,
-    progress: Callable[[int, int], object] | None = None,
+    progress: bool | Callable[[int, int], object] = True,
 ) -> Run:
     """Run a case.
 
@@ -48,8 +50,8 @@ def simulate(
     snapshots
         File (.vtkhdf) for the particles at the times of `Output(snapshots=...)`, for ParaView. Particle runs only.
     progress
-        Function called at intervals with the number of steps done and the total; the run stops if it returns False.
-        Particle runs only.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of steps done and of all (1-D: of
+        runs), which stops the run by returning False.
 
     Returns
     -------
@@ -80,19 +82,30 @@ def simulate(
 
         if snapshots is None and case.output.snapshots:
             raise Hint("output.snapshots requests snapshots, but no file is given", 'snapshots="run.vtkhdf"')
-        return simulate_dem(case, progress=progress, checkpoint=_path(checkpoint), snapshots=_path(snapshots))
+        with progress_bar(progress, "steps") as report:
+            return simulate_dem(
+                case,
+                progress=report,
+                checkpoint=_path(checkpoint),
+                snapshots=_path(snapshots),
+            )
     if checkpoint is not None or snapshots is not None:
         raise Hint(
             "the case has no particles; checkpoints and snapshots are for particle dampers only", "leave them out"
         )
-    return simulate_many([case])[0]
+    return simulate_many([case], progress=progress)[0]
 
 
 def _path(path: str | os.PathLike[str] | None) -> Path | None:
     return None if path is None else Path(path)
 
 
-def simulate_many(cases: Iterable[Case], *, threads: int | None = None) -> list[Run]:
+def simulate_many(
+    cases: Iterable[Case],
+    *,
+    threads: int | None = None,
+    progress: bool | Callable[[int, int], object] = True,
+) -> list[Run]:
     """Run several cases at the same time, each 1-D case on one thread.
 
     Parameters
@@ -101,6 +114,9 @@ def simulate_many(cases: Iterable[Case], *, threads: int | None = None) -> list[
         Cases to run.
     threads
         Number of threads; default one per core. The results are bitwise independent of it.
+    progress
+        True for a progress bar after 2 s, False for none, or a function of the numbers of runs done and of all,
+        which stops the runs by returning False.
 
     Returns
     -------
@@ -123,11 +139,30 @@ def simulate_many(cases: Iterable[Case], *, threads: int | None = None) -> list[
         # Particle cases run one after the other, each on all threads.
         from rattlebox.engines.dem import simulate_dem
 
-        plain = iter(simulate_many([case for case in cases if not case.particle_dampers], threads=threads))
-        return [simulate_dem(case, threads=threads) if case.particle_dampers else next(plain) for case in cases]
+        plain = [case for case in cases if not case.particle_dampers]
+        with progress_bar(progress, "runs") as report:
+            finished = iter(simulate_many(plain, threads=threads, progress=lambda done, _: report(done, len(cases))))
+            done, runs = len(plain), []
+            for case in cases:
+                if case.particle_dampers:
+                    report_before = partial(_report_done, report, done, len(cases))
+                    runs.append(simulate_dem(case, threads=threads, progress=report_before))
+                    done += 1
+                else:
+                    runs.append(next(finished))
+            report(done, len(cases))
+            return runs
     packed = [pack(case) for case in cases]
-    results = _core.simulate(packed, max(1, min(len(packed), threads or os.cpu_count() or 1))) if packed else []
+    count = max(1, min(len(packed), threads or os.cpu_count() or 1))
+    with progress_bar(progress, "runs") as report:
+        results = _core.simulate(packed, count, lambda done: report(done, len(packed))) if packed else []
+        report(len(packed), len(packed))
     return [_result(case, _limit_samples(result)) for case, result in zip(cases, results, strict=True)]
+
+
+def _report_done(report: Report, done: int, total: int, *_steps: int) -> object:
+    """Report finished runs, whatever the steps of the present one."""
+    return report(done, total)
 
 
 def _require_case(case: object) -> None:

@@ -23,6 +23,7 @@ from pydantic import TypeAdapter
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import DataError
 from rattlebox._util.optional_imports import optional_import
+from rattlebox._util.progress import progress_bar
 
 from ..model.cavities import AnyCavity, Box, Cavity, Cylinder
 from ..results import Run
@@ -93,7 +94,7 @@ def film_particles(
     rate: int = 20,
     size: Size = "column",
     renderer: Renderer | None = None,
-    progress: Callable[[int, int], object] | None = None,
+    progress: bool | Callable[[int, int], object] = True,
 ) -> Path:
     """Write a film of the particles in their cavities, with a picture for each snapshot, as seen from the base.
 
@@ -110,7 +111,8 @@ def film_particles(
     renderer
         "pyvista" or "plain"; default PyVista where it is installed.
     progress
-        Called with the number of pictures done and of all.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of pictures done and of all,
+        which stops the film by returning False.
 
     Returns
     -------
@@ -148,14 +150,13 @@ def film_particles(
         scene.figure.savefig(io.BytesIO(), dpi=dpi)
         scene.figure.set_layout_engine("none")  # all pictures are laid out as the first
         writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
-        with atomic_write(path, _LOST) as name:
+        with atomic_write(path, _LOST) as name, progress_bar(progress, "pictures") as report:
             writer.setup(scene.figure, os.fspath(name), dpi=dpi)
             try:
                 for number in range(len(snapshots)):
                     scene.show(number)
                     writer.grab_frame()
-                    if progress is not None:
-                        progress(number + 1, len(snapshots))
+                    report.advance(number + 1, len(snapshots))
             except BaseException:
                 _let_go(writer)
                 raise

@@ -31,7 +31,7 @@ def check_softening(
     skip: Any = 0.0,
     cycles: tuple[int, int] | None = None,
     workers: int | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
+    progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
     """Run a case again with smaller softening, and return the change of measures with its statistical error.
 

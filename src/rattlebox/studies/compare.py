@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from rattlebox.engines.simulate import simulate_many
@@ -15,7 +15,12 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-def compare(cases: Mapping[str, Case | Run], *, threads: int | None = None) -> Comparison:
+def compare(
+    cases: Mapping[str, Case | Run],
+    *,
+    threads: int | None = None,
+    progress: bool | Callable[[int, int], object] = True,
+) -> Comparison:
     """Simulate several cases and set their results side by side.
 
     Parameters
@@ -25,6 +30,8 @@ def compare(cases: Mapping[str, Case | Run], *, threads: int | None = None) -> C
         before may stand among them. The first one is the reference.
     threads
         Number of threads; default all cores.
+    progress
+        As of `rb.simulate_many`.
 
     Returns
     -------
@@ -57,7 +64,7 @@ def compare(cases: Mapping[str, Case | Run], *, threads: int | None = None) -> C
         if not isinstance(each, (Case, Run)):
             raise Hint(f"{name!r} is {each!r:.60}, but a Case or a Run is needed", "rb.Case(...)")
     new = [each for each in cases.values() if isinstance(each, Case)]
-    simulated = iter(simulate_many(new, threads=threads))
+    simulated = iter(simulate_many(new, threads=threads, progress=progress))
     runs: dict[str, Any] = {
         str(name): next(simulated) if isinstance(each, Case) else each for name, each in cases.items()
     }

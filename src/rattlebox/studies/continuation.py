@@ -57,7 +57,7 @@ def follow(
     workers: int | None = None,
     backend: Any = "threads",
     store: str | os.PathLike[str] | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
+    progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
     """Run a case for one value of a parameter after another, each from the state in which the one before ended.
 

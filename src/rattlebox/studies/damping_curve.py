@@ -83,7 +83,7 @@ def damping_curve(
     cycles: tuple[int, int] = (20, 40),
     workers: int | None = None,
     backend: Any = "threads",
-    progress: Callable[[int, int], object] | None = None,
+    progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
     """Compute the damping ratio of a mode, with its dampers, over the amplitude of vibration.
 
@@ -113,7 +113,8 @@ def damping_curve(
         Number of threads or processes (default as many as there are cores), and "threads", "processes" or the client of a
         Dask cluster, as of `rb.sweep`.
     progress
-        Called with the number of finished runs and of all runs.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of runs done and of all, which stops
+        by returning False.
 
     Returns
     -------

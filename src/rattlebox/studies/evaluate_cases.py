@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.progress import progress_bar
 from rattlebox.engines.simulate import simulate_many
 
 from .backends import make_backend
@@ -25,7 +26,7 @@ def evaluate_cases(
     *,
     backend: Any = "threads",
     workers: int | None = None,
-    progress: Callable[[int, int], object] | None = None,
+    progress: bool | Callable[[int, int], object] = True,
 ) -> list[Any]:
     """Simulate cases and return what a function makes of each run, in the order of the cases.
 
@@ -38,7 +39,7 @@ def evaluate_cases(
     backend, workers
         Backend that runs the cases, see `make_backend`.
     progress
-        Called with the number of finished runs and of all runs.
+        As of `rb.sweep`.
 
     Raises
     ------
@@ -51,11 +52,11 @@ def evaluate_cases(
     chains = [Chain([Block(number, number, number + 1)]) for number in range(len(cases))]
     found: dict[int, Any] = {}
     # Work on cases has neither a grid nor outputs, which backends do not use.
-    with closing(make_backend(backend, workers).run(work, chains)) as finished:  # type: ignore[arg-type]
+    chosen = make_backend(backend, workers)
+    with progress_bar(progress, "runs") as report, closing(chosen.run(work, chains)) as finished:  # type: ignore[arg-type]
         for block, values in finished:
             found[block.number] = values["found"][0]
-            if progress is not None:
-                progress(len(found), len(cases))
+            report.advance(len(found), len(cases))
     return [found[number] for number in range(len(cases))]
 
 
@@ -69,6 +70,6 @@ class _Cases:
         for number in range(start, stop):
             if cancelled is not None and cancelled():
                 return None
-            (run,) = simulate_many([self.cases[number]], threads=threads)
+            (run,) = simulate_many([self.cases[number]], threads=threads, progress=False)
             found[number - start] = self.evaluate(run)
         return {"found": found}

@@ -39,7 +39,7 @@ def run_work(
     backend: Any = "threads",
     workers: int | None = None,
     store: str | os.PathLike[str] | None = None,
-    progress: bool | Callable[[int, int], object] | None = None,
+    progress: bool | Callable[[int, int], object] = True,
     block: int | None = None,
 ) -> xr.Dataset:
     """Run all variants of some work.
@@ -54,8 +54,8 @@ def run_work(
         Folder on disk for the result, which need not exist. Finished blocks are in it at all times, and the same call
         resumes from it.
     progress
-        True or False for a progress bar; default one on a terminal; or a function of the number of finished variants and
-        of all.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of variants done and of all,
+        which stops the study by returning False.
     block
         Largest number of variants in a block; default the one that the work prefers.
 
@@ -99,10 +99,10 @@ def run_work(
             result: MemoryResult | Store = MemoryResult(plan, blocks) if store is None else Store(store, plan, blocks)
             opened.append(result)
             stack.enter_context(result)
-            report = stack.enter_context(progress_bar(progress, work.size))
+            report = stack.enter_context(progress_bar(progress, "variants"))
             # A thread of its own finishes the block that it writes when Ctrl-C interrupts this one.
             writer = stack.enter_context(ThreadPoolExecutor(1))
-            report(result.done)
+            report.advance(result.done, work.size)
             chains = [
                 Chain(left, None if variant is None else _values_of(result, plan, variant))
                 for left, variant in make_chains(work, result.blocks, result.finished)
@@ -111,7 +111,7 @@ def run_work(
             stack.callback(finished.close)
             for done, values in finished:
                 wait_for(writer.submit(result.write, done.number, values))
-                report(result.done)
+                report.advance(result.done, work.size)
             return result.result()
     except KeyboardInterrupt:
         raise Stopped(_how_to_resume(sum(each.done for each in opened), work.size, store)) from None

@@ -66,8 +66,8 @@ class Study:
     store
         Folder of a Zarr store for the results. Finished work is in it at all times, and the same call resumes after a stop.
     progress
-        True or False for a progress bar; default one on a terminal; or a function of the numbers of finished variants and of
-        all.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of variants done and of all,
+        which stops the study by returning False.
     """
 
     kind: ClassVar[str]
@@ -77,7 +77,7 @@ class Study:
     workers: Annotated[Whole, Field(ge=1)] | None = None
     backend: Any = "threads"
     store: Any = None
-    progress: Any = None
+    progress: bool | Callable[[int, int], object] = True
 
     def run(self, **where: Any) -> xr.Dataset:
         """Run the study.

@@ -97,7 +97,8 @@ class Design(Study):
     store
         Folder that keeps all trials: the same call goes on after a stop, and one with more trials goes further.
     progress
-        True or False for a bar, or a function of the numbers done and in all; default a bar on a terminal.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of trials done and of all,
+        which stops the study by returning False.
 
     Returns
     -------
@@ -169,14 +170,14 @@ class Design(Study):
             with (
                 _quiet(optuna),
                 _storage(optuna, store) as storage,
-                progress_bar(self.progress, self.trials, "trials") as report,
+                progress_bar(self.progress, "trials") as report,
             ):
                 trials = _study(optuna, storage, search, self.seed, store)
                 while (done := len(_told(optuna, trials))) < self.trials:
-                    report(done)
+                    report.advance(done, self.trials)
                     trials.sampler = optuna.samplers.TPESampler(seed=_seed(self.seed, done))
                     search.run_trial(optuna, trials)
-                report(self.trials)
+                report(self.trials, self.trials)
                 found = search.result(_told(optuna, trials)[: self.trials])
             return keep_map(found, self.kind, store)
         except KeyboardInterrupt:
