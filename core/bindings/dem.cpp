@@ -1,3 +1,4 @@
+// Binding of the 3-D engine: a simulation that Python advances in portions.
 #include "bindings/dem.hpp"
 
 #include <chrono>
@@ -17,22 +18,22 @@ using State = nb::ndarray<nb::numpy, const std::uint8_t, nb::ndim<1>, nb::c_cont
 using Progress = std::optional<nb::typed<nb::callable, nb::object(long)>>;
 
 class Dem {
-    DemNumbers packed_; // tables of the simulation point into its arrays
+    DemNumbers packed_; // owns the arrays of tables that the simulation uses
     std::unique_ptr<Simulation> simulation_;
     int threads_ = 1;
     double seconds_ = 0;
 
     const Bed& bed(std::size_t b) const { return simulation_->beds().at(b); }
 
-    // Positions, velocities and spins at the last step whose forces are known: taken back from where
-    // particles are going to.
+    // Returns positions, velocities and spins at the last step whose forces are known, computed back from the
+    // next step.
     CavityState cavity_state(const Bed& b) const {
         const real dt = simulation_->step() > 0 ? simulation_->problem().dt : 0;
         const auto rates = [&](std::size_t i) {
             const int k = static_cast<int>(i);
-            return at(b.touched, k) ? at(b.rates, k) : Rates{simulation_->body_shown(), {}};
+            return at(b.touched, k) ? at(b.rates, k) : Rates{simulation_->output_body_acceleration(), {}};
         };
-        const std::vector<int> number(b.name.begin(), b.name.end());
+        const std::vector<int> number(b.id.begin(), b.id.end());
         return {{},
                 in_order(number,
                          [&](std::size_t i) {
@@ -40,7 +41,8 @@ class Dem {
                          }),
                 in_order(number, [&](std::size_t i) { return b.velocity[i] - rates(i).velocity * dt; }),
                 in_order(number, [&](std::size_t i) { return b.spin[i] - rates(i).spin * dt; }),
-                owned<Doubles<1>>(std::vector<real>{b.shown[0], b.shown[1], b.shown[2]})};
+                owned<Doubles<1>>(std::vector<real>{b.output_displacement[0], b.output_displacement[1],
+                                                    b.output_displacement[2]})};
     }
 
 public:
@@ -52,14 +54,14 @@ public:
         const auto work = [&](std::size_t, int, const std::atomic<bool>& stop) {
             simulation_->run(until, threads_, stop);
         };
-        const auto go_on = [&](std::size_t) {
+        const auto should_continue = [&](std::size_t) {
             return !progress || !(*progress)(simulation_->step()).is(nb::bool_(false));
         };
         const auto measure = [&] {
             seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
         };
         try {
-            const bool finished = run_jobs(1, 1, 1, work, go_on);
+            const bool finished = run_jobs(1, 1, 1, work, should_continue);
             measure();
             return finished;
         } catch (...) {
@@ -84,19 +86,20 @@ public:
         return s;
     }
 
-    // Contacts at the last instant, where a run was asked to end.
-    TouchingRows contacts(std::size_t cavity) const {
+    // Returns the contacts at the step where the last call of run() ended.
+    ContactRows contacts(std::size_t cavity) const {
         const Bed& b = bed(cavity);
         if (!simulation_->has_contact_forces())
-            throw std::logic_error("single contacts are known where a run was asked to end");
+            throw std::logic_error(
+                "contact forces are stored only at the step where run() ended; call run() first");
         std::vector<std::int64_t> first, second;
         std::vector<real> force;
         for (const Chunk& chunk : b.chunks)
             for (const ContactList* list : {&chunk.pairs, &chunk.walls})
                 for (int a = 0; a < list->touching_count; ++a) {
                     const int k = at(list->touching, a), j = at(list->second, k);
-                    first.push_back(at(b.name, at(list->first, k)));
-                    second.push_back(list == &chunk.pairs ? at(b.name, j) : b.particles() + j);
+                    first.push_back(at(b.id, at(list->first, k)));
+                    second.push_back(list == &chunk.pairs ? at(b.id, j) : b.particles() + j);
                     const Row push = at(list->contact_forces.all, a).force;
                     for (int x = 0; x < 3; ++x) force.push_back(push[x]);
                 }
@@ -116,15 +119,15 @@ public:
             deepest.push_back(0), fastest.push_back(0), enduring.push_back(0);
             for (const Chunk& c : b.chunks) {
                 sum.candidates += c.pairs.size() + c.walls.size();
-                sum.extrapolated += c.tally.extrapolated;
-                for (int p = 0; p < 2; ++p) own[p] += c.tally.first_touches[p];
-                deepest.back() = std::fmax(deepest.back(), c.tally.deepest.ratio());
-                fastest.back() = std::fmax(fastest.back(), c.tally.fastest);
-                for (const Lanes& lost : c.tally.enduring) enduring.back() += total(lost);
+                sum.extrapolated += c.diagnostics.extrapolated;
+                for (int p = 0; p < 2; ++p) own[p] += c.diagnostics.first_touches[p];
+                deepest.back() = std::fmax(deepest.back(), c.diagnostics.largest_overlap.ratio());
+                fastest.back() = std::fmax(fastest.back(), c.diagnostics.largest_approach_speed);
+                for (const Lanes& lost : c.diagnostics.enduring) enduring.back() += total(lost);
             }
             touches.insert(touches.end(), own, own + 2);
         }
-        sum.steps = simulation_->step(), sum.rebuilds = simulation_->builds();
+        sum.steps = simulation_->step(), sum.rebuilds = simulation_->rebuilds();
         sum.refreshes = simulation_->scans();
         sum.memory_bytes = simulation_->memory(), sum.seconds = seconds_;
         sum.first_touches = owned<Integers<2>>(std::move(touches), {simulation_->beds().size(), 2});
@@ -135,7 +138,7 @@ public:
     }
 
     StoppedAt stopped() const {
-        const Stopped& s = simulation_->stopped();
+        const StopReason& s = simulation_->stop_reason();
         return {{},
                 simulation_->stopped_cavity(),
                 s.particle,
@@ -146,21 +149,21 @@ public:
 
     Bytes save() {
         Sizer size;
-        simulation_->keep(size);
+        simulation_->serialize(size);
         Writer writer(size.bytes);
-        simulation_->keep(writer);
+        simulation_->serialize(writer);
         return owned<Bytes>(std::move(writer.bytes));
     }
 
     void restore(const State& bytes) {
-        BackReader reader(reinterpret_cast<const char*>(bytes.data()), bytes.shape(0));
+        Reader reader(reinterpret_cast<const char*>(bytes.data()), bytes.shape(0));
         simulation_->restore(reader);
     }
 
     Status status() const { return simulation_->status(); }
     int threads() const { return threads_; }
     void set_threads(int n) {
-        if (n < 1) throw std::invalid_argument("at least one thread is needed");
+        if (n < 1) throw std::invalid_argument("the number of threads must be at least 1");
         threads_ = n;
     }
     long step() const { return simulation_->step(); }
@@ -171,22 +174,22 @@ public:
 
 void add_dem(nb::module_& module) {
     add_dem_problem(module);
-    nb::class_<Dem>(module, "Dem", "A simulation of particle dampers, which is run in pieces.")
+    nb::class_<Dem>(module, "Dem", "A simulation of particle dampers, which is advanced in portions.")
         .def(nb::init<const DemNumbers&>(), nb::arg("problem"))
         .def("run", &Dem::run, nb::arg("until"), nb::arg("progress") = nb::none(),
-             "Run until the sample of step `until` is taken; False when it was stopped before.")
+             "Run until the sample of step `until` is taken; return False if it was stopped before.")
         .def("records", &Dem::records, "Return the samples taken since the last call.")
         .def("state", &Dem::state, "Return the state at the last step whose forces are known.")
         .def("contacts", &Dem::contacts, nb::arg("cavity"),
-             "Return the contacts where a run was asked to end.")
+             "Return the contacts at the step where the last call of `run` ended.")
         .def("counts", &Dem::counts, "Return counts and extremes since the start.")
         .def("stopped", &Dem::stopped, "Return where the run stopped.")
         .def("save", &Dem::save, "Return all that a bitwise restart needs.")
         .def("restore", &Dem::restore, nb::arg("bytes"), "Continue from a saved state.")
         .def_prop_ro("status", &Dem::status)
-        .def_prop_ro("step", &Dem::step, "The step to come.")
+        .def_prop_ro("step", &Dem::step, "The next step.")
         .def_prop_ro("serial_steps", &Dem::serial_steps,
-                     "Steps that one thread took alone while others were held up.")
+                     "Number of steps that ran on a single thread because of contention.")
         .def_prop_rw("threads", &Dem::threads, &Dem::set_threads);
 }
 

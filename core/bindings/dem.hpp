@@ -1,4 +1,4 @@
-// The 3-D engine: one simulation as an object that Python runs in pieces.
+// Binding of the 3-D engine: a simulation that Python advances in portions.
 #pragma once
 
 #include <nanobind/nanobind.h>

@@ -1,4 +1,4 @@
-// A problem of the 3-D engine as Python packs it, and what the engine returns.
+// Binding of the problems and results of the 3-D engine.
 #pragma once
 
 #include "bindings/impact.hpp"
@@ -68,7 +68,7 @@ inline std::vector<real> reals(const Input<1>& array, std::size_t n, const char*
     return {array.data(), array.data() + n};
 }
 
-// Indices from 0 to `count`.
+// Checks that indices are from 0 to `count` - 1 and copies them.
 template <class Array> std::vector<int> indices(const Array& array, std::size_t count, const char* what) {
     for (std::size_t i = 0; i < array.size(); ++i)
         require(array.data()[i] >= 0 && array.data()[i] < static_cast<std::int64_t>(count), what);
@@ -78,13 +78,14 @@ template <class Array> std::vector<int> indices(const Array& array, std::size_t 
 inline void fill_cavity(dem::Cavity& target, const CavityContents& given, std::size_t modes,
                         std::size_t pairs) {
     require(given.walls.size() <= 32, "a cavity has 32 walls at most");
-    const std::size_t n = given.position.shape(0), kinds = given.particle_pair.shape(0);
-    const std::size_t wall_kinds = given.wall_pair.shape(1);
-    require(given.particle_pair.shape(1) == kinds && given.wall_pair.shape(0) == kinds,
+    const std::size_t n = given.position.shape(0), species_count = given.particle_pair.shape(0);
+    const std::size_t wall_material_count = given.wall_pair.shape(1);
+    require(given.particle_pair.shape(1) == species_count && given.wall_pair.shape(0) == species_count,
             "the tables of pairs need a row for each species");
     target.shape = rows(given.shape, modes, "a cavity needs three components for each mode");
     for (const WallShape& one : given.walls) {
-        require(one.material >= 0 && one.material < static_cast<int>(wall_kinds), "a wall has no laws");
+        require(one.material >= 0 && one.material < static_cast<int>(wall_material_count),
+                "a wall has no laws");
         dem::Wall wall{one_row(one.axis), one.form, one.material};
         wall.axis[3] = one.offset;
         target.walls.push_back(wall);
@@ -97,17 +98,18 @@ inline void fill_cavity(dem::Cavity& target, const CavityContents& given, std::s
     target.mass = reals(given.mass, n, "each particle needs a mass");
     target.inertia = reals(given.inertia, n, "each particle needs a moment of inertia");
     require(given.species.shape(0) == n, "each particle needs a species");
-    target.kind = indices(given.species, kinds, "a species has no laws");
-    target.particle_entry = indices(given.particle_pair, pairs, "a pair of species has no laws");
-    target.wall_entry = indices(given.wall_pair, pairs, "a species and a wall have no laws");
-    target.kinds = static_cast<int>(kinds), target.wall_kinds = static_cast<int>(wall_kinds);
+    target.species = indices(given.species, species_count, "a species has no laws");
+    target.particle_pair = indices(given.particle_pair, pairs, "a pair of species has no laws");
+    target.wall_pair = indices(given.wall_pair, pairs, "a species and a wall have no laws");
+    target.species_count = static_cast<int>(species_count),
+    target.wall_material_count = static_cast<int>(wall_material_count);
 }
 
 // Tables stay in the arrays of `given`, which must outlive the problem.
 inline dem::Problem dem_problem(const DemNumbers& given) {
     Filler fill;
     dem::Problem p;
-    p.dt = given.dt, p.enduring = given.enduring, p.steps = given.steps, p.every = given.every;
+    p.dt = given.dt, p.enduring = given.enduring, p.steps = given.steps, p.sample_interval = given.every;
     p.gravity = one_row(given.gravity);
     const std::size_t modes = fill_structure(fill, p, given);
     p.load_direction = rows(given.load_directions, given.loads.size(), "each load needs a direction");
@@ -135,7 +137,7 @@ struct RecordArrays : Node {
     Integers<3> contacts;
 
     RecordArrays() = default;
-    // The records are moved out.
+    // Moves the records into arrays.
     RecordArrays(dem::Records&& r, std::size_t modes, std::size_t loads, std::size_t cavities) {
         const std::size_t s = r.time.size();
         const auto each = [&](std::vector<real>& values, std::size_t n) {
@@ -170,7 +172,7 @@ struct DemState : Node {
     std::vector<CavityState> cavities;
 };
 
-struct TouchingRows : Node {
+struct ContactRows : Node {
     Integers<1> first, second;
     Doubles<2> force;
 };
@@ -189,7 +191,7 @@ struct StoppedAt : Node {
     double time = 0, speed = 0;
 };
 
-// Values f(i) of particles, in the order of their numbers in the case.
+// Returns f(i) of all particles in the order of the case.
 template <class F> Doubles<2> in_order(const std::vector<int>& number, F&& f) {
     std::vector<real> values(3 * number.size());
     for (std::size_t i = 0; i < number.size(); ++i) {
@@ -215,14 +217,14 @@ inline void add_dem_problem(nb::module_& module) {
               field("form", &W::form), field("axis", &W::axis), field("offset", &W::offset),
               field("material", &W::material));
     using C = CavityContents;
-    define<C>(module, "Cavity",
-              "A cavity and its particles. `particle_pair` and `wall_pair` say which laws two species, and a "
-              "species and "
-              "a wall, have.",
-              field("shape", &C::shape), field("walls", &C::walls), field("position", &C::position),
-              field("velocity", &C::velocity), field("spin", &C::spin), field("radius", &C::radius),
-              field("mass", &C::mass), field("inertia", &C::inertia), field("species", &C::species),
-              field("particle_pair", &C::particle_pair), field("wall_pair", &C::wall_pair));
+    define<C>(
+        module, "Cavity",
+        "A cavity and its particles. `particle_pair` and `wall_pair` are the indices of the laws of two "
+        "species, and of a species and a wall material.",
+        field("shape", &C::shape), field("walls", &C::walls), field("position", &C::position),
+        field("velocity", &C::velocity), field("spin", &C::spin), field("radius", &C::radius),
+        field("mass", &C::mass), field("inertia", &C::inertia), field("species", &C::species),
+        field("particle_pair", &C::particle_pair), field("wall_pair", &C::wall_pair));
     using L = PairLaws;
     define<L>(
         module, "PairLaws",
@@ -262,7 +264,7 @@ inline void add_dem_problem(nb::module_& module) {
     define<S>(module, "DemState", "The state at the last step whose forces are known.",
               field("step", &S::step), field("time", &S::time), field("q", &S::q), field("p", &S::p),
               field("cavities", &S::cavities));
-    using T = TouchingRows;
+    using T = ContactRows;
     define<T>(module, "ContactList",
               "Contacts of a cavity, and the force on the first partner [N]; walls are numbered after the "
               "particles.",

@@ -1,5 +1,5 @@
-// Writes the numbers of boundary objects into the structs of the core. In a batch the struct gets the number
-// of the first variant, and a column says where those of the others are.
+// Copies the values of structs from Python into structs of the core. In a batch the struct gets the value of
+// the first variant, and a column stores where the values of the others are.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ constexpr std::size_t table_count<Law> = std::size(Law::tables);
 
 inline rattlebox::Table view(const Table& array) { return {array.data(), static_cast<int>(array.shape(0))}; }
 
-// What any law of a kind is in Python: a class that the classes of the laws derive from.
+// Base classes in Python of the normal, tangential and restitution laws.
 struct NormalForce : Node {
     virtual ~NormalForce() = default;
     virtual NormalLaw choice() const = 0;
@@ -55,7 +55,7 @@ struct FamilyOf<Law> {
 
 template <class Law> struct LawNumbers;
 
-// The law of numbers that are no arrays, as one of its kind.
+// Implements the virtual functions for one law, whose coefficients must be single numbers.
 template <class Law, class Base> struct LawOfFamily : Base {};
 template <class Law> struct LawOfFamily<Law, NormalForce> : NormalForce {
     NormalLaw choice() const override;
@@ -68,30 +68,30 @@ template <class Law> struct LawOfFamily<Law, Restitution> : Restitution {
     RestitutionLaw choice() const override;
 };
 
-// The coefficients of a law: numbers or arrays over a grid.
+// The coefficients of a law: numbers, or arrays over a grid.
 template <class Law> struct LawNumbers : LawOfFamily<Law, typename FamilyOf<Law>::type> {
     using Family = typename FamilyOf<Law>::type;
 
     std::array<Number, std::size(Law::fields)> numbers;
     std::array<Table, table_count<Law>> tables;
 
-    // The law of one pair. Its tables point into the arrays held here.
+    // Returns the law of one pair. Its tables point into the arrays of this object.
     Law law() const {
-        Law made;
-        for (std::size_t k = 0; k < numbers.size(); ++k) made.*Law::fields[k].member = numbers[k].single();
-        view_tables(made);
-        return made;
+        Law result;
+        for (std::size_t k = 0; k < numbers.size(); ++k) result.*Law::fields[k].member = numbers[k].single();
+        view_tables(result);
+        return result;
     }
-    void view_tables(Law& made) const {
+    void view_tables(Law& result) const {
         if constexpr (table_count<Law> > 0)
-            for (std::size_t k = 0; k < tables.size(); ++k) made.*Law::tables[k].member = view(tables[k]);
+            for (std::size_t k = 0; k < tables.size(); ++k) result.*Law::tables[k].member = view(tables[k]);
     }
 };
 
 template <class Laws, class Law> Laws as_choice(const Law& law) {
-    Laws made;
-    made.set(law);
-    return made;
+    Laws result;
+    result.set(law);
+    return result;
 }
 template <class Law> NormalLaw LawOfFamily<Law, NormalForce>::choice() const {
     return as_choice<NormalLaw>(static_cast<const LawNumbers<Law>*>(this)->law());
@@ -115,28 +115,29 @@ template <class Laws> struct LawOfChoice;
 template <class... Laws> struct LawOfChoice<Variant<Laws...>> {
     using type = std::variant<LawNumbers<Laws>...>;
 };
-// Any law of a table of laws.
+// One law of a table of laws.
 template <class Laws> struct LawOf {
     typename LawOfChoice<Laws>::type law;
 };
 
-// What is filled must not move afterwards: columns point into it.
+// Copies values. The targets must not move afterwards, because columns point into them.
 class Filler {
-    Batch* batch_; // none: arrays over a grid are refused
+    Batch* batch_; // null: arrays over a grid raise an error
 
-    // One number for each variant, from an array whose axes from `first` on are those of the grid.
+    // Sets the values of all variants from an array whose axes from `first` on are those of the grid.
     void column(real& target, const Vector& array, std::size_t first, std::size_t offset) {
         target = array.data()[offset];
         if (array.ndim() == first) return;
         const std::size_t axes = array.ndim() - first;
         if (!batch_ || axes != batch_->shape.size())
-            throw std::invalid_argument("an array has the wrong number of axes");
+            throw std::invalid_argument(
+                "an array has the wrong number of axes; it must have those of the grid");
         Column column{&target, array.data() + offset, std::vector<std::size_t>(axes, 0)};
         std::size_t step = 1;
         for (std::size_t k = axes; k-- > 0;) {
             const std::size_t size = array.shape(first + k);
             if (size != 1 && size != batch_->shape[k])
-                throw std::invalid_argument("an array does not fit the grid");
+                throw std::invalid_argument("an array does not broadcast to the grid");
             if (size != 1) column.stride[k] = step;
             step *= size;
         }
@@ -153,7 +154,7 @@ public:
             target = number.value;
     }
 
-    // Component i of a vector of n.
+    // Copies component i of a vector of n.
     void component(real& target, const Vector& vector, std::size_t i, std::size_t n) {
         if (vector.ndim() == 0 || vector.shape(0) != n)
             throw std::invalid_argument("a vector has the wrong number of components");
@@ -180,7 +181,7 @@ public:
 
 } // namespace rattlebox::bindings
 
-// A field for any law of a kind has the name of the kind's class in Python.
+// A field for one law of a table has the type of the base class in Python.
 namespace nanobind::detail {
 
 template <class Laws> constexpr auto family_name = const_name("NormalForce");

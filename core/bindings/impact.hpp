@@ -1,4 +1,4 @@
-// A problem of the 1-D engine, or many that differ in their numbers, as Python packs it.
+// Binding of the problems of the 1-D engine and of batches of them.
 #pragma once
 
 #include "bindings/laws.hpp"
@@ -56,7 +56,7 @@ inline void fill_signal(Filler& fill, Signal& target, const AnySignal& given) {
         [&]<class S>(const S& signal) {
             if constexpr (std::is_same_v<S, RecordedSignal>) {
                 if (signal.times.shape(0) == 0 || signal.times.shape(0) != signal.values.shape(0))
-                    throw std::invalid_argument("a record needs as many values as times");
+                    throw std::invalid_argument("a record must have as many values as times, at least one");
                 target.kind = Signal::Kind::record;
                 target.times = view(signal.times);
                 target.values = view(signal.values);
@@ -72,7 +72,7 @@ inline void fill_signal(Filler& fill, Signal& target, const AnySignal& given) {
         given);
 }
 
-// Modes and loads, which both engines have; the number of modes.
+// Copies modes and loads, which both engines have; returns the number of modes.
 template <class Problem, class Given>
 std::size_t fill_structure(Filler& fill, Problem& target, const Given& given) {
     if (given.mode_decay.ndim() == 0) throw std::invalid_argument("the modes must be vectors");
@@ -168,17 +168,18 @@ template <class Wave> void define_wave(nb::module_& module, const char* name, co
                  field("start", &Wave::start), field("stop", &Wave::stop));
 }
 
-// Fields of a problem that both engines have.
+// Types of a problem that both engines have.
 inline void add_structure(nb::module_& module) {
     define_wave<HalfSine>(module, "HalfSine", "A half-sine pulse: N or m/s^2, rad/s, rad, s, s.");
     define_wave<Harmonic>(module, "Harmonic", "A harmonic: N or m/s^2, rad/s, rad, s, s.");
-    define<RecordedSignal>(module, "Record", "Straight lines through points, zero outside.",
+    define<RecordedSignal>(module, "Record", "A piecewise-linear signal through points, zero outside.",
                            field("times", &RecordedSignal::times), field("values", &RecordedSignal::values));
-    define<LoadNumbers>(module, "Load",
-                        "A signal and the force on each mode per unit of it; for the acceleration of the "
-                        "base minus the participation.",
-                        field("signal", &LoadNumbers::signal), field("shape", &LoadNumbers::shape),
-                        field("base", &LoadNumbers::base));
+    define<LoadNumbers>(
+        module, "Load",
+        "A signal and the force on each mode per unit of it; for a base acceleration, minus the "
+        "participation factor.",
+        field("signal", &LoadNumbers::signal), field("shape", &LoadNumbers::shape),
+        field("base", &LoadNumbers::base));
 }
 
 inline void add_problem(nb::module_& module) {
@@ -198,11 +199,11 @@ inline void add_problem(nb::module_& module) {
               field("contact_samples", &S::contact_samples, usual.contact_samples));
     using D = DamperNumbers;
     define<D>(module, "Damper",
-              "An impact damper with its balls; positions count from the packed, centred row.",
+              "An impact damper with its balls; positions are relative to the closely packed, centred row.",
               field("clearance", &D::clearance), field("gravity", &D::gravity), field("shape", &D::shape),
               field("mass", &D::mass), field("position", &D::position), field("velocity", &D::velocity));
     using C = ContactNumbers;
-    define<C>(module, "Contact", "The contact of two neighbours: their reduced mass and their laws.",
+    define<C>(module, "Contact", "The contact of two neighbours: effective mass and laws.",
               field("mass", &C::mass), field("normal", &C::normal), field("restitution", &C::restitution));
     using P = ProblemNumbers;
     define<P>(

@@ -1,4 +1,4 @@
-// Numbered jobs on several threads without the GIL, while the calling thread checks for Ctrl-C.
+// Runs jobs on several threads without the GIL, while the calling thread checks for Ctrl-C.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -16,11 +16,12 @@ namespace rattlebox::bindings {
 
 namespace nb = nanobind;
 
-// Calls job(i, thread, stop) for i in 0..count, `chunk` at a time on one thread. Every 20 ms go_on(jobs done)
-// is called with the GIL held; when it returns false, or after Ctrl-C, `stop` is set and the remaining jobs
-// are left out. Returns false when it was stopped.
-template <class Job, class GoOn>
-bool run_jobs(std::size_t count, int threads, std::size_t chunk, Job&& job, GoOn&& go_on) {
+// Calls job(i, thread, stop) for i in 0..count, `chunk` at a time on one thread. Every 20 ms
+// should_continue(finished jobs) is called with the GIL held; if it returns false, or after Ctrl-C, `stop` is
+// set and the remaining jobs are skipped. Returns whether all jobs ran.
+template <class Job, class ShouldContinue>
+bool run_jobs(std::size_t count, int threads, std::size_t chunk, Job&& job,
+              ShouldContinue&& should_continue) {
     std::atomic<bool> stop{false};
     std::atomic<std::size_t> next{0}, done{0};
     std::mutex mutex;
@@ -53,7 +54,7 @@ bool run_jobs(std::size_t count, int threads, std::size_t chunk, Job&& job, GoOn
         if (finished || stopped) continue;
         try {
             if (PyErr_CheckSignals() != 0) throw nb::python_error();
-            stopped = !go_on(done.load());
+            stopped = !should_continue(done.load());
         } catch (...) {
             const std::lock_guard lock(mutex);
             error = std::current_exception();

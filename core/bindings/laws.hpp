@@ -1,5 +1,5 @@
-// The contact laws as Python sees them: one class for each law of the table, with the coefficients that it
-// lists. The choice of the time step and the curves that users draw compute with the formulas of the engines.
+// Binding of the contact laws: one class for each law of the table, with its coefficients. The choice of the
+// time step and the figures of the laws use the formulas of the engines.
 #pragma once
 
 #include <nanobind/stl/unique_ptr.h>
@@ -10,7 +10,7 @@ namespace rattlebox::bindings {
 
 template <class Law, std::size_t place> struct Coefficient {
     static constexpr const auto& entry = Law::fields[place];
-    // A coefficient that is not a number by default may be left out: the law computes it.
+    // A coefficient whose default is NaN is optional: the law computes it.
     static constexpr bool may_be_missing = Law{}.*entry.member != Law{}.*entry.member;
     using Value = std::conditional_t<may_be_missing, std::optional<Number>, Number>;
     const char* name = entry.name;
@@ -45,7 +45,7 @@ template <class Law, std::size_t place> struct Curve {
     auto argument() const { return nb::arg(name); }
 };
 
-// The name of a law as the name of a class: hertz_tsuji -> HertzTsuji.
+// Returns the name of the class of a law: hertz_tsuji -> HertzTsuji.
 inline std::string class_name(const std::string& law, const char* family) {
     std::string name;
     bool starts = true;
@@ -122,7 +122,8 @@ inline void add_laws(nb::module_& module) {
                 });
             },
             nb::arg("restitution"), nb::arg("speed"),
-            "Return the damping ratio of an impact with this restitution and speed; 0 for a law that yields.")
+            "Return the damping ratio of an impact with this restitution and speed; 0 for a law with "
+            "hysteresis.")
         .def_prop_ro(
             "needs_restitution",
             [](const N& own) {
@@ -174,7 +175,7 @@ inline void add_laws(nb::module_& module) {
                     return r.outside ? not_a_number : r.e;
                 });
             },
-            nb::arg("speeds"), "Return the restitution at each speed; NaN beyond the law.");
+            nb::arg("speeds"), "Return the restitution at each speed; NaN outside the range of the law.");
     define_laws<RestitutionLaw>(module, "Restitution", "restitution_law");
     define_law<RollingResistance>(module, "RollingResistance", "Rolling resistance of one pair.");
     module.def(

@@ -1,4 +1,4 @@
-// The Python module of the core: problems in, results out.
+// The Python module of the core.
 
 #include <chrono>
 
@@ -17,8 +17,9 @@ struct Job {
     bool begun = false;
 };
 
-// Runs all problems on `threads` threads. Each result is computed by one thread alone: the same bits for any
-// number. Ctrl-C, and a `progress` that returns False, end the runs in progress with a status of their own.
+// Runs all problems on `threads` threads. Each result is computed by a single thread, so that the bits do not
+// depend on their number. Ctrl-C, or a `progress` that returns False, ends the current runs with status
+// `interrupted`.
 std::vector<bindings::RunResult> simulate(const std::vector<bindings::ProblemNumbers>& problems, int threads,
                                           const bindings::Progress& progress) {
     std::vector<Job> jobs(problems.size());
@@ -48,7 +49,7 @@ std::vector<bindings::RunResult> simulate(const std::vector<bindings::ProblemNum
 } // namespace
 
 NB_MODULE(RATTLEBOX_MODULE, module) {
-    nb::set_leak_warnings(false); // objects of a traceback or a cache live until the interpreter ends
+    nb::set_leak_warnings(false); // tracebacks and caches keep objects until the interpreter ends
     module.doc() = "The compiled core of Rattlebox.";
     bindings::add_node(module);
     bindings::add_laws(module);

@@ -1,9 +1,9 @@
-// The objects that cross between Python and the core. A struct declares its fields once, by name and member;
-// `define` binds it with a constructor that takes them as keyword arguments (an unknown or a missing one
-// raises TypeError) and with read-only attributes.
+// Structs that are passed between Python and the core. A struct declares its fields once, by name and member;
+// `define` binds it with a constructor of keyword arguments (an unknown or missing one raises TypeError) and
+// read-only attributes.
 //
-// In a batch a number may be an array over the grid of the variants, and a vector has the axes of the grid
-// after its own. So a million variants are one object.
+// In a batch a number may be an array over the grid of the variants, and a vector may have the axes of the
+// grid after its own axis, so that a million variants are one object.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -29,29 +29,30 @@ template <int axes>
 using Doubles = nb::ndarray<nb::numpy, double, nb::ndim<axes>, nb::c_contig, nb::device::cpu>;
 template <int axes>
 using Integers = nb::ndarray<nb::numpy, std::int64_t, nb::ndim<axes>, nb::c_contig, nb::device::cpu>;
-// A vector with the axes of the grid after its own.
+// A vector, in a batch with the axes of the grid after its own.
 using Vector = nb::ndarray<nb::numpy, const double, nb::c_contig, nb::device::cpu>;
 // An array that is the same for all variants, such as the knots of a curve.
 using Table = nb::ndarray<nb::numpy, const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-// A number, or one for each variant of a batch: an array that broadcasts to the grid.
+// A number, or an array that broadcasts to the grid of a batch.
 struct Number {
     real value = 0;
-    Vector grid; // invalid where there is one number
+    Vector grid; // invalid for a single number
 
     Number() = default;
     Number(real number) : value(number) {}
     bool varies() const { return grid.is_valid(); }
     real single() const {
-        if (varies()) throw std::invalid_argument("one number is needed, not an array over a grid");
+        if (varies())
+            throw std::invalid_argument("an array is given where one number is needed; pass a single value");
         return value;
     }
 };
 
-// How a field depends on the variant.
+// How a field can depend on the variant of a batch.
 enum class Varies { number, vector, never };
 
-// The base of all objects that cross the boundary.
+// Base of all structs that are passed between Python and the core.
 struct Node {};
 
 template <class T> constexpr Varies varies_of = Varies::never;
@@ -109,15 +110,15 @@ inline nb::dict values_of(nb::handle node) {
 }
 
 inline void add_node(nb::module_& module) {
-    nb::enum_<Varies>(module, "Varies", "How a field depends on the variant of a batch.")
+    nb::enum_<Varies>(module, "Varies", "How a field can depend on the variant of a batch.")
         .value("number", Varies::number)
         .value("vector", Varies::vector)
         .value("never", Varies::never);
     nb::class_<Node>(module, "Node",
-                     "An object with read-only fields that crosses between Python and the core.")
+                     "A struct with read-only fields that is passed between Python and the core.")
         .def_static(
             "fields", [] { return Names(); },
-            "Return the names of the fields, and how each depends on the variant of a batch.")
+            "Return the names of the fields, and how each can depend on the variant of a batch.")
         .def(
             "replace",
             [](nb::handle self, const nb::kwargs& changes) {
@@ -143,9 +144,9 @@ auto define(nb::module_& module, const char* name, const char* doc, const Fields
     bound.def(
         "__init__",
         [fields...](Owner* self, typename Fields::Value... values) {
-            Owner made;
-            (fields.set(made, std::move(values)), ...);
-            new (self) Owner(std::move(made));
+            Owner result;
+            (fields.set(result, std::move(values)), ...);
+            new (self) Owner(std::move(result));
         },
         nb::kw_only(), fields.argument()...);
     (bound.def_prop_ro(
@@ -162,7 +163,7 @@ auto define(nb::module_& module, const char* name, const char* doc, const Fields
 
 // ---- arrays
 
-// An array that takes over the memory of a vector.
+// Returns an array that owns the memory of a vector.
 template <class Array, class T> Array owned(std::vector<T> values, const std::vector<std::size_t>& shape) {
     auto* memory = new std::vector<T>(std::move(values));
     nb::capsule owner(memory, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });

@@ -1,14 +1,14 @@
-// What a run of the 1-D engine returns.
+// The result of a run of the 1-D engine.
 #pragma once
 
 #include "bindings/node.hpp"
-#include "impact/log.hpp"
+#include "impact/result.hpp"
 
 namespace rattlebox::bindings {
 
 using Flags = nb::ndarray<nb::numpy, bool, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-// One row for each impact.
+// The impact log, one row for each impact.
 struct ImpactColumns : Node {
     Integers<1> damper, contact;
     Doubles<1> time, approach_speed, restitution, separation_speed, duration, peak_overlap, peak_force,
@@ -23,16 +23,16 @@ struct ImpactColumns : Node {
           duration(doubles(log, &Impact::duration)), peak_overlap(doubles(log, &Impact::peak_overlap)),
           peak_force(doubles(log, &Impact::peak_force)), energy_lost(doubles(log, &Impact::energy_lost)) {
         std::vector<std::int64_t> dampers, contacts;
-        std::vector<std::int8_t> whole;
+        std::vector<std::int8_t> completed;
         for (const Impact& impact : log) {
             const int own = problem.contacts[static_cast<std::size_t>(impact.contact)].damper;
             dampers.push_back(own);
             contacts.push_back(impact.contact - problem.dampers[static_cast<std::size_t>(own)].first_contact);
-            whole.push_back(impact.complete);
+            completed.push_back(impact.complete);
         }
         damper = owned<Integers<1>>(std::move(dampers));
         contact = owned<Integers<1>>(std::move(contacts));
-        complete = owned<Flags>(std::move(whole));
+        complete = owned<Flags>(std::move(completed));
     }
 
 private:
@@ -60,10 +60,10 @@ struct RunResult : Node {
     double seconds = 0;
 
     RunResult() = default;
-    RunResult(const Problem& problem, Result&& r, double took)
+    RunResult(const Problem& problem, Result&& r, double elapsed)
         : impacts(problem, r.impacts), counts{{}, r.counts}, status(r.status),
           energy_residual_limit(problem.settings.energy_residual_limit()), stopped_at(r.stopped_at),
-          stopped_value(r.stopped_value), stopped_contact(r.stopped_contact), seconds(took) {
+          stopped_value(r.stopped_value), stopped_contact(r.stopped_contact), seconds(elapsed) {
         Samples& s = r.samples;
         const std::size_t n = s.time.size(), d = problem.dampers.size();
         const std::size_t states = 2 * (problem.modes.size() + problem.ball_mass.size());
@@ -108,7 +108,7 @@ inline void add_results(nb::module_& module) {
     define<R>(
         module, "Result",
         "A run of the 1-D engine. `state` holds displacement and velocity of each mode, then positions and "
-        "velocities of all balls; `chosen` says which samples are at times that the problem asks for.",
+        "velocities of all balls; `chosen` is true for samples at times of the problem.",
         field("time", &R::time), field("state", &R::state), field("chosen", &R::chosen),
         field("load_work", &R::load_work), field("base_work", &R::base_work),
         field("viscous_loss", &R::viscous_loss), field("normal_loss", &R::normal_loss),

@@ -8,8 +8,8 @@
 #include "bindings/impact.hpp"
 #include "bindings/jobs.hpp"
 #include "bindings/results.hpp"
-#include "impact/member.hpp"
 #include "impact/run.hpp"
+#include "impact/sweep_output.hpp"
 
 namespace rattlebox::bindings {
 
@@ -21,31 +21,31 @@ struct WindowNumbers : Node {
     int samples = 0;
 };
 
-// One thread's own problem, which its columns write into.
+// The problem of one thread; the columns of the batch point into it.
 struct Worker {
     Problem problem;
     Batch batch;
     Window window;
 
-    Worker(const ProblemNumbers& packed, const std::vector<std::size_t>& grid, const WindowNumbers& look,
-           const Wanted& wanted) {
+    Worker(const ProblemNumbers& packed, const std::vector<std::size_t>& grid, const WindowNumbers& given,
+           const OutputRequest& request) {
         batch.shape = grid;
         fill_problem(problem, packed, &batch);
         Filler fill(&batch);
-        fill.number(window.from, look.start);
-        fill.number(window.period, look.period);
-        const std::size_t components = look.shape.ndim() > 0 ? look.shape.shape(0) : 0;
+        fill.number(window.from, given.start);
+        fill.number(window.period, given.period);
+        const std::size_t components = given.shape.ndim() > 0 ? given.shape.shape(0) : 0;
         if (components > problem.modes.size())
-            throw std::invalid_argument("the point has too many mode shapes");
-        fill.vector(window.shape, look.shape, components);
-        window.samples = look.samples;
-        problem.settings.peaks = std::any_of(wanted.measures.begin(), wanted.measures.end(),
+            throw std::invalid_argument("the window has more mode shapes than the problem has modes");
+        fill.vector(window.shape, given.shape, components);
+        window.samples = given.samples;
+        problem.settings.peaks = std::any_of(request.measures.begin(), request.measures.end(),
                                              [](int m) { return measures[m].peaks; });
     }
     Worker(const Worker&) = delete; // columns point into it
 };
 
-// What is kept of the variants, one row for each; NaN where a run did not finish.
+// Output of the variants, one row for each; NaN if a run did not finish.
 struct Block : Node {
     nb::ndarray<nb::numpy, std::int8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu> status;
     std::vector<Doubles<1>> measures;
@@ -55,40 +55,42 @@ struct Block : Node {
     std::optional<Doubles<3>> ball_place, ball_speed;
 };
 
-inline std::vector<int> numbers_of(const std::vector<std::string>& names) {
-    std::vector<int> found;
+inline std::vector<int> measure_indices(const std::vector<std::string>& names) {
+    std::vector<int> indices;
     for (const std::string& name : names) {
         int number = -1;
         for (int m = 0; m < static_cast<int>(std::size(measures)); ++m)
             if (name == measures[m].name) number = m;
         if (number < 0) throw std::invalid_argument("the core has no measure named '" + name + "'");
-        found.push_back(number);
+        indices.push_back(number);
     }
-    return found;
+    return indices;
 }
 
-// Variants start to stop of a batch; none when `progress` has returned False.
+// Runs the variants start to stop of a batch; returns nothing if `progress` returned False.
 inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vector<std::size_t>& grid,
                                   std::size_t start, std::size_t stop, const WindowNumbers& window,
                                   const std::vector<std::string>& names,
                                   const std::vector<std::string>& batched, bool motion, bool state,
                                   std::size_t last, int threads, const Progress& progress) {
-    const Wanted keep{numbers_of(names), numbers_of(batched), motion, state, last};
+    const OutputRequest outputs{measure_indices(names), measure_indices(batched), motion, state, last};
     std::vector<std::unique_ptr<Worker>> workers;
-    for (int t = 0; t < threads; ++t) workers.push_back(std::make_unique<Worker>(packed, grid, window, keep));
-    Kept kept;
-    const std::size_t n = kept.members = stop - start;
-    std::vector<real> numbers(kept.lay(workers.at(0)->problem, workers[0]->window, keep), not_a_number);
+    for (int t = 0; t < threads; ++t)
+        workers.push_back(std::make_unique<Worker>(packed, grid, window, outputs));
+    SweepOutput output;
+    const std::size_t n = output.variants = stop - start;
+    std::vector<real> numbers(output.set_layout(workers.at(0)->problem, workers[0]->window, outputs),
+                              not_a_number);
     std::vector<std::int8_t> status(n, static_cast<std::int8_t>(Status::interrupted));
-    kept.numbers = numbers.data();
-    kept.status = status.data();
+    output.numbers = numbers.data();
+    output.status = status.data();
     const bool finished = run_jobs(
         n, threads, 4,
         [&](std::size_t i, int thread, const std::atomic<bool>& stopped) {
             Worker& worker = *workers[static_cast<std::size_t>(thread)];
             worker.batch.apply(start + i);
             worker.window.place(worker.problem);
-            kept.keep(i, worker.problem, worker.window, keep, run(worker.problem, &stopped));
+            output.store(i, worker.problem, worker.window, outputs, run(worker.problem, &stopped));
         },
         [&](std::size_t done) { return !progress || !(*progress)(done).is(nb::bool_(false)); });
     if (!finished) return {};
@@ -103,22 +105,22 @@ inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vecto
                       balls = workers[0]->problem.ball_mass.size(), modes = workers[0]->problem.modes.size();
     Block block;
     block.status = owned<decltype(block.status)>(std::move(status));
-    for (std::size_t m = 0; m < keep.measures.size(); ++m)
-        block.measures.push_back(part({n}, kept.measures + m * n));
-    for (std::size_t m = 0; m < keep.batched.size(); ++m)
-        block.batches.push_back(part({n, most_batches}, kept.batches + m * n * most_batches));
-    if (!keep.batched.empty()) block.batch_length = part({n, most_batches}, kept.batch_length);
+    for (std::size_t m = 0; m < outputs.measures.size(); ++m)
+        block.measures.push_back(part({n}, output.measures + m * n));
+    for (std::size_t m = 0; m < outputs.batched.size(); ++m)
+        block.batches.push_back(part({n, most_batches}, output.batches + m * n * most_batches));
+    if (!outputs.batched.empty()) block.batch_length = part({n, most_batches}, output.batch_length);
     if (motion) {
-        block.displacement = part({n, samples}, kept.displacement);
-        block.velocity = part({n, samples}, kept.velocity);
-        block.ball_place = part({n, samples, balls}, kept.place);
-        block.ball_speed = part({n, samples, balls}, kept.speed);
+        block.displacement = part({n, samples}, output.displacement);
+        block.velocity = part({n, samples}, output.velocity);
+        block.ball_place = part({n, samples, balls}, output.place);
+        block.ball_speed = part({n, samples, balls}, output.speed);
     }
-    if (state) block.state = part({n, 2 * (modes + balls)}, kept.state);
+    if (state) block.state = part({n, 2 * (modes + balls)}, output.state);
     if (last > 0) {
-        block.last_time = part({n, last}, kept.last_time);
-        block.last_approach_speed = part({n, last}, kept.last_speed);
-        block.last_contact = part({n, last}, kept.last_contact);
+        block.last_time = part({n, last}, output.last_time);
+        block.last_approach_speed = part({n, last}, output.last_speed);
+        block.last_contact = part({n, last}, output.last_contact);
     }
     return block;
 }
@@ -127,25 +129,25 @@ inline void add_sweep(nb::module_& module) {
     using W = WindowNumbers;
     define<W>(
         module, "Window",
-        "Equally spaced samples of each run from `start` to its end, in cycles of `period`, of a point with "
+        "Equally spaced samples of each run from `start` to its end, in cycles of `period`, at a point with "
         "these mode shapes.",
         field("start", &W::start), field("period", &W::period), field("shape", &W::shape),
         field("samples", &W::samples));
     using B = Block;
-    define<B>(module, "Block", "What is kept of the variants of a batch, one row for each.",
+    define<B>(module, "Block", "Output of the variants of a batch, one row for each.",
               field("status", &B::status), field("measures", &B::measures), field("batches", &B::batches),
               field("batch_length", &B::batch_length), field("displacement", &B::displacement),
               field("velocity", &B::velocity), field("ball_place", &B::ball_place),
               field("ball_speed", &B::ball_speed), field("state", &B::state),
               field("last_time", &B::last_time), field("last_approach_speed", &B::last_approach_speed),
               field("last_contact", &B::last_contact));
-    module.def("sweep", &sweep, nb::arg("problem"), nb::arg("grid"), nb::arg("start"), nb::arg("stop"),
-               nb::arg("window"), nb::arg("measures"), nb::arg("batched") = std::vector<std::string>(),
-               nb::arg("motion") = false, nb::arg("state") = false, nb::arg("last") = 0,
-               nb::arg("threads") = 1, nb::arg("progress") = nb::none(),
-               "Run variants start to stop of a batch over a grid and return what is kept of them; None when "
-               "`progress` "
-               "has returned False.");
+    module.def(
+        "sweep", &sweep, nb::arg("problem"), nb::arg("grid"), nb::arg("start"), nb::arg("stop"),
+        nb::arg("window"), nb::arg("measures"), nb::arg("batched") = std::vector<std::string>(),
+        nb::arg("motion") = false, nb::arg("state") = false, nb::arg("last") = 0, nb::arg("threads") = 1,
+        nb::arg("progress") = nb::none(),
+        "Run the variants start to stop of a batch over a grid and return their output; None if `progress` "
+        "returned False.");
     module.def(
         "measures",
         [] {

@@ -1,5 +1,5 @@
-// What a contact law must have. The table of laws (contact/laws.hpp) accepts only laws that satisfy these
-// concepts, so that an incomplete law is a compile error that names the missing part.
+// Concepts that a contact law must satisfy. The table of laws (contact/laws.hpp) checks them, so that an
+// incomplete law is a compile error that names the missing part.
 #pragma once
 
 #include <concepts>
@@ -10,14 +10,14 @@
 
 namespace rattlebox {
 
-// A name, and a list of coefficients by name.
+// A law with a name and a list of named coefficients.
 template <class Law>
 concept NamedLaw = std::default_initializable<Law> && requires {
     { Law::name } -> std::convertible_to<const char*>;
     { Law::fields[0] } -> std::convertible_to<Field<Law>>;
 };
 
-// The formula of a law without history, for a number type T.
+// The formula of a law without hysteresis, for a number type T.
 template <class Law, class T>
 concept ElasticAndDashpotForce =
     requires(const Law& law, const Coefficients<T>& k, const Depth<T>& depth, const T& rate) {
@@ -25,7 +25,7 @@ concept ElasticAndDashpotForce =
         { law.stored(k, depth) } -> std::same_as<T>;
     };
 
-// A law without history: elastic force and dashpot.
+// A law without hysteresis: elastic force and dashpot.
 template <class Law>
 concept DashpotLaw = ElasticAndDashpotForce<Law, real> && ElasticAndDashpotForce<Law, Group> &&
                      requires(const Law& law, real e, real damping, real speed) {
@@ -36,7 +36,7 @@ concept DashpotLaw = ElasticAndDashpotForce<Law, real> && ElasticAndDashpotForce
                          { Law::tangential_share } -> std::convertible_to<real>;
                      };
 
-// The curves of a law with history, for a number type T.
+// The curves of a law with hysteresis, for a number type T.
 template <class Law, class T>
 concept LoadingAndUnloadingForce =
     requires(const Law& law, const Coefficients<T>& k, const History<T>& history, const Depth<T>& depth) {
@@ -47,7 +47,7 @@ concept LoadingAndUnloadingForce =
         { law.recovered(history, depth) } -> std::same_as<T>;
     };
 
-// A law with history: it unloads on another curve than it loads.
+// A law with hysteresis: the unloading curve differs from the loading curve.
 template <class Law>
 concept YieldingLaw = LoadingAndUnloadingForce<Law, real> && LoadingAndUnloadingForce<Law, Group> &&
                       requires(const Law& law, real deepest) {

@@ -1,5 +1,5 @@
-// The table of laws, one line a law. See docs, "Add a contact law"; what a law must have is in
-// contact/complete.hpp.
+// The table of contact laws. See the documentation, "Add a contact law"; contact/complete.hpp lists the
+// required parts.
 #pragma once
 
 #include "contact/complete.hpp"
@@ -42,11 +42,11 @@ using TangentialLaw = TangentialLaws<
 >;
 // clang-format on
 
-// What a restitution law says of an approach speed.
+// Restitution at an approach speed.
 struct Rebound {
     real e = 1;
-    bool outside = false;      // above the law's last valid speed
-    bool extrapolated = false; // outside, and used all the same
+    bool outside = false;      // above the largest valid speed, and must not be used
+    bool extrapolated = false; // above the largest valid speed, but extrapolation is allowed
 };
 
 inline Rebound rebound(const RestitutionLaw& law, real speed) {
@@ -60,7 +60,8 @@ inline Rebound rebound(const RestitutionLaw& law, real speed) {
     });
 }
 
-// Can a contact with this law rebound so? To lose all, a dashpot would have to be infinite.
+// Whether a contact with this law can have this restitution. For zero restitution a dashpot would have to be
+// infinite.
 inline bool possible(const NormalLaw& law, const Rebound& r) {
     return law.visit([&](const auto& l) { return !l.needs_restitution() || r.e >= 1e-6; });
 }

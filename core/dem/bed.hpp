@@ -1,4 +1,4 @@
-// The particles of one cavity, sorted by cell, and their contacts, in chunks.
+// The particles of one cavity, sorted by cell, and their contacts, in chunks of consecutive particles.
 #pragma once
 
 #include <algorithm>
@@ -6,91 +6,94 @@
 
 #include "dem/contact_begin.hpp"
 #include "dem/contact_list.hpp"
+#include "dem/diagnostics.hpp"
 #include "dem/problem.hpp"
 #include "dem/structure.hpp"
-#include "dem/tally.hpp"
 
 namespace rattlebox::dem {
 
-// Some hundred particles that follow each other, and the contacts whose first partners they are.
+// Consecutive particles, and the contacts of which they are the first partner.
 struct Chunk {
     int begin, end;
-    int highest = 0;            // particle that the chunk's particles have as a neighbour
-    real approached = infinity; // how much nearer to each other any two may have come since the build
-    std::vector<std::uint8_t> near_first; // neighbours within reach: which of the chunk's particles,
-    std::vector<int> near_second;         // and the number of the other
+    int highest_neighbour = 0; // highest index of a neighbour of the chunk's particles
+    real approach = infinity;  // bound on the approach of any two particles since the rebuild, m
+    // Pairs within reach: index of the first particle within the chunk, and index of the second one.
+    std::vector<std::uint8_t> neighbour_first;
+    std::vector<int> neighbour_second;
     ContactList pairs, walls;
-    Tally tally;
-    Stopped stopped;
+    Diagnostics diagnostics;
+    StopReason stop_reason;
     std::vector<std::pair<int, FirstStepShare>>
-        first_step; // of contacts that begin in this step, by candidate
+        first_step; // by candidate, of contacts that begin in this step
 
     Chunk(int begin, int end) : begin(begin), end(end) {}
 
     std::size_t memory() const {
-        return pairs.bytes() + walls.bytes() + sizeof(Chunk) + near_first.capacity() +
-               near_second.capacity() * sizeof(int);
+        return pairs.bytes() + walls.bytes() + sizeof(Chunk) + neighbour_first.capacity() +
+               neighbour_second.capacity() * sizeof(int);
     }
 
-    template <class Archive> void keep(Archive& a) {
-        a(highest, approached, near_first, near_second, tally, stopped);
-        pairs.keep(a);
-        walls.keep(a);
+    template <class Archive> void serialize(Archive& a) {
+        a(highest_neighbour, approach, neighbour_first, neighbour_second, diagnostics, stop_reason);
+        pairs.serialize(a);
+        walls.serialize(a);
     }
 };
 
-// What all need to know of a chunk in a step: a line of memory.
+// What other workers read about a chunk in each step; one cache line.
 struct alignas(64) ChunkMotion {
-    // On the cavity, and how far any particle has moved beyond the reference: to infinity if one stops the
-    // run.
+    // Force on the cavity, and the largest displacement of a particle in the step relative to the reference
+    // velocity; infinite if a particle stops the run.
     real force_on_cavity[3] = {}, moved = 0;
-    real momentum[3] = {}, approached = 0; // the chunk's
+    real momentum[3] = {}, approach = 0; // of the chunk
 };
 
-// How velocity and spin change: a line of memory.
+// Acceleration and angular acceleration; one cache line.
 struct alignas(64) Rates {
     Row velocity, spin;
 };
 
 struct Bed {
-    static constexpr int chunk_size = 128; // numbers of particles in their chunk fit a byte
-    static constexpr int cached = 20'000;  // of more particles caches hold only a part
+    static constexpr int chunk_size = 128; // an index within a chunk fits a byte
+    static constexpr int cached = 20'000;  // beds of more particles exceed the caches
 
     const Cavity* cavity = nullptr;
     std::vector<Row> position; // and radius
     std::vector<Row> velocity; // predicted for the end of the step, and 1 / mass
-    std::vector<Row> spin;     // predicted, and radius / inertia
-    // Of those that touched something in the step before: others were accelerated as all are, and turned
-    // evenly.
+    std::vector<Row> spin;     // predicted for the end of the step, and radius / inertia
+    // Valid for particles that had a contact in the previous step. All others had the acceleration of the
+    // body forces and no angular acceleration.
     std::vector<Rates> rates;
-    std::vector<char> touched;   // something in the step before
-    std::vector<int> name, kind; // number in the case, material
+    std::vector<char> touched;    // whether the particle had a contact in the previous step
+    std::vector<int> id, species; // number in the case, and species
     std::vector<Chunk> chunks;
-    std::vector<ChunkMotion> chunk_motion; // of the chunks
+    std::vector<ChunkMotion> chunk_motion;
 
-    real smallest = infinity; // radius
-    real mass = 0;            // of all
-    bool rolls = false;       // some contacts resist rolling
-    real reach = 0;           // neighbours were closer than that at the build
-    Row reference{}; // velocity, beyond which motions of particles are counted: their mean in the step before
-    real apart = 0;  // how far the cavity has moved beyond the reference in the last step
+    real smallest = infinity; // radius, m
+    real mass = 0;            // of all particles, kg
+    bool rolls = false;       // whether contacts resist rolling
+    real reach = 0;           // largest gap of neighbours at the rebuild, m
+    // Displacements are measured relative to it: the mean velocity of the particles in the previous step.
+    Row reference_velocity{};
+    real cavity_moved = 0; // displacement of the cavity in the last step relative to the reference velocity
     CavityMotion motion;
-    Row shown{}; // displacement of the cavity at the last step whose forces are known
+    Row output_displacement{}; // displacement of the cavity at the last step whose forces are known
 
     int particles() const { return static_cast<int>(position.size()); }
     int chunk_count() const { return static_cast<int>(chunks.size()); }
 
     std::size_t memory() const {
-        std::size_t bytes = touched.capacity() + (name.capacity() + kind.capacity()) * sizeof(int);
+        std::size_t bytes = touched.capacity() + (id.capacity() + species.capacity()) * sizeof(int);
         for (const auto* v : {&position, &velocity, &spin}) bytes += v->capacity() * sizeof(Row);
         bytes += rates.capacity() * sizeof(Rates);
         for (const Chunk& c : chunks) bytes += c.memory();
         return bytes;
     }
 
-    template <class Archive> void keep(Archive& a) {
-        a(position, velocity, spin, rates, touched, name, kind, chunk_motion, reach, reference, apart, shown);
-        for (Chunk& c : chunks) c.keep(a);
+    template <class Archive> void serialize(Archive& a) {
+        a(position, velocity, spin, rates, touched, id, species, chunk_motion, reach, reference_velocity,
+          cavity_moved, output_displacement);
+        for (Chunk& c : chunks) c.serialize(a);
     }
 };
 

@@ -1,10 +1,10 @@
-// Which candidates touch, and the forces of those that do, in SIMD lanes.
+// Contact detection among the candidate pairs, and contact forces, in SIMD lanes.
 //
-// The loops take as many contacts at once as a register holds, four at most: rows of positions, velocities
-// and spins are transposed into lanes, and the laws of core/contact are evaluated for all lanes. Sums have
-// the order of eight lanes on every machine. Measured on one core as time without lanes (one contact at a
-// time) over time with them: 1.75 with 1000 particles shaken, 2.6 at rest, 1.95 and 2.15 with 100 000; eight
-// lanes are no faster than four.
+// The loops compute as many contacts at once as a register holds, four at most: rows of positions, velocities
+// and spins are transposed into lanes, and the laws of core/contact are evaluated for all lanes. Sums are
+// accumulated in eight lanes with every instruction set, so that their order is the same. Measured on one
+// core as time without lanes (one contact at a time) over time with them: 1.75 with 1000 particles shaken,
+// 2.6 at rest, 1.95 and 2.15 with 100 000; eight lanes are no faster than four.
 #pragma once
 
 #include "dem/contact_geometry.hpp"
@@ -13,27 +13,27 @@
 
 namespace rattlebox::dem {
 
-template <class Entry> RATTLEBOX_INLINE Group of_kinds(const std::vector<real>& value, Entry&& entry) {
+template <class Entry> RATTLEBOX_INLINE Group by_species(const std::vector<real>& value, Entry&& entry) {
     if (value.size() == 1) return Group::all(value[0]);
     alignas(64) real of[group];
     for (int l = 0; l < group; ++l) of[l] = at(value, entry(l));
     return pack<group>(of);
 }
 
-// A pair of particles, and a particle at a wall, as many at once as a register holds.
+// Access to candidate pairs of particles; `k` points to as many candidates as a register holds.
 struct PairView {
     const Bed& bed;
     const ContactList& list;
-    const std::vector<real>& mu; // by kinds
+    const std::vector<real>& mu; // friction coefficient by two species
 
     RATTLEBOX_INLINE Group friction(const int* k) const {
-        return of_kinds(mu, [&](int l) {
-            return at(bed.kind, at(list.first, k[l])) * bed.cavity->kinds +
-                   at(bed.kind, at(list.second, k[l]));
+        return by_species(mu, [&](int l) {
+            return at(bed.species, at(list.first, k[l])) * bed.cavity->species_count +
+                   at(bed.species, at(list.second, k[l]));
         });
     }
 
-    // Rows are combined before they are turned into lanes, which costs more.
+    // Rows are combined before they are transposed, because transposing costs more.
     template <class Combine>
     RATTLEBOX_INLINE Columns both(const std::vector<Row>& rows, const int* k, Combine&& combine) const {
         return columns_of([&](int l) __attribute__((always_inline)) {
@@ -42,30 +42,30 @@ struct PairView {
         });
     }
 
-    // From the first centre to the second, and the sum of the radii.
-    RATTLEBOX_INLINE Columns way(const int* k) const {
+    // Branch vector from the first centre to the second, and the sum of the radii.
+    RATTLEBOX_INLINE Columns branch(const int* k) const {
         return both(bed.position, k, [](Row a, Row b, int, int) __attribute__((always_inline)) {
             return b + row(-1, -1, -1, 1) * a;
         });
     }
 
-    // Positive where the pair touches.
-    RATTLEBOX_INLINE Group room(const int* k) const {
-        const auto apart = way(k);
+    // Returns a number that is positive if the pair overlaps.
+    RATTLEBOX_INLINE Group overlap_sign(const int* k) const {
+        const auto apart = branch(k);
         return apart.w * apart.w - dot(apart.vector(), apart.vector());
     }
 
-    template <bool spins> RATTLEBOX_INLINE Approach<Group> approach(const int* k) const {
-        const auto apart = way(k);
+    template <bool spins> RATTLEBOX_INLINE ContactKinematics<Group> kinematics(const int* k) const {
+        const auto apart = branch(k);
         const auto place = [&](int i) __attribute__((always_inline)) { return at(bed.position, i); };
-        // With the smaller radius as the fourth number.
+        // The fourth number is the smaller radius.
         const auto moving =
             both(bed.velocity, k, [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
                 const Row p = place(i), q = place(j);
                 return __builtin_shufflevector(a - b, p < q ? p : q, 0, 1, 2, 7);
             });
         if constexpr (!spins)
-            return approach_of<false>(
+            return contact_kinematics<false>(
                 RelativeMotion<Group>{apart.vector(), moving.vector(), {}, {}, apart.w, moving.w});
         const auto surface_spin =
             both(bed.spin, k, [&](Row a, Row b, int i, int j) __attribute__((always_inline)) {
@@ -73,8 +73,8 @@ struct PairView {
             });
         const auto spin =
             both(bed.spin, k, [](Row a, Row b, int, int) __attribute__((always_inline)) { return a - b; });
-        return approach_of<true>(RelativeMotion<Group>{apart.vector(), moving.vector(), spin.vector(),
-                                                       surface_spin.vector(), apart.w, moving.w});
+        return contact_kinematics<true>(RelativeMotion<Group>{apart.vector(), moving.vector(), spin.vector(),
+                                                              surface_spin.vector(), apart.w, moving.w});
     }
 };
 
@@ -85,8 +85,9 @@ struct WallView {
     bool curved;
 
     RATTLEBOX_INLINE Group friction(const int* k) const {
-        return of_kinds(mu, [&](int l) {
-            return at(bed.kind, at(list.first, k[l])) * bed.cavity->wall_kinds + wall(k[l]).kind;
+        return by_species(mu, [&](int l) {
+            return at(bed.species, at(list.first, k[l])) * bed.cavity->wall_material_count +
+                   wall(k[l]).material;
         });
     }
 
@@ -94,10 +95,11 @@ struct WallView {
         return columns([&](int l) { return &at(rows, at(list.first, k[l])); });
     }
     const Wall& wall(int k) const { return at(bed.cavity->walls, at(list.second, k)); }
-    static Vector<Group> same(Row r) { return {Group::all(r[0]), Group::all(r[1]), Group::all(r[2])}; }
+    static Vector<Group> broadcast(Row r) { return {Group::all(r[0]), Group::all(r[1]), Group::all(r[2])}; }
 
-    RATTLEBOX_INLINE void near(const int* k, const Columns& a, Vector<Group>& normal, Group& distance) const {
-        const Vector<Group> place = a.vector() - same(bed.motion.displacement);
+    RATTLEBOX_INLINE void nearest_point(const int* k, const Columns& a, Vector<Group>& normal,
+                                        Group& distance) const {
+        const Vector<Group> place = a.vector() - broadcast(bed.motion.displacement);
         const auto axis = columns([&](int l) { return &wall(k[l]).axis; });
         const Group along = dot(axis.vector(), place);
         normal = axis.vector();
@@ -116,28 +118,29 @@ struct WallView {
                   choose(pack<group>(bent), one_over * q.z, normal.z)};
     }
 
-    RATTLEBOX_INLINE Group room(const int* k) const {
+    RATTLEBOX_INLINE Group overlap_sign(const int* k) const {
         Vector<Group> normal;
         Group distance;
         const auto a = first(bed.position, k);
-        near(k, a, normal, distance);
+        nearest_point(k, a, normal, distance);
         return a.w - distance;
     }
 
-    template <bool spins> RATTLEBOX_INLINE Approach<Group> approach(const int* k) const {
+    template <bool spins> RATTLEBOX_INLINE ContactKinematics<Group> kinematics(const int* k) const {
         Vector<Group> normal;
         Group distance;
         const auto a = first(bed.position, k);
-        near(k, a, normal, distance);
-        Ball<Group> ball{a.vector(), first(bed.velocity, k).vector(), {}, a.w};
-        if constexpr (spins) ball.spin = first(bed.spin, k).vector();
-        return approach_of<spins>(ball, normal, distance, same(bed.motion.velocity));
+        nearest_point(k, a, normal, distance);
+        Sphere<Group> sphere{a.vector(), first(bed.velocity, k).vector(), {}, a.w};
+        if constexpr (spins) sphere.spin = first(bed.spin, k).vector();
+        return contact_kinematics<spins>(sphere, normal, distance, broadcast(bed.motion.velocity));
     }
 };
 
-RATTLEBOX_INLINE Columns lay(const Four<Group>& f) { return {f.x, f.y, f.z, f.w}; }
+RATTLEBOX_INLINE Columns as_columns(const Vector4<Group>& f) { return {f.x, f.y, f.z, f.w}; }
 
-// Lists the candidates that touch; calls begun(k) and ended(k) for contacts that have just begun or ended.
+// Lists the touching candidates; calls begun(k) and ended(k) for contacts that have begun or ended in this
+// step.
 template <class View, class Begun, class Ended>
 void find_touching(ContactList& list, const View& view, Begun&& begun, Ended&& ended,
                    const Prefetch& prefetch) {
@@ -152,7 +155,7 @@ void find_touching(ContactList& list, const View& view, Begun&& begun, Ended&& e
         for (int part = 0; part < used; part += group) {
             int k[group];
             for (int l = 0; l < group; ++l) k[l] = base + part + l;
-            overlapping |= positive(view.room(k)) << part;
+            overlapping |= positive(view.overlap_sign(k)) << part;
         }
         overlapping &= first_lanes(used);
         count += list_lanes(overlapping, base, touching + count);
@@ -163,27 +166,27 @@ void find_touching(ContactList& list, const View& view, Begun&& begun, Ended&& e
     list.touching_count = count;
 }
 
-// Losses of enduring contacts are sampled in every such step, which costs next to nothing.
-constexpr int probe = 32;
+// Losses of enduring contacts are sampled once in this many steps, which takes no measurable time.
+constexpr int enduring_interval = 32;
 
-template <bool rough, bool rolls, class Law, class View, class Settle>
+template <bool rough, bool rolls, class Law, class View, class UpdateCurve>
 void compute_contact_forces(const Law& normal_law, ContactList& list, const View& view,
-                            const ContactLaws& laws, bool sampled, Partner partner, Tally& tally,
-                            Settle&& update_unloading_curve, const Prefetch& prefetch) {
+                            const ContactLaws& laws, bool sampled, Partner partner, Diagnostics& diagnostics,
+                            UpdateCurve&& update_unloading_curve, const Prefetch& prefetch) {
     const int count = list.touching_count;
     const int* touching = list.touching.data();
     const Group zero = Group::all(0), dt = Group::all(laws.dt);
-    const bool probing = list.steps % probe == 0 && laws.enduring < infinity;
+    const bool samples_enduring = list.steps % enduring_interval == 0 && laws.enduring < infinity;
     const Group latest = Group::all(static_cast<real>(list.steps) - laws.enduring);
     ContactForces& contact_forces = list.contact_forces;
     contact_forces.all.resize(static_cast<std::size_t>(count));
     if constexpr (rolls) contact_forces.torque.resize(static_cast<std::size_t>(count));
     const int* const slot = list.slot.data();
-    ContactState* const states = list.memory.state.data();
-    ContactForce* const acts = contact_forces.all.data();
+    ContactState* const states = list.history.state.data();
+    ContactForce* const forces = contact_forces.all.data();
     alignas(64) real used[group];
     for (int base = 0; base < count; base += group) {
-        const int part = base % lane_count; // of the sums, which have the same order on every machine
+        const int part = base % lane_count; // first of the eight lanes of the sums
         if (part == 0) prefetch.for_contacts(base);
         int a[group], k[group], s[group];
         for (int l = 0; l < group; ++l) {
@@ -196,21 +199,21 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
             return [&, part](int l) { return &(states[s[l]].*part); };
         };
         const auto rolling = [&](Row RollingState::* part) {
-            return [&, part](int l) { return &(at(list.memory.rolling, s[l]).*part); };
+            return [&, part](int l) { return &(at(list.history.rolling, s[l]).*part); };
         };
-        const auto acting = [&](Row ContactForce::* part) {
-            return [&, part](int l) { return &(acts[a[l]].*part); };
+        const auto contact_force = [&](Row ContactForce::* part) {
+            return [&, part](int l) { return &(forces[a[l]].*part); };
         };
-        const auto yields = [&](int l) { return &at(list.memory.yield_history, s[l]); };
+        const auto yields = [&](int l) { return &at(list.history.yield_history, s[l]); };
         const Group weight = pack<group>(used);
-        const auto m = view.template approach<rough>(k);
+        const auto m = view.template kinematics<rough>(k);
         const auto law = columns(state(&ContactState::law));
         Columns yield_history{};
         if constexpr (Law::hysteretic) {
             alignas(64) real overlap[group];
             pack<group>(overlap) = m.overlap;
             for (int l = 0; l < group; ++l) {
-                Row& d = at(list.memory.yield_history, s[l]);
+                Row& d = at(list.history.yield_history, s[l]);
                 if (sampled) d[0] = std::fmax(d[0], overlap[l]);
                 if (d[3] != d[0] && (overlap[l] < d[0] || sampled)) update_unloading_curve(k[l]);
             }
@@ -221,13 +224,14 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
         const Coefficients<Group> k_normal{law.x, law.y};
         const History<Group> history{yield_history.x, yield_history.y, yield_history.z};
         auto normal = normal_force(normal_law, k_normal, depth, rate, history);
-        if (laws.never_pulls) normal.total = larger(normal.total, zero);
+        if (laws.repulsive_only) normal.total = larger(normal.total, zero);
         Group lost = weight * dt * (normal.total - normal.elastic) * rate;
-        group_of(tally.normal[partner], part) += lost;
-        tally.deepest.see(m.overlap, m.radius, part);
+        group_of(diagnostics.normal[partner], part) += lost;
+        diagnostics.largest_overlap.update(m.overlap, m.radius, part);
         Vector<Group> force = (zero - normal.total) * m.normal;
         if (sampled)
-            group_of(tally.stored, part) += weight * stored_energy(normal_law, k_normal, depth, history);
+            group_of(diagnostics.stored, part) +=
+                weight * stored_energy(normal_law, k_normal, depth, history);
         if constexpr (Law::hysteretic) {
             yield_history.x = larger(yield_history.x, m.overlap);
             store(yield_history, yields);
@@ -235,40 +239,40 @@ void compute_contact_forces(const Law& normal_law, ContactList& list, const View
         if constexpr (rough) {
             const auto h = tangential_force(m, normal.total, rate, law.z, law.w, view.friction(k), depth,
                                             columns(state(&ContactState::friction)), laws.tangential, dt);
-            store(lay(h.spring), state(&ContactState::friction));
+            store(as_columns(h.spring), state(&ContactState::friction));
             const Group slid = weight * h.loss;
-            group_of(tally.sliding[partner], part) += slid, lost += slid;
+            group_of(diagnostics.sliding[partner], part) += slid, lost += slid;
             force = force + h.force;
-            store(Columns{h.couple.x, h.couple.y, h.couple.z, zero}, acting(&ContactForce::couple));
+            store(Columns{h.couple.x, h.couple.y, h.couple.z, zero}, contact_force(&ContactForce::couple));
             if (sampled) {
-                group_of(tally.stored, part) += weight * h.stored;
-                group_of(tally.slid[partner], part) += weight * h.excess;
+                group_of(diagnostics.stored, part) += weight * h.stored;
+                group_of(diagnostics.sliding_correction[partner], part) += weight * h.excess;
             }
             if constexpr (rolls) {
                 const auto r =
                     rolling_torque(m, normal.total, h.stiffness, columns(rolling(&RollingState::law)), depth,
                                    columns(rolling(&RollingState::spring)), laws.tangential, dt);
-                store(lay(r.spring), rolling(&RollingState::spring));
+                store(as_columns(r.spring), rolling(&RollingState::spring));
                 store(Columns{r.torque.x, r.torque.y, r.torque.z, zero},
                       [&](int l) { return &at(contact_forces.torque, a[l]); });
                 const Group rolled = weight * r.loss;
-                group_of(tally.rolling[partner], part) += rolled, lost += rolled;
+                group_of(diagnostics.rolling[partner], part) += rolled, lost += rolled;
                 if (sampled) {
-                    group_of(tally.stored, part) += weight * r.stored;
-                    group_of(tally.rolled[partner], part) += weight * r.excess;
+                    group_of(diagnostics.stored, part) += weight * r.stored;
+                    group_of(diagnostics.rolling_correction[partner], part) += weight * r.excess;
                 }
             }
         } else
-            store(Columns{zero, zero, zero, zero}, acting(&ContactForce::couple));
-        if (probing) {
+            store(Columns{zero, zero, zero, zero}, contact_force(&ContactForce::couple));
+        if (samples_enduring) {
             alignas(64) real since[group];
-            for (int l = 0; l < group; ++l) since[l] = at(list.memory.since, s[l]);
-            group_of(tally.enduring[partner], part) +=
-                Group::all(probe) * choose(latest - pack<group>(since), lost, zero);
+            for (int l = 0; l < group; ++l) since[l] = at(list.history.start_step, s[l]);
+            group_of(diagnostics.enduring[partner], part) +=
+                Group::all(enduring_interval) * choose(latest - pack<group>(since), lost, zero);
         }
-        store(Columns{force.x, force.y, force.z, Group::all(1)}, acting(&ContactForce::force));
+        store(Columns{force.x, force.y, force.z, Group::all(1)}, contact_force(&ContactForce::force));
     }
-    if (sampled) tally.contacts[partner] += count;
+    if (sampled) diagnostics.contacts[partner] += count;
 }
 
 } // namespace rattlebox::dem

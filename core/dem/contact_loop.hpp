@@ -1,9 +1,8 @@
-// The contact loop of one chunk of particles: forces of pairs and at walls, and their sums on particles.
+// The contact loop of one chunk: forces of pairs and at walls, and their sums on particles.
 //
-// A contact belongs to the chunk of the lower of its two particles. Its force does not depend on lower
-// chunks, so that in ascending order a chunk can be integrated as soon as its own forces are computed, while
-// its data are in the caches. A particle adds its forces in the order of its contacts, whichever worker
-// computes them.
+// A contact belongs to the chunk of the lower of its two particles, so that in ascending order a chunk can be
+// integrated as soon as its own forces are computed, while its data are in the caches. The forces on a
+// particle are added in the order of its contacts, whichever worker computes them.
 #pragma once
 
 #include "dem/contact_forces.hpp"
@@ -17,68 +16,69 @@ class ContactLoop {
     Bed& bed_;
     const Problem& problem_;
     ContactLaws pair_, wall_;
-    std::vector<real> pair_mu_, wall_mu_; // by kinds
+    std::vector<real> pair_mu_, wall_mu_; // by two species, and by species and wall material
     bool curved_ = false;
 
-    const PairLaw& between(int i, int j) const {
-        const Cavity& c = *bed_.cavity;
-        return at(problem_.pair_laws, at(c.particle_entry, at(bed_.kind, i) * c.kinds + at(bed_.kind, j)));
-    }
-    const PairLaw& with_wall(int i, int w) const {
+    const PairLaw& pair_law(int i, int j) const {
         const Cavity& c = *bed_.cavity;
         return at(problem_.pair_laws,
-                  at(c.wall_entry, at(bed_.kind, i) * c.wall_kinds + at(c.walls, w).kind));
+                  at(c.particle_pair, at(bed_.species, i) * c.species_count + at(bed_.species, j)));
+    }
+    const PairLaw& wall_law(int i, int w) const {
+        const Cavity& c = *bed_.cavity;
+        return at(problem_.pair_laws,
+                  at(c.wall_pair, at(bed_.species, i) * c.wall_material_count + at(c.walls, w).material));
     }
     Body body(int i) const { return {at(bed_.position, i), at(bed_.velocity, i), at(bed_.spin, i)}; }
 
-    Touch new_contact_of(const ContactList& list, int k, Partner partner) const {
+    NewContact new_contact_of(const ContactList& list, int k, Partner partner) const {
         const int i = at(list.first, k), j = at(list.second, k);
         const Body a = body(i);
-        if (partner == particle) return new_contact(between(i, j), a, body(j));
+        if (partner == particle) return new_contact(pair_law(i, j), a, body(j));
         const WallPoint near =
-            nearest_wall_point(at(bed_.cavity->walls, j), a.place - bed_.motion.displacement);
+            nearest_wall_point(at(bed_.cavity->walls, j), a.position - bed_.motion.displacement);
         real mobility = a.velocity[3];
         for (const Row& shape : bed_.cavity->shape) mobility += square(dot(shape, near.normal));
-        return new_contact(with_wall(i, j), a, near, bed_.motion.velocity, mobility);
+        return new_contact(wall_law(i, j), a, near, bed_.motion.velocity, mobility);
     }
 
     void update_unloading_curve(ContactList& list, int k, const ContactLaws& laws, Partner partner,
-                                Tally& tally) const {
+                                Diagnostics& diagnostics) const {
         const int s = at(list.slot, k);
         const real cost =
-            dem::update_unloading_curve(at(list.memory.yield_history, s), new_contact_of(list, k, partner));
-        tally.plastic[partner] += cost;
-        if (static_cast<real>(list.steps) - at(list.memory.since, s) > laws.enduring)
-            tally.enduring[partner] += first_lane(cost);
+            dem::update_unloading_curve(at(list.history.yield_history, s), new_contact_of(list, k, partner));
+        diagnostics.plastic[partner] += cost;
+        if (static_cast<real>(list.steps) - at(list.history.start_step, s) > laws.enduring)
+            diagnostics.enduring[partner] += first_lane(cost);
     }
 
     template <class View>
     void compute(ContactList& list, const View& view, const ContactLaws& laws, Partner partner, bool sampled,
                  Chunk& chunk, const Prefetch& prefetch) {
-        Tally& tally = chunk.tally;
+        Diagnostics& diagnostics = chunk.diagnostics;
         const auto begun = [&](int k) {
-            const Touch t = new_contact_of(list, k, partner);
+            const NewContact t = new_contact_of(list, k, partner);
             const ContactStart b = begin(t, problem_.dt);
-            at(list.slot, k) = list.memory.begin(b, static_cast<real>(list.steps));
+            at(list.slot, k) = list.history.add(b, static_cast<real>(list.steps));
             if (b.first_step.share != 0) chunk.first_step.push_back({k, b.first_step});
-            if (b.lost != 0) tally.normal[partner] += first_lane(b.lost);
-            ++tally.first_touches[partner];
-            tally.extrapolated += b.extrapolated;
-            tally.fastest = std::fmax(tally.fastest, t.speed);
-            if (b.status != Status::finished && chunk.stopped.status == Status::finished)
-                chunk.stopped = {b.status, at(list.first, k), -1, t.speed};
+            if (b.lost != 0) diagnostics.normal[partner] += first_lane(b.lost);
+            ++diagnostics.first_touches[partner];
+            diagnostics.extrapolated += b.extrapolated;
+            diagnostics.largest_approach_speed = std::fmax(diagnostics.largest_approach_speed, t.speed);
+            if (b.status != Status::finished && chunk.stop_reason.status == Status::finished)
+                chunk.stop_reason = {b.status, at(list.first, k), -1, t.speed};
         };
         const auto ended = [&](int k) {
             const int s = at(list.slot, k);
-            if (list.memory.yields &&
-                at(list.memory.yield_history, s)[3] != at(list.memory.yield_history, s)[0])
-                update_unloading_curve(list, k, laws, partner, tally);
-            // What the springs still hold is lost.
+            if (list.history.yields &&
+                at(list.history.yield_history, s)[3] != at(list.history.yield_history, s)[0])
+                update_unloading_curve(list, k, laws, partner, diagnostics);
+            // The energy that remains in the springs is lost.
             if (laws.rough)
-                tally.sliding[partner] += first_lane(spring_energy(at(list.memory.state, s).friction));
+                diagnostics.sliding[partner] += first_lane(spring_energy(at(list.history.state, s).friction));
             if (laws.rolls)
-                tally.rolling[partner] += first_lane(spring_energy(at(list.memory.rolling, s).spring));
-            list.memory.free.push_back(s);
+                diagnostics.rolling[partner] += first_lane(spring_energy(at(list.history.rolling, s).spring));
+            list.history.free.push_back(s);
             at(list.slot, k) = ContactList::none;
         };
         chunk.first_step.clear();
@@ -86,33 +86,35 @@ class ContactLoop {
         prefetch.remaining(list.size(), list.touching_count);
         if (list.touching_count == 0) return list.contact_forces.all.clear();
         laws.normal.visit([&](const auto& law) {
-            const auto update_curve = [&](int k) { update_unloading_curve(list, k, laws, partner, tally); };
+            const auto update_curve = [&](int k) {
+                update_unloading_curve(list, k, laws, partner, diagnostics);
+            };
             const auto compute = [&](auto rough, auto rolls) {
                 compute_contact_forces<rough.value, rolls.value>(law, list, view, laws, sampled, partner,
-                                                                 tally, update_curve, prefetch);
+                                                                 diagnostics, update_curve, prefetch);
             };
-            constexpr std::true_type yes;
-            constexpr std::false_type no;
-            laws.rolls ? compute(yes, yes) : laws.rough ? compute(yes, no) : compute(no, no);
+            constexpr std::true_type on;
+            constexpr std::false_type off;
+            laws.rolls ? compute(on, on) : laws.rough ? compute(on, off) : compute(off, off);
         });
         for (const auto& [k, first_step] : chunk.first_step) {
             const auto touching = list.touching.begin();
             const auto a = std::lower_bound(touching, touching + list.touching_count, k) - touching;
-            ContactForce& action = at(list.contact_forces.all, static_cast<int>(a));
+            ContactForce& contact_force = at(list.contact_forces.all, static_cast<int>(a));
             if (laws.rough)
-                tally.sliding[partner] +=
-                    first_lane(-first_step.share * problem_.dt * dot(action.force, first_step.slip));
-            action.force *= row(1 + first_step.share);
-            action.couple *= row(1 + first_step.share);
+                diagnostics.sliding[partner] +=
+                    first_lane(-first_step.share * problem_.dt * dot(contact_force.force, first_step.slip));
+            contact_force.force *= row(1 + first_step.share);
+            contact_force.couple *= row(1 + first_step.share);
         }
     }
 
     void add(ForceSums& sums, const ContactForces& contact_forces, int a, int i, real sign,
              const ContactLaws& laws) {
-        const ContactForce& action = at(contact_forces.all, a);
+        const ContactForce& contact_force = at(contact_forces.all, a);
         ContactForce& sum = sums.of(i);
-        sum.force += row(sign, sign, sign, 1) * action.force;
-        sum.couple += action.couple;
+        sum.force += row(sign, sign, sign, 1) * contact_force.force;
+        sum.couple += contact_force.couple;
         if (laws.rolls) sums.torque(i) += row(sign) * at(contact_forces.torque, a);
     }
 
@@ -120,33 +122,31 @@ public:
     ContactLoop(Bed& bed, const Problem& problem, const ContactLaws& pair, const ContactLaws& wall)
         : bed_(bed), problem_(problem), pair_(pair), wall_(wall) {
         for (const Wall& w : bed.cavity->walls) curved_ |= w.form != Wall::plane;
-        for (const int e : bed.cavity->particle_entry)
-            pair_mu_.push_back(at(problem.pair_laws, e).friction());
-        for (const int e : bed.cavity->wall_entry) wall_mu_.push_back(at(problem.pair_laws, e).friction());
+        for (const int e : bed.cavity->particle_pair) pair_mu_.push_back(at(problem.pair_laws, e).friction());
+        for (const int e : bed.cavity->wall_pair) wall_mu_.push_back(at(problem.pair_laws, e).friction());
     }
 
-    // Whether contacts rub, and whether they resist rolling.
     bool has_friction() const { return pair_.rough || wall_.rough; }
     bool has_rolling() const { return pair_.rolls || wall_.rolls; }
 
-    // Forces of all pairs that touch and of which the chunk owns the first: of them it reads particles, and
-    // what it writes is the chunk's alone.
+    // Computes the forces of the pairs that belong to the chunk. Writes only to the chunk.
     void pair_forces(const NeighbourList& neighbours, Chunk& chunk, bool sampled, const Prefetch& prefetch) {
-        const int own = chunk.begin / Bed::chunk_size, last = chunk.highest / Bed::chunk_size;
+        const int own = chunk.begin / Bed::chunk_size, last = chunk.highest_neighbour / Bed::chunk_size;
         real others = 0;
         for (int c = own; c <= last; ++c) others = larger(others, at(bed_.chunk_motion, c).moved);
         const real moved = at(bed_.chunk_motion, own).moved + others;
         ContactList& pairs = chunk.pairs;
-        pairs.since += moved, ++pairs.age, ++pairs.steps;
-        chunk.approached += moved;
-        if (pairs.is_stale()) neighbours.scan_pairs(bed_, chunk), ++chunk.tally.scans;
+        pairs.approach += moved, ++pairs.steps_since_scan, ++pairs.steps;
+        chunk.approach += moved;
+        if (pairs.is_stale()) neighbours.scan_pairs(bed_, chunk), ++chunk.diagnostics.scans;
         compute(pairs, PairView{bed_, pairs, pair_mu_}, pair_, particle, sampled, chunk, prefetch);
     }
 
-    // Forces on the chunk's particles at the walls.
+    // Computes the forces of the walls on the particles of the chunk.
     void wall_forces(const NeighbourList& neighbours, Chunk& chunk, bool sampled) {
-        chunk.walls.since += at(bed_.chunk_motion, chunk.begin / Bed::chunk_size).moved + bed_.apart;
-        ++chunk.walls.age, ++chunk.walls.steps;
+        chunk.walls.approach +=
+            at(bed_.chunk_motion, chunk.begin / Bed::chunk_size).moved + bed_.cavity_moved;
+        ++chunk.walls.steps_since_scan, ++chunk.walls.steps;
         if (chunk.walls.is_stale()) neighbours.scan_walls(bed_, chunk);
         compute(chunk.walls, WallView{bed_, chunk.walls, wall_mu_, curved_}, wall_, wall, sampled, chunk,
                 Prefetch());
@@ -157,26 +157,27 @@ public:
             const Row f = at(list.contact_forces.all, a).force;
             total -= f;
             if (sampled) {
-                const Row place = at(bed_.position, i) - bed_.motion.displacement;
-                const WallPoint near = nearest_wall_point(at(bed_.cavity->walls, at(list.second, k)), place);
-                moment -= cross(place + near.normal * near.distance, f);
+                const Row position = at(bed_.position, i) - bed_.motion.displacement;
+                const WallPoint near =
+                    nearest_wall_point(at(bed_.cavity->walls, at(list.second, k)), position);
+                moment -= cross(position + near.normal * near.distance, f);
                 if (wall_.rolls) moment -= at(list.contact_forces.torque, a);
             }
         }
         ChunkMotion& motion = at(bed_.chunk_motion, chunk.begin / Bed::chunk_size);
         for (int a = 0; a < 3; ++a) motion.force_on_cavity[a] = total[a];
-        chunk.tally.wall_moment = moment;
+        chunk.diagnostics.wall_moment = moment;
     }
 
-    // Adds the forces of contacts that a lower chunk owns, on particles from `first` to `until`.
-    void add_incoming(ForceSums& sums, const Chunk& lower, int first, int until) {
-        const ContactList& pairs = lower.pairs;
+    // Adds the forces of contacts of a lower chunk on the particles from `first` to `until`.
+    void add_incoming(ForceSums& sums, const Chunk& owner, int first, int until) {
+        const ContactList& pairs = owner.pairs;
         for (int a = 0; a < pairs.touching_count; ++a)
             if (const int j = at(pairs.second, at(pairs.touching, a)); j >= first && j < until)
                 add(sums, pairs.contact_forces, a, j, -1, pair_);
     }
 
-    // Adds the forces of contacts that the chunk owns, on particles below `until`.
+    // Adds the forces of the contacts of the chunk on particles below `until`.
     void add_own(ForceSums& sums, const Chunk& chunk, int until) {
         const ContactList &pairs = chunk.pairs, &walls = chunk.walls;
         for (int a = 0; a < pairs.touching_count; ++a) {

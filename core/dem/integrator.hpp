@@ -1,8 +1,12 @@
-// Velocity Verlet for the particles of a chunk.
+// Velocity-Verlet integration of the particles of a chunk.
 //
-// Forces that depend on the velocity take the one predicted from the last acceleration, v + dt a, which keeps
-// the second order:  v' = u + dt/2 (a' - a),  u' = v' + dt a',  x' = x + dt v' + dt^2/2 a',  u predicted, a
-// the last. Rows carry a fourth number along, which stays as it is.
+//     v  = u + dt/2 (a - a_0)        u' = v + dt a        x' = x + dt v + dt^2/2 a
+//
+// Forces that depend on the velocity are computed from u = v_0 + dt a_0, predicted with the last acceleration
+// a_0, which keeps second order. The fourth number of a row is not changed.
+//
+// W. C. Swope, H. C. Andersen, P. H. Berens, K. R. Wilson, J. Chem. Phys. 76 (1982) 637,
+// doi:10.1063/1.442716.
 #pragma once
 
 #include "dem/partition.hpp"
@@ -12,41 +16,43 @@ namespace rattlebox::dem {
 
 struct Verlet {
     Row back, step, half;
-    Row body, body_before; // acceleration of what touches nothing, in this step and in the one before
+    Row body, body_before; // acceleration without contacts, in this step and the previous one
 
-    // The first step has none before.
+    // In the first step there is no previous acceleration.
     Verlet(real dt, Row body, Row body_before, bool first)
         : back(row(first ? 0 : 0.5 * dt, first ? 0 : 0.5 * dt, first ? 0 : 0.5 * dt)), step(row(dt, dt, dt)),
           half(row(0.5 * dt, 0.5 * dt, 0.5 * dt)), body(body), body_before(body_before) {}
 
-    Row now(Row predicted, Row a, Row before) const { return predicted + back * (a - before); }
-    Row next(Row v, Row a) const { return v + step * a; }
-    Row middle(Row v, Row a) const { return v + half * a; }
-    Row moved(Row x, Row middle) const { return x + step * middle; }
+    Row corrected(Row prediction, Row a, Row before) const { return prediction + back * (a - before); }
+    Row predicted(Row v, Row a) const { return v + step * a; }
+    Row half_step(Row v, Row a) const { return v + half * a; }
+    Row drifted(Row x, Row middle) const { return x + step * middle; }
 };
 
 class Integrator {
     Bed& bed_;
     real dt_;
-    bool spins_, rolls_; // whether spins change, and whether contacts resist rolling
-    bool far_;           // the bed exceeds the caches
+    bool spins_, rolls_; // whether contacts have friction, and rolling resistance
+    bool far_;           // whether the bed exceeds the caches
 
     real twice_rotation_energy(int i) const {
         const Row w = at(bed_.spin, i);
         return dot(w, w) * at(bed_.position, i)[3] / w[3];
     }
 
-    // Corrects velocities to this step, and predicts the next one. `body` accelerates all particles alike,
-    // `body_before` did in the last step; the first step has no last one. The range ends at particle `until`.
+    // Corrects the velocities of this step and predicts those of the next one. `body` is the acceleration
+    // without contacts, `body_before` that of the previous step. The range of the worker ends at particle
+    // `until`.
     template <bool sampled, bool far>
     void advance(ForceSums& sums, Chunk& chunk, int until, Row body, Row body_before, bool first) {
-        Tally& tally = chunk.tally;
+        Diagnostics& diagnostics = chunk.diagnostics;
         const bool spins = spins_, rolls = rolls_;
         const Verlet step(dt_, body, body_before, first);
-        const Row evenly = step.now(Row{}, body, body_before), reference = bed_.reference;
+        const Row evenly = step.corrected(Row{}, body, body_before),
+                  reference_velocity = bed_.reference_velocity;
         Row momentum{}, mass_moment{};
-        real drift = 0, kinetic = 0, rotation = 0;
-        // Where the rows are is looked up once: what is written to `touched` might be anything to a compiler.
+        real max_speed_squared = 0, kinetic = 0, rotation = 0;
+        // Pointers are loaded once: a compiler must assume that writes through the char pointer change them.
         Row *const position = bed_.position.data(), *const velocity = bed_.velocity.data(),
                    *const spin = bed_.spin.data();
         Rates* const rates = bed_.rates.data();
@@ -60,7 +66,7 @@ class Integrator {
             const bool before = touched, now = sum.force[3] > 0;
             if (before || now) {
                 if (now) a = sum.force * u[3] + body;
-                v = step.now(u, a, before ? rates[i].velocity : body_before);
+                v = step.corrected(u, a, before ? rates[i].velocity : body_before);
                 rates[i].velocity = a;
                 if (spins) {
                     Row &w = spin[i], rate = Row{}, rate_before = before ? rates[i].spin : Row{};
@@ -72,9 +78,9 @@ class Integrator {
                         }
                         rate *= w[3];
                     }
-                    w = step.now(w, rate, rate_before);
+                    w = step.corrected(w, rate, rate_before);
                     if constexpr (sampled) rotation += dot(w, w) * x[3] / w[3];
-                    w = step.next(w, rate);
+                    w = step.predicted(w, rate);
                     rates[i].spin = rate;
                 } else if constexpr (sampled) {
                     rotation += twice_rotation_energy(i);
@@ -84,27 +90,27 @@ class Integrator {
             } else if constexpr (sampled) {
                 rotation += twice_rotation_energy(i);
             }
-            const Row middle = step.middle(v, a), weighed = v / u[3];
+            const Row middle = step.half_step(v, a), weighed = v / u[3];
             momentum += weighed;
             if constexpr (sampled) {
                 kinetic += dot(v, weighed);
                 mass_moment += x / u[3];
             }
-            x = step.moved(x, middle);
-            u = step.next(v, a);
-            const Row moved = middle - reference;
-            const real speed = dot(moved, moved);
-            drift = drift > speed ? drift : speed;
+            x = step.drifted(x, middle);
+            u = step.predicted(v, a);
+            const Row moved = middle - reference_velocity;
+            const real speed_squared = dot(moved, moved);
+            max_speed_squared = max_speed_squared > speed_squared ? max_speed_squared : speed_squared;
         }
         ChunkMotion& motion = at(bed_.chunk_motion, chunk.begin / Bed::chunk_size);
-        const bool continues = chunk.stopped.status == Status::finished;
-        motion.moved = continues ? dt_ * std::sqrt(drift) * (1 + 1e-9) : infinity;
-        motion.approached = chunk.approached;
+        const bool continues = chunk.stop_reason.status == Status::finished;
+        motion.moved = continues ? dt_ * std::sqrt(max_speed_squared) * (1 + 1e-9) : infinity;
+        motion.approach = chunk.approach;
         for (int a = 0; a < 3; ++a) motion.momentum[a] = momentum[a];
         if constexpr (sampled) {
-            tally.kinetic = 0.5 * kinetic;
-            tally.rotation = 0.5 * rotation;
-            tally.mass_moment = mass_moment;
+            diagnostics.kinetic = 0.5 * kinetic;
+            diagnostics.rotation = 0.5 * rotation;
+            diagnostics.mass_moment = mass_moment;
         }
     }
 
@@ -119,12 +125,12 @@ public:
         const auto with = [&](auto sampled, auto far) {
             advance<sampled.value, far.value>(sums, chunk, until, body, body_before, first);
         };
-        constexpr std::true_type yes;
-        constexpr std::false_type no;
+        constexpr std::true_type on;
+        constexpr std::false_type off;
         if (far_)
-            sampled ? with(yes, yes) : with(no, yes);
+            sampled ? with(on, on) : with(off, on);
         else
-            sampled ? with(yes, no) : with(no, no);
+            sampled ? with(on, off) : with(off, off);
     }
 };
 

@@ -1,7 +1,8 @@
-// A particle damper as the core sees it: modes, signals, and cavities filled with spheres.
+// The problem of the 3-D engine: modes, signals, and cavities filled with spheres.
 //
-// Frame: the base. A cavity does not rotate; its centre is displaced by the sum of its mode shapes, three
-// numbers each. Positions count from the place of the centre at rest. A base acceleration b'' acts as -m b''.
+// The frame of reference is the base. A cavity does not rotate; the displacement of its centre is the sum of
+// the modal displacements times its mode shapes (three components each). Positions are measured from the rest
+// position of the centre. A base acceleration b'' acts on a mass m as the force -m b''.
 #pragma once
 
 #include <stdexcept>
@@ -17,23 +18,23 @@ namespace rattlebox::dem {
 struct Cavity {
     std::vector<Row> shape; // displacement of the centre per unit of each mode
     std::vector<Wall> walls;
-    std::vector<Row> position, velocity,
-        spin; // of each particle; the last number of a position is its radius
+    std::vector<Row> position, velocity, spin; // by particle; the fourth number of a position is the radius
     std::vector<real> mass, inertia;
-    std::vector<int> kind;
-    std::vector<int> particle_entry, wall_entry; // of two kinds, and of a kind and a wall's: which encounter
-    int kinds = 0, wall_kinds = 0;
+    std::vector<int> species;
+    // Indices into Problem::pair_laws by two species, and by a species and a wall material.
+    std::vector<int> particle_pair, wall_pair;
+    int species_count = 0, wall_material_count = 0;
 
     int particles() const { return static_cast<int>(position.size()); }
 };
 
 struct Problem {
     real dt = 0;
-    long steps = 0, every = 1; // the last step, and between two samples
-    real enduring = infinity;  // age beyond which a contact counts as enduring
+    long steps = 0, sample_interval = 1; // last step, and steps between two samples
+    real enduring = infinity;            // age beyond which a contact counts as enduring
     Row gravity{};
     std::vector<Mode> modes;
-    std::vector<real> coupling; // of the modes by damping (structure/coupled_modes.hpp); empty: none
+    std::vector<real> coupling; // modal damping without its diagonal (structure/coupled_modes.hpp), or empty
     std::vector<ModeState> start;
     std::vector<Load> loads;
     std::vector<Row> load_direction;
@@ -41,13 +42,13 @@ struct Problem {
     std::vector<PairLaw> pair_laws;
 };
 
-// How contacts of these entries are computed.
-inline ContactLaws contact_laws_of(const Problem& problem, const std::vector<int>& entries) {
+// Returns what all contacts of one list have in common; `pairs` are indices into Problem::pair_laws.
+inline ContactLaws contact_laws_of(const Problem& problem, const std::vector<int>& pairs) {
     ContactLaws k;
     k.dt = problem.dt, k.enduring = problem.enduring / problem.dt;
     bool first = true, first_rough = true;
-    for (const int entry : entries) {
-        const PairLaw& e = problem.pair_laws.at(static_cast<std::size_t>(entry));
+    for (const int pair : pairs) {
+        const PairLaw& e = problem.pair_laws.at(static_cast<std::size_t>(pair));
         if (first) k.normal = e.normal;
         first = false;
         e.normal.visit([&](const auto& law) {
@@ -57,7 +58,7 @@ inline ContactLaws contact_laws_of(const Problem& problem, const std::vector<int
                 throw std::invalid_argument(
                     "the contacts of one list need the same kind of normal law, ending and exponents");
             k.hysteretic = Law::hysteretic;
-            if constexpr (!Law::hysteretic) k.never_pulls = law.zero_overlap == 0;
+            if constexpr (!Law::hysteretic) k.repulsive_only = law.zero_overlap == 0;
         });
         if (e.friction() > 0) {
             if (!first_rough && k.tangential != e.tangential.index())

@@ -1,7 +1,7 @@
-// A structure with cavities full of particles, advanced run_parallel step by step.
+// The 3-D engine: a structure with cavities full of particles, advanced step by step on several threads.
 //
-// The structure is propagated exactly between the steps; at each step it is kicked by the loads and by the
-// forces that the particles of its cavities have at the very same instant: second order, and action equals
+// The structure is propagated exactly between two steps and kicked at each step by the loads and by the
+// forces of the particles at the same instant, so that the coupling is of second order and action equals
 // reaction.
 #pragma once
 
@@ -17,8 +17,8 @@
 
 namespace rattlebox::dem {
 
-// How long one worker runs alone where other programs have the cores (parallel/contention.hpp). The time
-// doubles where contention is found again soon after.
+// Time for which a single worker runs when other programs use the cores (parallel/contention.hpp). It doubles
+// if contention is detected again soon after.
 class SerialFallback {
     using Clock = std::chrono::steady_clock;
     static constexpr Clock::duration shortest = std::chrono::milliseconds(20),
@@ -42,10 +42,10 @@ class Simulation {
     std::vector<ContactLoop> contact_loops_;
     std::vector<Integrator> integrators_;
     std::vector<ModeState> modes_,
-        modes_shown_; // at the next step, and at the last one whose forces are known
-    std::vector<Turn> turns_;
+        output_modes_; // at the next step, and at the last one whose forces are known
+    std::vector<ModeTransition> mode_transitions_;
     std::vector<real> transition_;
-    std::vector<ModeState> moved_;
+    std::vector<ModeState> propagated_;
     std::vector<real> modal_force_, load_value_;
     std::vector<real> load_work_, base_work_, viscous_;
     std::vector<Signal> signals_;
@@ -54,30 +54,30 @@ class Simulation {
     long step_ = 0;
     Status status_ = Status::finished;
     int stopped_cavity_ = 0;
-    Stopped stopped_;
-    // After a step: end the run, or leave the team.
-    struct Break {
+    StopReason stop_reason_;
+    // Set after each step: end the run, or pause the other workers.
+    struct LoopControl {
         bool halt = false, pause = false;
-    } taken_;
-    bool must_build_ = true;    // before the next step
-    long forces_known_at_ = -1; // the step whose single contacts are still known
-    long builds_ = 0;
+    } loop_control_;
+    bool needs_rebuild_ = true; // before the next step
+    long forces_known_at_ = -1; // step whose contact forces are stored
+    long rebuilds_ = 0;
     SerialFallback serial_fallback_;
-    long serial_steps_ = 0; // by one for a team that was held up
+    long serial_steps_ = 0; // by one worker alone, because of contention
     Row body_before_{};
     long steps_since_ = 0;
     Partition partition_;
     Records records_;
 
     real now() const { return static_cast<real>(step_) * problem_.dt; }
-    bool sampled(long step) const { return step % problem_.every == 0 || step == problem_.steps; }
+    bool sampled(long step) const { return step % problem_.sample_interval == 0 || step == problem_.steps; }
 
-    // Takes the particles over from the cavity.
+    // Moves the particles from the cavity into the bed.
     void fill_bed(Bed& bed, Cavity& cavity, bool rolls) {
         bed.cavity = &cavity;
         const int n = cavity.particles();
         const auto size = static_cast<std::size_t>(n);
-        bed.velocity.reserve(size), bed.spin.reserve(size), bed.name.reserve(size);
+        bed.velocity.reserve(size), bed.spin.reserve(size), bed.id.reserve(size);
         for (int i = 0; i < n; ++i) {
             const real m = at(cavity.mass, i), radius = at(cavity.position, i)[3];
             Row u = at(cavity.velocity, i), w = at(cavity.spin, i);
@@ -87,36 +87,36 @@ class Simulation {
             bed.smallest = smaller(bed.smallest, radius);
             bed.velocity.push_back(u);
             bed.spin.push_back(w);
-            bed.name.push_back(i);
+            bed.id.push_back(i);
         }
         bed.position.assign(cavity.position.begin(), cavity.position.end());
-        bed.kind.assign(cavity.kind.begin(), cavity.kind.end());
+        bed.species.assign(cavity.species.begin(), cavity.species.end());
         for (auto* rows : {&cavity.position, &cavity.velocity, &cavity.spin}) std::vector<Row>().swap(*rows);
         for (auto* numbers : {&cavity.mass, &cavity.inertia}) std::vector<real>().swap(*numbers);
-        std::vector<int>().swap(cavity.kind);
+        std::vector<int>().swap(cavity.species);
         bed.touched.assign(size, 0);
         bed.rates.assign(size, Rates{});
         bed.rolls = rolls;
         bed.chunks.reserve((size + Bed::chunk_size - 1) / Bed::chunk_size);
         for (int from = 0; from < n; from += Bed::chunk_size)
             bed.chunks.emplace_back(from, std::min(from + Bed::chunk_size, n));
-        bed.chunk_motion.assign(bed.chunks.size(), ChunkMotion{.approached = infinity});
+        bed.chunk_motion.assign(bed.chunks.size(), ChunkMotion{.approach = infinity});
     }
 
     // ---- the structure
 
-    // Views of what this owns.
+    // Returns pointers to the arrays of this object.
     Structure structure() {
         return {static_cast<int>(modes_.size()),
                 static_cast<int>(signals_.size()),
                 problem_.dt,
                 problem_.gravity,
                 problem_.modes.data(),
-                turns_.data(),
+                mode_transitions_.data(),
                 transition_.empty() ? nullptr : transition_.data(),
-                moved_.data(),
+                propagated_.data(),
                 modes_.data(),
-                modes_shown_.data(),
+                output_modes_.data(),
                 modal_force_.data(),
                 viscous_.data(),
                 signals_.data(),
@@ -129,11 +129,12 @@ class Simulation {
     }
 
     void prepare_structure() {
-        modes_ = modes_shown_ = problem_.start;
-        for (const Mode& mode : problem_.modes) turns_.push_back(turn(mode, problem_.dt));
+        modes_ = output_modes_ = problem_.start;
+        for (const Mode& mode : problem_.modes)
+            mode_transitions_.push_back(mode_transition(mode, problem_.dt));
         if (!problem_.coupling.empty())
             transition_ = transition(problem_.modes, problem_.coupling, problem_.dt);
-        moved_.resize(modes_.size());
+        propagated_.resize(modes_.size());
         for (const Load& load : problem_.loads) {
             signals_.push_back(load.signal);
             load_shape_.insert(load_shape_.end(), load.shape.begin(), load.shape.end());
@@ -144,7 +145,7 @@ class Simulation {
         for (auto* numbers : {&load_value_, &load_work_, &base_work_}) numbers->assign(signals_.size(), 0);
     }
 
-    void place(Bed& bed) { bed.motion = structure().place(bed.cavity->shape.data()); }
+    void update_cavity_motion(Bed& bed) { bed.motion = structure().cavity_motion(bed.cavity->shape.data()); }
 
     Row force_on(const Bed& bed) const {
         Row total{};
@@ -158,243 +159,245 @@ class Simulation {
         return total;
     }
 
-    void find_modal_force() {
+    void compute_modal_force() {
         Structure s = structure();
-        s.no_force();
+        s.clear_forces();
         for (const Bed& bed : beds_) s.add_force(bed.cavity->shape.data(), force_on(bed));
         s.add_loads();
     }
 
     // ---- neighbours
 
-    Chunk& chunk(Place p) { return at(at(beds_, p.bed).chunks, p.chunk); }
+    Chunk& chunk(ChunkIndex p) { return at(at(beds_, p.bed).chunks, p.chunk); }
 
     void choose_reach(Bed& bed) {
-        constexpr real steps = 80; // a build costs as much as some ten scans: measured, and flat about this
-        const real smallest = bed.smallest, since = closing(bed);
+        constexpr real steps = 80; // measured; the optimum is flat
+        const real smallest = bed.smallest, since = approach_since_rebuild(bed);
         bed.reach =
             steps_since_ > 0 && since < infinity
                 ? std::clamp(since / static_cast<real>(steps_since_) * steps, 0.02 * smallest, 0.6 * smallest)
                 : 0.2 * smallest;
     }
 
-    template <class Team> void build(Team& team) {
+    template <class Worker> void rebuild(Worker& worker) {
         const auto each_chunk = [&](auto&& f) {
-            partition_.each_chunk(team.rank(),
-                                  [&](Place p) { f(at(neighbours_, p.bed), at(beds_, p.bed), p.chunk); });
+            partition_.each_chunk(
+                worker.rank(), [&](ChunkIndex p) { f(at(neighbours_, p.bed), at(beds_, p.bed), p.chunk); });
         };
         each_chunk([](NeighbourList& n, Bed& bed, int c) { n.collect_contacts(bed, at(bed.chunks, c)); });
-        team.sync([&] {
+        worker.sync([&] {
             for (std::size_t b = 0; b < beds_.size(); ++b)
-                choose_reach(beds_[b]), neighbours_[b].lay_cells(beds_[b]);
+                choose_reach(beds_[b]), neighbours_[b].set_up_cells(beds_[b]);
         });
-        each_chunk([](NeighbourList& n, const Bed& bed, int c) { n.find_cells(bed, at(bed.chunks, c)); });
-        team.sync([&] {
-            for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].find_order(beds_[b]);
+        each_chunk([](NeighbourList& n, const Bed& bed, int c) { n.assign_cells(bed, at(bed.chunks, c)); });
+        worker.sync([&] {
+            for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].sort_by_cell(beds_[b]);
         });
-        const WorkerRange& part = partition_.part(team.rank());
+        const WorkerRange& range = partition_.range(worker.rank());
         const auto each_bed = [&](auto&& f) {
             for (int b = 0; b < static_cast<int>(beds_.size()); ++b)
-                f(at(neighbours_, b), at(beds_, b), at(part.first, b), at(part.until, b));
+                f(at(neighbours_, b), at(beds_, b), at(range.first, b), at(range.until, b));
         };
-        for (int turn = 0; turn < NeighbourList::turns; ++turn) {
-            each_bed([turn](NeighbourList& n, Bed& bed, int first, int until) {
-                n.sort(bed, turn, first, until);
+        for (int phase = 0; phase < NeighbourList::sort_phases; ++phase) {
+            each_bed([phase](NeighbourList& n, Bed& bed, int first, int until) {
+                n.sort(bed, phase, first, until);
             });
-            team.sync([&] {
-                for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].exchange(beds_[b], turn);
+            worker.sync([&] {
+                for (std::size_t b = 0; b < beds_.size(); ++b) neighbours_[b].swap_buffers(beds_[b], phase);
             });
         }
         each_chunk([](const NeighbourList& n, Bed& bed, int c) {
             n.search(bed, at(bed.chunks, c));
-            at(bed.chunk_motion, c) = ChunkMotion{}, at(bed.chunks, c).approached = 0;
+            at(bed.chunk_motion, c) = ChunkMotion{}, at(bed.chunks, c).approach = 0;
         });
         each_bed([](NeighbourList& n, Bed& bed, int first, int until) {
             n.distribute_contacts(bed, first, until);
         });
-        team.sync();
+        worker.sync();
         each_chunk([](NeighbourList& n, Bed& bed, int c) { n.clear_outgoing(at(bed.chunks, c)); });
-        team.sync([&] {
-            partition_.divide(team.size());
-            ++builds_;
+        worker.sync([&] {
+            partition_.divide(worker.size());
+            ++rebuilds_;
             steps_since_ = 0;
         });
-        partition_.find_dependencies(team.rank());
+        partition_.find_dependencies(worker.rank());
     }
 
     // ---- steps
 
-    // What to ask memory for at a chunk: for what those after it need, of the same bed and part.
-    Prefetch prefetch(const WorkerRange& part, int k) const {
-        const Place here = partition_.place(k);
+    // Prefetches for the next chunks of the same bed and range.
+    Prefetch prefetch(const WorkerRange& range, int k) const {
+        const ChunkIndex here = partition_.chunk_index(k);
         if (!at(integrators_, here.bed).is_far()) return {};
         const auto after = [&](int places) -> const Chunk& {
-            const Place there = partition_.place(std::min(k + places, part.end - 1));
+            const ChunkIndex there = partition_.chunk_index(std::min(k + places, range.end - 1));
             return at(at(beds_, here.bed).chunks, there.bed == here.bed ? there.chunk : here.chunk);
         };
         return {at(beds_, here.bed), after(1), after(2), after(3)};
     }
 
-    // In the last step forces of single contacts are kept; else only what others need.
-    template <class Team> void advance(Team& team, bool first, bool sample, bool last) {
-        WorkerRange& part = partition_.part(team.rank());
-        const Row all = structure().body();
-        std::vector<char>& computed = part.computed;
-        computed.assign(part.at_border.begin(), part.at_border.end());
+    // Contact forces stay in the chunks in the last step and where another range needs them. Otherwise all
+    // chunks share one buffer that stays in the caches.
+    template <class Worker> void advance(Worker& worker, bool first, bool sample, bool last) {
+        WorkerRange& range = partition_.range(worker.rank());
+        const Row body = structure().body_acceleration();
+        std::vector<char>& computed = range.computed;
+        computed.assign(range.at_border.begin(), range.at_border.end());
         const auto forces = [&](int k, const Prefetch& prefetch = {}) {
-            const Place p = partition_.place(k);
+            const ChunkIndex p = partition_.chunk_index(k);
             at(contact_loops_, p.bed).pair_forces(at(neighbours_, p.bed), chunk(p), sample, prefetch);
             at(contact_loops_, p.bed).wall_forces(at(neighbours_, p.bed), chunk(p), sample);
         };
-        for (int k = part.begin; k < part.end; ++k)
-            if (at(computed, k - part.begin)) forces(k);
-        team.report();
-        team.wait_for_lower([&, k = part.begin]() mutable {
-            while (k < part.end && at(computed, k - part.begin)) ++k;
-            if (k == part.end) return false;
-            at(computed, k - part.begin) = true;
+        for (int k = range.begin; k < range.end; ++k)
+            if (at(computed, k - range.begin)) forces(k);
+        worker.report();
+        worker.wait_for_lower([&, k = range.begin]() mutable {
+            while (k < range.end && at(computed, k - range.begin)) ++k;
+            if (k == range.end) return false;
+            at(computed, k - range.begin) = true;
             forces(k);
             return true;
         });
-        for (const Place in : part.incoming)
+        for (const ChunkIndex in : range.incoming)
             at(contact_loops_, in.bed)
-                .add_incoming(at(part.sums, in.bed), chunk(in), at(part.first, in.bed),
-                              at(part.until, in.bed));
-        for (int k = part.begin; k < part.end; ++k) {
-            const Place p = partition_.place(k);
+                .add_incoming(at(range.sums, in.bed), chunk(in), at(range.first, in.bed),
+                              at(range.until, in.bed));
+        for (int k = range.begin; k < range.end; ++k) {
+            const ChunkIndex p = partition_.chunk_index(k);
             Chunk& own = chunk(p);
-            ForceSums& sums = at(part.sums, p.bed);
+            ForceSums& sums = at(range.sums, p.bed);
             ContactLoop& loop = at(contact_loops_, p.bed);
-            const bool is_known = at(computed, k - part.begin);
+            const bool is_known = at(computed, k - range.begin);
             const auto swap_buffers = [&] {
                 if (is_known || last) return;
-                own.walls.contact_forces.swap(part.at_walls);
-                own.pairs.contact_forces.swap(part.at_pairs);
+                own.walls.contact_forces.swap(range.wall_forces);
+                own.pairs.contact_forces.swap(range.pair_forces);
             };
             swap_buffers();
-            if (!is_known) forces(k, prefetch(part, k));
-            const int until = at(part.until, p.bed);
+            if (!is_known) forces(k, prefetch(range, k));
+            const int until = at(range.until, p.bed);
             loop.add_own(sums, own, until);
             swap_buffers();
-            at(integrators_, p.bed).advance(sums, own, until, all, body_before_, first, sample);
+            at(integrators_, p.bed).advance(sums, own, until, body, body_before_, first, sample);
         }
     }
 
-    void check() {
+    void check_chunks() {
         for (std::size_t b = 0; b < beds_.size(); ++b)
             for (const Chunk& c : beds_[b].chunks) {
                 if (at(beds_[b].chunk_motion, c.begin / Bed::chunk_size).moved < infinity) continue;
-                if (c.stopped.status == Status::finished || status_ != Status::finished) continue;
-                status_ = c.stopped.status;
-                stopped_ = c.stopped;
+                if (c.stop_reason.status == Status::finished || status_ != Status::finished) continue;
+                status_ = c.stop_reason.status;
+                stop_reason_ = c.stop_reason;
                 stopped_cavity_ = static_cast<int>(b);
-                const Row along = at(beds_[b].velocity, stopped_.particle) - beds_[b].motion.velocity;
-                if (status_ == Status::escaped) stopped_.value = std::sqrt(dot(along, along));
-                stopped_.particle = at(beds_[b].name, stopped_.particle);
+                const Row along = at(beds_[b].velocity, stop_reason_.particle) - beds_[b].motion.velocity;
+                if (status_ == Status::escaped) stop_reason_.value = std::sqrt(dot(along, along));
+                stop_reason_.particle = at(beds_[b].id, stop_reason_.particle);
             }
     }
 
-    // How much nearer to each other any two particles may have come since the build.
-    static real closing(const Bed& bed) {
+    // Returns a bound on the approach of any two particles since the rebuild.
+    static real approach_since_rebuild(const Bed& bed) {
         real since = 0, moved = 0;
         for (const ChunkMotion& motion : bed.chunk_motion)
-            moved = larger(moved, motion.moved), since = larger(since, motion.approached + motion.moved);
+            moved = larger(moved, motion.moved), since = larger(since, motion.approach + motion.moved);
         return since + moved;
     }
 
-    // On to the next step.
     void advance_structure() {
         structure().kick();
         structure().drift();
-        must_build_ = false;
+        needs_rebuild_ = false;
         for (Bed& bed : beds_) {
             const Row before = bed.motion.displacement, momentum = momentum_of(bed);
-            place(bed);
-            const Row apart = bed.motion.displacement - before - bed.reference * problem_.dt;
-            bed.apart = std::sqrt(dot(apart, apart)) * (1 + 1e-9);
-            bed.reference = row(momentum[0], momentum[1], momentum[2]) / bed.mass;
-            const real since = closing(bed);
-            must_build_ |= !(since < bed.reach);
-            if (status_ == Status::finished && !(since + bed.apart < infinity)) status_ = Status::not_finite;
+            update_cavity_motion(bed);
+            const Row apart = bed.motion.displacement - before - bed.reference_velocity * problem_.dt;
+            bed.cavity_moved = std::sqrt(dot(apart, apart)) * (1 + 1e-9);
+            bed.reference_velocity = row(momentum[0], momentum[1], momentum[2]) / bed.mass;
+            const real since = approach_since_rebuild(bed);
+            needs_rebuild_ |= !(since < bed.reach);
+            if (status_ == Status::finished && !(since + bed.cavity_moved < infinity))
+                status_ = Status::not_finite;
         }
         __atomic_store_n(&step_, step_ + 1, __ATOMIC_RELAXED);
         ++steps_since_;
     }
 
-    // What all need to know of the step to come; done by one.
+    // Computes the data of the next step that all workers need. Called by one worker.
     void prepare_step() {
         structure().load_values(now());
-        if (sampled(step_)) records_.before(beds_);
+        if (sampled(step_)) records_.begin_sample(beds_);
     }
 
-    // What follows from the forces of this step; done by one.
+    // Applies the forces of this step to the structure and takes the sample. Called by one worker.
     void finish_step(bool first, bool sample) {
-        find_modal_force();
+        compute_modal_force();
         if (!first) structure().kick();
-        structure().show();
+        structure().store_output();
         Row momentum{};
         for (Bed& bed : beds_) {
-            bed.shown = bed.motion.displacement;
+            bed.output_displacement = bed.motion.displacement;
             momentum += momentum_of(bed);
         }
         if (!(std::fabs(momentum[0] + momentum[1] + momentum[2]) < infinity)) status_ = Status::not_finite;
         if (!first) structure().work_on_particles(momentum);
-        if (sample) records_.take(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
+        if (sample)
+            records_.add_sample(now(), beds_, modes_, problem_.gravity, load_work_, base_work_, viscous_);
         structure().work_on_particles(momentum);
-        check();
-        body_before_ = structure().body();
+        check_chunks();
+        body_before_ = structure().body_acceleration();
         advance_structure();
     }
 
-    // Goes on until that step is done, something stops it, or a pause is asked for after a step.
-    template <class Team, class Pause>
-    void run_steps(Team& team, long until, const std::atomic<bool>& stop, Pause&& pause) {
-        while (step_ <= until && status_ == Status::finished && !taken_.halt && !taken_.pause) {
-            if (must_build_) build(team);
+    // Advances until step `until` is done, the run stops, or pause() returns true after a step.
+    template <class Worker, class Pause>
+    void run_steps(Worker& worker, long until, const std::atomic<bool>& stop, Pause&& pause) {
+        while (step_ <= until && status_ == Status::finished && !loop_control_.halt && !loop_control_.pause) {
+            if (needs_rebuild_) rebuild(worker);
             const bool first = step_ == 0, sample = sampled(step_);
-            advance(team, first, sample, step_ == until);
-            team.sync([&] {
+            advance(worker, first, sample, step_ == until);
+            worker.sync([&] {
                 if (step_ == until) forces_known_at_ = step_;
                 finish_step(first, sample);
                 prepare_step();
-                taken_ = {stop, pause()};
+                loop_control_ = {stop, pause()};
             });
         }
     }
 
-    template <class Team> void run(Team& team, long until, const std::atomic<bool>& stop) {
-        partition_.find_dependencies(team.rank());
-        team.sync([&] {
+    template <class Worker> void run(Worker& worker, long until, const std::atomic<bool>& stop) {
+        partition_.find_dependencies(worker.rank());
+        worker.sync([&] {
             prepare_step();
-            taken_ = {.pause = team.size() > 1 && !serial_fallback_.is_over()};
+            loop_control_ = {.pause = worker.size() > 1 && !serial_fallback_.is_over()};
         });
         const auto run_all = [&] {
-            run_steps(team, until, stop, [&] {
-                const bool contended = team.is_contended();
+            run_steps(worker, until, stop, [&] {
+                const bool contended = worker.is_contended();
                 if (contended) serial_fallback_.begin();
                 return contended;
             });
         };
         run_all();
-        while (taken_.pause) {
-            team.sync([&] { run_serially(until, stop, team.size()); });
-            partition_.find_dependencies(team.rank());
-            team.sync([&] { team.reset_wait_times(); });
+        while (loop_control_.pause) {
+            worker.sync([&] { run_serially(until, stop, worker.size()); });
+            partition_.find_dependencies(worker.rank());
+            worker.sync([&] { worker.reset_wait_times(); });
             run_all();
         }
     }
 
-    // For the others, who wait.
-    void run_serially(long until, const std::atomic<bool>& stop, int members) {
-        SingleThread alone;
+    // Runs on one worker while the others wait.
+    void run_serially(long until, const std::atomic<bool>& stop, int workers) {
+        SingleThread worker;
         partition_.divide(1);
         partition_.find_dependencies(0);
-        taken_.pause = false;
+        loop_control_.pause = false;
         serial_steps_ -= step_;
-        run_steps(alone, until, stop, [&] { return serial_fallback_.is_over(); });
+        run_steps(worker, until, stop, [&] { return serial_fallback_.is_over(); });
         serial_steps_ += step_;
-        taken_.pause = false;
-        partition_.divide(members);
+        loop_control_.pause = false;
+        partition_.divide(workers);
     }
 
 public:
@@ -405,50 +408,50 @@ public:
         beds_.reserve(count), neighbours_.resize(count);
         for (std::size_t b = 0; b < count; ++b) {
             Cavity& cavity = problem_.cavities[b];
-            const ContactLaws pair = contact_laws_of(problem_, cavity.particle_entry),
-                              wall = contact_laws_of(problem_, cavity.wall_entry);
+            const ContactLaws pair = contact_laws_of(problem_, cavity.particle_pair),
+                              wall = contact_laws_of(problem_, cavity.wall_pair);
             Bed& bed = beds_.emplace_back();
             fill_bed(bed, cavity, pair.rolls || wall.rolls);
-            const auto prepare_step = [](ContactList& list, const ContactLaws& kind) {
-                list.memory.rolls = kind.rolls, list.memory.yields = kind.hysteretic;
+            const auto prepare = [](ContactList& list, const ContactLaws& laws) {
+                list.history.rolls = laws.rolls, list.history.yields = laws.hysteretic;
                 list.resize(0);
             };
-            for (Chunk& chunk : bed.chunks) prepare_step(chunk.pairs, pair), prepare_step(chunk.walls, wall);
+            for (Chunk& chunk : bed.chunks) prepare(chunk.pairs, pair), prepare(chunk.walls, wall);
             neighbours_[b].start(bed);
             const ContactLoop& loop = contact_loops_.emplace_back(bed, problem_, pair, wall);
             integrators_.emplace_back(bed, problem_.dt, loop.has_friction(), loop.has_rolling());
         }
         partition_.start(beds_);
         for (Bed& bed : beds_) {
-            place(bed);
-            bed.shown = bed.motion.displacement;
+            update_cavity_motion(bed);
+            bed.output_displacement = bed.motion.displacement;
         }
     }
 
-    // Beds barrier into the problem, and steps at beds.
+    // Beds point into the problem, and contact loops to beds.
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
-    // Goes on until the sample of step `until` is taken, or something stops it.
+    // Advances until the sample of step `until` is taken or the run stops.
     void run(long until, int threads, const std::atomic<bool>& stop) {
         until = std::min(until, problem_.steps);
         threads = std::min(threads, partition_.chunks());
         partition_.divide(threads);
-        run_parallel(threads, [&](auto team) { run(team, until, stop); });
+        run_parallel(threads, [&](auto worker) { run(worker, until, stop); });
     }
 
-    // All that the next step needs, in a fixed order: to write it down and to read it back.
-    template <class Archive> void keep(Archive& archive) {
-        archive(step_, body_before_, status_, stopped_cavity_, stopped_, builds_, must_build_,
-                forces_known_at_, steps_since_, modes_, modes_shown_, modal_force_, load_work_, base_work_,
+    // Writes or reads all that the next step needs, in a fixed order.
+    template <class Archive> void serialize(Archive& archive) {
+        archive(step_, body_before_, status_, stopped_cavity_, stop_reason_, rebuilds_, needs_rebuild_,
+                forces_known_at_, steps_since_, modes_, output_modes_, modal_force_, load_work_, base_work_,
                 viscous_);
-        for (Bed& bed : beds_) bed.keep(archive);
+        for (Bed& bed : beds_) bed.serialize(archive);
     }
 
-    // Reads a state back. Throws where it is not one of this case; this must then not be used any more.
+    // Reads a saved state. Throws if it is not a state of this case; the object must not be used after that.
     template <class Reader> void restore(Reader& reader) {
         const std::vector<RestartCheck> fixed(beds_.begin(), beds_.end());
-        keep(reader);
+        serialize(reader);
         if (!reader.at_end()) throw std::invalid_argument("the state is of another case");
         const auto require = [](bool holds) {
             if (!holds) throw std::invalid_argument("the state is damaged");
@@ -457,38 +460,39 @@ public:
         require(stopped_cavity_ >= 0 && stopped_cavity_ < static_cast<int>(beds_.size()));
         const Bed& where = at(beds_, stopped_cavity_);
         require(RestartCheck::is_possible(status_) &&
-                RestartCheck::is_possible(stopped_, static_cast<int>(where.position.size()),
+                RestartCheck::is_possible(stop_reason_, static_cast<int>(where.position.size()),
                                           static_cast<int>(where.cavity->walls.size())));
         for (const std::size_t size :
-             {modes_.size(), modes_shown_.size(), modal_force_.size(), viscous_.size()})
+             {modes_.size(), output_modes_.size(), modal_force_.size(), viscous_.size()})
             require(size == problem_.modes.size());
         require(load_work_.size() == signals_.size() && base_work_.size() == signals_.size());
         for (std::size_t b = 0; b < beds_.size(); ++b) fixed[b].check(beds_[b], has_contact_forces());
-        for (Bed& bed : beds_) place(bed);
+        for (Bed& bed : beds_) update_cavity_motion(bed);
     }
 
-    // Are forces of single contacts known, of the last step? They are where a run was asked to end.
+    // Whether the contact forces of the last step are stored; they are at the step where a call of run()
+    // ended.
     bool has_contact_forces() const { return forces_known_at_ >= 0 && forces_known_at_ == step_ - 1; }
     const Problem& problem() const { return problem_; }
-    const std::vector<ModeState>& modes() const { return modes_shown_; }
-    Row body_shown() const { return body_before_; }
+    const std::vector<ModeState>& modes() const { return output_modes_; }
+    Row output_body_acceleration() const { return body_before_; }
     int stopped_cavity() const { return stopped_cavity_; }
     std::size_t memory() const {
         std::size_t bytes = 0;
         for (std::size_t b = 0; b < beds_.size(); ++b) bytes += beds_[b].memory() + neighbours_[b].memory();
         return bytes;
     }
-    long step() const { return __atomic_load_n(&step_, __ATOMIC_RELAXED); } // while it runs, too
+    long step() const { return __atomic_load_n(&step_, __ATOMIC_RELAXED); } // also during a run
     long serial_steps() const { return serial_steps_; }
-    long builds() const { return builds_; }
-    long scans() const { // of a chunk, on average
+    long rebuilds() const { return rebuilds_; }
+    long scans() const { // mean over chunks
         long sum = 0;
         for (const Bed& bed : beds_)
-            for (const Chunk& c : bed.chunks) sum += c.tally.scans;
+            for (const Chunk& c : bed.chunks) sum += c.diagnostics.scans;
         return sum / partition_.chunks();
     }
     Status status() const { return status_; }
-    const Stopped& stopped() const { return stopped_; }
+    const StopReason& stop_reason() const { return stop_reason_; }
     Records& records() { return records_; }
     const std::vector<Bed>& beds() const { return beds_; }
 };

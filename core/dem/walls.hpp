@@ -5,16 +5,16 @@
 
 namespace rattlebox::dem {
 
-// A wall, seen from the centre of its cavity.
+// A wall in coordinates relative to the centre of its cavity.
 struct Wall {
     enum Form : int { plane = 0, cylinder = 1, sphere = 2 };
-    Row axis{}; // outward normal of a plane, axis of a cylinder; the last number is the distance or the
-                // radius
+    // Outward normal of a plane or axis of a cylinder; the fourth number is the distance or the radius.
+    Row axis{};
     Form form = plane;
-    int kind = 0; // of its material
+    int material = 0;
 };
 
-// The nearest point of a wall, seen from a place: outward direction and distance.
+// Outward direction from a position to the nearest point of a wall, and the distance.
 struct WallPoint {
     Row normal;
     real distance;
@@ -31,7 +31,7 @@ inline WallPoint nearest_wall_point(const Wall& wall, Row place) {
     return {q / (radial + 1e-290), wall.axis[3] - radial};
 }
 
-// Distances of several places, in lanes.
+// Distances of several positions, in SIMD lanes.
 RATTLEBOX_INLINE Group distance(const Wall& wall, const Vector<Group>& place) {
     const Vector<Group> axis = {Group::all(wall.axis[0]), Group::all(wall.axis[1]), Group::all(wall.axis[2])};
     const Group along = dot(axis, place), offset = Group::all(wall.axis[3]);

@@ -1,4 +1,4 @@
-// Many problems that differ in some of their numbers: a grid, and for each such number where to find it.
+// A batch: many variants of a problem on a grid, which differ in the values of some numbers.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 namespace rattlebox {
 
 struct Column {
-    real* target;                    // in the problem
-    const real* data;                // number of the first member
-    std::vector<std::size_t> stride; // by axis of the grid; 0 where the number does not vary
+    real* target;                    // number in the problem
+    const real* data;                // value of the first variant
+    std::vector<std::size_t> stride; // by axis of the grid; 0 if the value does not depend on it
 };
 
 struct Batch {
@@ -23,24 +23,25 @@ struct Batch {
         return product;
     }
 
-    // Where the number of a member stands in a column.
-    std::size_t offset(const Column& c, std::size_t member) const {
-        std::size_t rest = member, offset = 0;
+    // Returns the index of the value of a variant in a column.
+    std::size_t offset(const Column& c, std::size_t variant) const {
+        std::size_t rest = variant, offset = 0;
         for (std::size_t k = shape.size(); k-- > 0; rest /= shape[k]) offset += rest % shape[k] * c.stride[k];
         return offset;
     }
 
-    // Makes the problem that the columns point into this member.
-    void apply(std::size_t member) const {
-        for (const Column& c : columns) *c.target = c.data[offset(c, member)];
+    // Writes the values of a variant into the problem.
+    void apply(std::size_t variant) const {
+        for (const Column& c : columns) *c.target = c.data[offset(c, variant)];
     }
 };
 
-// What of a run is looked at: equally spaced samples from `from` to its end, in cycles of `period`.
+// The window in which measures are evaluated: equally spaced samples from `from` to the end, in cycles of
+// `period`.
 struct Window {
     real from = 0, period = not_a_number;
     int samples = 2;
-    std::vector<real> shape; // mode shapes at the point that is watched
+    std::vector<real> shape; // mode shapes at the observed point
 
     void place(Problem& problem) const {
         const real to = problem.settings.duration;

@@ -1,9 +1,9 @@
-// What one contact of the 1-D engine remembers, and the phases that it passes through.
+// State of one contact of the 1-D engine, and the phases of a contact law.
 //
-// The engine integrates x with d = origin + x^4: Hertz contact is polynomial in x in a time transformed by dt
-// = x^3 dtau, so that an integrator of high order has its order from first touch on. A phase is a piece of
-// the contact in which the force is smooth; the functions below pick the piece of the law's formula that
-// holds in it, and find where it ends.
+// The engine integrates x with d = origin + x^4. In the transformed time dt = x^3 dtau Hertz contact is
+// polynomial in x, so that an integrator of high order has its full order from first touch on. A phase is a
+// part of the contact in which the force is smooth; the functions below evaluate the law in a phase and
+// detect its end.
 #pragma once
 
 #include "contact/laws.hpp"
@@ -16,18 +16,18 @@ struct ContactState {
     History<real> history;
     enum Phase { loading, yielding, unloading } phase = loading;
 
-    // Overlap at which the force vanishes.
+    // Returns the overlap at which the force is zero.
     real origin() const { return phase == unloading ? history.origin : 0; }
 };
 
-enum class Next {
-    stay,    // another phase of the same contact
-    open,    // overlap is zero: the contact is over
-    release, // force is zero, overlap is not: the contact is over, the bodies still overlap
+enum class PhaseEnd {
+    stay,    // the contact continues in another phase
+    open,    // the overlap is zero, and the contact ends
+    release, // the force is zero, and the contact ends, but the bodies still overlap
 };
 
-// First touch at this speed; e is the restitution of the impact.
-template <class Law> ContactState first_touch(const Law& law, real e, real speed) {
+// Returns the state at first touch; e is the restitution of the impact.
+template <class Law> ContactState initial_state(const Law& law, real e, real speed) {
     ContactState s;
     if constexpr (Law::hysteretic) {
         s.coefficients = law.coefficients(0, speed);
@@ -52,14 +52,14 @@ NormalForce<real> contact_force(const Law& law, const ContactState& s, real x, r
     }
 }
 
-// Power that the dashpot takes.
+// Returns the power lost in the dashpot.
 template <class Law> real dashpot_power(const Law& law, const ContactState& s, real x, real rate) {
     if constexpr (Law::hysteretic) return 0;
     const NormalForce<real> f = contact_force(law, s, x, rate);
     return (f.total - f.elastic) * rate;
 }
 
-// Energy that unloading from here would give back.
+// Returns the energy that unloading from this state would recover.
 template <class Law> real stored_energy(const Law& law, const ContactState& s, real x) {
     const Depth<real> d = depth_from_fourth_root(x);
     if constexpr (Law::hysteretic) {
@@ -71,7 +71,7 @@ template <class Law> real stored_energy(const Law& law, const ContactState& s, r
     }
 }
 
-// Energy lost by yielding so far.
+// Returns the energy lost by yielding so far.
 template <class Law> real plastic_loss(const Law& law, const ContactState& s, real x) {
     if constexpr (Law::hysteretic) {
         if (s.phase == ContactState::loading) return 0;
@@ -81,9 +81,9 @@ template <class Law> real plastic_loss(const Law& law, const ContactState& s, re
     }
 }
 
-// Of a law that yields: from x to where the present piece of the curve ends, at the yield overlap or at the
-// deepest one so far.
-template <class Law> real room(const Law& law, const ContactState& s, real x) {
+// For a law with hysteresis: distance in x to the end of the phase, at the yield overlap or at the deepest
+// overlap.
+template <class Law> real distance_to_end(const Law& law, const ContactState& s, real x) {
     const real limit = s.phase == ContactState::loading ? law.yield_overlap(s.coefficients)
                                                         : s.history.deepest - s.history.origin;
     return std::sqrt(std::sqrt(limit)) - x;
@@ -93,32 +93,33 @@ template <class Law> real room(const Law& law, const ContactState& s, real x) {
 template <class Law> real phase_end(const Law& law, const ContactState& s, real x, real rate) {
     if constexpr (Law::hysteretic) {
         if (s.phase == ContactState::yielding) return rate;
-        return std::fmin(room(law, s, x), x);
+        return std::fmin(distance_to_end(law, s, x), x);
     } else {
         if (law.zero_overlap != 0 || s.coefficients.second == 0) return x;
-        // The force over the sizes of its parts: between -1 and 1, and regular where both vanish with x. A
-        // dashpot that vanishes as fast as the elastic force lets the bodies part at zero overlap.
+        // The force over the magnitudes of its parts is between -1 and 1, and regular where both vanish with
+        // x. With a dashpot that vanishes as fast as the elastic force the contact ends at zero overlap.
         const NormalForce<real> f = contact_force(law, s, std::fmax(x, 1e-15), rate);
         const real part = f.total / (f.elastic + std::fabs(f.total - f.elastic));
         return rate < 0 ? std::fmin(x, part) : part;
     }
 }
 
-// Ends a phase at x.
-template <class Law> Next next_phase(const Law& law, ContactState& s, real x) {
+// Ends the current phase at x, and sets the next one.
+template <class Law> PhaseEnd next_phase(const Law& law, ContactState& s, real x) {
     if constexpr (Law::hysteretic) {
         if (s.phase == ContactState::yielding) {
             s.history = law.unloaded_from(square(x * x));
             s.phase = ContactState::unloading;
-            return Next::stay;
+            return PhaseEnd::stay;
         }
-        if (room(law, s, x) < x) { // whatever rounding has made of the rate where it turns just there
+        if (distance_to_end(law, s, x) <
+            x) { // rather than by the rate, whose sign is uncertain if it is zero there
             s.phase = ContactState::yielding;
-            return Next::stay;
+            return PhaseEnd::stay;
         }
-        return s.phase == ContactState::loading ? Next::open : Next::release;
+        return s.phase == ContactState::loading ? PhaseEnd::open : PhaseEnd::release;
     } else {
-        return law.zero_overlap != 0 ? Next::open : Next::release;
+        return law.zero_overlap != 0 ? PhaseEnd::open : PhaseEnd::release;
     }
 }
 

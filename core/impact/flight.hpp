@@ -1,10 +1,10 @@
-// Motion with no contact: modes and balls propagated exactly, the first touch found so that none is missed.
+// Motion without contacts: modes and balls propagated exactly, and guaranteed detection of the first touch.
 //
-// Without load each mode is in closed form and each ball a parabola, to any horizon. Under a load the flight
-// or with modes coupled by damping is a cell of bounded length with Taylor series (structure/cell.hpp).
-// Either way every gap has a lower bound L on g'', so that no touch can come before the first root of g + g'
-// s + L s^2 / 2: stepping from one such root to the next closes in on the first touch and cannot jump over
-// one. A bound on g''' makes L as good as g'' itself near the touch.
+// Without load each mode has a closed form and each ball moves on a parabola, to any horizon. Under a load,
+// or with modes coupled by damping, the flight has a bounded length and uses Taylor series
+// (structure/taylor_series.hpp). In both cases g'' of each gap g has a lower bound L, so that no touch can
+// occur before the first root of g + g' s + L s^2 / 2. Stepping from one such root to the next converges to
+// the first touch and cannot miss one. A bound of g''' makes L close to g'' near the touch.
 #pragma once
 
 #include <vector>
@@ -13,12 +13,12 @@
 
 namespace rattlebox {
 
-struct Touch {
-    real after = 0;   // time from the flight's start
-    int contact = -1; // none: the flight's horizon was reached
+struct FirstTouch {
+    real time = 0;    // from the start of the flight
+    int contact = -1; // -1: the horizon was reached
 };
 
-// First positive root of g + rate s + L s^2 / 2 for g >= 0.
+// Returns the first positive root of g + rate s + curvature s^2 / 2 for g >= 0.
 inline real safe_step(real g, real rate, real curvature) {
     if (g <= 0 && rate > 0) return curvature < 0 ? -2 * rate / curvature : infinity;
     const real discriminant = rate * rate - 2 * curvature * g;
@@ -34,10 +34,10 @@ class Flight {
     real horizon_ = 0;
     std::vector<FreeMode> free_;
     std::vector<Series> mode_series_, ball_series_, load_series_, force_series_;
-    std::vector<real> curvature_, jerk_; // bounds on each gap's second derivative from below, on its third
-    mutable std::vector<real> safe_;     // no touch before
+    std::vector<real> curvature_, jerk_; // by contact: lower bound of g'', bound of |g'''|
+    mutable std::vector<real> safe_;     // time before which a contact cannot touch
 
-    // The series that a gap is made of: add(weight, series).
+    // Calls add(weight, series) for the series whose sum is the gap.
     template <class Add> void each_part(const Contact& contact, Add&& add) const {
         if (contact.above != wall) add(1.0, ball_series_[static_cast<std::size_t>(contact.above)]);
         if (contact.below != wall) add(-1.0, ball_series_[static_cast<std::size_t>(contact.below)]);
@@ -55,7 +55,7 @@ class Flight {
         return g;
     }
 
-    // g'' now, of a gap with the wall in free flight.
+    // Returns g'' of a gap at a wall in free flight.
     real acceleration(const Contact& contact, const real* y) const {
         const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
         real wall_acceleration = 0;
@@ -68,7 +68,7 @@ class Flight {
         return contact.below == wall ? apart : -apart;
     }
 
-    // A time within which contact c, open now, stays open.
+    // Returns a time for which contact c stays open.
     real safe_time(std::size_t c, const Gap& g, const real* y) const {
         const Contact& contact = problem_.contacts[c];
         const real value = std::max(g.value, 0.0);
@@ -84,9 +84,9 @@ class Flight {
         for (std::size_t c = 0; c < problem_.contacts.size(); ++c) {
             const Contact& contact = problem_.contacts[c];
             if (contact.below != wall && contact.above != wall) {
-                curvature_[c] = 0; // both balls of a row feel the same gravity and base
+                curvature_[c] = 0; // both balls have the same acceleration
             } else if (series_) {
-                curvature_[c] = gap_series(contact).least_curvature(horizon_);
+                curvature_[c] = gap_series(contact).min_curvature(horizon_);
             } else {
                 const Damper& damper = problem_.dampers[static_cast<std::size_t>(contact.damper)];
                 real bound = 0;
@@ -111,7 +111,7 @@ public:
         ball_series_.reserve(problem.ball_mass.size());
     }
 
-    // A flight from `start` for at most `length`; `series` asks for Taylor series although no load acts.
+    // Begins a flight of at most `length` from `start`; `series` forces Taylor series also without load.
     void begin(const State& start, const Loads& loads, real length, bool series) {
         start_ = &start;
         loads_ = &loads;
@@ -119,7 +119,7 @@ public:
         horizon_ = length;
         if (series_) {
             const real rate = std::max(loads.frequency(), fastest_rate(problem_.modes, problem_.coupling));
-            // To an end that the clock can tell: else it would drift from the motion, cell by cell.
+            // Rounded to a representable time, or the time would drift from the motion with each flight.
             if (rate * horizon_ > 1) horizon_ = start.t + 1 / rate - start.t;
             Series base;
             for (std::size_t l = 0; l < loads.size(); ++l) {
@@ -142,10 +142,11 @@ public:
                                mode_series_);
             ball_series_.clear();
             for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i) {
-                Series pull = base;
-                pull.c[0] += problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
+                Series acceleration = base;
+                acceleration.c[0] +=
+                    problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
                 ball_series_.push_back(forced_ball(positions(problem_, start.y.data())[i],
-                                                   velocities(problem_, start.y.data())[i], pull));
+                                                   velocities(problem_, start.y.data())[i], acceleration));
             }
         } else {
             for (std::size_t k = 0; k < problem_.modes.size(); ++k)
@@ -157,7 +158,7 @@ public:
     real horizon() const { return horizon_; }
     real curvature(std::size_t contact) const { return curvature_[contact]; }
 
-    // The state after time s.
+    // Computes the state after time s.
     void at(real s, State& out) const {
         out.t = start_->t + s;
         for (std::size_t k = 0; k < problem_.modes.size(); ++k) {
@@ -182,9 +183,9 @@ public:
         }
     }
 
-    // Adds work and viscous loss over [0, s], by quadrature or in closed form, never as a difference of
-    // energies.
-    void account(real s, Ledger& ledger) const {
+    // Adds work and viscous loss over [0, s], by quadrature or in closed form rather than as a difference of
+    // energies, so that the energy balance is an independent check.
+    void add_to_ledger(real s, Ledger& ledger) const {
         if (!series_) {
             for (const FreeMode& mode : free_) ledger.viscous += mode.dissipated(s);
             return;
@@ -199,7 +200,7 @@ public:
                                      [&](std::size_t k) { return mode_series_[k].slope(r); });
             });
         for (std::size_t l = 0; l < loads_->size(); ++l) {
-            if (loads_->piece(l).silent()) continue;
+            if (loads_->piece(l).is_zero()) continue;
             const Load& load = loads_->load(l);
             const real work = integrate(s, [&](real r) {
                 real speed = 0;
@@ -214,11 +215,11 @@ public:
         }
     }
 
-    // How a contact that touches at rest goes on: -1 closing, +1 parting (the horizon is shortened so that it
-    // cannot come back), 0 no motion at all. Needs series.
+    // Returns how a contact that touches at rest continues: -1 closing, +1 opening (the horizon is shortened
+    // so that it cannot close again), 0 at rest. Needs series.
     int tendency(const Contact& contact) {
         const Series g = gap_series(contact);
-        real sizes[Series::order + 1] = {}; // of what may cancel
+        real sizes[Series::order + 1] = {}; // of the terms that may cancel
         each_part(contact, [&](real weight, const Series& part) {
             for (int n = 0; n <= Series::order; ++n) sizes[n] += std::fabs(weight * part.c[n]);
         });
@@ -228,10 +229,10 @@ public:
         power = horizon_;
         for (int n = 2; n <= Series::order; ++n) {
             power *= horizon_;
-            // Rounding of the forces, and of the clock that the loads follow.
+            // Rounding errors of the forces, and of the time at which loads are evaluated.
             const real turned = n < Series::order ? (n + 1) * std::fabs(g.c[n + 1]) * start_->t : 0;
-            const real rounding = 8192 * scale + 64 * (sizes[n] + turned) * power;
-            if (std::fabs(g.c[n]) * power <= epsilon * rounding) continue;
+            const real limit = 8192 * scale + 64 * (sizes[n] + turned) * power;
+            if (std::fabs(g.c[n]) * power <= epsilon * limit) continue;
             if (g.c[n] < 0) return -1;
             for (;;) {
                 real rest = 0, later = 1;
@@ -244,38 +245,37 @@ public:
         return 0;
     }
 
-    // What rounding leaves of a gap that is zero.
-    real gap_blur(const Contact& contact, const State& state) const {
+    // Returns the rounding error of a gap.
+    real gap_rounding(const Contact& contact, const State& state) const {
         const real half = 0.5 * problem_.dampers[static_cast<std::size_t>(contact.damper)].clearance;
         const int ball = contact.below == wall ? contact.above : contact.below;
         return 4 * epsilon * (half + std::fabs(positions(problem_, state.y.data())[ball]));
     }
 
-    // The first touch of the watched contacts within the horizon, and the state there.
-    Touch first_touch(const std::vector<char>& watched, State& out) const {
-        const auto end = [&](Touch touch) {
-            at(touch.after, out);
+    // Returns the first touch of the is_watched contacts within the horizon, and the state there.
+    FirstTouch first_touch(const std::vector<char>& is_watched, State& out) const {
+        const auto end = [&](FirstTouch touch) {
+            at(touch.time, out);
             return touch;
         };
-        constexpr int patience =
-            1000; // a flight that has not found its end by then starts afresh from where it is
-        for (std::size_t c = 0; c < safe_.size(); ++c) safe_[c] = watched[c] ? 0 : infinity;
+        constexpr int max_iterations = 1000; // then a new flight begins at the time reached
+        for (std::size_t c = 0; c < safe_.size(); ++c) safe_[c] = is_watched[c] ? 0 : infinity;
         real s = 0;
         out = *start_;
-        for (int iteration = 0; iteration < patience; ++iteration) {
+        for (int iteration = 0; iteration < max_iterations; ++iteration) {
             real next = infinity;
             int nearest = -1;
             for (std::size_t c = 0; c < safe_.size(); ++c) {
                 if (safe_[c] <= s) {
                     const Contact& contact = problem_.contacts[c];
                     const Gap g = gap(problem_, contact, out.y.data());
-                    const real blur = gap_blur(contact, out);
-                    if (g.value < -blur &&
-                        g.rate > 0) { // released, still recovering: when it is open at the latest
+                    const real rounding = gap_rounding(contact, out);
+                    if (g.value < -rounding &&
+                        g.rate > 0) { // released and still recovering: latest time at which it opens
                         const real room = g.rate * g.rate + 2 * curvature_[c] * -g.value;
                         safe_[c] = s - 2 * g.value / (g.rate + std::sqrt(std::max(room, 0.0)));
                     } else {
-                        if (g.value <= blur && g.rate < 0) return {s, static_cast<int>(c)};
+                        if (g.value <= rounding && g.rate < 0) return {s, static_cast<int>(c)};
                         safe_[c] = s + safe_time(c, g, out.y.data());
                     }
                 }
@@ -285,10 +285,10 @@ public:
                 }
             }
             if (!(next < horizon_)) return end({horizon_, -1});
-            if (next - s <= epsilon * s) { // closer than the clock can tell
+            if (next - s <= epsilon * s) { // closer than the resolution of time
                 const Contact& contact = problem_.contacts[static_cast<std::size_t>(nearest)];
                 const Gap g = gap(problem_, contact, out.y.data());
-                if (g.rate <= 0 || g.value >= -gap_blur(contact, out)) return {s, nearest};
+                if (g.rate <= 0 || g.value >= -gap_rounding(contact, out)) return {s, nearest};
             }
             s = next;
             at(s, out);

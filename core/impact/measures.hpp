@@ -1,15 +1,15 @@
-// Numbers that sum up a run: each looks at the samples and the impacts of a window, and is listed by name.
+// Measures: numbers that characterise a run, computed from the samples and impacts of a window.
 #pragma once
 
 #include <complex>
 #include <optional>
 
 #include "impact/batch.hpp"
-#include "impact/log.hpp"
+#include "impact/result.hpp"
 
 namespace rattlebox {
 
-// Sums and extremes over impacts. The sum of the approach speeds is compensated.
+// Sums and extremes over impacts. The sum of the approach speeds is compensated (D. E. Knuth's two-sum).
 struct ImpactSums {
     real impacts = 0, approach_speeds = 0, rounded_off = 0;
     real largest_approach_speed = 0, peak_force = 0, peak_overlap = 0, longest_contact = 0;
@@ -51,9 +51,9 @@ public:
 
     // The same run between two samples, both included.
     Observer part(std::size_t first, std::size_t last) const {
-        Observer found = *this;
-        found.first_ = first_ + first, found.count_ = last - first + 1;
-        return found;
+        Observer result = *this;
+        result.first_ = first_ + first, result.count_ = last - first + 1;
+        return result;
     }
 
     std::size_t count() const { return count_; }
@@ -65,7 +65,7 @@ public:
     real length() const { return time(last()) - time(0); }
     real cycles() const { return length() / window_.period; }
 
-    // ---- motion of the point that is watched
+    // ---- motion of the observed point
 
     ModeState point(std::size_t i) const { return along(window_.shape, i); }
 
@@ -79,8 +79,8 @@ public:
         return z;
     }
 
-    // Absolute acceleration of the point, mean over the step before sample i: samples of the acceleration
-    // itself would meet the short pulses of contacts by chance.
+    // Absolute acceleration of the point, mean over the interval before sample i. Samples of the acceleration
+    // itself would miss most of the short pulses of contacts.
     real mean_acceleration(std::size_t i) const {
         real base = 0;
         for (const Load& load : problem_.loads)
@@ -100,13 +100,13 @@ public:
         return std::sqrt(total / static_cast<real>(last()));
     }
 
-    // Time after which the point stays within a share of its peak, for as long as its last swing took at
-    // least: who just passes through is not settled.
+    // Time after which the point stays within a fraction of its peak. NaN unless it has stayed there at least
+    // for the duration of its last swing, because the motion may just pass through the band.
     real settling(real band) const {
         const auto z = [&](std::size_t i) { return point(i).q; };
         const real limit = band * peak(z);
         const auto side = [&](std::size_t i) { return (z(i) > limit) - (z(i) < -limit); };
-        const auto begin_of = [&](std::size_t i) { // of the run of samples on one side, or within the band
+        const auto begin_of = [&](std::size_t i) { // of consecutive samples on one side, or within the band
             const int here = side(i);
             while (i > 0 && side(i - 1) == here) --i;
             return i;
@@ -159,28 +159,28 @@ public:
 
     struct Balance {
         real residual = 0, supplied = 0,
-             handled = 0; // largest residual; energy put in; all that was added up
+             turnover = 0; // largest residual; energy supplied; sum of all terms
     };
 
     Balance balance() const {
-        Balance found;
+        Balance sums;
         real load = 0, base = 0, height = 0;
         const real before = motion(0) + gravity(0);
         for (std::size_t i = 0; i < count(); ++i) {
             const real residual =
                 motion(i) + gravity(i) - before - load_work(i) - base_work(i) + viscous(i) + impact(i);
-            if (!(std::fabs(residual) <= found.residual)) found.residual = std::fabs(residual); // or NaN
+            if (!(std::fabs(residual) <= sums.residual)) sums.residual = std::fabs(residual); // or NaN
             if (!std::isfinite(residual)) break;
-            found.handled =
-                std::fmax(found.handled, motion(i) + std::fabs(gravity(i)) + samples().viscous[first_ + i] +
+            sums.turnover =
+                std::fmax(sums.turnover, motion(i) + std::fabs(gravity(i)) + samples().viscous[first_ + i] +
                                              std::fabs(samples().load_work[first_ + i]) +
                                              std::fabs(samples().base_work[first_ + i]));
             load = std::fmax(load, std::fabs(load_work(i)));
             base = std::fmax(base, std::fabs(base_work(i)));
             height = std::fmax(height, std::fabs(gravity(i) - gravity(0)));
         }
-        found.supplied = load + base + motion(0) + height;
-        return found;
+        sums.supplied = load + base + motion(0) + height;
+        return sums;
     }
 
     real energy_residual() const {
@@ -188,12 +188,12 @@ public:
         return b.residual == 0 ? 0 : b.residual / b.supplied;
     }
 
-    // How a run that reached its end counts. A residual of rounding is no error where little energy was
-    // put in.
+    // Returns the status of a run that reached its end. A residual at rounding level is no error if little
+    // energy was supplied.
     Status end(real bound) const {
         const Balance b = balance();
         if (!std::isfinite(b.residual)) return Status::not_finite;
-        real floor = 1e-10 * b.handled;
+        real floor = 1e-10 * b.turnover;
         for (real mass : problem_.ball_mass) floor += mass * square(speed_at_rest);
         const bool open = b.residual > bound * b.supplied && b.residual > floor;
         return open ? Status::energy_error : Status::finished;
@@ -202,21 +202,21 @@ public:
     // ---- impacts
 
     ImpactSums impacts() const {
-        ImpactSums found;
+        ImpactSums sums;
         const bool to_the_end = first_ + count_ == samples().time.size();
         const real from = first_ == 0 ? window_.from : time(0);
         for (const Impact& i : run_.impacts)
-            if (i.time >= from && (to_the_end || i.time < time(last()))) found.add(i);
-        return found;
+            if (i.time >= from && (to_the_end || i.time < time(last()))) sums.add(i);
+        return sums;
     }
 
-    // ---- the damper as a mass: force on the balls over acceleration of their cavity, at the frequency of
-    // the window
+    // ---- apparent mass of the damper: force on the balls over the acceleration of their cavity, at the
+    // frequency of the window
 
-    // The measures evaluate the last whole number of cycles: from `begin` to the last sample.
+    // The last whole number of cycles, from `begin` to the last sample.
     struct Cycles {
         real begin = 0;
-        std::size_t first = 0; // sample before begin, or at it
+        std::size_t first = 0; // last sample up to `begin`
     };
     Cycles whole_cycles() const {
         constexpr real slack = 1e-9;
@@ -226,7 +226,7 @@ public:
         return w;
     }
 
-    // The cubic through values and derivatives at two samples.
+    // Cubic Hermite interpolation between two samples.
     template <class F> ModeState between(F&& f, std::size_t i, real t) const {
         const real h = time(i + 1) - time(i), x = (t - time(i)) / h;
         const ModeState a = f(i), b = f(i + 1);
@@ -235,8 +235,7 @@ public:
     }
 
     // First harmonic of a function with known derivative: 2/T times the integral of f exp(-i w t) over whole
-    // cycles. In each step the product is the cubic through values and derivatives, whose end terms cancel
-    // between equal steps.
+    // cycles, by Hermite (corrected trapezoidal) quadrature.
     template <class F> std::complex<real> first_harmonic(F&& f) const {
         const real w = 2 * pi / window_.period;
         const Cycles cycles = whole_cycles();
@@ -261,7 +260,8 @@ public:
         return 2.0 / (time(last()) - cycles.begin) * total;
     }
 
-    // Amplitude of an acceleration, by parts from the motion, which has no jumps where velocities have.
+    // Complex amplitude of an acceleration, by integration by parts, because positions have no jumps at hard
+    // impacts.
     template <class F> std::complex<real> acceleration(F&& f) const {
         const real w = 2 * pi / window_.period;
         const Cycles cycles = whole_cycles();
@@ -291,20 +291,19 @@ public:
     std::complex<real> apparent_mass() const {
         if (problem_.dampers.empty()) return 0;
         std::complex<real> power = 0;
-        const std::complex<real> shaken = base();
+        const std::complex<real> base_acceleration = base();
         for (std::size_t b = 0; b < balls(); ++b) {
             const auto ball = [&](std::size_t i) {
                 return ModeState{positions(problem_, state(i))[b], velocities(problem_, state(i))[b]};
             };
             const Damper& damper = problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[b])];
-            power += problem_.ball_mass[b] * (shaken + acceleration(ball)) *
+            power += problem_.ball_mass[b] * (base_acceleration + acceleration(ball)) *
                      std::conj(cavity_acceleration(damper));
         }
         return power / std::norm(cavity_acceleration(problem_.dampers[0]));
     }
 
-    // Loss of a cycle over m V^2 with the cavity's velocity amplitude V: what tells dampers of any size
-    // apart.
+    // Loss per cycle over m V^2, where V is the velocity amplitude of the cavity; a dimensionless measure.
     real reduced_loss() const {
         if (problem_.dampers.empty()) return 0;
         real mass = 0;
@@ -341,10 +340,10 @@ public:
 
 struct Measure {
     const char* name;
-    bool samples; // needs the motion, not only its ends
+    bool samples; // needs samples of the motion
     bool peaks;   // needs the peaks of each impact
     real (*value)(const Observer&);
-    bool of_energy_residual = false; // is a number also where the energy residual exceeds its bound
+    bool of_energy_residual = false; // is computed also if the energy residual exceeds its limit
 };
 
 inline constexpr Measure measures[] = {

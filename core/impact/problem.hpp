@@ -1,8 +1,8 @@
-// One line of motion as the core sees it: modes, signals, balls in rows, contacts between neighbours.
+// The problem of the 1-D engine: modes, signals, balls in rows, contacts between neighbours.
 //
-// Frame: the base. Balls have reduced positions s: a row packed tight and centred has s = 0 for each ball, so
-// every gap is a difference. Contact 0 of a damper is its left wall, contact n its right wall, contact i lies
-// between ball i and i + 1.
+// The frame of reference is the base. Positions of balls are reduced: s = 0 for each ball of a closely
+// packed, centred row, so that each gap is a difference of positions. Contact 0 of a damper with n balls is
+// at its left wall, contact n at its right wall, and contact i between balls i and i + 1.
 #pragma once
 
 #include <algorithm>
@@ -27,14 +27,14 @@ struct Damper {
 struct Contact {
     int damper = 0;
     int below = wall, above = wall; // global index of the ball on each side
-    real mass = 0;                  // reduced mass, walls count with the structure's effective mass
+    real mass = 0;                  // effective mass, kg; that of a wall follows from the mode shapes
     NormalLaw normal;
     RestitutionLaw restitution;
 };
 
-// Energy residual over the energy put in beyond which no run counts as finished, whatever its method.
+// Largest energy residual over the energy supplied for which a run counts as finished, for every method.
 inline constexpr real worst_energy_residual = 0.01;
-// Balls that move no faster are at rest [m/s]: a residual below their energy is rounding.
+// Balls below this speed [m/s] count as at rest: an energy residual below their kinetic energy is rounding.
 inline constexpr real speed_at_rest = 1e-9;
 
 enum class Method : int { event_driven = 0, newton = 1, two_step = 2 };
@@ -44,18 +44,18 @@ struct Settings {
     real duration = 0;
     real tolerance = 1e-12;
     long max_events = 10'000'000;
-    real stick = 1e-6;                        // newton: bounce shorter than this x the shortest period sticks
+    real stick = 1e-6;                        // newton: bounces shorter than this x the shortest period stick
     real dt_flight = 5e-6, dt_contact = 3e-8; // two_step
-    bool adaptive_inner = false;              // two_step: dopri5 instead of rk4
-    bool collocation = true;                  // event_driven: lone contacts by collocation in phase
+    bool adaptive_inner = false;              // two_step: Dormand-Prince instead of classical Runge-Kutta
+    bool collocation = true;                  // event_driven: isolated Hertz contacts by collocation
 
-    // Largest number of events up to which samples are also taken at begin, deepest overlap and end of
-    // contacts and in the middle of the flights between; 0: never.
+    // Number of events up to which samples are also taken at begin, deepest overlap and end of contacts and
+    // in the middle of flights; 0 for none.
     long contact_samples = 0;
 
-    bool peaks = true; // of force and overlap are found for the impact log
+    bool peaks = true; // whether the peaks of force and overlap of each impact are computed
 
-    // Largest energy residual of a run that counts as finished, over the energy put in.
+    // Largest energy residual over the energy supplied for which a run with this method counts as finished.
     real energy_residual_limit() const {
         if (method == Method::two_step) return worst_energy_residual;
         return method == Method::newton ? 1e-8 : std::clamp(1e4 * tolerance, 1e-8, worst_energy_residual);
@@ -64,7 +64,7 @@ struct Settings {
 
 struct Problem {
     std::vector<Mode> modes;
-    std::vector<real> coupling; // of the modes by damping (structure/coupled_modes.hpp); empty: none
+    std::vector<real> coupling; // modal damping without its diagonal (structure/coupled_modes.hpp), or empty
     std::vector<ModeState> start;
     std::vector<Load> loads;
     std::vector<Damper> dampers;

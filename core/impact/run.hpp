@@ -1,4 +1,4 @@
-// One problem by the method it asks for.
+// Runs one problem with the method of its settings.
 #pragma once
 
 #include "impact/trajectory.hpp"

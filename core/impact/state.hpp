@@ -1,7 +1,6 @@
-// Where everything is, and what has been done and lost so far.
+// State vector and energy ledger of the 1-D engine.
 //
-// One flat vector y serves flights and contacts: q, p of each mode, then the positions of all balls, then
-// their velocities.
+// The state vector y holds q and p of each mode, then the positions of all balls, then their velocities.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +34,7 @@ inline const real* velocities(const Problem& p, const real* y) {
 inline real* positions(const Problem& p, real* y) { return y + 2 * p.modes.size(); }
 inline real* velocities(const Problem& p, real* y) { return y + 2 * p.modes.size() + p.ball_mass.size(); }
 
-// Displacement and velocity of a damper's cavity (or velocity and acceleration, given those of the modes).
+// Displacement and velocity of a cavity; with a derivative dy in place of y, velocity and acceleration.
 inline ModeState cavity(const Damper& damper, const real* y) {
     ModeState z;
     for (std::size_t k = 0; k < damper.shape.size(); ++k) {
@@ -45,7 +44,7 @@ inline ModeState cavity(const Damper& damper, const real* y) {
     return z;
 }
 
-// Gap between the two sides of a contact and its rate: positive gap = apart, positive rate = parting.
+// Gap between the two sides of a contact, negative if they overlap, and its rate.
 struct Gap {
     real value = 0, rate = 0;
 };
@@ -62,7 +61,7 @@ inline Gap gap(const Problem& problem, const Contact& contact, const real* y) {
     return {half - (s[contact.below] - z.q), z.p - v[contact.below]};
 }
 
-// Work done and energy lost since the start, by channel.
+// Work done and energy lost since the start of the run.
 struct Ledger {
     real load_work = 0, base_work = 0, viscous = 0;
     std::vector<real> normal, plastic; // by damper

@@ -1,13 +1,12 @@
 // The equations of motion while contacts are closed.
 //
 // State y: modes and balls as in impact/state.hpp; time since the start, work of loads, work of the base,
-// viscous loss; then for each soft contact x with overlap = origin + x^4, and the energy its dashpot has
-// taken. The independent variable is a transformed time, dt = dtau / sum(1 / x_j^3): it makes Hertz contact
-// regular at first touch and at the end, for any number of contacts at once. With no soft contact it is time
-// itself.
+// viscous loss; then for each soft contact x, with overlap = origin + x^4, and the loss in its dashpot. The
+// independent variable is a transformed time, dt = dtau / sum(1 / x_j^3), which makes Hertz contacts regular
+// at begin and end for any number of simultaneous contacts. Without soft contacts it is time.
 //
-// Stuck contacts (hard impacts that have come to rest) are constraints: their forces are what keeps the rates
-// zero.
+// Stuck contacts (hard impacts that have come to rest) are constraints, whose forces keep the approach rates
+// at zero.
 #pragma once
 
 #include <vector>
@@ -21,24 +20,25 @@ namespace rattlebox {
 struct Active {
     int contact = 0;
     ContactState state;
-    int impact = -1; // its line in the log
+    int impact = -1; // index in the impact log
     real x = 0;      // overlap = state.origin() + x^4
-    real speed = 0;  // largest approach speed so far: the scale of its errors
+    real speed = 0;  // largest approach speed so far, the scale of its errors
 };
 
-// A contact whose force has ended before its overlap: it recovers in flight, or takes hold again.
+// A contact whose force became zero before its overlap: the bodies recover their shape in flight, or touch
+// again.
 struct Released {
     int contact = 0;
     ContactState state;
     int impact = -1;
-    real energy = 0; // stored at the release, lost while it recovers
+    real energy = 0; // stored at the release; lost during recovery
 };
 
 class System {
     const Problem& problem_;
     const Loads* loads_ = nullptr;
     real start_ = 0;
-    std::vector<real> cavity_rate_, cavity_push_, ball_push_, clock_;
+    std::vector<real> cavity_rate_, cavity_force_, ball_force_, clock_;
     std::vector<real> signal_;          // by load
     std::vector<real> matrix_, forces_; // stuck contacts
 
@@ -52,39 +52,39 @@ class System {
             cavity_rate_[d] = cavity(problem_.dampers[d], y).p;
     }
 
-    // Rate at which the two sides approach, from any vector of ball speeds and cavity speeds.
-    real closing(const Contact& c, const real* ball_speed, const real* cavity_speed) const {
+    // Returns the rate at which the two sides approach.
+    real approach_rate(const Contact& c, const real* ball_speed, const real* cavity_speed) const {
         const real below = c.below == wall ? cavity_speed[c.damper] : ball_speed[c.below];
         const real above = c.above == wall ? cavity_speed[c.damper] : ball_speed[c.above];
         return below - above;
     }
 
-    void push(const Contact& c, real force) {
-        (c.below == wall ? cavity_push_[static_cast<std::size_t>(c.damper)]
-                         : ball_push_[static_cast<std::size_t>(c.below)]) -= force;
-        (c.above == wall ? cavity_push_[static_cast<std::size_t>(c.damper)]
-                         : ball_push_[static_cast<std::size_t>(c.above)]) += force;
+    void add_force(const Contact& c, real force) {
+        (c.below == wall ? cavity_force_[static_cast<std::size_t>(c.damper)]
+                         : ball_force_[static_cast<std::size_t>(c.below)]) -= force;
+        (c.above == wall ? cavity_force_[static_cast<std::size_t>(c.damper)]
+                         : ball_force_[static_cast<std::size_t>(c.above)]) += force;
     }
 
-    // Accelerations of modes and balls for the pushes gathered so far.
+    // Computes the accelerations of modes and balls from the forces added so far.
     void accelerate(const real* y, real* dy) {
         const std::size_t m = mode_count(), b = ball_count();
         real* dv = velocities(problem_, dy);
         for (std::size_t k = 0; k < m; ++k) {
             real a = -2 * problem_.modes[k].decay * y[2 * k + 1] - problem_.modes[k].stiffness * y[2 * k];
             for (std::size_t d = 0; d < problem_.dampers.size(); ++d)
-                a += problem_.dampers[d].shape[k] * cavity_push_[d];
+                a += problem_.dampers[d].shape[k] * cavity_force_[d];
             dy[2 * k + 1] = a;
         }
         couple(
             problem_.coupling, m, [&](std::size_t k) { return y[2 * k + 1]; },
             [&](std::size_t k, real force) { dy[2 * k + 1] += force; });
         for (std::size_t i = 0; i < b; ++i)
-            dv[i] = ball_push_[i] / problem_.ball_mass[i] +
+            dv[i] = ball_force_[i] / problem_.ball_mass[i] +
                     problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
         if (!loads_->active()) return;
         for (std::size_t l = 0; l < loads_->size(); ++l) {
-            if (loads_->piece(l).silent()) continue;
+            if (loads_->piece(l).is_zero()) continue;
             const real f = signal_[l];
             for (std::size_t k = 0; k < m; ++k) dy[2 * k + 1] += loads_->load(l).shape[k] * f;
             if (loads_->load(l).base)
@@ -92,20 +92,20 @@ class System {
         }
     }
 
-    void clear_pushes() {
-        for (real& f : cavity_push_) f = 0;
-        for (real& f : ball_push_) f = 0;
+    void clear_forces() {
+        for (real& f : cavity_force_) f = 0;
+        for (real& f : ball_force_) f = 0;
     }
 
-    // Solves coupling x forces = -closing acceleration for the stuck contacts.
-    void solve_stuck(const real* dy) {
+    // Solves coupling x forces = -(acceleration of approach) for the stuck contacts.
+    void solve_constraints(const real* dy) {
         const std::size_t n = stuck.size();
         matrix_.resize(n * n);
         forces_.resize(n);
-        cavity_rates(dy); // of a derivative: accelerations
+        cavity_rates(dy); // of a derivative, so accelerations
         for (std::size_t i = 0; i < n; ++i) {
             const Contact& a = contact(stuck[i]);
-            forces_[i] = -closing(a, velocities(problem_, dy), cavity_rate_.data());
+            forces_[i] = -approach_rate(a, velocities(problem_, dy), cavity_rate_.data());
             for (std::size_t j = 0; j < n; ++j) matrix_[i * n + j] = coupling(a, contact(stuck[j]));
         }
         solve_definite(matrix_, forces_);
@@ -116,8 +116,8 @@ public:
     std::vector<int> stuck;
 
     explicit System(const Problem& problem)
-        : problem_(problem), cavity_rate_(problem.dampers.size()), cavity_push_(problem.dampers.size()),
-          ball_push_(problem.ball_mass.size()), signal_(problem.loads.size()) {}
+        : problem_(problem), cavity_rate_(problem.dampers.size()), cavity_force_(problem.dampers.size()),
+          ball_force_(problem.ball_mass.size()), signal_(problem.loads.size()) {}
 
     void begin(const Loads& loads, real start) {
         loads_ = &loads;
@@ -129,7 +129,7 @@ public:
     std::size_t x_index(std::size_t j) const { return time_index() + 4 + 2 * j; }
     std::size_t size() const { return time_index() + 4 + 2 * active.size(); }
 
-    // d(closing rate of a)/dt per unit of force in b.
+    // d(approach rate of a)/dt per unit of force in b.
     real coupling(const Contact& a, const Contact& b) const {
         real sum = 0;
         const auto side = [](const Contact& c, int ball) {
@@ -156,17 +156,17 @@ public:
             [&](const auto& law) { return contact_force(law, a.state, y[x_index(j)], rate).total; });
     }
 
-    // Forces of the stuck contacts found by the last evaluation.
+    // Forces of the stuck contacts at the last evaluation.
     const std::vector<real>& stuck_forces() const { return forces_; }
 
     void operator()(const real* y, real* dy) {
         const std::size_t m = mode_count(), b = ball_count(), n = active.size();
         const real* v = velocities(problem_, y);
         cavity_rates(y);
-        clear_pushes();
+        clear_forces();
 
-        // Clock: with r_j = (x_min / x_j)^3 and R = sum r_j, dt/dtau = x_min^3 / R and x_j' = closing r_j /
-        // (4 R).
+        // Clock: with r_j = (x_min / x_j)^3 and R = sum r_j, dt/dtau = x_min^3 / R and x_j' = (approach rate)
+        // r_j / (4 R).
         real clock = 1, total = 1;
         if (n == 1) {
             clock = cube(y[x_index(0)]);
@@ -187,14 +187,14 @@ public:
             const Active& a = active[j];
             const Contact& c = contact(a.contact);
             const std::size_t at = x_index(j);
-            const real x = y[at], rate = closing(c, v, cavity_rate_.data());
+            const real x = y[at], rate = approach_rate(c, v, cavity_rate_.data());
             real lost = 0;
             const real f = c.normal.visit([&](const auto& law) {
                 const NormalForce<real> force = contact_force(law, a.state, x, rate);
                 lost = (force.total - force.elastic) * rate;
                 return force.total;
             });
-            push(c, f);
+            add_force(c, f);
             dy[at] = 0.25 * rate * clock_[j] / total;
             dy[at + 1] = clock * lost;
         }
@@ -205,13 +205,13 @@ public:
         real* dv = velocities(problem_, dy);
         accelerate(y, dy);
         if (!stuck.empty()) {
-            solve_stuck(dy);
-            clear_pushes();
-            for (std::size_t i = 0; i < stuck.size(); ++i) push(contact(stuck[i]), forces_[i]);
+            solve_constraints(dy);
+            clear_forces();
+            for (std::size_t i = 0; i < stuck.size(); ++i) add_force(contact(stuck[i]), forces_[i]);
             for (std::size_t k = 0; k < m; ++k)
                 for (std::size_t d = 0; d < problem_.dampers.size(); ++d)
-                    dy[2 * k + 1] += problem_.dampers[d].shape[k] * cavity_push_[d];
-            for (std::size_t i = 0; i < b; ++i) dv[i] += ball_push_[i] / problem_.ball_mass[i];
+                    dy[2 * k + 1] += problem_.dampers[d].shape[k] * cavity_force_[d];
+            for (std::size_t i = 0; i < b; ++i) dv[i] += ball_force_[i] / problem_.ball_mass[i];
         }
 
         real viscous = 0, work[2] = {0, 0};
@@ -219,7 +219,7 @@ public:
         viscous += coupled_power(problem_.coupling, m, [&](std::size_t k) { return y[2 * k + 1]; });
         if (loads_->active()) {
             for (std::size_t l = 0; l < loads_->size(); ++l) {
-                if (loads_->piece(l).silent()) continue;
+                if (loads_->piece(l).is_zero()) continue;
                 const Load& load = loads_->load(l);
                 real speed = 0;
                 for (std::size_t k = 0; k < m; ++k) speed += load.shape[k] * y[2 * k + 1];

@@ -1,35 +1,35 @@
-// One run from its start to its end: flights and contacts in turn, samples on the way.
+// The event-driven 1-D engine: flights and contacts in turn, with samples.
 //
-// Soft contacts are integrated (impact/closed.hpp); with Method::newton an impact takes no time and a contact
-// whose bounces have become shorter than a stated part of the shortest period sticks until its force would
-// have to pull.
+// Soft contacts are integrated (impact/closed_contacts.hpp). With Method::newton impacts are instantaneous,
+// and a contact whose bounces become shorter than a given fraction of the shortest period sticks until its
+// force would become attractive.
 #pragma once
 
-#include "impact/closed.hpp"
+#include "impact/closed_contacts.hpp"
 
 namespace rattlebox {
 
 class Trajectory : ClosedContacts {
-    std::vector<char> watched_, presses_;
-    State ahead_; // at the end of a flight
+    std::vector<char> is_watched_, is_pressing_;
+    State flight_end_; // state at the end of a flight
 
     void sample_flight_at(real t, bool given) {
         sampled_ = ledger_;
-        flight_.account(t - state_.t, sampled_);
+        flight_.add_to_ledger(t - state_.t, sampled_);
         flight_.at(t - state_.t, scratch_);
         clear_contact_samples();
         record(t, scratch_, sampled_, given);
     }
 
-    // The samples up to `until`, and those beside a contact that has just ended or begins there. One that
-    // ended is sampled an instant later, so that hard impacts, which end where they begin, have velocities
+    // Takes the samples up to `until`, and those at a contact that has just ended or begins at `until`. The
+    // end is sampled at the next floating-point time, so that hard impacts have samples of the velocities
     // before and after.
-    void sample_flight(real until, bool touches) {
+    void sample_flight(real until, bool at_touch) {
         const real begin = state_.t;
         const auto sample_up_to = [&](real t) {
             while (sample_due(t)) sample_flight_at(problem_.sample_times[next_sample_++], true);
         };
-        if (samples_contacts() && (contact_ended_ || touches)) {
+        if (samples_contacts() && (contact_ended_ || at_touch)) {
             const real just_after = std::nextafter(begin, infinity), middle = 0.5 * (begin + until);
             if (contact_ended_ && just_after < until) {
                 sample_up_to(begin);
@@ -38,7 +38,7 @@ class Trajectory : ClosedContacts {
             sample_up_to(middle);
             if (middle > begin) sample_flight_at(middle, false);
             sample_up_to(until);
-            if (touches) sample_flight_at(until, false);
+            if (at_touch) sample_flight_at(until, false);
         }
         sample_up_to(until);
         contact_ended_ = false;
@@ -53,37 +53,38 @@ class Trajectory : ClosedContacts {
         for (Phase p : phase_) any_touching = any_touching || p == Phase::touching;
         flight_.begin(state_, loads_, stop - state_.t, any_touching);
         bool pressing = false;
-        presses_.assign(phase_.size(), false);
+        is_pressing_.assign(phase_.size(), false);
         for (std::size_t c = 0; c < phase_.size(); ++c) {
-            watched_[c] = phase_[c] != Phase::touching;
+            is_watched_[c] = phase_[c] != Phase::touching;
             if (phase_[c] != Phase::touching) continue;
             const int tendency = flight_.tendency(problem_.contacts[c]);
             if (tendency > 0) phase_[c] = Phase::open;
-            if (tendency < 0) pressing = presses_[c] = true;
+            if (tendency < 0) is_pressing_[c] = pressing = true;
             if (tendency < 0 && hard()) stick(static_cast<int>(c));
         }
         if (pressing && hard()) return;
-        const Touch touch = flight_.first_touch(watched_, ahead_);
-        real length = touch.after;
+        const FirstTouch touch = flight_.first_touch(is_watched_, flight_end_);
+        real length = touch.time;
         if (pressing) {
-            length = rest_start_length(length);
-            flight_.at(length, ahead_);
+            length = rest_flight_length(length);
+            flight_.at(length, flight_end_);
         }
         const bool to_stop = touch.contact < 0 && length == stop - state_.t;
         const real begin = state_.t, end = to_stop ? stop : begin + length;
-        const bool met = touch.contact >= 0 && length == touch.after;
-        sample_flight(end, met || pressing);
-        flight_.account(length, ledger_);
-        std::swap(ahead_.y, state_.y);
+        const bool touches = touch.contact >= 0 && length == touch.time;
+        sample_flight(end, touches || pressing);
+        flight_.add_to_ledger(length, ledger_);
+        std::swap(flight_end_.y, state_.y);
         state_.t = end;
-        settle_released(touch.contact);
-        if (pressing) begin_at_rest(begin, presses_);
-        if (met) meet(touch.contact);
-        smooth_since_ = pressing && !met ? begin : state_.t;
+        open_all_released(touch.contact);
+        if (pressing) begin_contacts_from_rest(begin, is_pressing_);
+        if (touches) begin_contact_at(touch.contact);
+        last_jump_ = pressing && !touches ? begin : state_.t;
     }
 
-    // Can every released contact only open? Its rate is too large for any acceleration of the flight to turn.
-    bool released_only_open() {
+    // Whether every released contact will open because its rate is too large for the accelerations of the
+    // flight.
+    bool released_contacts_only_open() {
         if (released_.empty()) return true;
         flight_.begin(state_, loads_, next_stop() - state_.t, false);
         for (const Released& r : released_) {
@@ -96,7 +97,7 @@ class Trajectory : ClosedContacts {
 
 public:
     Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
-        : ClosedContacts(problem, stop), watched_(problem.contacts.size()), ahead_(problem) {}
+        : ClosedContacts(problem, stop), is_watched_(problem.contacts.size()), flight_end_(problem) {}
 
     Result run() {
         for (int c = 0; c < problem_.contact_count(); ++c) {
@@ -115,7 +116,7 @@ public:
                 fail(Status::too_many_events);
             else if (stop_ && stop_->load(std::memory_order_relaxed))
                 fail(Status::interrupted);
-            else if (system_.active.empty() && system_.stuck.empty() && released_only_open())
+            else if (system_.active.empty() && system_.stuck.empty() && released_contacts_only_open())
                 fly();
             else
                 integrate_closed();

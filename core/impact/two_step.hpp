@@ -1,17 +1,21 @@
-// The fixed-step scheme of the discrete-element literature, to compare with: a long step while nothing
-// overlaps, a short one while something does. Each step is one classical Runge-Kutta step, or an adaptive
-// Dormand-Prince solution of its own with relative tolerance 1e-3, absolute 1e-6 and at least ten substeps,
-// which is what MATLAB's ode45 does by default.
+// The fixed-step scheme of the discrete-element literature, for comparison: a long step without contacts and
+// a short step with contacts. Each step is one classical Runge-Kutta step, or an adaptive Dormand-Prince
+// solution with relative tolerance 1e-3, absolute tolerance 1e-6 and at least ten substeps, like MATLAB's
+// ode45 with default options.
 //
-// What it misses: an overlap that begins and ends within one long step; the instant of first touch (known to
-// a step), so the speed that restitution is evaluated from too. Samples between steps are cubic (Hermite).
+// The scheme misses contacts that begin and end within one long step. The time of first touch, and with it
+// the speed at which restitution is evaluated, is known to one step only. Samples between steps are cubic
+// Hermite interpolants.
+//
+// J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19, RK5(4)7M,
+// doi:10.1016/0771-050X(80)90013-3.
 #pragma once
 
 #include <array>
 #include <atomic>
 
 #include "impact/contact_phase.hpp"
-#include "impact/log.hpp"
+#include "impact/result.hpp"
 #include "impact/state.hpp"
 
 namespace rattlebox {
@@ -20,7 +24,7 @@ class TwoStep {
     struct Slot {
         ContactState state;
         bool closed = false;
-        real rate = 0; // of approach, one step before
+        real rate = 0; // approach rate one step before
         int impact = -1;
     };
 
@@ -30,27 +34,27 @@ class TwoStep {
     State state_;
     Ledger ledger_;
     std::vector<Slot> slots_;
-    std::vector<real> push_ball_, push_cavity_, y_, next_, dy_, dnext_, work_;
+    std::vector<real> ball_force_, cavity_force_, y_, next_, dy_, dnext_, work_;
     std::array<std::vector<real>, 7> k_;
     std::size_t next_sample_ = 0, n_ = 0;
-    bool phase_changed_ = false; // a contact has begun, turned or ended in this step
+    bool phase_changed_ = false; // whether a contact began, reached its deepest overlap or ended in this step
     Result result_;
 
-    std::size_t extra() const {
+    std::size_t extra_index() const {
         return state_.y.size();
-    } // load work, base work, viscous, then a loss by contact
+    } // of load work, base work, viscous loss and the loss of each contact
 
-    struct Push {
+    struct ForceAndLoss {
         real force = 0, lost = 0;
     };
 
-    Push force_of(std::size_t c, const real* y) const {
+    ForceAndLoss force_of(std::size_t c, const real* y) const {
         const Gap g = gap(problem_, problem_.contacts[c], y);
         const Slot& slot = slots_[c];
         const real overlap = -g.value - slot.state.origin();
         if (overlap <= 0) return {};
         const real x = std::sqrt(std::sqrt(overlap)), rate = -g.rate;
-        return problem_.contacts[c].normal.visit([&](const auto& law) -> Push {
+        return problem_.contacts[c].normal.visit([&](const auto& law) -> ForceAndLoss {
             const NormalForce<real> f = contact_force(law, slot.state, x, rate);
             if constexpr (requires { law.zero_overlap; })
                 if (law.zero_overlap == 0 && f.total < 0) return {0, -f.elastic * rate};
@@ -58,20 +62,20 @@ class TwoStep {
         });
     }
 
-    void right(real t, const real* y, real* dy) {
+    void derivative(real t, const real* y, real* dy) {
         const std::size_t m = problem_.modes.size(), b = problem_.ball_mass.size();
-        std::fill(push_ball_.begin(), push_ball_.end(), 0.0);
-        std::fill(push_cavity_.begin(), push_cavity_.end(), 0.0);
-        real* more = dy + extra();
-        more[0] = more[1] = more[2] = 0;
+        std::fill(ball_force_.begin(), ball_force_.end(), 0.0);
+        std::fill(cavity_force_.begin(), cavity_force_.end(), 0.0);
+        real* extra_rate = dy + extra_index();
+        extra_rate[0] = extra_rate[1] = extra_rate[2] = 0;
         for (std::size_t c = 0; c < problem_.contacts.size(); ++c) {
             const Contact& k = problem_.contacts[c];
-            const Push p = force_of(c, y);
-            more[3 + c] = p.lost;
-            (k.below == wall ? push_cavity_[static_cast<std::size_t>(k.damper)]
-                             : push_ball_[static_cast<std::size_t>(k.below)]) -= p.force;
-            (k.above == wall ? push_cavity_[static_cast<std::size_t>(k.damper)]
-                             : push_ball_[static_cast<std::size_t>(k.above)]) += p.force;
+            const ForceAndLoss p = force_of(c, y);
+            extra_rate[3 + c] = p.lost;
+            (k.below == wall ? cavity_force_[static_cast<std::size_t>(k.damper)]
+                             : ball_force_[static_cast<std::size_t>(k.below)]) -= p.force;
+            (k.above == wall ? cavity_force_[static_cast<std::size_t>(k.damper)]
+                             : ball_force_[static_cast<std::size_t>(k.above)]) += p.force;
         }
         const real* v = velocities(problem_, y);
         real* ds = positions(problem_, dy);
@@ -81,19 +85,19 @@ class TwoStep {
             dy[2 * k] = y[2 * k + 1];
             dy[2 * k + 1] = -2 * mode.decay * y[2 * k + 1] - mode.stiffness * y[2 * k];
             for (std::size_t d = 0; d < problem_.dampers.size(); ++d)
-                dy[2 * k + 1] += problem_.dampers[d].shape[k] * push_cavity_[d];
-            more[2] += 2 * mode.decay * square(y[2 * k + 1]);
+                dy[2 * k + 1] += problem_.dampers[d].shape[k] * cavity_force_[d];
+            extra_rate[2] += 2 * mode.decay * square(y[2 * k + 1]);
         }
         const auto speed = [&](std::size_t k) { return y[2 * k + 1]; };
         couple(problem_.coupling, m, speed, [&](std::size_t k, real force) { dy[2 * k + 1] += force; });
-        more[2] += coupled_power(problem_.coupling, m, speed);
+        extra_rate[2] += coupled_power(problem_.coupling, m, speed);
         for (std::size_t i = 0; i < b; ++i) {
             ds[i] = v[i];
-            dv[i] = push_ball_[i] / problem_.ball_mass[i] +
+            dv[i] = ball_force_[i] / problem_.ball_mass[i] +
                     problem_.dampers[static_cast<std::size_t>(problem_.ball_damper[i])].gravity;
         }
         for (std::size_t l = 0; l < loads_.size(); ++l) {
-            if (loads_.piece(l).silent()) continue;
+            if (loads_.piece(l).is_zero()) continue;
             const Load& load = loads_.load(l);
             const real f = loads_.piece(l).value(t);
             real speed = 0;
@@ -106,22 +110,22 @@ class TwoStep {
                     dv[i] -= f;
                     speed -= problem_.ball_mass[i] * v[i];
                 }
-            more[load.base] += f * speed;
+            extra_rate[load.base] += f * speed;
         }
     }
 
     void rk4(real t, real h) {
-        right(t, y_.data(), k_[0].data());
+        derivative(t, y_.data(), k_[0].data());
         static constexpr real node[3] = {0.5, 0.5, 1};
         for (int s = 0; s < 3; ++s) {
             for (std::size_t i = 0; i < n_; ++i) work_[i] = y_[i] + h * node[s] * k_[s][i];
-            right(t + h * node[s], work_.data(), k_[s + 1].data());
+            derivative(t + h * node[s], work_.data(), k_[s + 1].data());
         }
         for (std::size_t i = 0; i < n_; ++i)
             next_[i] = y_[i] + h / 6 * (k_[0][i] + 2 * k_[1][i] + 2 * k_[2][i] + k_[3][i]);
     }
 
-    // J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19, RK5(4)7M.
+    // RK5(4)7M; the result has order 5.
     void dopri5(real t, real length) {
         static constexpr real c[7] = {0, 0.2, 0.3, 0.8, 8.0 / 9, 1, 1};
         static constexpr real a[7][6] = {
@@ -146,7 +150,7 @@ class TwoStep {
                     for (int j = 0; j < s; ++j) sum += a[s][j] * k_[static_cast<std::size_t>(j)][i];
                     work_[i] = y_[i] + h * sum;
                 }
-                right(t + c[s] * h, work_.data(), k_[static_cast<std::size_t>(s)].data());
+                derivative(t + c[s] * h, work_.data(), k_[static_cast<std::size_t>(s)].data());
             }
             real error = 0;
             for (std::size_t i = 0; i < n_; ++i) {
@@ -168,7 +172,7 @@ class TwoStep {
         y_ = start;
     }
 
-    // Opens and closes contacts at the end of a step; false when a law left its domain.
+    // Opens and closes contacts at the end of a step; returns false if a law left its range of validity.
     bool update(real t) {
         for (std::size_t c = 0; c < slots_.size(); ++c) {
             Slot& slot = slots_[c];
@@ -178,7 +182,7 @@ class TwoStep {
             phase_changed_ = phase_changed_ || (slot.closed && slot.rate > 0 && rate <= 0);
             slot.rate = rate;
             if (!slot.closed) {
-                // Restitution for a touch within the next step; fixed by the first step that ends in overlap.
+                // Restitution of a touch within the next step. The last value before the overlap is used.
                 if (g.value > problem_.settings.dt_flight * std::fmax(2 * rate, 0.0) && g.value > 0) continue;
                 const Rebound r = rebound(contact.restitution, std::fmax(rate, 0.0));
                 if (r.outside || !possible(contact.normal, r)) {
@@ -187,28 +191,28 @@ class TwoStep {
                     result_.stopped_value = rate;
                     return false;
                 }
-                bool asked = false;
+                bool has_restitution = false;
                 contact.normal.visit([&](const auto& law) {
-                    slot.state = first_touch(law, r.e, std::fmax(rate, 0.0));
-                    asked = law.needs_restitution();
+                    slot.state = initial_state(law, r.e, std::fmax(rate, 0.0));
+                    has_restitution = law.needs_restitution();
                 });
                 if (g.value >= 0) continue;
                 result_.counts.extrapolated += r.extrapolated;
                 slot.closed = phase_changed_ = true;
-                Impact line;
-                line.contact = static_cast<int>(c);
-                line.time = t;
-                line.approach_speed = rate;
-                if (asked) line.restitution = r.e;
-                line.energy_lost = -y_[extra() + 3 + c];
+                Impact impact;
+                impact.contact = static_cast<int>(c);
+                impact.time = t;
+                impact.approach_speed = rate;
+                if (has_restitution) impact.restitution = r.e;
+                impact.energy_lost = -y_[extra_index() + 3 + c];
                 slot.impact = -1;
-                slot.impact = result_.enter(line);
+                slot.impact = result_.add_impact(impact);
             }
-            Impact& line = result_.impacts[static_cast<std::size_t>(slot.impact)];
+            Impact& impact = result_.impacts[static_cast<std::size_t>(slot.impact)];
             const real overlap = -g.value;
-            line.peak_overlap = std::max(line.peak_overlap, overlap);
-            line.peak_force = std::max(line.peak_force, force_of(c, y_.data()).force);
-            // Rate-independent laws change phase when their boundary is crossed.
+            impact.peak_overlap = std::max(impact.peak_overlap, overlap);
+            impact.peak_force = std::max(impact.peak_force, force_of(c, y_.data()).force);
+            // Laws with hysteresis change their phase at its end.
             contact.normal.visit([&](const auto& law) {
                 if constexpr (std::decay_t<decltype(law)>::hysteretic) {
                     const real x = std::sqrt(std::sqrt(std::fmax(overlap - slot.state.origin(), 0.0)));
@@ -221,10 +225,10 @@ class TwoStep {
             const real plastic =
                 contact.normal.visit([&](const auto& law) { return plastic_loss(law, slot.state, 0); });
             ledger_.plastic[d] += plastic;
-            line.energy_lost += y_[extra() + 3 + c] + plastic;
-            line.duration = t - line.time;
-            line.separation_speed = -rate;
-            line.complete = true;
+            impact.energy_lost += y_[extra_index() + 3 + c] + plastic;
+            impact.duration = t - impact.time;
+            impact.separation_speed = -rate;
+            impact.complete = true;
             slot = Slot{};
             phase_changed_ = true;
         }
@@ -233,8 +237,8 @@ class TwoStep {
 
     void sample(real from, real to) {
         if (next_sample_ >= problem_.sample_times.size() || problem_.sample_times[next_sample_] > to) return;
-        right(from, y_.data(), dy_.data());
-        right(to, next_.data(), dnext_.data());
+        derivative(from, y_.data(), dy_.data());
+        derivative(to, next_.data(), dnext_.data());
         const real h = to - from;
         while (next_sample_ < problem_.sample_times.size() && problem_.sample_times[next_sample_] <= to) {
             const real t = problem_.sample_times[next_sample_++], s = (t - from) / h;
@@ -242,22 +246,22 @@ class TwoStep {
                        w3 = s * s * (s - 1);
             for (std::size_t i = 0; i < n_; ++i)
                 work_[i] = w0 * y_[i] + w2 * next_[i] + h * (w1 * dy_[i] + w3 * dnext_[i]);
-            put(t, work_.data());
+            add_sample(t, work_.data());
         }
     }
 
-    void put(real t, const real* y, bool given = true) {
+    void add_sample(real t, const real* y, bool given = true) {
         State state = state_;
         std::copy_n(y, state.y.size(), state.y.begin());
         Ledger ledger = ledger_;
-        ledger.load_work = y[extra()];
-        ledger.base_work = y[extra() + 1];
-        ledger.viscous = y[extra() + 2];
+        ledger.load_work = y[extra_index()];
+        ledger.base_work = y[extra_index() + 1];
+        ledger.viscous = y[extra_index() + 2];
         std::vector<real> stored(problem_.dampers.size()), force(problem_.dampers.size());
         for (std::size_t c = 0; c < slots_.size(); ++c) {
             const Contact& contact = problem_.contacts[c];
             const std::size_t d = static_cast<std::size_t>(contact.damper);
-            ledger.normal[d] += y[extra() + 3 + c];
+            ledger.normal[d] += y[extra_index() + 3 + c];
             const real overlap = -gap(problem_, contact, y).value - slots_[c].state.origin();
             const real x = overlap > 0 ? std::sqrt(std::sqrt(overlap)) : 0;
             contact.normal.visit([&](const auto& law) {
@@ -274,8 +278,8 @@ class TwoStep {
 public:
     TwoStep(const Problem& problem, const std::atomic<bool>* stop = nullptr)
         : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), ledger_(problem),
-          slots_(problem.contacts.size()), push_ball_(problem.ball_mass.size()),
-          push_cavity_(problem.dampers.size()), n_(state_.y.size() + 3 + problem.contacts.size()),
+          slots_(problem.contacts.size()), ball_force_(problem.ball_mass.size()),
+          cavity_force_(problem.dampers.size()), n_(state_.y.size() + 3 + problem.contacts.size()),
           result_(problem) {
         y_.assign(n_, 0);
         std::copy(state_.y.begin(), state_.y.end(), y_.begin());
@@ -288,7 +292,7 @@ public:
         real t = 0;
         if (!problem_.sample_times.empty() && problem_.sample_times[0] <= 0) {
             ++next_sample_;
-            put(0, y_.data());
+            add_sample(0, y_.data());
         }
         bool ok = update(0);
         while (ok && t < s.duration) {
@@ -320,7 +324,7 @@ public:
             phase_changed_ = false;
             ok = update(t);
             if (phase_changed_ && static_cast<long>(result_.impacts.size()) <= s.contact_samples)
-                put(t, y_.data(), false);
+                add_sample(t, y_.data(), false);
         }
         result_.stopped_at = t;
         return std::move(result_);

@@ -1,4 +1,7 @@
-// Spectral integration and interpolation on Gauss-Legendre nodes of [0, 1], from values of f at the nodes.
+// Spectral integration and barycentric interpolation on Gauss-Legendre nodes of [0, 1].
+//
+// The integral up to node i uses the Legendre expansion of f and int P_k = (P_(k+1) - P_(k-1)) / (2 k + 1).
+// Interpolation: J.-P. Berrut, L. N. Trefethen, SIAM Review 46 (2004) 501, doi:10.1137/S0036144502417715.
 #pragma once
 
 #include <algorithm>
@@ -9,20 +12,20 @@
 namespace rattlebox {
 
 template <int n> struct Collocation {
-    static_assert(n % 16 == 0, "halves are worked through in blocks of eight");
+    static_assert(n % 16 == 0, "halves are worked through in blocks of lanes_at");
     static constexpr int half = n / 2, block = lane_count;
-    struct alignas(64) Row { // a function's values at the nodes
+    struct alignas(64) Row { // values of a function at the nodes
         real at[n];
         real& operator[](int i) { return at[i]; }
         const real& operator[](int i) const { return at[i]; }
-        Lanes& eight(int i) { return lanes(at + i); }
-        const Lanes& eight(int i) const { return lanes(at + i); }
+        Lanes& lanes_at(int i) { return lanes(at + i); }
+        const Lanes& lanes_at(int i) const { return lanes(at + i); }
         Lanes read(int i) const { return rattlebox::read<lane_count>(at + i); }
     };
-    alignas(64) real node[n], weight[n], barycentric[n]; // the last: weights of interpolation
-    // Nodes and weights are symmetric, so f splits into an odd and an even part and the work into halves:
-    // [j][i] is the weight of f(1 - node j) - f(node j), and of their sum, in integrals up to and around node
-    // i.
+    alignas(64) real node[n], weight[n], barycentric[n]; // `barycentric`: weights of interpolation
+    // Nodes and weights are symmetric, so f is split into an odd and an even part, which halves the work.
+    // Element [j][i] is the weight of f(1 - node j) - f(node j), or of their sum, in the integrals up to node
+    // i and its mirror node.
     alignas(64) real odd[half][half], even[half][half];
 
     Collocation() {
@@ -30,13 +33,13 @@ template <int n> struct Collocation {
         for (int i = 0; i < n; ++i) {
             real x = -std::cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
             for (int iteration = 0; iteration < 100; ++iteration) {
-                fill(x, p);
+                legendre_polynomials(x, p);
                 slope = n * (x * p[n] - p[n - 1]) / (x * x - 1);
                 const real change = p[n] / slope;
                 x -= change;
                 if (std::fabs(change) < epsilon) break;
             }
-            fill(x, legendre[i]);
+            legendre_polynomials(x, legendre[i]);
             node[i] = 0.5 * (1 + x);
             weight[i] = 1 / ((1 - x * x) * slope * slope);
             barycentric[i] = (i % 2 ? -1 : 1) * std::sqrt((1 - x * x) * weight[i]);
@@ -45,19 +48,19 @@ template <int n> struct Collocation {
             real integral[n]; // of P_k from -1 to node i, times (2 k + 1)
             integral[0] = 2 * node[i];
             for (int k = 1; k < n; ++k) integral[k] = legendre[i][k + 1] - legendre[i][k - 1];
-            const auto part = [&](int j) {
+            const auto integral_weight = [&](int j) {
                 real sum = 0;
                 for (int k = 0; k < n; ++k) sum += legendre[j][k] * integral[k];
                 return 0.5 * weight[j] * sum;
             };
             for (int j = 0; j < half; ++j) {
-                odd[j][i] = 0.5 * (part(j) - part(n - 1 - j));
-                even[j][i] = 0.5 * (weight[j] - part(j) - part(n - 1 - j));
+                odd[j][i] = 0.5 * (integral_weight(j) - integral_weight(n - 1 - j));
+                even[j][i] = 0.5 * (weight[j] - integral_weight(j) - integral_weight(n - 1 - j));
             }
         }
     }
 
-    static void fill(real x, real* p) {
+    static void legendre_polynomials(real x, real* p) {
         p[0] = 1;
         p[1] = x;
         for (int k = 2; k <= n; ++k) p[k] = ((2 * k - 1) * x * p[k - 1] - (k - 1) * p[k - 2]) / k;
@@ -74,13 +77,14 @@ template <int n> struct Collocation {
             }
             whole[r] = 0.5 * dot<half>(weight, sum[r]);
         }
-        // A register for each running sum, so many at a time that they overlap and all stay in registers.
+        // One register for each running sum, with as many sums at a time as stay in registers and hide the
+        // latency.
         using Register = Pack<register_width>;
-        constexpr int width = register_width, together = std::min(half / width, std::max(1, 4 / count));
-        for (int i0 = 0; i0 < half; i0 += together * width) {
-            Register a[count][together] = {}, b[count][together] = {};
+        constexpr int width = register_width, registers = std::min(half / width, std::max(1, 4 / count));
+        for (int i0 = 0; i0 < half; i0 += registers * width) {
+            Register a[count][registers] = {}, b[count][registers] = {};
             for (int j = 0; j < half; ++j)
-                for (int k = 0; k < together; ++k) {
+                for (int k = 0; k < registers; ++k) {
                     const Register odd_j = pack<width>(&odd[j][i0 + k * width]),
                                    even_j = pack<width>(&even[j][i0 + k * width]);
                     for (int r = 0; r < count; ++r) {
@@ -89,7 +93,7 @@ template <int n> struct Collocation {
                     }
                 }
             for (int r = 0; r < count; ++r)
-                for (int k = 0; k < together; ++k) {
+                for (int k = 0; k < registers; ++k) {
                     const Register middle = Register::all(whole[r]) + a[r][k];
                     alignas(64) real mirrored[width];
                     const int at = i0 + k * width;
@@ -100,7 +104,7 @@ template <int n> struct Collocation {
         }
     }
 
-    // Sum of products, in eight partial sums whatever the instruction set.
+    // Sum of products in eight partial sums, so that the bits do not depend on the instruction set.
     template <int length> static real dot(const real* a, const real* b) {
         static_assert(length % block == 0);
         Lanes sum = {};
@@ -108,7 +112,7 @@ template <int n> struct Collocation {
         return total(sum);
     }
 
-    // The same for any number of functions.
+    // Integrates any number of functions.
     void integrate(const Row* f, Row* out, std::size_t count) const {
         for (; count >= 4; f += 4, out += 4, count -= 4) integrate<4>(f, out);
         if (count == 3) integrate<3>(f, out);
@@ -117,14 +121,14 @@ template <int n> struct Collocation {
     }
 
     // Integral of f from 0 to 1.
-    real whole(const Row& f) const { return dot<n>(weight, f.at); }
+    real integral(const Row& f) const { return dot<n>(weight, f.at); }
 
-    // f at any point that is not a node, from its values at the nodes.
+    // Returns f at a point that is not a node.
     real interpolate(const Row& f, real x) const {
         Lanes above = {}, below = {};
         for (int i = 0; i < n; i += block) {
             const Lanes part = lanes(barycentric + i) / (Lanes::all(x) - lanes(node + i));
-            above += part * f.eight(i);
+            above += part * f.lanes_at(i);
             below += part;
         }
         return total(above) / total(below);

@@ -1,6 +1,8 @@
-// Explicit Runge-Kutta method of order 8 with error estimates of orders 5 and 3, and one step of it.
-// Coefficients: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.,
-// Springer 1993, section II.10 (DOP853). The systems here are autonomous, so the nodes are not needed.
+// One step of DOP853, the explicit Runge-Kutta method of order 8 with error estimates of orders 5 and 3, for
+// autonomous systems.
+//
+// E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993,
+// section II.10, doi:10.1007/978-3-540-78862-1.
 #pragma once
 
 #include <algorithm>
@@ -75,7 +77,7 @@ inline constexpr real error5[12] = {0.01312004499419488,
 
 } // namespace dop853
 
-// Work space and one step for y' = f(y). `right(y, dy)` fills the derivative.
+// Workspace and one step for y' = f(y); `derivative_of(y, dy)` computes the derivative.
 class Dop853 {
     int size_ = 0;
     std::vector<real> k_; // the twelve stages, one after the other
@@ -96,17 +98,17 @@ class Dop853 {
     }
 
     template <const real (&weights)[12], std::size_t... j>
-    static real weigh(const real* base, int n, int i, std::index_sequence<j...>) {
+    static real weighted_sum(const real* base, int n, int i, std::index_sequence<j...>) {
         real sum = 0;
         ((weights[j] != 0 ? void(sum += weights[j] * base[static_cast<int>(j) * n + i]) : void()), ...);
         return sum;
     }
 
-    template <int s, class F> void run_stages(F& right, const real* y, real h) {
+    template <int s, class F> void run_stages(F& derivative_of, const real* y, real h) {
         if constexpr (s < dop853::stages) {
             combine_row<dop853::a[s], s>(y, h, std::make_index_sequence<s>{});
-            right(stage_.data(), k(s));
-            run_stages<s + 1>(right, y, h);
+            derivative_of(stage_.data(), k(s));
+            run_stages<s + 1>(derivative_of, y, h);
         }
     }
 
@@ -117,20 +119,21 @@ public:
         stage_.resize(static_cast<std::size_t>(size));
     }
 
-    // The derivative at the start of the step; to be called once for a new y, then any number of steps.
-    template <class F> void start(F& right, const real* y) { right(y, k(0)); }
+    // Computes the derivative at y. Must be called once for a new y, before any number of steps from it.
+    template <class F> void start(F& derivative_of, const real* y) { derivative_of(y, k(0)); }
 
     const real* derivative() const { return k_.data(); }
 
     // y_new = y + one step of length h (of either sign).
-    template <class F> void step(F& right, const real* y, real h, real* y_new) {
-        run_stages<1>(right, y, h);
+    template <class F> void step(F& derivative_of, const real* y, real h, real* y_new) {
+        run_stages<1>(derivative_of, y, h);
         for (int i = 0; i < size_; ++i)
-            y_new[i] =
-                y[i] + h * weigh<dop853::b>(k_.data(), size_, i, std::make_index_sequence<dop853::stages>{});
+            y_new[i] = y[i] + h * weighted_sum<dop853::b>(k_.data(), size_, i,
+                                                          std::make_index_sequence<dop853::stages>{});
     }
 
-    // Error of the last step divided by the tolerance scales; components with an infinite scale do not count.
+    // Returns the error of the last step relative to the scales. Components with an infinite scale do not
+    // count.
     real error(real h, const std::vector<real>& scale) {
         real sum5 = 0, sum3 = 0;
         int counted = 0;
@@ -138,8 +141,8 @@ public:
             const real inverse = 1 / scale[static_cast<std::size_t>(i)];
             if (inverse == 0) continue;
             constexpr auto all = std::make_index_sequence<dop853::stages>{};
-            sum5 += square(weigh<dop853::error5>(k_.data(), size_, i, all) * inverse);
-            sum3 += square(weigh<dop853::error3>(k_.data(), size_, i, all) * inverse);
+            sum5 += square(weighted_sum<dop853::error5>(k_.data(), size_, i, all) * inverse);
+            sum3 += square(weighted_sum<dop853::error3>(k_.data(), size_, i, all) * inverse);
             ++counted;
         }
         if (sum5 == 0 || counted == 0) return 0;

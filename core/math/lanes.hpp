@@ -1,5 +1,6 @@
-// Eight numbers at once, in registers as wide as the machine has them. Halves within halves, and not an array
-// of registers: so the compiler keeps them out of memory, and a sum has the same order on every machine.
+// SIMD: eight numbers in registers of the width that the instruction set has. A pack consists of two halves
+// rather than of an array of registers, because compilers keep an array in memory; sums also have the same
+// order for every width.
 #pragma once
 
 #include "math/real.hpp"
@@ -16,7 +17,7 @@ inline constexpr int register_width = 4;
 inline constexpr int register_width = 2;
 #endif
 
-// may_alias: they are laid over arrays of numbers.
+// may_alias, because packs overlay arrays of numbers.
 template <int n> struct __attribute__((may_alias)) Pack {
     Pack<n / 2> low, high;
 
@@ -50,7 +51,7 @@ struct __attribute__((may_alias)) Pack<n> {
     using Register = typename RegisterOf<n>::type;
     Register v;
 
-    // A difference from zero can be left out, a sum cannot: -0 + 0 is 0.
+    // v - 0 rather than v + 0: compilers remove the subtraction, but not the addition, which turns -0 into 0.
     static Pack all(real v) { return {v - Register{}}; }
     friend Pack operator+(const Pack& a, const Pack& b) { return {a.v + b.v}; }
     friend Pack operator-(const Pack& a, const Pack& b) { return {a.v - b.v}; }
@@ -77,22 +78,23 @@ using Lanes = Pack<lane_count>;
 template <int n> Pack<n> operator*(real a, const Pack<n>& b) { return Pack<n>::all(a) * b; }
 template <int n> Pack<n>& operator+=(Pack<n>& a, const Pack<n>& b) { return a = a + b; }
 
-// Neighbours in memory, at an address that is a multiple of their size.
+// Consecutive numbers at an aligned address.
 template <int n> const Pack<n>& pack(const real* p) { return *reinterpret_cast<const Pack<n>*>(p); }
 template <int n> Pack<n>& pack(real* p) { return *reinterpret_cast<Pack<n>*>(p); }
-// Their value, read by registers: compilers copy a struct in smaller pieces, which then wait for each other.
+// Their value, loaded register by register. Compilers copy a struct in smaller pieces, which prevents store
+// forwarding.
 template <int n> Pack<n> read(const real* p) {
     if constexpr (n <= register_width)
         return pack<n>(p);
     else
         return {read<n / 2>(p), read<n / 2>(p + n / 2)};
 }
-// What a register holds of eight, four at most: laws that take many numbers do not fit the registers
-// otherwise, and eight at once are no faster.
+// Number of contacts that are computed at once: one register, but at most four, because the many variables of
+// a contact law do not fit into the registers otherwise and eight are no faster.
 inline constexpr int group = register_width < 4 ? register_width : 4;
 using Group = Pack<group>;
 
-// At any address.
+// Consecutive numbers at any address.
 inline Group unaligned(const real* p) {
     Group value;
     __builtin_memcpy(&value, p, sizeof(value));

@@ -1,4 +1,4 @@
-// Small dense linear systems with a definite symmetric matrix: elimination without pivoting.
+// Small dense linear systems with a definite symmetric matrix, by Gaussian elimination without pivoting.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace rattlebox {
 
-// Solves matrix x = right in place; matrix is n x n by rows and is destroyed, right becomes x.
+// Solves matrix x = right in place. The matrix (n x n, row by row) is overwritten; `right` becomes x.
 inline void solve_definite(std::vector<real>& matrix, std::vector<real>& right) {
     const std::size_t n = right.size();
     for (std::size_t i = 0; i < n; ++i)

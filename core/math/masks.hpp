@@ -1,4 +1,4 @@
-// Which lanes are meant, as bits: bit l is that of lane l.
+// Masks of lanes as bits: bit l belongs to lane l.
 #pragma once
 
 #include <bit>
@@ -21,7 +21,7 @@ inline unsigned positive(const Group& a) {
 #endif
 }
 
-// Of eight whole numbers.
+// Mask of the negative ones of eight integers.
 inline unsigned negative(const int* numbers) {
 #if defined(__AVX__)
     __m256 signs;
@@ -34,14 +34,14 @@ inline unsigned negative(const int* numbers) {
 #endif
 }
 
-// The first lanes.
+// Mask of the first lanes.
 inline unsigned first_lanes(int count) { return (1u << count) - 1; }
 
 template <class F> void each_lane(unsigned bits, F&& f) {
     for (; bits != 0; bits &= bits - 1) f(std::countr_zero(bits));
 }
 
-// Of all bits that eight lanes may have: which are set, in ascending order.
+// Table of the set bits of each mask of eight lanes, ascending.
 struct SetBits {
     unsigned char of[1 << lane_count][lane_count] = {};
 
@@ -53,8 +53,8 @@ struct SetBits {
 };
 inline constexpr SetBits set_bits;
 
-// Writes the numbers of the lanes that are meant, counted from `first`, without a branch: eight are written,
-// and how many of them are meant is returned.
+// Writes the indices of the set lanes, counted from `first`, and returns their number. Always writes eight
+// values, so that no branch is needed.
 inline int list_lanes(unsigned bits, int first, int* to) {
     for (int l = 0; l < lane_count; ++l) to[l] = first + set_bits.of[bits][l];
     return std::popcount(bits);

@@ -7,7 +7,7 @@ namespace rattlebox {
 
 inline constexpr int gauss_count = 10;
 
-// Nodes and weights to the last digit: Newton on the Legendre recurrence, done once.
+// Nodes and weights to rounding error, by Newton's method on the Legendre recurrence.
 struct GaussRule {
     real node[gauss_count];
     real weight[gauss_count];

@@ -1,4 +1,4 @@
-// The number type and the few constants that every room shares.
+// The number type and constants of all parts of the core.
 #pragma once
 
 #include <cmath>

@@ -1,14 +1,15 @@
-// Rows of four numbers, as vectors in space with one number beside them, and rows turned into lanes.
+// Rows of four numbers: a vector and one more number. Rows are transposed into SIMD lanes and back.
 //
-// A particle's or a contact's data lie together, so that a contact fetches a few whole rows from memory and
-// not a dozen scattered numbers; turned into lanes, several contacts are computed at once.
+// The data of a particle or contact are stored together, so that a contact loads a few whole rows from memory
+// instead of a dozen scattered numbers. Transposed into lanes, several contacts are computed at once.
 #pragma once
 
 #include "math/lanes.hpp"
 
 namespace rattlebox {
 
-// Lanes live in registers only where functions of them are inlined, which compilers decide by size.
+// Lanes stay in registers only in inlined functions, and compilers do not inline large functions unless
+// forced.
 #define RATTLEBOX_INLINE __attribute__((always_inline)) inline
 
 typedef real Row __attribute__((vector_size(4 * sizeof(real))));
@@ -24,7 +25,7 @@ inline Row cross(Row a, Row b) {
     return Row{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0};
 }
 
-// ---- what the laws need beside arithmetic, for a number and for lanes alike
+// ---- functions of one number or of lanes, in which the contact laws are written
 
 inline real all(real, real v) { return v; }
 inline real root(real a) { return std::sqrt(a); }
@@ -53,7 +54,7 @@ template <int n> RATTLEBOX_INLINE Pack<n> smaller(const Pack<n>& a, const Pack<n
         return {a.v < b.v ? a.v : b.v};
 }
 
-// a where c > 0
+// Returns a in lanes where c > 0, else b.
 template <int n> RATTLEBOX_INLINE Pack<n> choose(const Pack<n>& c, const Pack<n>& a, const Pack<n>& b) {
     if constexpr (n > register_width)
         return {choose(c.low, a.low, b.low), choose(c.high, a.high, b.high)};
@@ -73,14 +74,14 @@ template <int n> RATTLEBOX_INLINE Pack<n> power(const Pack<n>& a, real exponent)
 
 template <int n> Pack<n> operator-(const Pack<n>& a) { return Pack<n>::all(0) - a; }
 
-// ---- a vector in space of each lane
+// ---- vectors of lanes
 
 template <class T> struct Vector {
     T x, y, z;
 
     Vector() = default;
     RATTLEBOX_INLINE Vector(const T& x, const T& y, const T& z) : x(x), y(y), z(z) {}
-    // By numbers: compilers copy a struct in smaller pieces, which then wait for each other.
+    // Copies lane by lane. Compilers copy a struct in smaller pieces, which prevents store forwarding.
     RATTLEBOX_INLINE Vector(const Vector& v) : x(v.x), y(v.y), z(v.z) {}
     RATTLEBOX_INLINE Vector& operator=(const Vector& v) {
         x = v.x, y = v.y, z = v.z;
@@ -109,7 +110,7 @@ struct Columns {
     Vector<Group> vector() const { return {x, y, z}; }
 };
 
-// The rows of(0), of(1), ... as lanes.
+// Transposes the rows of(0), of(1), ... into lanes.
 template <class Of> RATTLEBOX_INLINE Columns columns_of(Of&& of) {
 #if defined(__AVX__)
     const Row a = of(0), b = of(1), c = of(2), d = of(3);
@@ -127,12 +128,13 @@ template <class Of> RATTLEBOX_INLINE Columns columns_of(Of&& of) {
 #endif
 }
 
-// The rows that at(0), at(1), ... point to.
+// Transposes the rows that at(0), at(1), ... point to into lanes.
 template <class At> RATTLEBOX_INLINE Columns columns(At&& at) {
     return columns_of([&](int l) __attribute__((always_inline)) { return *at(l); });
 }
 
-// The other way: lane l becomes the row that at(l) points to. Where lanes share a row, one of them stays.
+// Transposes back: lane l is stored in the row that at(l) points to. If lanes share a row, the last one
+// remains.
 template <class At> RATTLEBOX_INLINE void store(const Columns& c, At&& at) {
 #if defined(__AVX__)
     const auto xz = __builtin_shufflevector(c.x.v, c.z.v, 0, 1, 4, 5);

@@ -1,11 +1,11 @@
-// Detects contention: how long workers wait at barriers, and whether one thread alone would have been as
+// Detection of contention: the time that workers wait at barriers, and whether a single thread would be as
 // fast.
 //
-// Where other programs have the cores, each barrier waits for the scheduler. In 20 ms the waiting times of
-// all workers are added; when they reach those of all workers but one, a run continues on one thread for a
-// while (core/dem/simulation.hpp, SerialFallback). Measured with 1000 particles on two cores beside eight
-// busy processes: 1.09 times as long without it (quartiles 0.94 to 1.30); with 100 000, or on idle cores, no
-// difference.
+// When other programs use the cores, each barrier waits for the scheduler. The waiting times of all workers
+// are summed over 20 ms. If the sum reaches the time of all workers but one, the run continues on one thread
+// for a while (core/dem/simulation.hpp, SerialFallback). Measured with 1000 particles on two cores beside
+// eight busy processes: 1.09 times as long without it (quartiles 0.94 to 1.30); with 100 000, or on idle
+// cores, no difference.
 #pragma once
 
 #include <algorithm>
@@ -23,15 +23,15 @@ public:
     explicit WaitTimes(int workers, Time now = Clock::now())
         : waited_(static_cast<std::size_t>(workers)), since_(now) {}
 
-    // Adds one wait of a worker. Time before the last reset does not count: a core may be preempted during a
-    // wait, which then ends only when other waits that it caused have been counted.
+    // Adds one wait of a worker. Time before the last reset does not count, because a wait of a preempted
+    // worker ends after the waits that it caused have been counted.
     void add(int rank, Time begun, Time ended) {
         waited_[static_cast<std::size_t>(rank)].sum.fetch_add((ended - std::max(begun, since_)).count(),
                                                               std::memory_order_relaxed);
     }
 
-    // Returns whether waiting dominated since the last reset, and resets after 20 ms. For a worker that all
-    // others wait for.
+    // Returns whether waiting dominated since the last reset, and resets after 20 ms. All other workers must
+    // be waiting.
     bool dominate(Time now) {
         constexpr Clock::duration short_term =
             std::chrono::milliseconds(20); // one preemption is not contention
@@ -51,7 +51,7 @@ private:
         std::atomic<Clock::rep> sum{0};
     };
     std::vector<Sum> waited_;
-    Time since_; // written while all others wait
+    Time since_; // written while all other workers wait
 
     Clock::duration sum() const {
         Clock::rep total = 0;

@@ -1,7 +1,7 @@
-// Starts each worker on a core of its own, from where the scheduler may move it. Schedulers may leave a new
-// thread on the core of its creator for tens of milliseconds. Measured as the first 100 steps of 1000
-// particles on two idle cores: 25 ms without it, 4 ms with it; where other programs have the cores, it costs
-// time (time without it over time with it, in windows of 250 steps: 0.78 to 0.98).
+// Starts each worker on a different core; the scheduler may move it later. Some schedulers leave a new thread
+// on the core of its creator for tens of milliseconds. Measured as the first 100 steps of 1000 particles on
+// two idle cores: 25 ms without it, 4 ms with it; when other programs use the cores, it costs time (time
+// without it over time with it, in windows of 250 steps: 0.78 to 0.98).
 #pragma once
 
 #ifdef __linux__
@@ -11,7 +11,7 @@
 namespace rattlebox {
 
 #ifdef __linux__
-// The cores that the thread which makes this may use, and the one that it is on.
+// The cores that the constructing thread may use, and its current core.
 class CorePlacement {
     cpu_set_t allowed_;
     int here_, count_;
@@ -22,13 +22,13 @@ public:
         if (CPU_ISSET(here_, &allowed_)) count_ = CPU_COUNT(&allowed_);
     }
 
-    // Moves the calling thread `places` on among these; from there it may be moved like any other.
-    void place(int places) const {
-        if (places >= count_) return;
+    // Moves the calling thread to the core `steps` after the current one, then allows all cores again.
+    void place(int steps) const {
+        if (steps >= count_) return;
         int core = here_;
-        while (places > 0) {
+        while (steps > 0) {
             core = (core + 1) % CPU_SETSIZE;
-            if (CPU_ISSET(core, &allowed_)) --places;
+            if (CPU_ISSET(core, &allowed_)) --steps;
         }
         cpu_set_t one;
         CPU_ZERO(&one);

@@ -1,8 +1,7 @@
-// Runs one function on several threads that meet at barriers, or on the calling thread alone.
+// Runs one function on several threads with barriers, or on the calling thread alone.
 //
-// The function gets its worker: rank, number of workers, and what it synchronises with. Phases between
-// barriers are loops over items none of which reads what another writes; each worker takes a contiguous
-// range.
+// The argument of the function is its worker: rank, number of workers, and synchronisation. Between two
+// barriers no worker may read what another one writes; each worker takes a contiguous range of the items.
 #pragma once
 
 #include <atomic>
@@ -26,9 +25,9 @@ struct SingleThread {
     static void reset_wait_times() {}
 };
 
-// A barrier, and counters by which a worker waits for those of lower rank alone. A phase lasts microseconds,
-// so waiting threads spin for about two microseconds, then yield their core, because the thread that they
-// wait for may need it, and sleep at last.
+// A barrier, and counters with which a worker waits for the workers of lower rank only. A phase lasts
+// microseconds, so a waiting thread spins for about two microseconds, then yields its core, because the
+// thread that it waits for may need it, and finally sleeps.
 class Barrier {
     struct alignas(64) Reports {
         std::atomic<unsigned> number{0};
@@ -40,13 +39,13 @@ class Barrier {
 
     static constexpr int spins = 2000, yields = 1000;
 
-    // Returns once is_over() holds; sleep() blocks until it may.
+    // Returns once is_over() is true; sleep() blocks until that is possible.
     template <class IsOver, class Sleep> void wait(int rank, IsOver&& is_over, Sleep&& sleep) {
-        for (int looks = 0; looks < spins; ++looks)
+        for (int polls = 0; polls < spins; ++polls)
             if (is_over()) return;
         const auto begun = WaitTimes::Clock::now();
-        for (int looks = 0; !is_over(); ++looks)
-            if (looks < yields)
+        for (int polls = 0; !is_over(); ++polls)
+            if (polls < yields)
                 std::this_thread::yield();
             else
                 sleep();
@@ -77,8 +76,8 @@ public:
         own.notify_all();
     }
 
-    // Returns once all workers of lower rank have reported as often as this one. Until then other() does one
-    // piece of work at a time and returns false when none is left.
+    // Returns once all workers of lower rank have reported as often as this one. In the meantime calls
+    // other(), which does one piece of work and returns false if none is left.
     template <class Other> void wait_for_lower(int rank, Other&& other) {
         const unsigned own = reports(rank).load(std::memory_order_relaxed);
         for (int r = 0; r < rank; ++r) {
@@ -94,8 +93,7 @@ public:
         }
     }
 
-    // Whether workers have waited so long of late that one alone would have been as fast. For a worker that
-    // all others wait for.
+    // Whether a single thread would have been as fast in the last 20 ms. All other workers must be waiting.
     bool is_contended() { return wait_times_.dominate(WaitTimes::Clock::now()); }
     void reset_wait_times() { wait_times_.reset(WaitTimes::Clock::now()); }
 };
@@ -113,7 +111,7 @@ public:
         sync([] {});
     }
     template <class Last> void sync(Last&& last) const { barrier_->sync(rank_, last); }
-    // Publishes, once in each round, what this worker has done to those of higher rank.
+    // Signals to workers of higher rank, once per step, that the data they need are complete.
     void report() const { barrier_->report(rank_); }
     template <class Other> void wait_for_lower(Other&& other) const {
         barrier_->wait_for_lower(rank_, other);
@@ -122,7 +120,7 @@ public:
     void reset_wait_times() const { barrier_->reset_wait_times(); }
 };
 
-// Calls work(worker) on `threads` threads, the calling one among them.
+// Calls work(worker) on `threads` threads, including the calling one.
 template <class Work> void run_parallel(int threads, Work&& work) {
     if (threads <= 1) return work(SingleThread{});
     Barrier barrier(threads);

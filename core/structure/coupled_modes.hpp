@@ -1,19 +1,20 @@
-// Modes that a damping matrix couples: dampers between points, tuned masses, non-proportional damping.
+// Modes coupled by damping: dampers between points, tuned masses, non-proportional damping.
 //
 //     q_k'' + 2 a_k q_k' + k_k q_k = f_k - sum_j c_kj q_j'
 //
-// c is the modal damping matrix D without its diagonal 2 a: symmetric, zero on the diagonal, row by row. An
-// empty c is proportional damping, whose modes are propagated one by one in closed form (structure/mode.hpp).
+// c is the modal damping matrix without its diagonal 2 a: symmetric, zero on the diagonal, row by row. An
+// empty c stands for proportional damping; its modes are propagated one by one in closed form
+// (structure/mode.hpp).
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
-#include "structure/cell.hpp"
+#include "structure/taylor_series.hpp"
 
 namespace rattlebox {
 
-// The force of the other modes on each mode goes to add(k, force); `speed(k)` is the velocity of mode k.
+// Calls add(k, force) with the force of the other modes on each mode; `speed(k)` is the velocity of mode k.
 template <class Speed, class Add>
 void couple(const std::vector<real>& coupling, std::size_t modes, Speed&& speed, Add&& add) {
     if (coupling.empty()) return;
@@ -32,8 +33,9 @@ real coupled_power(const std::vector<real>& coupling, std::size_t modes, Speed&&
     return power;
 }
 
-// A bound on the rates of the motion: |x'| <= rate |x| for x = (sqrt(k) q, p), so that the terms of its
-// Taylor series fall as those of exp(rate s). Without coupling it is the magnitude of the largest root.
+// Returns a bound of the rates of the motion: |x'| <= rate |x| for x = (sqrt(k) q, p), so that the terms of
+// its Taylor series decrease at least like those of exp(rate s). Without coupling it is the magnitude of the
+// largest root.
 inline real fastest_rate(const std::vector<Mode>& modes, const std::vector<real>& coupling) {
     real rate = 0;
     if (coupling.empty()) {
@@ -50,7 +52,7 @@ inline real fastest_rate(const std::vector<Mode>& modes, const std::vector<real>
     return rate + damping;
 }
 
-// Taylor series of all modes from a state (q, p of each mode) under the loads on each, to be used as long as
+// Computes the Taylor series of all modes from a state (q, p of each mode) and the loads on them; valid for
 // (rate x length) <= 1.
 inline void coupled_series(const std::vector<Mode>& modes, const std::vector<real>& coupling, const real* y,
                            const std::vector<Series>& load, std::vector<Series>& q) {
@@ -69,15 +71,16 @@ inline void coupled_series(const std::vector<Mode>& modes, const std::vector<rea
         }
 }
 
-// The matrix that takes the state (q, p of each mode) a step further: its exponential series over a part of
-// the step, squared. Row by row, (2 m)^2.
+// Returns the matrix that advances the state (q, p of each mode) by one step, row by row, (2 m)^2: the matrix
+// exponential by scaling and squaring. C. Moler, C. Van Loan, SIAM Review 45 (2003) 3,
+// doi:10.1137/S00361445024180.
 inline std::vector<real> transition(const std::vector<Mode>& modes, const std::vector<real>& coupling,
                                     real step) {
     const std::size_t m = modes.size(), n = 2 * m;
     int halvings = 0;
     for (real part = fastest_rate(modes, coupling) * step; part > 1; part *= 0.5) ++halvings;
     const real part = std::ldexp(step, -halvings);
-    std::vector<real> found(n * n), state(n), square(n * n);
+    std::vector<real> matrix(n * n), state(n), square(n * n);
     std::vector<Series> q;
     const std::vector<Series> load(m);
     for (std::size_t column = 0; column < n; ++column) {
@@ -85,18 +88,19 @@ inline std::vector<real> transition(const std::vector<Mode>& modes, const std::v
         state[column] = 1;
         coupled_series(modes, coupling, state.data(), load, q);
         for (std::size_t k = 0; k < m; ++k) {
-            found[2 * k * n + column] = q[k].value(part);
-            found[(2 * k + 1) * n + column] = q[k].slope(part);
+            matrix[2 * k * n + column] = q[k].value(part);
+            matrix[(2 * k + 1) * n + column] = q[k].slope(part);
         }
     }
     for (; halvings > 0; --halvings) {
         std::fill(square.begin(), square.end(), real{});
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t l = 0; l < n; ++l)
-                for (std::size_t j = 0; j < n; ++j) square[i * n + j] += found[i * n + l] * found[l * n + j];
-        found.swap(square);
+                for (std::size_t j = 0; j < n; ++j)
+                    square[i * n + j] += matrix[i * n + l] * matrix[l * n + j];
+        matrix.swap(square);
     }
-    return found;
+    return matrix;
 }
 
 } // namespace rattlebox

@@ -3,8 +3,8 @@
 //     q(s) = C q0 + S (p0 + a q0)        p(s) = C p0 - S (k q0 + a p0)
 //     C = exp(-a s) cos(w s),  S = exp(-a s) sin(w s) / w,  w^2 = k - a^2
 //
-// with cosh and sinh for w^2 < 0 and their limit for w = 0, so that rigid-body, undamped, critical and
-// overdamped modes are all the same formula. Loads are added in structure/cell.hpp.
+// with cosh and sinh for w^2 < 0 and the limit for w = 0, which covers rigid-body, undamped, critically
+// damped and overdamped modes. Loads are added in structure/taylor_series.hpp.
 #pragma once
 
 #include "math/quadrature.hpp"
@@ -16,7 +16,7 @@ struct Mode {
     real decay = 0;     // a, 1/s
     real stiffness = 0; // k = omega^2, 1/s^2
 
-    // A bound on the magnitude of both characteristic roots.
+    // Returns a bound of the magnitude of both characteristic roots.
     real rate() const {
         const real discriminant = decay * decay - stiffness;
         return discriminant > 0 ? decay + std::sqrt(discriminant) : std::sqrt(stiffness);
@@ -33,19 +33,19 @@ class FreeMode {
     Mode mode_;
     ModeState start_;
     real root_ = 0;                  // |w|
-    real q_slope_ = 0, p_slope_ = 0; // what S multiplies in q and in p
+    real q_slope_ = 0, p_slope_ = 0; // factors of S in q and in p
     enum class Regime { oscillating, confluent, decaying } regime_;
 
-    // exp(-a s) = 1 - lost, cos(w s) and sin(w s) where an oscillation was last looked at.
-    struct Turn {
+    // exp(-a s) = 1 - lost, cos(w s) and sin(w s) at the last s that was evaluated.
+    struct Factors {
         real s = 0, lost = 0, cosine = 1, sine = 0;
     };
-    mutable Turn turn_;
+    mutable Factors factors_;
 
-    const Turn& turn(real s) const {
-        if (s != turn_.s)
-            turn_ = {s, -std::expm1(-mode_.decay * s), std::cos(root_ * s), std::sin(root_ * s)};
-        return turn_;
+    const Factors& factors(real s) const {
+        if (s != factors_.s)
+            factors_ = {s, -std::expm1(-mode_.decay * s), std::cos(root_ * s), std::sin(root_ * s)};
+        return factors_;
     }
 
 public:
@@ -67,9 +67,9 @@ public:
         const real a = mode_.decay;
         real c, sine;
         if (regime_ == Regime::oscillating) {
-            const Turn& now = turn(s);
-            c = (1 - now.lost) * now.cosine;
-            sine = (1 - now.lost) * now.sine / root_;
+            const Factors& f = factors(s);
+            c = (1 - f.lost) * f.cosine;
+            sine = (1 - f.lost) * f.sine / root_;
         } else if (regime_ == Regime::confluent) {
             c = std::exp(-a * s);
             sine = c * s;
@@ -89,16 +89,16 @@ public:
         if (regime_ == Regime::oscillating && root_ > 0.05 * a) {
             // p = exp(-a s) (B cos + D sin): the mean part and the part at twice the frequency.
             const real b = start_.p, d = p_slope_ / root_;
-            const Turn& now = turn(s);
-            const real shrink = 1 - now.lost, faded = now.lost * (1 + shrink); // 1 - exp(-2 a s)
-            const real turned = faded + 2 * square(shrink * now.sine);         // 1 - exp(-2 a s) cos(2 w s)
-            const real sine = 2 * square(shrink) * now.sine * now.cosine;
+            const Factors& f = factors(s);
+            const real decay_factor = 1 - f.lost, decayed = f.lost * (1 + decay_factor); // 1 - exp(-2 a s)
+            const real turned = decayed + 2 * square(decay_factor * f.sine); // 1 - exp(-2 a s) cos(2 w s)
+            const real sine = 2 * square(decay_factor) * f.sine * f.cosine;
             const real norm = 0.5 / mode_.stiffness; // = a^2 + w^2
             const real even = norm * (a * turned + root_ * sine);
             const real odd = norm * (root_ * turned - a * sine);
-            return 0.5 * (b * b + d * d) * faded + a * ((b * b - d * d) * even + 2 * b * d * odd);
+            return 0.5 * (b * b + d * d) * decayed + a * ((b * b - d * d) * even + 2 * b * d * odd);
         }
-        // Sums of decaying exponentials: intervals that double in length follow them.
+        // Sums of decaying exponentials: quadrature on intervals that double in length.
         real total = 0, from = 0, length = 1 / mode_.rate();
         while (from < s) {
             const real to = from + length < s ? from + length : s;
@@ -108,7 +108,7 @@ public:
         return 2 * a * total;
     }
 
-    // Bounds on |q''| and |q'''|: the energy of a free mode never rises.
+    // Computes bounds of |q''| and |q'''|. The energy of a free mode never increases.
     void bounds(real& acceleration, real& jerk) const {
         const real speed = std::sqrt(2 * start_.energy(mode_));
         acceleration = speed * (std::sqrt(mode_.stiffness) + 2 * mode_.decay);

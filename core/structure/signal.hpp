@@ -1,10 +1,11 @@
-// A load or a base acceleration in time: half-sine pulse, harmonic, piecewise-linear record.
+// Time signals of loads and base accelerations: half-sine pulse, harmonic, piecewise-linear record.
 //
 //     half-sine   amplitude sin(pi (t - start) / duration)     start <= t < stop = start + duration
 //     harmonic    amplitude sin(frequency t + phase)           start <= t < stop
 //     record      straight lines through (times, values)       0 outside
 //
-// Between two knots each is a constant, a slope and a sine, which is what a flight needs to be exact.
+// Between two knots each signal is the sum of a constant, a slope and a sine, so that flights can be
+// integrated exactly.
 #pragma once
 
 #include <algorithm>
@@ -14,12 +15,11 @@
 
 namespace rattlebox {
 
-// A signal between two of its knots: constant + slope (t - origin) + amplitude sin(frequency (t - origin) +
-// phase).
+// A signal between two knots: constant + slope (t - origin) + amplitude sin(frequency (t - origin) + phase).
 struct Piece {
     real origin = 0, constant = 0, slope = 0, amplitude = 0, frequency = 0, phase = 0;
 
-    bool silent() const { return constant == 0 && slope == 0 && amplitude == 0; }
+    bool is_zero() const { return constant == 0 && slope == 0 && amplitude == 0; }
 
     real value(real t) const {
         const real s = t - origin;
@@ -64,7 +64,7 @@ struct Signal {
     real start = 0, stop = infinity;              // s
     Table times, values;                          // record only
 
-    // The piece that holds from t on (to the next knot).
+    // Returns the piece that is valid from t to the next knot.
     Piece piece(real t) const {
         Piece p;
         if (kind == Kind::record) {
@@ -84,7 +84,7 @@ struct Signal {
         return p;
     }
 
-    // The mean over an interval.
+    // Returns the mean over an interval.
     real mean(real from, real to) const {
         real sum = 0;
         for (real begin = from, end; begin < to; begin = end) {
@@ -94,9 +94,9 @@ struct Signal {
         return sum / (to - from);
     }
 
-    // What acts in a step of this length around t: of a record its mean, as far as it is given, since its
-    // knots may lie closer than steps and no push between two may be lost.
-    real around(real t, real dt) const {
+    // Returns the value for a time step around t. For a record it is the mean over the step, because its
+    // knots may be closer together than the steps and no impulse may be lost.
+    real step_value(real t, real dt) const {
         real from = t, to = t;
         if (kind == Kind::record) {
             from = std::max(t - 0.5 * dt, std::max(times[0], real{}));
@@ -111,7 +111,7 @@ struct Signal {
         return sum / (to - from);
     }
 
-    // The first knot after t.
+    // Returns the first knot after t.
     real next_knot(real t) const {
         if (kind == Kind::record) {
             const real* last = times.data + times.size;

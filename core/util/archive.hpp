@@ -1,4 +1,5 @@
-// Plain data written to bytes and read back, in the order in which it is named.
+// Binary serialization of plain data: Sizer, Writer and Reader take the same list of values in the same
+// order.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +10,10 @@
 
 namespace rattlebox {
 
-// How many bytes a Writer will need, so that it need not move them.
+// Computes the size, so that a Writer allocates once.
 class Sizer {
-    template <class T> void one(const T&) { bytes += sizeof(T); }
-    template <class T, class A> void one(const std::vector<T, A>& values) {
+    template <class T> void item(const T&) { bytes += sizeof(T); }
+    template <class T, class A> void item(const std::vector<T, A>& values) {
         bytes += sizeof(std::size_t) + values.size() * sizeof(T);
     }
 
@@ -20,19 +21,19 @@ public:
     static constexpr bool reads = false;
     std::size_t bytes = 0;
 
-    template <class... T> void operator()(const T&... values) { (one(values), ...); }
+    template <class... T> void operator()(const T&... values) { (item(values), ...); }
 };
 
 class Writer {
-    template <class T> void put(const T* data, std::size_t count) {
+    template <class T> void write(const T* data, std::size_t count) {
         static_assert(std::is_trivially_copyable_v<T>);
         const auto* from = reinterpret_cast<const std::uint8_t*>(data);
         bytes.insert(bytes.end(), from, from + count * sizeof(T));
     }
-    template <class T> void one(const T& value) { put(&value, 1); }
-    template <class T, class A> void one(const std::vector<T, A>& values) {
-        one(values.size());
-        put(values.data(), values.size());
+    template <class T> void item(const T& value) { write(&value, 1); }
+    template <class T, class A> void item(const std::vector<T, A>& values) {
+        item(values.size());
+        write(values.data(), values.size());
     }
 
 public:
@@ -41,42 +42,42 @@ public:
 
     explicit Writer(std::size_t size) { bytes.reserve(size); }
 
-    template <class... T> void operator()(const T&... values) { (one(values), ...); }
+    template <class... T> void operator()(const T&... values) { (item(values), ...); }
 };
 
-class BackReader {
+class Reader {
     const char* next_;
     const char* end_;
 
-    template <class T> void get(T* data, std::size_t count) {
+    template <class T> void read(T* data, std::size_t count) {
         static_assert(std::is_trivially_copyable_v<T>);
         if (count > static_cast<std::size_t>(end_ - next_) / sizeof(T))
             throw std::invalid_argument("the state is cut short");
         if (count > 0) std::memcpy(static_cast<void*>(data), next_, count * sizeof(T));
         next_ += count * sizeof(T);
     }
-    template <class T> void one(T& value) { get(&value, 1); }
-    void one(bool& value) {
+    template <class T> void item(T& value) { read(&value, 1); }
+    void item(bool& value) {
         std::uint8_t byte;
-        get(&byte, 1);
+        read(&byte, 1);
         if (byte > 1) throw std::invalid_argument("the state is damaged");
         value = byte != 0;
     }
-    template <class T, class A> void one(std::vector<T, A>& values) {
+    template <class T, class A> void item(std::vector<T, A>& values) {
         std::size_t count;
-        one(count);
+        item(count);
         if (count > static_cast<std::size_t>(end_ - next_) / sizeof(T))
             throw std::invalid_argument("the state is cut short");
         values.resize(count);
-        get(values.data(), count);
+        read(values.data(), count);
     }
 
 public:
     static constexpr bool reads = true;
 
-    BackReader(const char* data, std::size_t size) : next_(data), end_(data + size) {}
+    Reader(const char* data, std::size_t size) : next_(data), end_(data + size) {}
 
-    template <class... T> void operator()(T&... values) { (one(values), ...); }
+    template <class... T> void operator()(T&... values) { (item(values), ...); }
     bool at_end() const { return next_ == end_; }
 };
 

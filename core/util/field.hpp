@@ -1,11 +1,11 @@
-// A law lists its coefficients by name, so that they are filled by name and never by position.
+// Names of the coefficients of a law, so that they are set by name and not by position.
 #pragma once
 
 #include "math/real.hpp"
 
 namespace rattlebox {
 
-// A read-only array that must outlive the law it belongs to.
+// View of a read-only array, which must outlive the law.
 struct Table {
     const real* data = nullptr;
     int size = 0;

@@ -1,4 +1,4 @@
-// One of several laws, chosen when a case is packed: a tagged union of trivially copyable types.
+// A tagged union of trivially copyable types, which holds one of several contact laws.
 #pragma once
 
 #include <cstddef>
@@ -47,13 +47,13 @@ public:
 
     template <class T> const T* get_if() const { return index_ == index_of<T>() ? &as<T>() : nullptr; }
 
-    // Place of the present type in the list of types.
+    // Index of the type in the list of types.
     int index() const { return index_; }
 
-    // Calls f<T>(place) for each type in turn.
+    // Calls f<T>(index) for each type.
     template <class F> __attribute__((always_inline)) static void each(F&& f) {
-        int place = 0;
-        (f.template operator()<Types>(place++), ...);
+        int index = 0;
+        (f.template operator()<Types>(index++), ...);
     }
 };
 

@@ -2,9 +2,9 @@
 //
 //     N = k d + c d'        c = 2 zeta sqrt(m k)
 //
-// k [N/m], m = effective mass [kg], d = overlap [m], d' = approach rate [m/s]. Restitution follows from zeta
-// alone (contact/damping.hpp). The contact ends at zero overlap (the dashpot may pull before) or at zero
-// force.
+// k [N/m], m = effective mass [kg], d = overlap [m], d' = approach rate [m/s]. Restitution depends on zeta
+// only (contact/damping.hpp). The contact ends at zero overlap (the dashpot may cause attraction before) or
+// at zero force.
 //
 // P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.
 #pragma once
@@ -18,9 +18,9 @@ namespace rattlebox {
 struct LinearDashpot {
     real stiffness = 0;          // k, N/m
     real mass = 0;               // m, kg
-    real dashpot = not_a_number; // c, N s/m; if not given it follows from the restitution
+    real dashpot = not_a_number; // c, N s/m; NaN: follows from the restitution
     real zero_overlap = 0;       // 1: ends at zero overlap; 0: ends at zero force
-    real fixed_contact_time = 0; // 1: the stiffness of a pair grows with its mass
+    real fixed_contact_time = 0; // 1: the stiffness is proportional to m*
 
     static constexpr const char* name = "linear";
     static constexpr Field<LinearDashpot> fields[] = {
@@ -45,7 +45,7 @@ struct LinearDashpot {
     // ---- one impact
 
     bool needs_restitution() const { return std::isnan(dashpot); }
-    // Damping ratio of an impact with restitution e.
+    // Returns the damping ratio of an impact with restitution e.
     real damping(real e) const {
         return needs_restitution() ? rattlebox::damping_ratio(e, zero_overlap != 0)
                                    : 0.5 * dashpot / std::sqrt(mass * stiffness);

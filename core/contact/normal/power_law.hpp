@@ -1,16 +1,17 @@
-// A power law with a dashpot whose coefficient is a power of the overlap, too.
+// Power law with a dashpot whose coefficient is also a power of the overlap.
 //
 //     N = k d^n + c d^p d'
 //
 // k [N/m^n], c [N s/m^(p+1)], d = overlap [m], d' = approach rate [m/s], n > 0, p >= 0. The contact ends at
-// zero force (it never pulls) or at zero overlap (the dashpot may pull before). Well-known laws of this form:
+// zero force (never attractive) or at zero overlap (the dashpot may cause attraction before). Well-known laws
+// of this form:
 //
 //     Hunt, Crossley           n = 3/2, p = n     J. Appl. Mech. 42 (1975) 440, doi:10.1115/1.3423596
 //     Kuwabara, Kono           n = 3/2, p = 1/2   Jpn. J. Appl. Phys. 26 (1987) 1230,
 //                                                 doi:10.1143/JJAP.26.1230
 //     Lankarani, Nikravesh     n = 3/2, p = n     J. Mech. Des. 112 (1990) 369, doi:10.1115/1.2912617
 //
-// With p = (n - 1)/2 restitution is the same at every speed, else it depends on the speed.
+// With p = (n - 1)/2 the restitution does not depend on the speed.
 #pragma once
 
 #include "contact/normal/normal_force.hpp"
@@ -25,7 +26,7 @@ struct PowerLaw {
     real dashpot = 0;           // c, N s/m^(p+1)
     real power_of_dashpot = 0;  // p
     real zero_overlap = 0;      // 1: ends at zero overlap; 0: ends at zero force
-    real hertz = 0;             // 1: the stiffness of a pair grows with sqrt(R*)
+    real hertz = 0;             // 1: the stiffness is proportional to sqrt(R*)
     real fixed_restitution = 0; // 1: the dashpot of a pair keeps the restitution at a given speed
 
     static constexpr const char* name = "power";
@@ -54,7 +55,7 @@ struct PowerLaw {
 
     bool needs_restitution() const { return false; }
     real damping(real) const { return dashpot; }
-    // Of small vibrations about the largest overlap of an impact at this speed.
+    // Returns the damping ratio of small vibrations about the largest overlap of an impact at this speed.
     real damping_ratio(real, real speed) const {
         const real d = overlap_scale(speed);
         if (d <= 0 || dashpot == 0) return 0;
@@ -72,7 +73,7 @@ struct PowerLaw {
         law.mass = to.mass;
         const real firmer = hertz != 0 ? std::sqrt(to.radius / from.radius) : 1;
         law.stiffness *= firmer;
-        if (fixed_restitution != 0) { // c goes as k^q m^(1-q) at the same speed
+        if (fixed_restitution != 0) { // c is proportional to k^q m^(1-q) at a given speed
             const real q = (power_of_dashpot + 1) / (exponent + 1);
             law.dashpot *= std::pow(firmer, q) * std::pow(to.mass / from.mass, 1 - q);
         }

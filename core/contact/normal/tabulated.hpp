@@ -1,12 +1,12 @@
-// A measured curve of force against overlap, with another one for unloading.
+// Measured curves of force against overlap for loading and unloading.
 //
 //     loading     F = f(d)
 //     unloading   F = f(d_max) g(d / d_max)     from the largest overlap d_max so far, g(1) = 1
 //
-// f and g are piecewise cubic between the measured points (monotone, so that they do not overshoot) and go on
-// with their last slope beyond them. The unloading curve is measured from one largest overlap and is assumed
-// to keep its shape for others. It ends at the residual overlap r d_max, g(r) = 0; reloading follows it back
-// to d_max. Without an unloading curve the contact is elastic: unloading follows f. Rate independent.
+// f and g are monotone piecewise cubics through the measured points, extrapolated with their last slope. The
+// unloading curve is measured from one largest overlap and scaled for others. It ends at the residual overlap
+// r d_max, g(r) = 0; reloading follows it up to d_max. Without an unloading curve the contact is elastic:
+// unloading follows f. Rate independent.
 //
 // F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238, doi:10.1137/0717021.
 #pragma once
@@ -18,8 +18,7 @@
 
 namespace rattlebox {
 
-// Piecewise cubic function: coefficients of each piece from the third power down to the constant, about its
-// left knot.
+// Piecewise cubic function: coefficients of each piece about its left knot, highest power first.
 struct PiecewiseCubic {
     Table knots, coefficients, integral; // integral from the first knot up to each knot
 
@@ -98,7 +97,7 @@ struct TabulatedNormal {
         return h.stiffness *
                each(part(h, above.overlap), [&](real x) { return g.value(std::max(x, g.first())); });
     }
-    // Energy that unloading along that curve gives back.
+    // Energy that unloading along that curve recovers.
     template <class T> RATTLEBOX_INLINE T recovered(const History<T>& h, const Depth<T>& above) const {
         if (unloading().empty()) {
             const PiecewiseCubic f = loading();
@@ -124,7 +123,7 @@ public:
         if (unloading().empty()) return {deepest, stiffness * loading().value(deepest), 0};
         return {deepest, stiffness * loading().value(deepest), unloading().first() * deepest};
     }
-    // Work of loading to the overlap `deepest` less what unloading gives back.
+    // Work of loading to the overlap `deepest` less the energy that unloading recovers.
     real plastic_loss(real deepest) const {
         if (unloading().empty() || deepest <= 0) return 0;
         const History<real> h = unloaded_from(deepest);
@@ -134,12 +133,12 @@ public:
 
     // ---- scales
 
-    TabulatedNormal resized(PairSize, PairSize to) const { // the measured curve is that of the pair
+    TabulatedNormal resized(PairSize, PairSize to) const { // the measured curve does not scale with size
         TabulatedNormal law = *this;
         law.mass = to.mass;
         return law;
     }
-    // Where the work of loading has taken up the energy.
+    // Overlap at which the work of loading equals the kinetic energy.
     real largest_overlap(real speed) const {
         const real energy = 0.5 * mass * speed * speed / stiffness;
         const PiecewiseCubic f = loading();
@@ -152,7 +151,7 @@ public:
         return high;
     }
     real overlap_scale(real speed) const { return largest_overlap(speed); }
-    // That of a linear spring with the largest slope that the impact meets.
+    // Duration for a linear spring with the largest slope of the force in the impact.
     real contact_time(real speed) const {
         const real deepest = largest_overlap(speed);
         const PiecewiseCubic f = loading(), g = unloading();

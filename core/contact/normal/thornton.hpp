@@ -2,12 +2,13 @@
 //
 //     loading    F = A d^(3/2)                           to d_y = R (pi p_y / (2 E))^2
 //     yielding   F = F_y + S (d - d_y)                   S = pi p_y R
-//     unloading  F = (4/3) E sqrt(R_p) (d - d_p)^(3/2)   R_p = 4 E / (3 F_max) ((2 F_max + F_y) / (2 pi
-//     p_y))^(3/2)
+//     unloading  F = (4/3) E sqrt(R_p) (d - d_p)^(3/2)
+//                R_p = 4 E / (3 F_max) ((2 F_max + F_y) / (2 pi p_y))^(3/2)
 //
 // E = E* [Pa], R = R* [m], p_y = limiting contact pressure [Pa], d_p = d_max - (3 F_max / (4 E
-// sqrt(R_p)))^(2/3) the residual overlap. Reloading follows the unloading curve to d_max, then yields on.
-// Yielding begins where the Hertz curve has the slope S, so that d_y = (2 S / (3 A))^2. Rate independent.
+// sqrt(R_p)))^(2/3) the residual overlap. Reloading follows the unloading curve up to d_max, then the
+// yielding curve. Yielding begins where the Hertz curve has the slope S, so that d_y = (2 S / (3 A))^2. Rate
+// independent.
 //
 // C. Thornton, J. Appl. Mech. 64 (1997) 383, eqs 8 to 18, doi:10.1115/1.2787319; C. Thornton, Z. Ning, Powder
 // Technology 99 (1998) 154, doi:10.1016/S0032-5910(98)00099-0.
@@ -50,7 +51,7 @@ struct Thornton {
     template <class T> RATTLEBOX_INLINE T unloading_force(const History<T>& h, const Depth<T>& above) const {
         return h.stiffness * above.overlap * above.root;
     }
-    // Energy that unloading along that curve gives back.
+    // Energy that unloading along that curve recovers.
     template <class T> RATTLEBOX_INLINE T recovered(const History<T>& h, const Depth<T>& above) const {
         return 0.4 * h.stiffness * above.overlap * above.overlap * above.root;
     }
@@ -59,10 +60,10 @@ struct Thornton {
 
     bool needs_restitution() const { return false; }
     Coefficients<real> coefficients(real, real) const { return {stiffness, pi * yield_pressure * radius}; }
-    // No yielding yet: the unloading curve is the Hertz curve.
+    // Before yielding the unloading curve is the Hertz curve.
     History<real> untouched() const { return {0, stiffness, 0}; }
 
-    // The history after unloading begins at the overlap `deepest`.
+    // Returns the history for unloading from the overlap `deepest`.
     History<real> unloaded_from(real deepest) const {
         const Coefficients<real> k = coefficients(0, 0);
         const real yield = yield_overlap(k);
@@ -75,7 +76,7 @@ struct Thornton {
         return {deepest, curve, deepest - std::pow(top / curve, 2.0 / 3.0)};
     }
 
-    // Work of loading to the overlap `deepest` less what unloading gives back.
+    // Work of loading to the overlap `deepest` less the energy that unloading recovers.
     real plastic_loss(real deepest) const {
         const Coefficients<real> k = coefficients(0, 0);
         const real yield = yield_overlap(k), past = deepest - yield;
@@ -96,13 +97,13 @@ struct Thornton {
         return law;
     }
     real overlap_scale(real speed) const { return std::pow(1.25 * mass * speed * speed / stiffness, 0.4); }
-    // As if all energy went into yielding from the yield overlap on.
+    // Upper bound: all energy is absorbed by yielding beyond the yield overlap.
     real largest_overlap(real speed) const {
         const Coefficients<real> k = coefficients(0, 0);
         return yield_overlap(k) + speed * std::sqrt(mass / k.second);
     }
-    // That of a Hertz contact with the largest slope of the force that the impact meets: at the yield
-    // overlap, or where unloading begins.
+    // Duration for a Hertz contact with the largest slope of the force in the impact, at the yield overlap or
+    // at the begin of unloading.
     real contact_time(real speed) const {
         const Coefficients<real> k = coefficients(0, 0);
         const real yield = yield_overlap(k), yield_force = 2.0 / 3.0 * k.second * yield;

@@ -1,4 +1,4 @@
-// Constant restitution.
+// Constant restitution, e = const (Newton).
 #pragma once
 
 #include "util/field.hpp"
@@ -14,8 +14,8 @@ struct ConstantRestitution {
     static constexpr Field<ConstantRestitution> fields[] = {{"e", &ConstantRestitution::e},
                                                             {"maximum", &ConstantRestitution::maximum}};
 
-    real limit() const { return infinity; } // largest speed at which the law holds
-    bool beyond() const { return true; }    // may it be used above
+    real limit() const { return infinity; } // largest speed at which the law is valid
+    bool beyond() const { return true; }    // whether it may be used above
     real value(real) const { return e; }
 };
 

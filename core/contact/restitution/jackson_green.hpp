@@ -4,8 +4,8 @@
 //     e = 1 - 0.1 ln V* ((V* - 1)/59)^0.156                                      1 <= V* < 60
 //     e = 1 - 0.1 ln 60 - 0.11 ln(V*/60) (V* - 60)^(2.36 eps_y)                  60 <= V* <= 1000
 //
-// V* = V / V_c, V_c = critical speed [m/s], eps_y = S_y / E of the body that yields first [-].
-// Undefined above V* = 1000.
+// V* = V / V_c, V_c = critical speed [m/s], eps_y = S_y / E of the body that yields first [-]. Undefined
+// above V* = 1000.
 //
 // R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 (2010) 217, doi:10.1007/s11071-009-9591-z.
 #pragma once

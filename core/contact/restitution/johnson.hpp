@@ -2,7 +2,7 @@
 //
 //     e = (V / V_0)^(-1/4), at most 1
 //
-// V_0 = speed scale [m/s], from the yield stress when the case is packed. Meant for V >> V_0.
+// V_0 = speed scale [m/s], computed from the yield stress. Valid for V >> V_0.
 //
 // K. L. Johnson, Contact Mechanics, Cambridge University Press 1985, section 11.5, eq. 11.47,
 // doi:10.1017/CBO9781139171731.

@@ -1,4 +1,4 @@
-// Restitution from a user's table, linear in the speed between points and constant outside them.
+// Restitution from a table of the user: linear in the speed between points, constant outside.
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,11 @@
 // Restitution of Thornton's elastic, perfectly plastic contact in closed form.
 //
-//     e = sqrt(6 sqrt(3)/5) sqrt(1 - r^2/6) [r / (r + 2 sqrt(6/5 - r^2/5))]^(1/4),  r = V_y / V;   e = 1 for
-//     V <= V_y
+//     e = sqrt(6 sqrt(3)/5) sqrt(1 - r^2/6) [r / (r + 2 sqrt(6/5 - r^2/5))]^(1/4)      V > V_y
+//     e = 1                                                                                V <= V_y
 //
-// V_y = speed at which yield begins [m/s]. C. Thornton, J. Appl. Mech. 64 (1997) 383, eq. 19,
-// doi:10.1115/1.2787319.
+// r = V_y / V, V_y = speed at which yield begins [m/s].
+//
+// C. Thornton, J. Appl. Mech. 64 (1997) 383, eq. 19, doi:10.1115/1.2787319.
 #pragma once
 
 #include "util/field.hpp"

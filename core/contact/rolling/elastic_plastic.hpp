@@ -2,8 +2,8 @@
 //
 //     k_r = ratio R*^2 k_t      |M| <= mu_r R* N
 //
-// History: contact/tangential/spring_slider.hpp, with torques and relative spin in place of forces and
-// velocities. Torques act about the contact, and both bodies take the same.
+// The history is in contact/tangential/spring_slider.hpp, with torques and relative spin in place of forces
+// and velocities. Equal and opposite torques act on the two bodies.
 //
 // J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi, Powder Technology 206 (2011) 269,
 // doi:10.1016/j.powtec.2010.09.030.
@@ -23,8 +23,8 @@ struct RollingResistance {
                                                           {"stiffness", &RollingResistance::stiffness},
                                                           {"damping", &RollingResistance::damping}};
 
-    // Of a contact: mu_r R*, k_r / k_t, and the coefficient of the dashpot. `inertia` is that of both bodies
-    // about the contact point, in series.
+    // Returns mu_r R*, k_r / k_t and the coefficient of the dashpot of a contact. `inertia` combines the
+    // moments of inertia of both bodies about the contact point in series.
     Row coefficients(PairSize size, real inertia, real tangential_coefficient) const {
         const real ratio = stiffness > 0 ? stiffness * square(size.radius) : 1;
         return row(coefficient * size.radius, ratio,

@@ -2,7 +2,7 @@
 //
 //     k_t = stiffness + ratio k      |F_t| <= mu N
 //
-// k = stiffness of the linear normal contact of the pair [N/m]. History:
+// k = stiffness of the linear normal contact of the pair [N/m]. The history is in
 // contact/tangential/spring_slider.hpp.
 //
 // P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.

@@ -3,7 +3,7 @@
 //     k_t = 8 G* sqrt(R* d)      c_t = coefficient d^(1/4)      |F_t| <= mu N
 //
 // G* = effective shear modulus [Pa], 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2. The coefficient of the dashpot
-// is chosen so that its damping ratio is a multiple of that of the normal dashpot. History:
+// is such that its damping ratio is a multiple of that of the normal dashpot. The history is in
 // contact/tangential/spring_slider.hpp.
 //
 // R. D. Mindlin, J. Appl. Mech. 16 (1949) 259, doi:10.1115/1.4009973.
@@ -24,7 +24,7 @@ struct Mindlin {
                                                 {"shear_modulus", &Mindlin::shear_modulus},
                                                 {"damping", &Mindlin::damping}};
 
-    // B of a contact: k_t = B sqrt(d).
+    // Returns B of a contact, k_t = B sqrt(d).
     real coefficient(PairSize size, real) const { return shear_modulus * std::sqrt(size.radius); }
     template <class T> RATTLEBOX_INLINE static T stiffness(const T& coefficient, const Depth<T>& d) {
         return coefficient * d.root;

@@ -1,12 +1,13 @@
-// A spring with a dashpot beside it, in series with a slider: the force never exceeds a limit. Tangential
-// laws and rolling resistance are both of this form.
+// A spring and a dashpot in parallel, in series with a slider that limits the force. Tangential laws and
+// rolling resistance have this form.
 //
 //     dF = -k v dt,  |F - c v| <= limit
 //
-// The spring keeps its force, not its stretch. When the normal force falls, so does k, and the spring's force
-// with it; when it rises, the force stays. Either way the energy F^2 / (2 k) never grows by itself, and what
-// it loses counts as sliding (micro-slip). The dashpot takes only what room the spring leaves below the
-// limit.
+// The history variable is the force of the spring, not its displacement. During unloading of the normal
+// contact k decreases, and the spring force decreases in proportion; during loading the force does not
+// change. The energy F^2 / (2 k) of the spring therefore never grows without work, and its decrease counts as
+// sliding loss (micro-speed_squared). The force of the dashpot is limited to the difference between the limit
+// and the spring force.
 //
 // R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327, doi:10.1115/1.4010702; C. Thornton, S. J.
 // Cummins, P. W. Cleary, Powder Technology 233 (2013) 30, section 3, doi:10.1016/j.powtec.2012.08.012.
@@ -21,44 +22,45 @@ template <class T> struct SpringSlider {
     Vector<T> next_spring;   // half a step later
     T compliance;            // 1 / stiffness
     T loss;                  // energy lost in this step
-    T stored;                // in the spring at this step
-    T excess;                // mean energy of the springs half a step before and after, less `stored`: slips
+    T stored;                // energy of the spring at this step
+    T excess;                // mean energy half a step before and after, less `stored`; caused by slip
 };
 
-// One step. `before` is the spring's force half a step ago, `compliance_before` its compliance then. Half of
-// a step's stretch comes before its force is needed and half after it, which is the trapezoidal rule.
+// One step. `before` is the spring force half a step before, `compliance_before` the compliance then. Half of
+// the displacement of the step is applied before the force is evaluated and half after it (trapezoidal rule).
 template <class T>
 RATTLEBOX_INLINE SpringSlider<T> advance_spring_slider(const Vector<T>& before, const T& compliance_before,
                                                        const Vector<T>& normal, const T& stiffness,
                                                        const T& damping, const Vector<T>& velocity,
                                                        const T& limit, const T& dt) {
     const T one = all(limit, 1), half = all(limit, 0.5), tiny = all(limit, 1e-290), zero = all(limit, 0);
-    // Turned into the present plane without a change of size, less what unloading takes.
-    const Vector<T> flat = before - dot(before, normal) * normal;
-    const T was = dot(before, before), eased = smaller(one, stiffness * compliance_before);
-    const T kept = eased * root(was / (dot(flat, flat) + tiny));
+    // Rotated into the current contact plane at constant magnitude, and reduced by unloading.
+    const Vector<T> in_plane = before - dot(before, normal) * normal;
+    const T before_squared = dot(before, before), unloading = smaller(one, stiffness * compliance_before);
+    const T scale = unloading * root(before_squared / (dot(in_plane, in_plane) + tiny));
     const Vector<T> stretch = (half * stiffness * dt) * velocity;
-    const Vector<T> trial = kept * flat - stretch;
+    const Vector<T> trial = scale * in_plane - stretch;
     const T size = root(dot(trial, trial)), part = smaller(one, limit / (size + tiny));
     SpringSlider<T> s;
     s.compliance = one / stiffness;
     s.spring = part * trial;
     s.next_spring = s.spring - stretch;
-    const T slip = dot(velocity, velocity), drag = damping * root(slip);
+    const T speed_squared = dot(velocity, velocity), drag = damping * root(speed_squared);
     const T dashpot = damping * smaller(one, larger(limit - size, zero) / (drag + tiny));
     s.force = s.spring - dashpot * velocity;
-    // What the spring took up in this step and does not hold: by slipping, and by its change of stiffness.
-    const T held = half * was * compliance_before,
-            holds = half * dot(s.next_spring, s.next_spring) * s.compliance;
-    s.loss = dashpot * slip * dt + larger(held - holds - dot(s.spring, velocity) * dt, zero);
-    // Where it slips, the spring half a step from here is stretched further than friction allows.
-    const T mean = half * (held + holds), most = half * s.loss, pulls = smaller(size, limit);
-    s.excess = smaller(most, larger(zero - most, mean - half * pulls * pulls * s.compliance));
+    // Work on the spring that it does not store: slip, and decrease of stiffness.
+    const T energy_before = half * before_squared * compliance_before,
+            energy_after = half * dot(s.next_spring, s.next_spring) * s.compliance;
+    s.loss = dashpot * speed_squared * dt +
+             larger(energy_before - energy_after - dot(s.spring, velocity) * dt, zero);
+    // During slip the spring force half a step later exceeds the friction limit.
+    const T mean = half * (energy_before + energy_after), bound = half * s.loss, pull = smaller(size, limit);
+    s.excess = smaller(bound, larger(zero - bound, mean - half * pull * pull * s.compliance));
     s.stored = mean - s.excess;
     return s;
 }
 
-// Energy held by a spring whose force and compliance are in one row.
+// Energy of a spring whose force and compliance are in one row.
 inline real spring_energy(Row spring) { return 0.5 * dot(spring, spring) * spring[3]; }
 
 } // namespace rattlebox

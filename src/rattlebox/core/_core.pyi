@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 
 class Varies(enum.Enum):
-    """How a field depends on the variant of a batch."""
+    """How a field can depend on the variant of a batch."""
 
     number = 0
 
@@ -20,13 +20,13 @@ class Varies(enum.Enum):
 
 class Node:
     """
-    An object with read-only fields that crosses between Python and the core.
+    A struct with read-only fields that is passed between Python and the core.
     """
 
     @staticmethod
     def fields() -> dict[str, Varies]:
         """
-        Return the names of the fields, and how each depends on the variant of a batch.
+        Return the names of the fields, and how each can depend on the variant of a batch.
         """
 
     def replace(self, **changes: object) -> Self:
@@ -50,7 +50,7 @@ class NormalForce(Node):
 
     def damping_ratio(self, restitution: float, speed: float) -> float:
         """
-        Return the damping ratio of an impact with this restitution and speed; 0 for a law that yields.
+        Return the damping ratio of an impact with this restitution and speed; 0 for a law with hysteresis.
         """
 
     @property
@@ -256,7 +256,9 @@ class Restitution(Node):
     """A restitution law for one pair."""
 
     def at(self, speeds: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]:
-        """Return the restitution at each speed; NaN beyond the law."""
+        """
+        Return the restitution at each speed; NaN outside the range of the law.
+        """
 
 class ConstantRestitution(Restitution):
     """The law 'constant' for one pair; see its header in core/contact."""
@@ -410,7 +412,7 @@ class Harmonic(Node):
     def fields() -> dict[str, Varies]: ...
 
 class Record(Node):
-    """Straight lines through points, zero outside."""
+    """A piecewise-linear signal through points, zero outside."""
 
     def __init__(self, *, times: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
 
@@ -425,7 +427,7 @@ class Record(Node):
 
 class Load(Node):
     """
-    A signal and the force on each mode per unit of it; for the acceleration of the base minus the participation.
+    A signal and the force on each mode per unit of it; for a base acceleration, minus the participation factor.
     """
 
     def __init__(self, *, signal: HalfSine | Harmonic | Record, shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], base: bool) -> None: ...
@@ -489,7 +491,7 @@ class Settings(Node):
 
 class Damper(Node):
     """
-    An impact damper with its balls; positions count from the packed, centred row.
+    An impact damper with its balls; positions are relative to the closely packed, centred row.
     """
 
     def __init__(self, *, clearance: float | numpy.typing.NDArray[numpy.float64], gravity: float | numpy.typing.NDArray[numpy.float64], shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], position: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> None: ...
@@ -516,7 +518,7 @@ class Damper(Node):
     def fields() -> dict[str, Varies]: ...
 
 class Contact(Node):
-    """The contact of two neighbours: their reduced mass and their laws."""
+    """The contact of two neighbours: effective mass and laws."""
 
     def __init__(self, *, mass: float | numpy.typing.NDArray[numpy.float64], normal: NormalForce, restitution: Restitution) -> None: ...
 
@@ -667,7 +669,7 @@ class Counts(Node):
 
 class Result(Node):
     """
-    A run of the 1-D engine. `state` holds displacement and velocity of each mode, then positions and velocities of all balls; `chosen` says which samples are at times that the problem asks for.
+    A run of the 1-D engine. `state` holds displacement and velocity of each mode, then positions and velocities of all balls; `chosen` is true for samples at times of the problem.
     """
 
     def __init__(self, *, time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], chosen: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')], load_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], base_work: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], viscous_loss: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], normal_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], plastic_loss: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], contact_energy: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], cavity_force: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], impacts: Impacts, counts: Counts, status: Status, energy_residual_limit: float, stopped_at: float, stopped_value: float, stopped_contact: int, seconds: float) -> None: ...
@@ -731,7 +733,7 @@ class Result(Node):
 
 class Window(Node):
     """
-    Equally spaced samples of each run from `start` to its end, in cycles of `period`, of a point with these mode shapes.
+    Equally spaced samples of each run from `start` to its end, in cycles of `period`, at a point with these mode shapes.
     """
 
     def __init__(self, *, start: float | numpy.typing.NDArray[numpy.float64], period: float | numpy.typing.NDArray[numpy.float64], shape: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], samples: int) -> None: ...
@@ -752,7 +754,7 @@ class Window(Node):
     def fields() -> dict[str, Varies]: ...
 
 class Block(Node):
-    """What is kept of the variants of a batch, one row for each."""
+    """Output of the variants of a batch, one row for each."""
 
     def __init__(self, *, status: Annotated[NDArray[numpy.int8], dict(shape=(None,), order='C', device='cpu')], measures: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]], batches: Sequence[Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]], batch_length: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, displacement: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, ball_place: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, ball_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')] | None, state: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_time: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_approach_speed: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None, last_contact: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')] | None) -> None: ...
 
@@ -797,7 +799,7 @@ class Block(Node):
 
 def sweep(problem: Problem, grid: Sequence[int], start: int, stop: int, window: Window, measures: Sequence[str], batched: Sequence[str] = [], motion: bool = False, state: bool = False, last: int = 0, threads: int = 1, progress: Callable[[int], object] | None = None) -> Block | None:
     """
-    Run variants start to stop of a batch over a grid and return what is kept of them; None when `progress` has returned False.
+    Run the variants start to stop of a batch over a grid and return their output; None if `progress` returned False.
     """
 
 def measures() -> dict[str, bool]:
@@ -843,7 +845,7 @@ class Wall(Node):
 
 class Cavity(Node):
     """
-    A cavity and its particles. `particle_pair` and `wall_pair` say which laws two species, and a species and a wall, have.
+    A cavity and its particles. `particle_pair` and `wall_pair` are the indices of the laws of two species, and of a species and a wall material.
     """
 
     def __init__(self, *, shape: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], walls: Sequence[Wall], position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], spin: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], radius: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], mass: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], inertia: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], species: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu', writable=False)], particle_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)], wall_pair: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> None: ...
@@ -1162,13 +1164,13 @@ class StoppedAt(Node):
     def fields() -> dict[str, Varies]: ...
 
 class Dem:
-    """A simulation of particle dampers, which is run in pieces."""
+    """A simulation of particle dampers, which is advanced in portions."""
 
     def __init__(self, problem: DemProblem) -> None: ...
 
     def run(self, until: int, progress: Callable[[int], object] | None = None) -> bool:
         """
-        Run until the sample of step `until` is taken; False when it was stopped before.
+        Run until the sample of step `until` is taken; return False if it was stopped before.
         """
 
     def records(self) -> Records:
@@ -1178,7 +1180,7 @@ class Dem:
         """Return the state at the last step whose forces are known."""
 
     def contacts(self, cavity: int) -> ContactList:
-        """Return the contacts where a run was asked to end."""
+        """Return the contacts at the step where the last call of `run` ended."""
 
     def counts(self) -> DemCounts:
         """Return counts and extremes since the start."""
@@ -1197,11 +1199,11 @@ class Dem:
 
     @property
     def step(self) -> int:
-        """The step to come."""
+        """The next step."""
 
     @property
     def serial_steps(self) -> int:
-        """Steps that one thread took alone while others were held up."""
+        """Number of steps that ran on a single thread because of contention."""
 
     @property
     def threads(self) -> int: ...

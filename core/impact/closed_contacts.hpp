@@ -1,21 +1,22 @@
-// Closed contacts integrated step by step, their events, and the peaks of force and overlap.
+// Integration of closed contacts with DOP853 (math/dop853.hpp), events within its steps, and peaks of force
+// and overlap.
 #pragma once
 
-#include "impact/touch.hpp"
+#include "impact/contact_begin.hpp"
 #include "math/dop853.hpp"
 
 namespace rattlebox {
 
-class ClosedContacts : protected Touching {
+class ClosedContacts : protected ContactBegin {
     Dop853 integrator_;
-    std::vector<real> partial_, scale_, slope_, ahead_, behind_;
-    real deepest_ = 0;                    // overlap that closed contacts come to, about
-    static constexpr real roughly = 1e-8; // of a step: for peaks, whose error is its square
+    std::vector<real> partial_, scale_, slope_, forward_, backward_;
+    real deepest_ = 0;                           // scale of the overlaps
+    static constexpr real peak_precision = 1e-8; // part of a step; the error of a peak is its square
 
 protected:
     // ---- closed contacts
 
-    // Takes over the integrated state y; what the dashpots have taken goes to the ledger and to the log.
+    // Copies the integrated state y; adds the losses in dashpots to the ledger and the log.
     void unload_system(const std::vector<real>& y) {
         std::copy_n(y.begin(), state_.y.size(), state_.y.begin());
         const std::size_t at = system_.time_index();
@@ -60,8 +61,8 @@ protected:
         record(t, scratch_, ledger, given);
     }
 
-    // What rounding leaves of a gap that is zero.
-    real gap_blur(int c, const real* y) const {
+    // Returns the rounding error of a gap.
+    real gap_rounding(int c, const real* y) const {
         const Contact& k = contact(c);
         const Damper& damper = problem_.dampers[damper_of(c)];
         const real* at = positions(problem_, y);
@@ -70,30 +71,31 @@ protected:
         return 8 * epsilon * std::fmax(size, deepest_);
     }
 
-    // x where the overlap of a contact comes to what its speed lets expect.
-    real expected(const Active& a) const {
+    // Returns x at the largest overlap that follows from the approach speed.
+    real expected_x(const Active& a) const {
         return contact(a.contact).normal.visit(
             [&](const auto& law) { return std::sqrt(std::sqrt(law.overlap_scale(a.speed))); });
     }
 
-    // First step in transformed time: a tenth of the way through the contact that is soonest over.
+    // Returns the first step in transformed time: a tenth of the shortest contact.
     real first_step(real remaining) const {
         if (system_.active.empty()) {
             const real rate = std::max(loads_.frequency(), fastest_rate(problem_.modes, problem_.coupling));
             real h = std::min(remaining, rate > 0 ? 0.1 / rate : remaining);
             for (const Released& r : released_) {
                 const Gap g = gap(problem_, contact(r.contact), state_.y.data());
-                // To where it opens, or back to where its force begins; no less than rounding can tell.
-                const real room = std::fabs(g.rate < 0 ? g.value + r.state.origin() : g.value);
-                if (room != 0 && g.rate != 0)
-                    h = std::min(h, 0.1 * (room + gap_blur(r.contact, state_.y.data())) / std::fabs(g.rate));
+                // Distance to where it opens or its force begins again, at least the rounding error.
+                const real margin = std::fabs(g.rate < 0 ? g.value + r.state.origin() : g.value);
+                if (margin != 0 && g.rate != 0)
+                    h = std::min(h, 0.1 * (margin + gap_rounding(r.contact, state_.y.data())) /
+                                        std::fabs(g.rate));
             }
             return h;
         }
         real h = infinity;
         for (const Active& a : system_.active) {
-            const real depth = expected(a);
-            // Of a contact that starts from rest either may be too small for a number.
+            const real depth = expected_x(a);
+            // For a contact from rest either one may underflow.
             h = std::min(h, 0.4 * (a.x > 0 && depth > 0 ? std::min(a.x, depth) : a.x + depth) / a.speed);
         }
         return h;
@@ -105,8 +107,8 @@ protected:
         return speed;
     }
 
-    // What rounding of the velocities of both sides makes of x, in the time that the contact takes.
-    real x_blur(const Active& a, real depth) const {
+    // Returns the error of x that the rounding errors of the velocities cause during the contact.
+    real x_rounding(const Active& a, real depth) const {
         if (a.speed == 0 || depth == 0) return 0;
         const Contact& k = contact(a.contact);
         real size = 0;
@@ -114,16 +116,16 @@ protected:
             size = std::fmax(size, std::fabs(side == wall
                                                  ? cavity(problem_.dampers[damper_of(a.contact)], y_.data()).p
                                                  : velocities(problem_, y_.data())[side]));
-        const real x = expected(a);
+        const real x = expected_x(a);
         return 0.25 * epsilon * size / a.speed * x * cube(x / depth);
     }
 
-    // Errors are measured against the speeds and overlaps of the contacts themselves, but not below rounding.
+    // Sets the scales of errors to the speeds and overlaps of the contacts, at least to rounding errors.
     void set_scales() {
         const real tolerance = problem_.settings.tolerance;
         scale_.assign(system_.size(), infinity);
         real speed = 0, deepest = 0;
-        const auto depth = [&](const Active& a) { return std::max(expected(a), std::fabs(a.x)); };
+        const auto depth = [&](const Active& a) { return std::max(expected_x(a), std::fabs(a.x)); };
         for (const Active& a : system_.active) {
             speed = std::max(speed, a.speed);
             deepest = std::max(deepest, depth(a));
@@ -131,9 +133,9 @@ protected:
         deepest_ = square(square(deepest));
         for (std::size_t j = 0; j < system_.active.size(); ++j) {
             const Active& a = system_.active[j];
-            // A contact that starts from rest has no depth of its own to measure by.
+            // A contact that starts from rest has no scale of its own.
             const real size = std::max(depth(a), 0.1 * deepest);
-            scale_[system_.x_index(j)] = std::fmax(tolerance * size, x_blur(a, depth(a)));
+            scale_[system_.x_index(j)] = std::fmax(tolerance * size, x_rounding(a, depth(a)));
         }
         if (system_.active.empty())
             for (real y : state_.y) speed = std::max(speed, std::fabs(y));
@@ -151,9 +153,9 @@ protected:
         }
     }
 
-    // Where in a step of length h from y_ the function turns from `before` (>= 0) to <= 0: the far end of a
-    // bracket that has shrunk to `part` of it, by default to rounding. Every probe is a step of the
-    // integrator itself.
+    // Returns where, in a step of length h from y_, a function changes from `before` (>= 0) to <= 0: the far
+    // end of a bracket of size `part` x h, by default rounding, by regula falsi with the Illinois
+    // modification. Each evaluation is a step of the integrator, so that nothing is interpolated.
     template <class F> real locate(real h, real before, real after, F&& f, real part = 4 * epsilon) {
         real low = 0, high = h, f_low = before, f_high = after;
         int side = 0;
@@ -162,7 +164,7 @@ protected:
             const real width = high - low,
                        edge = 1e-3 * width * std::fabs(f_high) / (std::fabs(f_high) + std::fabs(f_low));
             if (iteration % 3 == 2)
-                next += edge; // step over the root, so that the bracket shrinks from both ends
+                next += edge; // beyond the root, so that the bracket shrinks from both ends
             if (!(next > low && next < high) || iteration > 20) next = low + 0.5 * width;
             if (width <= part * h) break;
             integrator_.step(system_, y_.data(), next, partial_.data());
@@ -182,14 +184,14 @@ protected:
         return high;
     }
 
-    real boundary(const real* y, std::size_t j) const {
+    real phase_margin(const real* y, std::size_t j) const {
         const Active& a = system_.active[j];
         const real rate = system_.approach(y, a.contact);
         return contact(a.contact).normal.visit(
             [&](const auto& law) { return phase_end(law, a.state, y[system_.x_index(j)], rate); });
     }
 
-    // Whether the curve of force that it is on ends at some overlap.
+    // Whether the phase of the contact ends at some overlap.
     bool has_end(std::size_t j) const {
         const Active& a = system_.active[j];
         return contact(a.contact).normal.visit([&](const auto& law) {
@@ -197,26 +199,26 @@ protected:
         });
     }
 
-    // Positive while a released contact's law would not surely push: a force that grows by less than rounding
-    // of its gap would make contacts close and be released again at one instant.
-    real apart(const real* y, const Released& r) const {
+    // Positive while the force of a released contact is not certain to be repulsive. Without the margin for
+    // rounding, contacts could close and be released again at the same time.
+    real release_margin(const real* y, const Released& r) const {
         const Gap g = gap(problem_, contact(r.contact), y);
-        const real overlap = -g.value - r.state.origin() - gap_blur(r.contact, y);
+        const real overlap = -g.value - r.state.origin() - gap_rounding(r.contact, y);
         if (overlap <= 0) return 1;
         const real x = std::sqrt(std::sqrt(overlap));
         return -contact(r.contact).normal.visit(
             [&](const auto& law) { return contact_force(law, r.state, x, -g.rate).total; });
     }
 
-    enum class Event { none, boundary, touch, rest_touch, opened, engaged, unstuck };
+    enum class Event { none, phase_end, touch, rest_touch, opened, reengaged, unstuck };
 
     void integrate_closed() {
-        settle_released(-1);
+        open_all_released(-1);
         for (int r = static_cast<int>(released_.size()) - 1; r >= 0; --r) {
             const Released& released = released_[static_cast<std::size_t>(r)];
-            if (apart(state_.y.data(), released) < 0 &&
+            if (release_margin(state_.y.data(), released) < 0 &&
                 gap(problem_, contact(released.contact), state_.y.data()).rate < 0)
-                engage(r);
+                reengage(r);
         }
         system_.begin(loads_, state_.t);
         load_system();
@@ -232,8 +234,8 @@ protected:
         set_scales();
         const real remaining = next_stop() - state_.t;
         real h = first_step(remaining);
-        // Without a soft contact errors can vanish, so that only this keeps a change of sign in a force from
-        // being jumped.
+        // Without soft contacts the error estimate can vanish; this limit ensures that no change of sign of a
+        // force is missed.
         const real longest = system_.active.empty() ? 2.5 * h : infinity;
         for (;;) {
             if (stop_ && stop_->load(std::memory_order_relaxed)) fail(Status::interrupted);
@@ -242,8 +244,8 @@ protected:
                 fail(Status::too_many_events);
             if (!running()) return unload_system(y_);
             integrator_.start(system_, y_.data());
-            if (problem_.settings.peaks) note_forces();
-            // One step whose error is within the bound, not beyond the next stop.
+            if (problem_.settings.peaks) record_forces();
+            // One step whose error is within the tolerance.
             for (int tries = 0;; ++tries) {
                 integrator_.step(system_, y_.data(), h, trial_.data());
                 const real error = integrator_.error(h, scale_);
@@ -283,7 +285,8 @@ protected:
                     integrator_.step(system_, y_.data(), end, trial_.data());
                 }
             };
-            // Turns to where a rate changes its sign, if something is over there that is not so at the end.
+            // Shortens the step to where a rate changes its sign, if is_over() holds there but not at the
+            // end.
             const auto turn_back = [&](real before, real after, auto&& rate, auto&& is_over) {
                 const real turn = locate(end, before, after, rate);
                 integrator_.step(system_, y_.data(), turn, partial_.data());
@@ -294,47 +297,47 @@ protected:
                 at_stop = false;
             };
             for (std::size_t j = 0; j < system_.active.size(); ++j) {
-                const auto room = [&](const real* y) { return boundary(y, j); };
+                const auto margin = [&](const real* y) { return phase_margin(y, j); };
                 const auto rate = [&](const real* y) {
                     return system_.approach(y, system_.active[j].contact);
                 };
                 const real before = rate(y_.data()), after = rate(trial_.data());
-                if (before > 0 && after < 0 && has_end(j) && room(trial_.data()) > 0)
-                    turn_back(before, after, rate, [&](const real* y) { return room(y) < 0; });
-                consider(Event::boundary, static_cast<int>(j), std::fmax(room(y_.data()), 0.0), room);
+                if (before > 0 && after < 0 && has_end(j) && margin(trial_.data()) > 0)
+                    turn_back(before, after, rate, [&](const real* y) { return margin(y) < 0; });
+                consider(Event::phase_end, static_cast<int>(j), std::fmax(margin(y_.data()), 0.0), margin);
             }
             for (std::size_t r = 0; r < released_.size(); ++r) {
                 const Released& released = released_[r];
                 const auto at = [&](const real* y) { return gap(problem_, contact(released.contact), y); };
                 const Gap before = at(y_.data()), after = at(trial_.data());
-                // It may open and close again within the step.
+                // The contact may open and close again within the step.
                 if (after.value < 0 && before.rate > 0 && after.rate < 0)
                     turn_back(
                         before.rate, after.rate, [&](const real* y) { return at(y).rate; },
                         [&](const real* y) { return at(y).value >= 0; });
                 consider(Event::opened, static_cast<int>(r), -before.value,
                          [&](const real* y) { return -at(y).value; });
-                // Only a force that grows: one that was just released may still push by rounding.
-                const real was = apart(y_.data(), released);
-                if (apart(trial_.data(), released) < was)
-                    consider(Event::engaged, static_cast<int>(r), std::fmax(was, 0.0),
-                             [&](const real* y) { return apart(y, released); });
+                // Only if the force grows: after a release it may still be positive by rounding.
+                const real was = release_margin(y_.data(), released);
+                if (release_margin(trial_.data(), released) < was)
+                    consider(Event::reengaged, static_cast<int>(r), std::fmax(was, 0.0),
+                             [&](const real* y) { return release_margin(y, released); });
             }
             if (!system_.stuck.empty()) {
                 std::vector<real> work(n);
-                real blur = 0; // a row afloat has forces of nothing but rounding
+                real rounding = 0; // a row in free flight has forces of rounding errors only
                 for (const real* y : {y_.data(), trial_.data()}) {
                     system_(y, work.data());
                     for (real force : system_.stuck_forces())
-                        blur = std::fmax(blur, 512 * epsilon * std::fabs(force));
+                        rounding = std::fmax(rounding, 512 * epsilon * std::fabs(force));
                 }
                 for (std::size_t i = 0; i < system_.stuck.size(); ++i) {
-                    const auto holding = [&](const real* y) {
+                    const auto force_margin = [&](const real* y) {
                         system_(y, work.data());
-                        return system_.stuck_forces()[i] + blur;
+                        return system_.stuck_forces()[i] + rounding;
                     };
-                    consider(Event::unstuck, static_cast<int>(i), std::fmax(holding(y_.data()), 0.0),
-                             holding);
+                    consider(Event::unstuck, static_cast<int>(i), std::fmax(force_margin(y_.data()), 0.0),
+                             force_margin);
                 }
             }
             bool retry = false;
@@ -343,20 +346,22 @@ protected:
                 const auto value = [&](const real* y) { return gap(problem_, contact(c), y).value; };
                 const Gap before = gap(problem_, contact(c), y_.data()),
                           after = gap(problem_, contact(c), trial_.data());
-                const real blur = gap_blur(c, y_.data());
+                const real rounding = gap_rounding(c, y_.data());
                 if (phase(c) == Phase::touching ||
-                    (std::fabs(before.value) <= blur && std::fabs(before.rate) <= blur)) {
-                    if (after.value > blur) phase(c) = Phase::open;
+                    (std::fabs(before.value) <= rounding && std::fabs(before.rate) <= rounding)) {
+                    if (after.value > rounding) phase(c) = Phase::open;
                     if (hard()) {
-                        const real drift = this->blur() * trial_[clock];
-                        if (after.value < std::fmin(before.value, 0.0) - blur - drift) return press(c);
+                        const real drift = this->velocity_rounding() * trial_[clock];
+                        if (after.value < std::fmin(before.value, 0.0) - rounding - drift)
+                            return stick_pressed(c);
                         continue;
                     }
-                    if (after.value >= -blur) continue;
-                    const bool faint = after.value >= -4 * blur ||
-                                       weak(c, trial_.data(), trial_[clock] - y_[clock], contact_speed());
-                    if (faint && after.rate >= 0) continue; // it parts again: nothing begins
-                    // A dashpot acts at once: as soon as rounding can tell that it closes must do.
+                    if (after.value >= -rounding) continue;
+                    const bool faint =
+                        after.value >= -4 * rounding ||
+                        is_force_negligible(c, trial_.data(), trial_[clock] - y_[clock], contact_speed());
+                    if (faint && after.rate >= 0) continue; // it opens again before a contact begins
+                    // A dashpot acts immediately, so the contact begins as soon as rounding errors permit.
                     if (faint) {
                         phase(c) = Phase::touching;
                         event = Event::rest_touch;
@@ -364,8 +369,8 @@ protected:
                         retry = true;
                     }
                 } else if (after.value <= 0) {
-                    if (after.rate >= 0 && (before.value <= blur || before.rate >= 0))
-                        continue; // parting, by less than rounding can tell
+                    if (after.rate >= 0 && (before.value <= rounding || before.rate >= 0))
+                        continue; // it opens by less than rounding errors
                     consider(Event::touch, c, std::fmax(before.value, 0.0), value);
                 } else if (before.rate < 0 && after.rate > 0 &&
                            std::fmin(before.value, after.value) <
@@ -382,8 +387,8 @@ protected:
                 h *= 0.25;
                 continue;
             }
-            if (problem_.settings.peaks) note_peaks(end);
-            sample_step(end, event == Event::touch || event == Event::boundary);
+            if (problem_.settings.peaks) record_peaks(end);
+            sample_step(end, event == Event::touch || event == Event::phase_end);
             std::swap(y_, trial_);
             for (std::size_t j = 0; j < system_.active.size(); ++j) {
                 Active& a = system_.active[j];
@@ -397,23 +402,23 @@ protected:
                 const real start = state_.t;
                 unload_system(y_);
                 if (at_stop && event == Event::none) state_.t = start + remaining;
-                return handle(event, which);
+                return handle_event(event, which);
             }
             h = std::min(h * grow, longest);
         }
     }
 
-    // Samples in the step of length h from y_ to trial_: those that are due, those at deepest overlaps, and
-    // one at the end of the step if a contact begins or ends there.
+    // Takes the samples in the step of length h from y_ to trial_: requested times, deepest overlaps, and the
+    // end of the step if a contact begins or ends there.
     void sample_step(real h, bool at_event) {
         const std::size_t clock = system_.time_index();
-        std::vector<std::pair<real, real>> turns; // time since the start, length of the step to there
+        std::vector<std::pair<real, real>> turns; // time, and length of the step to it
         if (samples_contacts())
             for (const Active& a : system_.active) {
                 const auto rate = [&](const real* y) { return system_.approach(y, a.contact); };
                 const real before = rate(y_.data()), after = rate(trial_.data());
                 if (!(before > 0 && after < 0)) continue;
-                const real where = locate(h, before, after, rate, roughly);
+                const real where = locate(h, before, after, rate, peak_precision);
                 integrator_.step(system_, y_.data(), where, partial_.data());
                 turns.emplace_back(partial_[clock], where);
             }
@@ -441,27 +446,27 @@ protected:
         if (at_event && samples_contacts()) sample_closed(trial_, state_.t + trial_[clock], false);
     }
 
-    // What touches closes by itself: it sticks from the beginning of this step.
-    void press(int c) {
+    // A touching contact is pressed together by the forces; it sticks from the begin of this step.
+    void stick_pressed(int c) {
         unload_system(y_);
         stick(c);
     }
 
-    void handle(Event event, int which) {
-        if (event != Event::rest_touch) smooth_since_ = state_.t;
+    void handle_event(Event event, int which) {
+        if (event != Event::rest_touch) last_jump_ = state_.t;
         switch (event) {
         case Event::none:
             return;
-        case Event::boundary:
-            return cross(static_cast<std::size_t>(which));
+        case Event::phase_end:
+            return end_phase(static_cast<std::size_t>(which));
         case Event::touch:
-            return meet(which);
+            return begin_contact_at(which);
         case Event::rest_touch:
-            return begin_at_rest(smooth_since_);
+            return begin_contacts_from_rest(last_jump_);
         case Event::opened:
-            return settle(which);
-        case Event::engaged:
-            return engage(which);
+            return open_released(which);
+        case Event::reengaged:
+            return reengage(which);
         case Event::unstuck: {
             const int c = system_.stuck[static_cast<std::size_t>(which)];
             system_.stuck.erase(system_.stuck.begin() + which);
@@ -471,30 +476,30 @@ protected:
         }
     }
 
-    void cross(std::size_t j) {
+    void end_phase(std::size_t j) {
         Active& a = system_.active[j];
         const Contact& k = contact(a.contact);
         const real rate = system_.approach(state_.y.data(), a.contact);
         const real overlap = a.state.origin() + square(a.x * a.x);
         real plastic = 0, stored = 0;
-        Next next{};
+        PhaseEnd next{};
         k.normal.visit([&](const auto& law) {
             next = next_phase(law, a.state, a.x);
             a.x = std::sqrt(std::sqrt(std::fmax(overlap - a.state.origin(), 0.0)));
             plastic = plastic_loss(law, a.state, a.x);
             stored = stored_energy(law, a.state, a.x);
         });
-        if (next == Next::stay) return;
+        if (next == PhaseEnd::stay) return;
         contact_ended_ = true;
-        Impact& line = result_.impacts[static_cast<std::size_t>(a.impact)];
+        Impact& impact = result_.impacts[static_cast<std::size_t>(a.impact)];
         const std::size_t d = damper_of(a.contact);
         ledger_.plastic[d] += plastic;
-        line.energy_lost += plastic;
-        line.duration = state_.t - line.time;
-        line.separation_speed = -rate;
-        line.complete = true;
-        if (next == Next::release && overlap > 0) {
-            line.energy_lost += stored;
+        impact.energy_lost += plastic;
+        impact.duration = state_.t - impact.time;
+        impact.separation_speed = -rate;
+        impact.complete = true;
+        if (next == PhaseEnd::release && overlap > 0) {
+            impact.energy_lost += stored;
             released_.push_back({a.contact, a.state, a.impact, stored});
             phase(a.contact) = Phase::released;
         } else {
@@ -503,88 +508,88 @@ protected:
         system_.active.erase(system_.active.begin() + static_cast<std::ptrdiff_t>(j));
     }
 
-    void settle(int r) {
+    void open_released(int r) {
         const Released& released = released_[static_cast<std::size_t>(r)];
         ledger_.normal[damper_of(released.contact)] += released.energy;
         phase(released.contact) = Phase::open;
         released_.erase(released_.begin() + r);
     }
 
-    // A released contact takes hold again: the same impact goes on, what it had lost meanwhile stays lost.
-    void engage(int r) {
+    // A released contact touches again: the same impact continues, without the energy lost during recovery.
+    void reengage(int r) {
         const Released released = released_[static_cast<std::size_t>(r)];
         released_.erase(released_.begin() + r);
-        const real left = recovering(released, state_.y.data());
+        const real left = recoverable_energy(released, state_.y.data());
         ledger_.normal[damper_of(released.contact)] += released.energy - left;
         const real plastic = contact(released.contact).normal.visit([&](const auto& law) {
             return plastic_loss(law, released.state, 0);
         });
         ledger_.plastic[damper_of(released.contact)] -= plastic;
-        Impact& line = result_.impacts[static_cast<std::size_t>(released.impact)];
-        line.energy_lost -= left + plastic;
-        line.complete = false;
+        Impact& impact = result_.impacts[static_cast<std::size_t>(released.impact)];
+        impact.energy_lost -= left + plastic;
+        impact.complete = false;
         Active a;
         a.contact = released.contact;
         a.state = released.state;
         a.impact = released.impact;
         const Gap g = gap(problem_, contact(a.contact), state_.y.data());
         a.x = std::sqrt(std::sqrt(std::fmax(-g.value - a.state.origin(), 0.0)));
-        a.speed = std::fmax(line.approach_speed, std::fabs(g.rate));
+        a.speed = std::fmax(impact.approach_speed, std::fabs(g.rate));
         system_.active.push_back(a);
         phase(a.contact) = Phase::closed;
     }
 
     // ---- peaks of force and overlap
 
-    void note(std::size_t j, const real* y) {
+    void record_peak(std::size_t j, const real* y) {
         const Active& a = system_.active[j];
-        Impact& line = result_.impacts[static_cast<std::size_t>(a.impact)];
-        line.peak_force = std::fmax(line.peak_force, system_.force(y, j));
-        line.peak_overlap =
-            std::fmax(line.peak_overlap, a.state.origin() + square(square(y[system_.x_index(j)])));
+        Impact& impact = result_.impacts[static_cast<std::size_t>(a.impact)];
+        impact.peak_force = std::fmax(impact.peak_force, system_.force(y, j));
+        impact.peak_overlap =
+            std::fmax(impact.peak_overlap, a.state.origin() + square(square(y[system_.x_index(j)])));
     }
 
-    void note_forces() {
-        for (std::size_t j = 0; j < system_.active.size(); ++j) note(j, y_.data());
+    void record_forces() {
+        for (std::size_t j = 0; j < system_.active.size(); ++j) record_peak(j, y_.data());
     }
 
-    // Peaks inside the step from y_ to trial_.
-    void note_peaks(real h) {
+    // Records the peaks within the step from y_ to trial_.
+    void record_peaks(real h) {
         for (std::size_t j = 0; j < system_.active.size(); ++j) {
-            note(j, trial_.data());
+            record_peak(j, trial_.data());
             const int c = system_.active[j].contact;
             const real before = system_.approach(y_.data(), c), after = system_.approach(trial_.data(), c);
             if (before > 0 && after < 0) {
-                const real turn =
-                    locate(h, before, after, [&](const real* y) { return system_.approach(y, c); }, roughly);
+                const real turn = locate(
+                    h, before, after, [&](const real* y) { return system_.approach(y, c); }, peak_precision);
                 integrator_.step(system_, y_.data(), turn, partial_.data());
-                note(j, partial_.data());
+                record_peak(j, partial_.data());
             }
             const real rises = force_slope(y_.data(), h, j), falls = force_slope(trial_.data(), h, j);
             if (!(rises > 0 && falls < 0)) continue;
             const real top =
-                locate(h, rises, falls, [&](const real* y) { return force_slope(y, h, j); }, roughly);
+                locate(h, rises, falls, [&](const real* y) { return force_slope(y, h, j); }, peak_precision);
             integrator_.step(system_, y_.data(), top, partial_.data());
-            note(j, partial_.data());
+            record_peak(j, partial_.data());
         }
     }
 
-    // Slope of the force of j along the motion through y, up to a positive factor.
+    // Returns the slope of the force of contact j along the motion through y, up to a positive factor.
     real force_slope(const real* y, real h, std::size_t j) {
         const std::size_t n = system_.size();
         slope_.resize(n);
-        ahead_.resize(n);
-        behind_.resize(n);
+        forward_.resize(n);
+        backward_.resize(n);
         system_(y, slope_.data());
         for (std::size_t i = 0; i < n; ++i) {
-            ahead_[i] = y[i] + 1e-4 * h * slope_[i];
-            behind_[i] = y[i] - 1e-4 * h * slope_[i];
+            forward_[i] = y[i] + 1e-4 * h * slope_[i];
+            backward_[i] = y[i] - 1e-4 * h * slope_[i];
         }
-        return system_.force(ahead_.data(), j) - system_.force(behind_.data(), j);
+        return system_.force(forward_.data(), j) - system_.force(backward_.data(), j);
     }
 
 public:
-    using Touching::Touching;
+    using ContactBegin::ContactBegin;
 };
 
 } // namespace rattlebox

@@ -1,39 +1,41 @@
-// What happens at a first touch: a lone contact solved whole, a soft contact that begins, or a hard impact.
+// First touch: an isolated contact solved as a whole, the begin of a soft contact, or a hard impact.
 #pragma once
 
 #include <iterator>
 
-#include "impact/lone_contact.hpp"
-#include "impact/progress.hpp"
+#include "impact/isolated_contact.hpp"
+#include "impact/run_state.hpp"
 #include "math/linear_system.hpp"
 
 namespace rattlebox {
 
-class Touching : protected Progress {
-    LoneContact lone_, sampler_;
-    State between_;       // of a sample within a lone contact
-    Ledger spent_;        // in one contact
-    real rest_speed_ = 0; // of contacts about to close from rest: when force and inertia balance
-    real fastest_ = 0;    // of the balls relative to their cavities, at any hard impact so far
+class ContactBegin : protected RunState {
+    IsolatedContact isolated_contact_, partial_contact_;
+    State partial_state_;   // at a sample within an isolated contact
+    Ledger contact_ledger_; // of one contact
+    real rest_speed_ =
+        0; // of contacts that close from rest: speed at which contact force and inertia balance
+    real largest_impact_speed_ =
+        0; // largest speed of a ball relative to its cavity at any hard impact so far
 
 protected:
-    real smooth_since_ =
-        0; // when a force or its rate last jumped, other than by a contact that began at rest
+    real last_jump_ =
+        0; // time of the last jump of a force or its rate, except by contacts that began at rest
 
     // ---- first touch
 
-    void meet(int c) {
+    void begin_contact_at(int c) {
         const real speed = std::max(system_.approach(state_.y.data(), c), 0.0);
         const Rebound r = rebound(contact(c).restitution, speed);
         if (r.outside) return fail(Status::law_domain, c, speed);
         result_.counts.extrapolated += r.extrapolated;
         if (!hard() && !possible(contact(c).normal, r)) return fail(Status::no_rebound, c, speed);
-        if (hard()) return strike(c, speed, r.e);
-        if (speed == 0) { // by rounding: what presses it, if anything, will tell
+        if (hard()) return hard_impact(c, speed, r.e);
+        if (speed == 0) { // by rounding; the forces decide whether it closes
             phase(c) = Phase::touching;
             return;
         }
-        if (problem_.settings.collocation && collocate(c, speed, r.e)) return;
+        if (problem_.settings.collocation && solve_isolated(c, speed, r.e)) return;
         begin_contact(c, speed, r.e, 0);
     }
 
@@ -49,8 +51,8 @@ protected:
         return sum;
     }
 
-    // Can nothing else touch while this contact lasts?
-    bool alone(int c, real speed, real longest) const {
+    // Whether no other contact can begin during this one.
+    bool is_isolated(int c, real speed, real longest) const {
         if (!system_.active.empty() || !system_.stuck.empty() || !released_.empty()) return false;
         for (int other = 0; other < problem_.contact_count(); ++other) {
             if (other == c) continue;
@@ -62,87 +64,91 @@ protected:
         return true;
     }
 
-    // A sample inside a lone contact: the contact solved again up to the phase at that time, so that nothing
-    // is interpolated.
-    void sample_lone(int c, const HertzTsuji& law, real speed, real zeta) {
+    // Takes a sample within an isolated contact. The contact is solved again up to the phase at that time,
+    // because interpolation would be less accurate.
+    void sample_isolated(int c, const HertzTsuji& law, real speed, real zeta) {
         const real t = problem_.sample_times[next_sample_++];
         sampled_ = ledger_;
-        LoneContact::Instant now;
-        real psi = lone_.psi_at(t - state_.t);
+        IsolatedContact::Instant now;
+        real psi = isolated_contact_.psi_at(t - state_.t);
         for (int pass = 0; pass < 8; ++pass) {
-            sampler_.prepare(contact(c), law, loads_, state_, speed, zeta, infinity, psi);
-            sampler_.solve();
-            now = sampler_.end();
+            partial_contact_.prepare(contact(c), law, loads_, state_, speed, zeta, infinity, psi);
+            partial_contact_.solve();
+            now = partial_contact_.end();
             const real late = t - state_.t - now.time;
             if (std::fabs(late) <= 2 * epsilon * t) break;
-            psi = std::clamp(psi + late * sampler_.turning(now), 0.5 * psi, lone_.last_psi());
+            psi = std::clamp(psi + late * partial_contact_.phase_rate(now), 0.5 * psi,
+                             isolated_contact_.last_psi());
         }
-        sampler_.finish(now, between_, sampled_);
+        partial_contact_.store_end(now, partial_state_, sampled_);
         clear_contact_samples();
         stored_[damper_of(c)] = law.stored(law.coefficients(zeta, speed), depth_from_fourth_root(now.x));
         add_wall_force(c, now.force);
-        record(t, between_, sampled_);
+        record(t, partial_state_, sampled_);
     }
 
-    // A sample at the deepest overlap of a lone contact.
+    // Takes a sample at the deepest overlap of an isolated contact.
     void sample_deepest(int c, const HertzTsuji& law, real speed, real zeta) {
         sampled_ = ledger_;
-        sampler_.prepare(contact(c), law, loads_, state_, speed, zeta, infinity, std::acos(zeta));
-        sampler_.solve();
-        const LoneContact::Instant now = sampler_.end();
-        sampler_.finish(now, between_, sampled_);
+        partial_contact_.prepare(contact(c), law, loads_, state_, speed, zeta, infinity, std::acos(zeta));
+        partial_contact_.solve();
+        const IsolatedContact::Instant now = partial_contact_.end();
+        partial_contact_.store_end(now, partial_state_, sampled_);
         clear_contact_samples();
         stored_[damper_of(c)] = law.stored(law.coefficients(zeta, speed), depth_from_fourth_root(now.x));
         add_wall_force(c, now.force);
-        record(state_.t + now.time, between_, sampled_, false);
+        record(state_.t + now.time, partial_state_, sampled_, false);
     }
 
-    // The whole contact at once, where that is possible and its energy balance agrees.
-    bool collocate(int c, real speed, real e) {
+    // Solves a contact as a whole if it is isolated and the energy balance of the solution holds.
+    bool solve_isolated(int c, real speed, real e) {
         const HertzTsuji* law = contact(c).normal.get_if<HertzTsuji>();
         if (!law) return false;
         const real zeta = law->damping(e);
-        if (!lone_.prepare(contact(c), *law, loads_, state_, speed, zeta, next_stop() - state_.t))
+        if (!isolated_contact_.prepare(contact(c), *law, loads_, state_, speed, zeta, next_stop() - state_.t))
             return false;
-        if (!alone(c, speed, lone_.longest_time()) || !lone_.solve()) return false;
-        spent_.clear(); // by itself: in the sums of a long run its rounding would drown
-        const LoneContact::Instant end = lone_.end();
-        lone_.finish(end, scratch_, spent_);
-        const ContactState contact_state = first_touch(*law, e, speed);
+        if (!is_isolated(c, speed, isolated_contact_.longest_time()) || !isolated_contact_.solve())
+            return false;
+        contact_ledger_
+            .clear(); // a separate ledger, because the sums of a long run have larger rounding errors
+        const IsolatedContact::Instant end = isolated_contact_.end();
+        isolated_contact_.store_end(end, scratch_, contact_ledger_);
+        const ContactState contact_state = initial_state(*law, e, speed);
         const real stored = stored_energy(*law, contact_state, end.x);
         const std::size_t d = damper_of(c);
-        const real residual = energy(scratch_) + stored - energy(state_) + spent_.normal[d] + spent_.viscous -
-                              spent_.load_work - spent_.base_work;
+        const real residual = energy(scratch_) + stored - energy(state_) + contact_ledger_.normal[d] +
+                              contact_ledger_.viscous - contact_ledger_.load_work - contact_ledger_.base_work;
         const real size = contact(c).mass * speed * speed + energy(state_) * 1e-2;
         if (!(std::fabs(residual) < std::fmax(problem_.settings.tolerance, 64 * epsilon) * size))
             return false;
 
-        Impact line;
-        line.contact = c;
-        line.time = state_.t;
-        line.approach_speed = speed;
-        if (law->needs_restitution()) line.restitution = e;
-        line.separation_speed = -end.rate;
-        line.duration = end.time;
+        Impact impact;
+        impact.contact = c;
+        impact.time = state_.t;
+        impact.approach_speed = speed;
+        if (law->needs_restitution()) impact.restitution = e;
+        impact.separation_speed = -end.rate;
+        impact.duration = end.time;
         if (problem_.settings.peaks) {
-            const LoneContact::Instant deepest = lone_.look(lone_.deepest_position());
-            line.peak_overlap = square(square(deepest.x));
-            line.peak_force = zeta == 0 ? deepest.force : lone_.peak_force();
+            const IsolatedContact::Instant deepest =
+                isolated_contact_.instant_at(isolated_contact_.deepest_position());
+            impact.peak_overlap = square(square(deepest.x));
+            impact.peak_force = zeta == 0 ? deepest.force : isolated_contact_.peak_force();
         }
-        line.energy_lost = end.lost + stored;
-        line.complete = true;
-        const int number = result_.enter(line);
+        impact.energy_lost = end.lost + stored;
+        impact.complete = true;
+        const int number = result_.add_impact(impact);
         ++result_.counts.collocated;
         if (samples_contacts()) {
-            const real deepest = state_.t + lone_.time_at(lone_.deepest_position());
-            while (sample_due(deepest)) sample_lone(c, *law, speed, zeta);
+            const real deepest = state_.t + isolated_contact_.time_at(isolated_contact_.deepest_position());
+            while (sample_due(deepest)) sample_isolated(c, *law, speed, zeta);
             sample_deepest(c, *law, speed, zeta);
         }
-        while (sample_due(state_.t + end.time)) sample_lone(c, *law, speed, zeta);
+        while (sample_due(state_.t + end.time)) sample_isolated(c, *law, speed, zeta);
         contact_ended_ = true;
         std::swap(state_.y, scratch_.y);
         state_.t += end.time;
-        ledger_.add(spent_);
+        ledger_.add(contact_ledger_);
         if (stored > 0) {
             released_.push_back({c, contact_state, number, stored});
             phase(c) = Phase::released;
@@ -150,31 +156,31 @@ protected:
         return true;
     }
 
-    // `since`: when its force began, by default now.
+    // `since` is the time at which the force began, by default the current time.
     void begin_contact(int c, real speed, real e, real x, real since = not_a_number) {
         Active a;
         a.contact = c;
-        bool asked = false;
+        bool has_restitution = false;
         contact(c).normal.visit([&](const auto& law) {
-            a.state = first_touch(law, e, speed);
-            asked = law.needs_restitution();
+            a.state = initial_state(law, e, speed);
+            has_restitution = law.needs_restitution();
         });
-        Impact line;
-        line.contact = c;
-        line.time = std::isnan(since) ? state_.t : since;
-        line.approach_speed = speed;
-        if (asked) line.restitution = e;
-        a.impact = result_.enter(line);
+        Impact impact;
+        impact.contact = c;
+        impact.time = std::isnan(since) ? state_.t : since;
+        impact.approach_speed = speed;
+        if (has_restitution) impact.restitution = e;
+        a.impact = result_.add_impact(impact);
         a.x = x;
         a.speed = speed;
         system_.active.push_back(a);
         phase(c) = Phase::closed;
     }
 
-    // Length of a flight in which the contacts that close from rest go on to close, with a negligible force.
-    // They start slower than rounding can tell from the motion around them, so that their errors are measured
-    // by the speed they have when their force balances what closes them.
-    real rest_start_length(real length) {
+    // Returns the length of a flight in which the forces of contacts that close from rest are negligible. At
+    // first their speed is below the rounding error of the other motion, so their errors are scaled with the
+    // speed at which their force balances the closing force.
+    real rest_flight_length(real length) {
         rest_speed_ = 0;
         for (int halving = 0; halving < 400; ++halving, length *= 0.5) {
             flight_.at(length, scratch_);
@@ -185,10 +191,10 @@ protected:
                 if (phase(c) != Phase::touching) continue;
                 const real rate = gap(problem_, contact(c), y).rate;
                 speed = std::fmax(speed, -rate);
-                balanced = balanced && braking(c, y, length) <= std::fabs(rate);
+                balanced = balanced && speed_loss(c, y, length) <= std::fabs(rate);
                 negligible = negligible &&
                              rate * length <= 8 * epsilon * problem_.dampers[damper_of(c)].clearance &&
-                             weak(c, y, length, 0);
+                             is_force_negligible(c, y, length, 0);
             }
             if (balanced) rest_speed_ = std::fmax(rest_speed_, speed);
             if (negligible) break;
@@ -196,29 +202,29 @@ protected:
         return length;
     }
 
-    // What the force of a contact that closes from rest would take from its closing rate in `length`.
-    real braking(int c, const real* y, real length) const {
+    // Returns the change of the approach rate by the force of a contact that closes from rest.
+    real speed_loss(int c, const real* y, real length) const {
         const Gap g = gap(problem_, contact(c), y);
         if (g.value >= 0) return 0;
         const real e = rebound(contact(c).restitution, 0).e, x = std::sqrt(std::sqrt(-g.value));
         const real f = contact(c).normal.visit([&](const auto& law) {
-            return contact_force(law, first_touch(law, e, -g.rate), x, -g.rate).total;
+            return contact_force(law, initial_state(law, e, -g.rate), x, -g.rate).total;
         });
         return std::fabs(f) * length / contact(c).mass;
     }
 
-    // Is that negligible: below 1e-8 of the closing rate itself, or within the tolerance of the speeds around
-    // it?
-    bool weak(int c, const real* y, real length, real speed) const {
+    // Whether the change is below 1e-8 of the approach rate, or within the tolerance of the speed of other
+    // contacts.
+    bool is_force_negligible(int c, const real* y, real length, real speed) const {
         const real rate = gap(problem_, contact(c), y).rate;
-        return braking(c, y, length) <=
+        return speed_loss(c, y, length) <=
                std::fmax(1e-8 * std::fabs(rate), problem_.settings.tolerance * speed);
     }
 
-    // Begins the contacts that close from rest, at the overlap that they have now. Their force began at
-    // `since`, unless the overlap has grown too fast for a power of the time since then. Those that press
-    // begin also where rounding of the places has lost the way they came.
-    void begin_at_rest(real since, const std::vector<char>& presses = {}) {
+    // Begins the contacts that close from rest, at their current overlap. Their force began at `since`,
+    // unless the overlap has grown faster than a power of the time since then. Contacts that are pressed
+    // together also begin if the overlap is lost in the rounding error of the positions.
+    void begin_contacts_from_rest(real since, const std::vector<char>& presses = {}) {
         for (int c = 0; c < problem_.contact_count(); ++c) {
             if (phase(c) != Phase::touching) continue;
             const Gap g = gap(problem_, contact(c), state_.y.data());
@@ -236,7 +242,7 @@ protected:
 
     // ---- hard impacts
 
-    // Pushes the two sides of c apart with the impulse j.
+    // Applies the impulse j to both sides of contact c.
     void impulse(int c, real j) {
         const Contact& k = contact(c);
         real* v = velocities(problem_, state_.y.data());
@@ -254,7 +260,7 @@ protected:
             state_.y[2 * m + 1] += damper.shape[m] * on_cavity;
     }
 
-    // Acceleration of the gap with the contacts that are stuck now.
+    // Returns the acceleration of the gap with the current stuck contacts.
     real gap_acceleration(int c) {
         system_.begin(loads_, state_.t);
         load_system();
@@ -273,7 +279,7 @@ protected:
         return 2 * pi / rate;
     }
 
-    // The largest speed of a ball relative to its cavity.
+    // Returns the largest speed of a ball relative to its cavity.
     real largest_speed() const {
         const real* v = velocities(problem_, state_.y.data());
         real largest = 0;
@@ -284,10 +290,10 @@ protected:
         return largest;
     }
 
-    // What rounding leaves of the difference of two equal velocities.
-    real blur() const {
+    // Returns the rounding error of the difference of two equal velocities.
+    real velocity_rounding() const {
         const real* v = velocities(problem_, state_.y.data());
-        real largest = fastest_;
+        real largest = largest_impact_speed_;
         for (std::size_t i = 0; i < problem_.ball_mass.size(); ++i)
             largest = std::fmax(largest, std::fabs(v[i]));
         for (const Damper& damper : problem_.dampers)
@@ -295,69 +301,71 @@ protected:
         return 16 * epsilon * largest;
     }
 
-    // An impact elsewhere has moved what was at rest on something: it is struck in its turn, or it parts.
-    void wake_stuck() {
-        const real blur = this->blur();
+    // Opens contacts at rest whose sides move relative to each other after an impact elsewhere.
+    void release_moving() {
+        const real rounding = this->velocity_rounding();
         std::erase_if(system_.stuck, [&](int c) {
-            if (std::fabs(system_.approach(state_.y.data(), c)) <= blur) return false;
+            if (std::fabs(system_.approach(state_.y.data(), c)) <= rounding) return false;
             phase(c) = Phase::open;
             return true;
         });
         for (int c = 0; c < problem_.contact_count(); ++c)
-            if (phase(c) == Phase::touching && std::fabs(system_.approach(state_.y.data(), c)) > blur)
+            if (phase(c) == Phase::touching && std::fabs(system_.approach(state_.y.data(), c)) > rounding)
                 phase(c) = Phase::open;
     }
 
-    // Takes `change` from the closing rate of c; returns the impulse. What is stuck meanwhile holds without
-    // rebound, where it need not pull, and so does what only touches, if c does not rebound either: the
-    // impulses of all solve one linear system. In a slow impact what is stuck may pull, by no more than that
-    // impact's impulse: or balls in two cavities would knock each other off for ever.
-    real push_apart(int c, real change, bool rebounds, bool slow) {
-        std::vector<int> held;
-        std::copy_if(system_.stuck.begin(), system_.stuck.end(), std::back_inserter(held),
+    // Reduces the approach rate of c by `change` and returns the impulse. Stuck contacts stay closed without
+    // rebound unless their impulse would be attractive; the same holds for touching contacts if c does not
+    // rebound. The impulses of all are the solution of one linear system. In a slow impact the impulses of
+    // stuck contacts may be attractive, because otherwise balls in two cavities could detach each other
+    // without end.
+    real reduce_approach(int c, real change, bool rebounds, bool slow) {
+        std::vector<int> constraints;
+        std::copy_if(system_.stuck.begin(), system_.stuck.end(), std::back_inserter(constraints),
                      [&](int other) { return other != c; });
-        std::ptrdiff_t kept = slow ? static_cast<std::ptrdiff_t>(held.size()) : 0;
+        std::ptrdiff_t bilateral = slow ? static_cast<std::ptrdiff_t>(constraints.size()) : 0;
         for (int other = 0; other < problem_.contact_count() && !rebounds; ++other)
-            if (other != c && phase(other) == Phase::touching) held.push_back(other);
-        held.push_back(c);
+            if (other != c && phase(other) == Phase::touching) constraints.push_back(other);
+        constraints.push_back(c);
         std::vector<real> matrix, impulses;
         for (;;) {
-            const std::size_t n = held.size();
+            const std::size_t n = constraints.size();
             matrix.resize(n * n);
             impulses.assign(n, 0.0);
             impulses[n - 1] = -change;
             for (std::size_t i = 0; i < n; ++i)
                 for (std::size_t j = 0; j < n; ++j)
-                    matrix[i * n + j] = system_.coupling(contact(held[i]), contact(held[j]));
+                    matrix[i * n + j] = system_.coupling(contact(constraints[i]), contact(constraints[j]));
             solve_definite(matrix, impulses);
-            const auto weakest = std::min_element(impulses.begin() + kept, impulses.end() - 1);
+            const auto weakest = std::min_element(impulses.begin() + bilateral, impulses.end() - 1);
             if (weakest == impulses.end() - 1 || !(*weakest < 0)) break;
-            held.erase(held.begin() + (weakest - impulses.begin()));
+            constraints.erase(constraints.begin() + (weakest - impulses.begin()));
         }
-        for (std::size_t i = 0; i < held.size(); ++i) impulse(held[i], impulses[i]);
+        for (std::size_t i = 0; i < constraints.size(); ++i) impulse(constraints[i], impulses[i]);
         return impulses.back();
     }
 
-    void strike(int c, real speed, real e) {
-        // Impacts that shrink without a force that presses (a row that collapses) end like those that do.
-        fastest_ = std::fmax(fastest_, largest_speed());
-        const bool slow = speed < problem_.settings.stick * fastest_ || speed < blur();
+    void hard_impact(int c, real speed, real e) {
+        // Impacts that become slow without a closing force (inelastic collapse) end in the same way.
+        largest_impact_speed_ = std::fmax(largest_impact_speed_, largest_speed());
+        const bool slow =
+            speed < problem_.settings.stick * largest_impact_speed_ || speed < velocity_rounding();
         if (slow) e = 0;
-        const real push = push_apart(c, (1 + e) * speed, e > 0, slow);
-        Impact line;
-        line.contact = c;
-        line.time = state_.t;
-        line.approach_speed = speed;
-        line.restitution = e;
-        line.separation_speed = e * speed;
-        line.duration = 0;
-        line.peak_force = infinity;
-        line.energy_lost = 0.5 * push * (1 - e) * speed;
-        line.complete = true;
+        const real j = reduce_approach(c, (1 + e) * speed, e > 0, slow);
+        Impact impact;
+        impact.contact = c;
+        impact.time = state_.t;
+        impact.approach_speed = speed;
+        impact.restitution = e;
+        impact.separation_speed = e * speed;
+        impact.duration = 0;
+        impact.peak_force = infinity;
+        impact.energy_lost = 0.5 * j * (1 - e) * speed;
+        impact.complete = true;
         contact_ended_ = true;
-        ledger_.normal[damper_of(c)] += line.energy_lost;
-        const auto number = static_cast<std::size_t>(result_.enter(line));
-        wake_stuck();
+        ledger_.normal[damper_of(c)] += impact.energy_lost;
+        const auto number = static_cast<std::size_t>(result_.add_impact(impact));
+        release_moving();
         const real rebound_speed = std::fmax(-system_.approach(state_.y.data(), c), 0.0);
         const real acceleration = gap_acceleration(c);
         if (acceleration < 0 &&
@@ -368,21 +376,22 @@ protected:
         }
     }
 
-    // Holds c at rest from now on; returns the energy that was left in its rebound.
+    // Makes c a stuck contact; returns the energy lost by its remaining approach rate.
     real stick(int c) {
-        const real rest = system_.approach(state_.y.data(), c);
-        const real lost = 0.5 * push_apart(c, rest, false, true) * rest;
+        const real rate = system_.approach(state_.y.data(), c);
+        const real lost = 0.5 * reduce_approach(c, rate, false, true) * rate;
         ledger_.normal[damper_of(c)] += lost;
         ++result_.counts.sticks;
         system_.stuck.push_back(c);
         phase(c) = Phase::closed;
-        wake_stuck();
+        release_moving();
         return lost;
     }
 
 public:
-    Touching(const Problem& problem, const std::atomic<bool>* stop)
-        : Progress(problem, stop), lone_(problem), sampler_(problem), between_(problem), spent_(problem) {}
+    ContactBegin(const Problem& problem, const std::atomic<bool>* stop)
+        : RunState(problem, stop), isolated_contact_(problem), partial_contact_(problem),
+          partial_state_(problem), contact_ledger_(problem) {}
 };
 
 } // namespace rattlebox

@@ -1,9 +1,8 @@
-// Motion under a load on a short interval, as Taylor series about its start.
+// Motion of modes and balls under loads on a short interval, as Taylor series about its start.
 //
-// All loads are constants, slopes and sines between knots, so the series of the load is known to any order
-// and the mode's own follows by q'' = f - 2 a q' - k q, whatever the regime, resonance included. With (rate x
-// length) <= 1 the first term left out is below 1/19! = 8e-18 of the leading one: exact to the last digit,
-// with one formula for all.
+// Between knots all loads are constants, slopes and sines, so the series of the load is known to any order
+// and that of the mode follows from q'' = f - 2 a q' - k q, also in resonance. With (rate x length) <= 1 the
+// first omitted term is below 1/19! = 8e-18 of the leading one, so the result is exact to rounding.
 #pragma once
 
 #include "math/real.hpp"
@@ -31,15 +30,15 @@ struct Series {
         for (int n = 0; n <= order; ++n) c[n] += weight * other.c[n];
     }
 
-    // A lower bound on the second derivative over [0, length].
-    real least_curvature(real length) const {
+    // Returns a lower bound of the second derivative over [0, length].
+    real min_curvature(real length) const {
         real sum = 0;
         for (int n = order; n >= 3; --n) sum = (sum + n * (n - 1) * std::fmin(c[n], 0.0)) * length;
         return 2 * c[2] + sum;
     }
 };
 
-// q'' + 2 a q' + k q = f(s) from the given start.
+// Solves q'' + 2 a q' + k q = f(s) from the given start.
 inline Series forced_mode(const Mode& mode, const ModeState& start, const Series& load) {
     Series q;
     q.c[0] = start.q;
@@ -50,7 +49,7 @@ inline Series forced_mode(const Mode& mode, const ModeState& start, const Series
     return q;
 }
 
-// u'' = f(s): a ball in flight.
+// Solves u'' = f(s), a ball in flight.
 inline Series forced_ball(real position, real velocity, const Series& acceleration) {
     return forced_mode(Mode{}, ModeState{position, velocity}, acceleration);
 }

@@ -1,4 +1,4 @@
-// What a trajectory leaves behind: samples of the state, the ledger, and one line for each impact.
+// The result of a run of the 1-D engine: samples of the state and the energy ledger, and the impact log.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct Impact {
     int contact = 0;
     real time = 0;
     real approach_speed = 0;
-    real restitution = not_a_number; // asked for; not a number where the law asks for none
+    real restitution = not_a_number; // NaN if the contact law does not use it
     real separation_speed = not_a_number;
     real duration = not_a_number;
     real peak_overlap = 0, peak_force = 0;
@@ -27,10 +27,10 @@ struct Counts {
 };
 
 struct Samples {
-    std::vector<real> time, state; // y as in impact/state.hpp, one after the other
+    std::vector<real> time, state; // state vectors y of impact/state.hpp, one after the other
     std::vector<real> load_work, base_work, viscous;
     std::vector<real> normal, plastic, stored, force; // by damper
-    std::vector<std::int8_t> given;                   // whether the time was given, or is that of a contact
+    std::vector<std::int8_t> given; // whether the time was requested, or is that of a contact
 };
 
 struct Result {
@@ -39,10 +39,10 @@ struct Result {
     Counts counts;
     Status status = Status::finished;
     real stopped_at = 0;
-    int stopped_contact = -1; // where a law left its domain
-    real stopped_value = 0;   // and at which speed
+    int stopped_contact = -1; // contact whose law left its range of validity
+    real stopped_value = 0;   // its approach speed
 
-    // Room for the samples, with some more for those at contacts.
+    // Reserves memory for the requested samples, and as many for those at contacts.
     explicit Result(const Problem& problem) {
         const std::size_t given = problem.sample_times.size();
         const std::size_t n = problem.settings.contact_samples > 0 ? 2 * given : given;
@@ -55,19 +55,19 @@ struct Result {
     }
     Result() = default;
 
-    // Adds an impact to the log and returns its number.
-    int enter(const Impact& impact) {
+    // Adds an impact to the log and returns its index.
+    int add_impact(const Impact& impact) {
         impacts.push_back(impact);
         return static_cast<int>(impacts.size()) - 1;
     }
 
-    // Samples are taken in the order of time, one at each time.
+    // Adds a sample. There is one sample for each time, in ascending order.
     void record(real t, const State& state, const Ledger& ledger, const std::vector<real>& stored,
                 const std::vector<real>& force, bool given = true) {
         Samples& s = samples;
         if (!s.time.empty() && t <= s.time.back()) {
             if (!given) return;
-            // A time that was given is that of the last sample, but for rounding.
+            // A requested time that equals that of the last sample to rounding.
             if (s.time.back() - t <= 16 * epsilon * t) s.time.back() = t;
             s.given.back() = true;
             return;

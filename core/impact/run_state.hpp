@@ -1,16 +1,16 @@
-// What every part of a trajectory works on: the state of things, the log, and the samples taken on the way.
+// The data of a run that its parts share: state, ledger, phases of the contacts, and the result so far.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 
 #include "impact/flight.hpp"
-#include "impact/log.hpp"
+#include "impact/result.hpp"
 #include "impact/system.hpp"
 
 namespace rattlebox {
 
-class Progress {
+class RunState {
 protected:
     enum class Phase : char { open, touching, closed, released };
 
@@ -18,13 +18,13 @@ protected:
     const std::atomic<bool>* stop_;
     Loads loads_;
     State state_, scratch_;
-    Ledger ledger_, sampled_; // so far, and of a sample
+    Ledger ledger_, sampled_; // at the current time, and at a sample
     Flight flight_;
     System system_;
     std::vector<Phase> phase_;
     std::vector<Released> released_;
     std::size_t next_sample_ = 0;
-    bool contact_ended_ = false; // at the present time
+    bool contact_ended_ = false; // at the current time
     Result result_;
     std::vector<real> y_, trial_, stored_, force_;
 
@@ -44,7 +44,7 @@ protected:
     // ---- recording
 
     // Stored energy of a released contact that still overlaps in state y.
-    real recovering(const Released& r, const real* y) const {
+    real recoverable_energy(const Released& r, const real* y) const {
         const real overlap = -gap(problem_, contact(r.contact), y).value - r.state.origin();
         if (overlap <= 0) return 0;
         const real x = std::sqrt(std::sqrt(overlap));
@@ -52,13 +52,14 @@ protected:
             [&](const auto& law) { return stored_energy(law, r.state, x); });
     }
 
-    // Are samples taken where contacts begin and end?
+    // Whether samples are taken at begin and end of contacts.
     bool samples_contacts() const { return result_.counts.events <= problem_.settings.contact_samples; }
 
-    // The ledger is that of the sample; what released contacts have lost by then is added.
+    // Adds a sample. `ledger` is that of the sample without the losses of released contacts, which are added
+    // here.
     void record(real t, const State& state, Ledger& ledger, bool given = true) {
         for (const Released& r : released_) {
-            const real left = recovering(r, state.y.data());
+            const real left = recoverable_energy(r, state.y.data());
             stored_[damper_of(r.contact)] += left;
             ledger.normal[damper_of(r.contact)] += r.energy - left;
         }
@@ -74,12 +75,12 @@ protected:
         return next_sample_ < problem_.sample_times.size() && problem_.sample_times[next_sample_] <= until;
     }
 
-    // Released contacts that have opened: their stored energy is gone for good.
-    void settle_released(int touched) {
+    // Ends the recovery of released contacts that have opened. Their stored energy is lost.
+    void open_all_released(int touched) {
         for (std::size_t i = released_.size(); i-- > 0;) {
             const int c = released_[i].contact;
-            const real blur = 8 * epsilon * problem_.dampers[damper_of(c)].clearance;
-            if (c != touched && gap(problem_, contact(c), state_.y.data()).value < -blur) continue;
+            const real rounding = 8 * epsilon * problem_.dampers[damper_of(c)].clearance;
+            if (c != touched && gap(problem_, contact(c), state_.y.data()).value < -rounding) continue;
             ledger_.normal[damper_of(released_[i].contact)] += released_[i].energy;
             phase(released_[i].contact) = Phase::open;
             released_.erase(released_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -98,7 +99,7 @@ protected:
     }
 
 public:
-    Progress(const Problem& problem, const std::atomic<bool>* stop)
+    RunState(const Problem& problem, const std::atomic<bool>* stop)
         : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem),
           ledger_(problem), sampled_(problem), flight_(problem), system_(problem),
           phase_(problem.contacts.size(), Phase::open), result_(problem), stored_(problem.dampers.size()),

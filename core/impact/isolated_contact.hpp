@@ -1,22 +1,23 @@
-// One Hertz-Tsuji contact on its own, solved whole by collocation in its phase angle.
+// An isolated Hertz-Tsuji contact, solved as a whole by collocation in its phase angle.
 //
-// With P = (2/sqrt5) b d^(5/4), b^2 = A/m, w = d' and Y = (w + zeta P)/s, s^2 = 1 - zeta^2, the contact alone
-// is a uniform rotation: P = r sin(psi), Y = r cos(psi). Everything else (spring, load, gravity) is a small
-// closing acceleration a:
+// With P = (2/sqrt5) b d^(5/4), b^2 = A/m, w = d' and Y = (w + zeta P)/s, s^2 = 1 - zeta^2, the contact
+// without other forces is a rotation: P = r sin(psi), Y = r cos(psi). All other forces (spring, load,
+// gravity) cause a small closing acceleration a:
 //
 //     dpsi/dt = s W - a sin(psi) / (s r)        W = (sqrt5/2) b d^(1/4)
 //     d ln r/dt = -zeta W + a cos(psi) / (s r)
 //
-// psi runs from 0 to pi whatever happens, so there is no event to look for: zero overlap is psi = pi, the
-// deepest overlap is tan(psi) = s/zeta, zero force psi = 2 acos(zeta). psi = pi I(x) with I the regularised
-// incomplete beta function of (5, 5) makes d^(1/4) analytic at both ends.
+// psi always increases from 0 to pi, so no event must be located: zero overlap is at psi = pi, the deepest
+// overlap at tan(psi) = s/zeta, zero force at psi = 2 acos(zeta). With psi = pi I(x), where I is the
+// regularised incomplete beta function of (5, 5), d^(1/4) is analytic at both ends.
 //
 // Without a, r = r1(psi) and x = d^(1/4) = x0(psi). With gain = (r/r1)^(6/5), x r = x0 r1 gain, and the
-// equation of gain is free of gain itself but for the term a sin(psi): fixed-point sweeps over all nodes,
-// each with its own clock and modes before its gain, gain a factor (a t_c / V)^2 each.
+// equation of gain contains gain itself only in the term a sin(psi). It is solved by fixed-point sweeps over
+// all nodes; each sweep computes time, modes and gain, and reduces the error by a factor of about (a t_c /
+// V)^2.
 //
-// The energy balance, which the sweeps do not use, decides whether the result is taken; if not, or if the
-// contact is slow, strongly damped or has neighbours, impact/closed.hpp integrates it step by step.
+// The result is accepted only if the energy balance holds, which the sweeps do not use. Otherwise, or if the
+// contact is slow, strongly damped or not isolated, impact/closed_contacts.hpp integrates it step by step.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@
 
 namespace rattlebox {
 
-// psi(x) = psi_end I_x(5, 5) and what follows from it at the nodes. Rebuilt only when psi_end changes.
+// psi(x) = psi_end I_x(5, 5) and functions of it at the nodes. Computed again only if psi_end changes.
 struct PhaseGrid {
     static constexpr int n = 32;
     using Rule = Collocation<n>;
@@ -43,7 +44,7 @@ struct PhaseGrid {
         return cube(x) * x * x * (126 + x * (-420 + x * (540 + x * (-315 + x * 70))));
     }
 
-    // psi, sin and cos at any x, exact near both ends.
+    // Computes psi, sin(psi) and cos(psi) at any x, without cancellation near both ends.
     void phase(real x, real& angle, real& sin_angle, real& cos_angle) const {
         const bool late = x > 0.5;
         const real part = end * beta(late ? 1 - x : x);
@@ -64,7 +65,7 @@ struct PhaseGrid {
         }
     }
 
-    // The x at which psi(x) has the given value.
+    // Returns the x at which psi(x) has the given value.
     real position(real value) const {
         const bool late = value > 0.5 * end;
         const real target = (late ? end - value : value) / end;
@@ -78,11 +79,11 @@ struct PhaseGrid {
     }
 };
 
-class LoneContact {
+class IsolatedContact {
     static constexpr int n = PhaseGrid::n;
-    static constexpr int most_sweeps = 24;
+    static constexpr int max_sweeps = 24;
     using Row = PhaseGrid::Rule::Row;
-    // Rows that are integrated: forces on the modes from first_mode on, the same times the time, the base.
+    // Rows that are integrated: time, gain, modal forces, modal forces times time, base acceleration.
     enum : std::size_t { clock, gain, first_mode };
 
     const Problem& problem_;
@@ -93,36 +94,36 @@ class LoneContact {
     const State* start_ = nullptr;
     HertzTsuji law_;
     real zeta_ = 0, s_ = 1, r0_ = 0, depth0_ = 0, wave_ = 0, damping_ = 0, speed_ = 0, side_ = 0;
-    real constant_ = 0; // part of the closing acceleration
+    real constant_ = 0; // constant part of the closing acceleration
     bool base_moves_ = false;
     PhaseGrid grid_;
-    Row x0_, r1_, turn_; // without closing acceleration: x and r; w = r turn in any case
-    Row swing_;          // and s^2 W r
-    Row grow_, rate_;    // gain^(1/6); dpsi/dt / (s r) is 1 / rate, but for the grid's slope
+    Row x0_, r1_, w_over_r_; // x and r without closing acceleration; w / r, which does not depend on it
+    Row rotation_rate_;      // s^2 W r
+    Row x_gain_, rate_;      // gain^(1/6); slope of psi(x) over s r dpsi/dt
     Row a_, base_, x_, w_;
     std::vector<Row> slope_, integral_;
     std::vector<Row> q_, p_, u_, path_, force_, signal_; // by mode or load
-    std::vector<Series> pull_;                           // each load about the start, good to this degree
+    std::vector<Series> load_series_;                    // Taylor series of each load, of this degree
     int degree_ = 0;
 
-    std::size_t late_row() const { return first_mode + modes_; }
-    std::size_t base_row() const { return late_row() + modes_; }
+    std::size_t moment_row() const { return first_mode + modes_; }
+    std::size_t base_row() const { return moment_row() + modes_; }
     real weight(std::size_t k) const {
         return -side_ * damper_->shape[k];
-    } // of a mode in what closes the gap
-    // Of the structure's velocity, from that of the gap.
-    real kick(std::size_t k) const { return side_ * damper_->shape[k] * contact_->mass; }
+    } // of a mode in the closing acceleration
+    // Change of the modal velocity per change of the approach rate.
+    real impulse_share(std::size_t k) const { return side_ * damper_->shape[k] * contact_->mass; }
 
-    // External closing acceleration at the nodes, with the balls' share constant but for the base.
-    void external() {
+    // Computes the modal forces without contact and the closing acceleration at the nodes.
+    void compute_acceleration() {
         for (int i = 0; i < n; ++i) a_[i] = constant_;
         if (loads_->active())
             for (std::size_t l = 0; l < loads_->size(); ++l)
                 for (int i = 0; i < n; i += lane_count) {
                     const Lanes t = integral_[clock].read(i);
-                    Lanes sum = Lanes::all(pull_[l].c[degree_]);
-                    for (int k = degree_ - 1; k >= 0; --k) sum = sum * t + Lanes::all(pull_[l].c[k]);
-                    signal_[l].eight(i) = sum;
+                    Lanes sum = Lanes::all(load_series_[l].c[degree_]);
+                    for (int k = degree_ - 1; k >= 0; --k) sum = sum * t + Lanes::all(load_series_[l].c[k]);
+                    signal_[l].lanes_at(i) = sum;
                 }
         for (std::size_t k = 0; k < modes_; ++k) {
             Row& f = force_[k];
@@ -142,7 +143,7 @@ class LoneContact {
         for (int i = 0; i < n; ++i) a_[i] += base_[i];
     }
 
-    // Taylor series of the loads over the contact; false where they would not reach that far.
+    // Expands the loads in Taylor series over the contact; returns false if they would not converge.
     bool expand_loads(real length) {
         const real turn = loads_->frequency() * length;
         if (turn > 1) return false;
@@ -150,8 +151,8 @@ class LoneContact {
         for (degree_ = 1; degree_ < Series::order && term > 0.1 * epsilon; ++degree_)
             term *= turn / (degree_ + 1);
         for (std::size_t l = 0; l < loads_->size(); ++l) {
-            pull_[l] = Series{};
-            loads_->piece(l).add_taylor(start_->t, 1, degree_, pull_[l].c);
+            load_series_[l] = Series{};
+            loads_->piece(l).add_taylor(start_->t, 1, degree_, load_series_[l].c);
         }
         return true;
     }
@@ -161,7 +162,7 @@ class LoneContact {
         return v2 * v2 * v;
     }
 
-    // exp(y) for small |y|: Taylor.
+    // Taylor series of exp(y) for small |y|.
     template <int order> static Lanes short_exp(const Lanes& y) {
         const Lanes one = Lanes::all(1);
         Lanes sum = one;
@@ -169,34 +170,37 @@ class LoneContact {
         return sum;
     }
 
-    // (1 + z)^(1/6) for small z; what it leaves the next sweep finds.
+    // Taylor series of (1 + z)^(1/6) for small z; the next sweep corrects its error.
     static Lanes sixth_root(const Lanes& z) {
         const Lanes one = Lanes::all(1);
         return one + 1.0 / 6 * z * (one - 5.0 / 12 * z * (one - 11.0 / 18 * z * (one - 17.0 / 24 * z)));
     }
 
-    // x, w and the clock's slope for the present gain.
+    // Computes x, w and dt/dx for the current gain.
     void rates() {
         const PhaseGrid& g = grid_;
         const Lanes one = Lanes::all(1);
         for (int i = 0; i < n; i += lane_count) {
-            const Lanes grow = grow_.read(i), r = r1_.eight(i) * fifth_power(grow);
-            const Lanes rate = g.slope.eight(i) / (swing_.eight(i) * (one + integral_[gain].eight(i)) -
-                                                   a_.eight(i) * g.sine.eight(i));
-            x_.eight(i) = x0_.eight(i) * grow;
-            w_.eight(i) = r * turn_.eight(i);
-            rate_.eight(i) = rate;
-            slope_[clock].eight(i) = s_ * r * rate;
+            const Lanes x_gain = x_gain_.read(i), r = r1_.lanes_at(i) * fifth_power(x_gain);
+            const Lanes rate =
+                g.slope.lanes_at(i) / (rotation_rate_.lanes_at(i) * (one + integral_[gain].lanes_at(i)) -
+                                       a_.lanes_at(i) * g.sine.lanes_at(i));
+            x_.lanes_at(i) = x0_.lanes_at(i) * x_gain;
+            w_.lanes_at(i) = r * w_over_r_.lanes_at(i);
+            rate_.lanes_at(i) = rate;
+            slope_[clock].lanes_at(i) = s_ * r * rate;
         }
     }
 
-    // u = p + kick w, which the contact force leaves alone, and its path (by parts, so that both follow from
-    // the same forces): at first with the forces as at the start, then with those of the sweep before.
+    // Computes u = p + impulse_share w, which does not depend on the contact force, and its integral (by
+    // parts, so that both use the same forces): first with the forces at the start, then with those of the
+    // previous sweep.
     void move_modes(bool first) {
         const Row &time = integral_[clock], &slope = slope_[clock];
         if (first) {
             for (std::size_t k = 0; k < modes_; ++k) {
-                const real u0 = start_->y[2 * k + 1] + kick(k) * speed_, f = force_[k][0] + kick(k) * a_[0];
+                const real u0 = start_->y[2 * k + 1] + impulse_share(k) * speed_,
+                           f = force_[k][0] + impulse_share(k) * a_[0];
                 for (int i = 0; i < n; ++i) {
                     u_[k][i] = u0 + f * time[i];
                     path_[k][i] = time[i] * (u0 + 0.5 * f * time[i]);
@@ -207,30 +211,30 @@ class LoneContact {
         for (std::size_t k = 0; k < modes_; ++k)
             for (int i = 0; i < n; ++i) {
                 slope_[first_mode + k][i] = force_[k][i] * slope[i];
-                slope_[late_row() + k][i] = (force_[k][i] + kick(k) * a_[i]) * time[i] * slope[i];
+                slope_[moment_row() + k][i] = (force_[k][i] + impulse_share(k) * a_[i]) * time[i] * slope[i];
             }
         if (base_moves_)
             for (int i = 0; i < n; ++i) slope_[base_row()][i] = base_[i] * slope[i];
         grid_.rule().integrate(&slope_[first_mode], &integral_[first_mode], 2 * modes_ + base_moves_);
-        Row drift; // what the closing acceleration has made of the speed
+        Row drift; // approach speed without the contact force
         for (int i = 0; i < n; ++i) drift[i] = speed_ + constant_ * time[i];
         if (base_moves_)
             for (int i = 0; i < n; ++i) drift[i] += integral_[base_row()][i];
         for (std::size_t k = 0; k < modes_; ++k)
             for (int i = 0; i < n; ++i) drift[i] += weight(k) * integral_[first_mode + k][i];
         for (std::size_t k = 0; k < modes_; ++k) {
-            const real share = kick(k), p0 = start_->y[2 * k + 1];
+            const real share = impulse_share(k), p0 = start_->y[2 * k + 1];
             for (int i = 0; i < n; ++i) {
                 u_[k][i] = p0 + integral_[first_mode + k][i] + share * drift[i];
-                path_[k][i] = time[i] * u_[k][i] - integral_[late_row() + k][i];
+                path_[k][i] = time[i] * u_[k][i] - integral_[moment_row() + k][i];
             }
         }
     }
 
-    // p and q at the nodes.
+    // Computes p and q at the nodes.
     void place_modes() {
         for (std::size_t k = 0; k < modes_; ++k) {
-            const real q0 = start_->y[2 * k], share = kick(k);
+            const real q0 = start_->y[2 * k], share = impulse_share(k);
             for (int i = 0; i < n; ++i) {
                 p_[k][i] = u_[k][i] - share * w_[i];
                 q_[k][i] = q0 + path_[k][i] - share * square(square(x_[i]));
@@ -244,36 +248,36 @@ class LoneContact {
         grid_.rule().integrate<1>(&slope_[clock], &integral_[clock]);
         move_modes(first);
         place_modes();
-        external();
+        compute_acceleration();
         const Lanes one = Lanes::all(1);
         const real factor = 1.2 / s_;
         for (int i = 0; i < n; i += lane_count)
-            slope_[gain].eight(i) =
-                factor * (one + integral_[gain].eight(i)) * a_.eight(i) * turn_.eight(i) * rate_.eight(i);
+            slope_[gain].lanes_at(i) = factor * (one + integral_[gain].lanes_at(i)) * a_.lanes_at(i) *
+                                       w_over_r_.lanes_at(i) * rate_.lanes_at(i);
         grid_.rule().integrate<1>(&slope_[gain], &integral_[gain]);
         Lanes most = {};
         for (int i = 0; i < n; i += lane_count) {
-            const Lanes grow = grow_.read(i);
-            const Lanes change = (one + integral_[gain].eight(i)) / (grow * fifth_power(grow)) - one;
-            grow_.eight(i) = grow * sixth_root(change);
+            const Lanes x_gain = x_gain_.read(i);
+            const Lanes change = (one + integral_[gain].lanes_at(i)) / (x_gain * fifth_power(x_gain)) - one;
+            x_gain_.lanes_at(i) = x_gain * sixth_root(change);
             most = larger(most, absolute(change));
         }
         return largest(most);
     }
 
 public:
-    // What the contact is at one instant of it.
+    // State of the contact at one instant.
     struct Instant {
         real time = 0, x = 0, rate = 0, force = 0, lost = 0;
     };
 
-    explicit LoneContact(const Problem& problem)
+    explicit IsolatedContact(const Problem& problem)
         : problem_(problem), modes_(problem.modes.size()), slope_(first_mode + 2 * modes_ + 1),
           integral_(slope_.size()), q_(modes_), p_(modes_), u_(modes_), path_(modes_), force_(modes_),
-          signal_(problem.loads.size()), pull_(problem.loads.size()) {}
+          signal_(problem.loads.size()), load_series_(problem.loads.size()) {}
 
-    // Prepares the contact c that touches in `start` at this speed; false where collocation is not the right
-    // tool.
+    // Prepares the contact c, which begins in `start` at this speed; returns false if collocation is not
+    // applicable.
     bool prepare(const Contact& c, const HertzTsuji& law, const Loads& loads, const State& start, real speed,
                  real zeta, real available, real psi_end = 0) {
         if (!(speed > 0) || zeta > 0.4 || !problem_.coupling.empty()) return false;
@@ -308,33 +312,34 @@ public:
                 q_[k][i] = start.y[2 * k];
                 p_[k][i] = start.y[2 * k + 1];
             }
-        external();
+        compute_acceleration();
         return std::fabs(a_[0]) * longest < speed;
     }
 
-    // A bound on the duration: 5/2.94 of the undamped contact.
+    // Returns a bound of the duration: 5/2.94 of the undamped contact.
     real longest_time() const { return 5 * square(square(depth0_)) / speed_; }
 
-    // Sweeps to convergence, from the contact on its own.
+    // Sweeps to convergence, starting from the contact without closing acceleration.
     bool solve() {
         const PhaseGrid& g = grid_;
         for (int i = 0; i < n; i += lane_count) {
-            const Lanes shrink = short_exp<15>(-0.2 * zeta_ / s_ * g.psi.eight(i));
-            x0_.eight(i) = depth0_ * g.root.eight(i) * shrink;
-            r1_.eight(i) = r0_ * fifth_power(shrink);
-            turn_.eight(i) = s_ * g.cosine.eight(i) - zeta_ * g.sine.eight(i);
-            swing_.eight(i) = s_ * s_ * wave_ * x0_.eight(i) * r1_.eight(i);
-            // r^2 is V^2 + 2 a d for constant a and no damping.
+            const Lanes shrink = short_exp<15>(-0.2 * zeta_ / s_ * g.psi.lanes_at(i));
+            x0_.lanes_at(i) = depth0_ * g.root.lanes_at(i) * shrink;
+            r1_.lanes_at(i) = r0_ * fifth_power(shrink);
+            w_over_r_.lanes_at(i) = s_ * g.cosine.lanes_at(i) - zeta_ * g.sine.lanes_at(i);
+            rotation_rate_.lanes_at(i) = s_ * s_ * wave_ * x0_.lanes_at(i) * r1_.lanes_at(i);
+            // Initial guess: r^2 = V^2 + 2 a d for constant a and no damping.
             const Lanes x = x0_.read(i), z = 2 * a_[0] / square(speed_) * x * x * (x * x);
-            const Lanes grow = Lanes::all(1) + 0.1 * z * (Lanes::all(1) - 0.45 * z);
-            integral_[gain].eight(i) = grow * fifth_power(grow) - Lanes::all(1);
-            grow_.eight(i) = grow;
+            const Lanes x_gain = Lanes::all(1) + 0.1 * z * (Lanes::all(1) - 0.45 * z);
+            integral_[gain].lanes_at(i) = x_gain * fifth_power(x_gain) - Lanes::all(1);
+            x_gain_.lanes_at(i) = x_gain;
         }
         real before = 1;
-        for (int pass = 0; pass < most_sweeps; ++pass) {
+        for (int pass = 0; pass < max_sweeps; ++pass) {
             const real change = sweep(pass == 0);
             if (!(change < 1)) return false;
-            // The next change would be rounding, or it no longer falls because it is rounding.
+            // Converged if the next change would be below the tolerance, or the change is at rounding level
+            // and no longer falls.
             if (pass > 0 && (change * change <= 1e-5 * problem_.settings.tolerance * before ||
                              (change < 64 * epsilon && change > 0.1 * before))) {
                 rates();
@@ -346,48 +351,49 @@ public:
     }
 
     real deepest_position() const { return grid_.position(std::acos(zeta_)); }
-    // Time since first touch at a position, as good as the clock between its nodes.
+    // Returns the time since first touch at a position, by interpolation between the nodes.
     real time_at(real position) const { return grid_.rule().interpolate(integral_[clock], position); }
 
-    // The contact itself at position x of the phase.
-    Instant look(real position) const {
+    // Returns the contact at a position x.
+    Instant instant_at(real position) const {
         real psi, sine, cosine;
         grid_.phase(position, psi, sine, cosine);
-        return look(psi, sine, cosine, grid_.rule().interpolate(integral_[gain], position));
+        return instant_at(psi, sine, cosine, grid_.rule().interpolate(integral_[gain], position));
     }
 
-    Instant look(real psi, real sine, real cosine, real gained) const {
+    Instant instant_at(real psi, real sine, real cosine, real gain_minus_one) const {
         Instant now;
-        const real log_r = std::log1p(gained) / 1.2 - zeta_ / s_ * psi;
-        const real grow = std::exp(0.2 * log_r), r = r0_ * fifth_power(grow);
-        now.x = sine > 0 ? depth0_ * std::pow(sine, 0.2) * grow : 0;
+        const real log_r = std::log1p(gain_minus_one) / 1.2 - zeta_ / s_ * psi;
+        const real x_gain = std::exp(0.2 * log_r), r = r0_ * fifth_power(x_gain);
+        now.x = sine > 0 ? depth0_ * std::pow(sine, 0.2) * x_gain : 0;
         now.rate = r * (s_ * cosine - zeta_ * sine);
         now.force = now.x * (law_.stiffness * now.x * square(now.x * now.x) + damping_ * now.rate);
         return now;
     }
 
-    // The end of the contact, or of the part of it that is solved.
+    // Returns the end of the contact, or of the part of it that was solved.
     Instant end() const {
         const auto& rule = grid_.rule();
         real psi, sine, cosine;
         grid_.phase(1, psi, sine, cosine);
-        Instant now = look(psi, sine, cosine, rule.whole(slope_[gain]));
-        now.time = rule.whole(slope_[clock]);
+        Instant now = instant_at(psi, sine, cosine, rule.integral(slope_[gain]));
+        now.time = rule.integral(slope_[clock]);
         Row loss;
         for (int i = 0; i < n; ++i) loss[i] = x_[i] * square(w_[i]) * slope_[clock][i];
-        now.lost = damping_ * rule.whole(loss);
+        now.lost = damping_ * rule.integral(loss);
         return now;
     }
 
-    // State and ledger at that end.
-    void finish(const Instant& now, State& out, Ledger& ledger) const {
+    // Computes the state at that end, and adds to the ledger.
+    void store_end(const Instant& now, State& out, Ledger& ledger) const {
         const auto& rule = grid_.rule();
         Row part;
         const auto total = [&](const Row& f) {
             for (int i = 0; i < n; ++i) part[i] = f[i] * slope_[clock][i];
-            return rule.whole(part);
+            return rule.integral(part);
         };
-        real drift = constant_ * now.time - (now.rate - speed_); // impulse per reduced mass
+        real drift =
+            constant_ * now.time - (now.rate - speed_); // impulse of the contact force per effective mass
         if (base_moves_) drift += total(base_);
         for (std::size_t k = 0; k < modes_; ++k) {
             out.y[2 * k] = start_->y[2 * k] + total(p_[k]);
@@ -395,16 +401,16 @@ public:
             out.y[2 * k + 1] = start_->y[2 * k + 1] + gain;
             drift += weight(k) * gain;
         }
-        for (std::size_t k = 0; k < modes_; ++k) out.y[2 * k + 1] += kick(k) * drift;
+        for (std::size_t k = 0; k < modes_; ++k) out.y[2 * k + 1] += impulse_share(k) * drift;
         out.t = start_->t + now.time;
-        balls(now, drift, out);
-        account(now, ledger);
+        advance_balls(now, drift, out);
+        add_to_ledger(now, ledger);
     }
 
-    // The phase at which it opens: past it there is no overlap to take a root of.
+    // Returns the phase at which the contact opens.
     real last_psi() const { return grid_.end; }
 
-    // The phase at a time after first touch, as good as the clock between its nodes.
+    // Returns the phase at a time after first touch, by interpolation between the nodes.
     real psi_at(real time) const {
         const auto& rule = grid_.rule();
         const Row& at = integral_[clock];
@@ -413,24 +419,24 @@ public:
         const real part = (time - at[i]) / (at[i + 1] - at[i]);
         real x = rule.node[i] + part * (rule.node[i + 1] - rule.node[i]);
         for (int pass = 0; pass < 4; ++pass) {
-            const real late = (time - rule.interpolate(at, x)) / rule.interpolate(slope_[clock], x);
-            if (!(x + late > 0 && x + late < 1)) break; // on a node, or near an end
-            x += late;
+            const real error = (time - rule.interpolate(at, x)) / rule.interpolate(slope_[clock], x);
+            if (!(x + error > 0 && x + error < 1)) break; // on a node, or near an end
+            x += error;
         }
         real psi, sine, cosine;
         grid_.phase(std::fmin(std::fmax(x, 0.0), 1.0), psi, sine, cosine);
         return std::fmin(std::fmax(psi, 1e-3), grid_.end);
     }
 
-    // dpsi/dt at an instant, but for the closing acceleration's small part.
-    real turning(const Instant& now) const { return s_ * wave_ * now.x; }
+    // Returns dpsi/dt at an instant without the small contribution of the closing acceleration.
+    real phase_rate(const Instant& now) const { return s_ * wave_ * now.x; }
 
-    // The largest force: steps of Newton in time, from where it is in a lightly damped contact on its own.
+    // Returns the largest force, by Newton's method in time from its position in a lightly damped contact.
     real peak_force() const {
         const real b2 = law_.stiffness / contact_->mass, c = damping_ / contact_->mass;
         real psi = 0.5 * pi - 8.0 / 3.0 * zeta_, best = 0;
         for (int pass = 0; pass < 6; ++pass) {
-            const Instant at = look(grid_.position(psi));
+            const Instant at = instant_at(grid_.position(psi));
             const real x = at.x, w = at.rate, x3 = cube(x), dx = w / (4 * x3),
                        dw = -at.force / contact_->mass;
             const real slope = 1.5 * b2 * x * x * w + c * (w * dx + x * dw);
@@ -438,9 +444,9 @@ public:
                                c * (w * dw / (2 * x3) - 3 * w * w * dx / (4 * x3 * x) + dx * dw - x * slope);
             best = at.force;
             if (!(curve < 0)) break;
-            const real shift = -slope / curve; // in time; psi turns at the rate s W
+            const real shift = -slope / curve; // in time
             best += contact_->mass * 0.5 * slope * shift;
-            const real turned = psi + shift * turning(at);
+            const real turned = psi + shift * phase_rate(at);
             if (std::fabs(turned - psi) < 1e-4 || turned < 0.2 || turned > grid_.end - 0.2) break;
             psi = turned;
         }
@@ -448,15 +454,15 @@ public:
     }
 
 private:
-    // Balls in flight but for the pair in contact; positions of the pair follow from momentum and overlap.
-    void balls(const Instant& now, real drift, State& out) const {
+    // Advances the balls. The positions of the pair in contact follow from momentum and overlap.
+    void advance_balls(const Instant& now, real drift, State& out) const {
         const real t = now.time;
-        real base_speed = 0, base_shift = 0; // what a base acceleration does to every ball
+        real base_speed = 0, base_shift = 0; // of every ball by the base acceleration
         for (std::size_t l = 0; loads_->active() && l < loads_->size(); ++l) {
             if (!loads_->load(l).base) continue;
-            Series pull;
-            loads_->piece(l).add_taylor(start_->t, -1, Series::order, pull.c);
-            const Series u = forced_ball(0, 0, pull);
+            Series acceleration;
+            loads_->piece(l).add_taylor(start_->t, -1, Series::order, acceleration.c);
+            const Series u = forced_ball(0, 0, acceleration);
             base_speed += u.slope(t);
             base_shift += u.value(t);
         }
@@ -486,30 +492,30 @@ private:
         }
     }
 
-    void account(const Instant& now, Ledger& ledger) const {
+    void add_to_ledger(const Instant& now, Ledger& ledger) const {
         const auto& rule = grid_.rule();
         ledger.normal[static_cast<std::size_t>(contact_->damper)] += now.lost;
         Row power;
         for (std::size_t k = 0; k < modes_; ++k) {
             if (problem_.modes[k].decay == 0) continue;
             for (int i = 0; i < n; ++i) power[i] = square(p_[k][i]) * slope_[clock][i];
-            ledger.viscous += 2 * problem_.modes[k].decay * rule.whole(power);
+            ledger.viscous += 2 * problem_.modes[k].decay * rule.integral(power);
         }
         if (!loads_->active()) return;
         for (std::size_t l = 0; l < loads_->size(); ++l) {
             const Load& load = loads_->load(l);
-            if (loads_->piece(l).silent()) continue;
+            if (loads_->piece(l).is_zero()) continue;
             for (int i = 0; i < n; ++i) power[i] = 0;
             for (std::size_t k = 0; k < modes_; ++k)
                 for (int i = 0; i < n; ++i) power[i] += load.shape[k] * p_[k][i];
-            if (load.base) subtract_balls(power);
+            if (load.base) subtract_ball_momentum(power);
             for (int i = 0; i < n; ++i) power[i] *= signal_[l][i] * slope_[clock][i];
-            (load.base ? ledger.base_work : ledger.load_work) += rule.whole(power);
+            (load.base ? ledger.base_work : ledger.load_work) += rule.integral(power);
         }
     }
 
-    // The balls' momentum at the nodes, which the base works on.
-    void subtract_balls(Row& power) const {
+    // Subtracts the momentum of the balls at the nodes, on which the base does work.
+    void subtract_ball_momentum(Row& power) const {
         State probe(problem_);
         for (int i = 0; i < n; ++i) {
             Instant node;
@@ -523,7 +529,7 @@ private:
                 probe.y[2 * k] = q_[k][i];
                 probe.y[2 * k + 1] = p_[k][i];
             }
-            balls(node, drift, probe);
+            advance_balls(node, drift, probe);
             const real* v = velocities(problem_, probe.y.data());
             for (std::size_t b = 0; b < problem_.ball_mass.size(); ++b)
                 power[i] -= problem_.ball_mass[b] * v[b];
