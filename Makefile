@@ -6,19 +6,34 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*.hpp' -o -name '*.cpp')
 
-.PHONY: setup demo test verify lint stub docs bench bench-guard format clean
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
+
+.PHONY: setup demo reproduction test verify lint stub docs bench bench-guard format clean
 
 setup: $(VENV)/.installed
 
-$(VENV)/.installed: $(CORE)
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt scikit-build-core nanobind cmake ninja
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[dev,docs]'
+$(BIN)/python:
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: $(CORE) | $(BIN)/python
+	$(PIP) scikit-build-core nanobind cmake ninja
+	$(PIP) --no-build-isolation -C cmake.define.RATTLEBOX_LEVELS=all -e '.[dev,docs]'
 	touch $@
 
-demo: setup
+# The package with its required libraries, and the core for this machine only. Where everything is installed, that is used.
+$(VENV)/.package: $(CORE) | $(BIN)/python
+	$(PIP) --no-compile scikit-build-core nanobind cmake ninja
+	$(PIP) --no-compile --no-build-isolation -C cmake.define.RATTLEBOX_LEVELS=best -e .
+	touch $@
+
+PACKAGE := $(VENV)/$(if $(wildcard $(VENV)/.installed),.installed,.package)
+
+demo: $(PACKAGE)
 	$(BIN)/rattlebox demo -o demo
-	$(BIN)/python -m reproduction -o demo/report
+	$(BIN)/python -m reproduction --only paper -o demo/report
+
+reproduction: $(PACKAGE)
+	$(BIN)/python -m reproduction -o report
 
 # A worker takes tests that follow each other, so that most module fixtures are built once.
 test: setup

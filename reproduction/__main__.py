@@ -24,7 +24,11 @@ def main() -> int:
         "-o", "--out", type=Path, default=Path("report"), help="new folder, or that of an earlier report (report)"
     )
     parser.add_argument(
-        "--only", action="append", default=[], metavar="FIGURE", help='figure to make: "4", "7c", "A1"; may be repeated'
+        "--only",
+        action="append",
+        default=[],
+        metavar="FIGURE",
+        help='figure to make: "4", "7c", "A1", or "paper" for all but A1 to A5; may be repeated',
     )
     parser.add_argument("--workers", type=_positive, help="processes (one for each core)")
     given = parser.parse_args()

@@ -81,13 +81,15 @@ class Made:
         return sum(files.runs for files in self.cases.values())
 
 
-def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float) -> str:
+def render(figures: Sequence[Made], *, missing: Sequence[str] = (), cores: int, workers: int, seconds: float) -> str:
     """Return the page as HTML that needs nothing from elsewhere.
 
     Parameters
     ----------
     figures
         In the order of the page.
+    missing
+        Numbers of the figures that were not computed.
     cores, workers
         Of the machine, and processes that were used.
     seconds
@@ -112,6 +114,7 @@ def render(figures: Sequence[Made], *, cores: int, workers: int, seconds: float)
         title="A particle damper, reproduced and judged",
         paper=PAPER,
         figures=figures,
+        missing=missing,
         groups=(
             ("Figures of the paper", [figure for figure in figures if figure.number[0].isdigit()]),
             ("Where the paper can be read in more than one way", [f for f in figures if f.number.startswith("R")]),

@@ -65,7 +65,8 @@ def write_report(
     folder
         Where to write: a new or empty folder, or that of an earlier report, which is replaced.
     only
-        Numbers of the figures wanted, such as "4", "7c" or "A1"; "7" are all its parts. Default all.
+        Numbers of the figures wanted, such as "4", "7c" or "A1"; "7" are all its parts, and "paper" is everything but the
+        extensions A1 to A5, which take two thirds of the time. Default all.
     workers
         Processes that compute figures. In a script more than one needs the usual `if __name__ == "__main__":`.
     progress
@@ -93,7 +94,8 @@ def write_report(
             progress(len(made), len(modules), f"figure {figure.number}")
     figures = [made[module] for module in modules]
     page = folder / "index.html"
-    text = render(figures, cores=cores(), workers=workers, seconds=time.perf_counter() - began)
+    missing = [load_figure(module).number for module in FIGURES if module not in modules]
+    text = render(figures, missing=missing, cores=cores(), workers=workers, seconds=time.perf_counter() - began)
     _write(page, text)
     return page
 
@@ -119,7 +121,7 @@ def choose(only: Sequence[str]) -> tuple[str, ...]:
     for text in only:
         found = {module for module, number in numbers.items() if _covers(number, text.strip())}
         if not found:
-            raise ValueError(f"there is no figure {text!r}; there are {', '.join(numbers.values())}")
+            raise ValueError(f"there is no figure {text!r}; there are {', '.join(numbers.values())}, and 'paper'")
         wanted |= found
     return tuple(module for module in FIGURES if module in wanted or not only)
 
@@ -132,7 +134,9 @@ def load_figure(module: str) -> Reproduction:
 
 
 def _covers(number: str, wanted: str) -> bool:
-    """True when a figure, such as "7d, e" or "10", shows what is wanted, such as "7", "7e" or "10a"."""
+    """Return whether a figure, such as "7d, e" or "10", shows what is wanted, such as "7", "7e", "10a" or "paper"."""
+    if wanted == "paper":
+        return not number.startswith("A")
     whole, parts = _parts(number)
     wanted_whole, wanted_parts = _parts(wanted)
     return whole == wanted_whole and (not parts or wanted_parts <= parts)

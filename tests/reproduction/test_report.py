@@ -209,6 +209,8 @@ def test_figures_are_chosen_by_number():
     """A number chooses its figure, a number without letter all its parts; others are refused with those there are."""
     assert choose([]) == FIGURES
     assert choose(["2"]) == ("figure_02",)
+    assert choose(["paper"]) == tuple(m for m in FIGURES if not load_figure(m).number.startswith("A"))
+    assert choose(["paper", "A5"]) == (*choose(["paper"]), "lyapunov")
     with pytest.raises(ValueError, match=r"no figure '99'; there are 2, "):
         choose(["99"])
     with pytest.raises(ValueError, match="no figure ''"):
@@ -250,6 +252,10 @@ def test_page_escapes_and_counts():
     counts = re.findall(r"<b>(\d+)</b><span aria-hidden=\"true\">.</span> ([a-z ]+)<", text)
     assert counts == [("1", "reproduced"), ("1", "reproduced in kind"), ("0", "not reproducible"), ("2", "misprint")]
     assert "4.2 s" in text and "3 cores, 2 processes" in text
+    assert "Not computed" not in text
+    assert "Not computed for this page: 7d, 7e; A1." in render(
+        [made], missing=["7d, 7e", "A1"], cores=1, workers=1, seconds=1
+    )
 
 
 @pytest.mark.parametrize(
