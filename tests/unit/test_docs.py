@@ -22,6 +22,7 @@ PAGES = (
     "how-to/loss_map",
     "how-to/lyapunov",
     "how-to/notebooks",
+    "how-to/paraview",
     "how-to/particle_output",
     "how-to/results",
     "how-to/sensitivity",

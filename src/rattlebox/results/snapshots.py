@@ -1,8 +1,11 @@
 """Snapshots of all particles in one VTKHDF file, which grows during a run and opens in ParaView.
 
-The file is a PolyData with time steps (VTKHDF 2): points with radius, velocity and spin, and the displacement of each
-cavity as field data. All space is allocated when the file is created, and each snapshot only overwrites numbers. Earlier
-snapshots therefore survive when the process is killed.
+The file is a PolyData with time steps (VTKHDF 2): points with radius, velocity and spin, the walls of the cavities as
+polygons, and the displacement of each cavity as field data. The corners of the walls are the last points, with radius 0 and
+species -1.
+
+All space is allocated when the file is created, and each snapshot only overwrites numbers. Earlier snapshots therefore
+survive when the process is killed.
 """
 
 from __future__ import annotations
@@ -29,13 +32,14 @@ from rattlebox._util.atomic_io import (
 )
 from rattlebox._util.digests import SIZE, array_digest, group_digest
 from rattlebox._util.exceptions import DataError
+from rattlebox.model.surfaces import Surface
 
 from .arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
     from rattlebox.core import _core
 
-FORMAT = 3
+FORMAT = 4
 """Version of the layout beyond VTKHDF; files of other versions are rejected."""
 
 _DIGESTS = "digests"
@@ -143,6 +147,8 @@ class SnapshotFile:
         Position at which each cavity is drawn [m]. A case does not define positions of cavities.
     fixed
         Arrays "radius", "mass", "cavity" and "species" of the particles, (N,).
+    walls
+        Surface of each cavity.
     case_toml
         Text of the case file.
     numbers
@@ -155,11 +161,19 @@ class SnapshotFile:
         times: FloatArray,
         places: FloatArray,
         fixed: Mapping[str, NDArray[Any]],
+        walls: Sequence[Surface],
         case_toml: str,
         numbers: str,
     ) -> None:
         self.path = Path(path)
-        self._times, self._places, self._fixed = times, places, fixed
+        self._times, self._places, self._walls = times, places, tuple(walls)
+        self._particles = int(fixed["radius"].size)
+        self._wall_cavity = np.repeat(np.arange(len(walls)), [len(wall.points) for wall in walls])
+        of_walls: dict[str, Any] = {"radius": 0.0, "mass": 0.0, "cavity": self._wall_cavity, "species": -1}
+        self._fixed = {
+            name: np.concatenate([values, np.broadcast_to(of_walls[name], self._wall_cavity.size)]).astype(values.dtype)
+            for name, values in fixed.items()
+        }
         self._case, self._numbers = case_toml, numbers
 
     def create(self) -> None:
@@ -188,13 +202,16 @@ class SnapshotFile:
         """Return an upper bound of the size of the file [bytes]."""
         steps, count, cavities = self._times.size, self._fixed["radius"].size, len(self._places)
         moving = 3 + sum(math.prod(shape) for shape in _MOVING.values())
-        numbers = steps * (moving * count + 3 * cavities + _OFFSETS) + (2 + len(_FIXED)) * count + 3 * cavities
+        corners = sum(1 + len(polygon) for wall in self._walls for polygon in wall.polygons)
+        numbers = steps * (moving * count + 3 * cavities + _OFFSETS) + len(_FIXED) * count + 3 * cavities
+        numbers += 2 * self._particles + corners
         return 8 * numbers + SIZE * steps + len(self._case.encode()) + _LAYOUT
 
     def _create_datasets(self, file: Any) -> None:
         """Create all datasets and write those that do not change."""
         steps, count, cavities = self._times.size, self._fixed["radius"].size, len(self._places)
         file.attrs["rattlebox_format"] = FORMAT
+        file.attrs["particles"] = self._particles
         file.attrs["case"] = self._case
         file.attrs["numbers"] = self._numbers
         root = file.create_group(ROOT)
@@ -202,12 +219,15 @@ class SnapshotFile:
         root.attrs.create("Type", b"PolyData", dtype="S8")
         root["NumberOfPoints"] = [count]
         root.create_dataset("Points", (steps * count, 3), "f8")
-        for cells in ("Vertices", "Lines", "Polygons", "Strips"):
-            number = count if cells == "Vertices" else 0
-            root[f"{cells}/NumberOfCells"] = [number]
-            root[f"{cells}/NumberOfConnectivityIds"] = [number]
-            root[f"{cells}/Offsets"] = np.arange(number + 1)
-            root[f"{cells}/Connectivity"] = np.arange(number)
+        particles, polygons = np.arange(self._particles + 1), self._polygons()
+        corners = np.array([corner for polygon in polygons for corner in polygon], np.int64)
+        cells = {"Vertices": (particles, particles[:-1]), "Polygons": (np.cumsum([0, *map(len, polygons)]), corners)}
+        for kind in ("Vertices", "Lines", "Polygons", "Strips"):
+            offsets, connectivity = cells.get(kind, (np.zeros(1, np.int64), np.zeros(0, np.int64)))
+            root[f"{kind}/NumberOfCells"] = [offsets.size - 1]
+            root[f"{kind}/NumberOfConnectivityIds"] = [connectivity.size]
+            root[f"{kind}/Offsets"] = offsets
+            root[f"{kind}/Connectivity"] = connectivity
         every, once = np.arange(steps), np.zeros(steps, np.int64)
         catalogue = root.create_group("Steps")
         catalogue.attrs["NSteps"] = 0
@@ -235,6 +255,15 @@ class SnapshotFile:
         for dataset in (*moving, file[_DIGESTS]):
             if dataset.size:
                 dataset[-1] = 0
+
+    def _polygons(self) -> list[Sequence[int]]:
+        """Return the points of each polygon of the walls, which follow those of the particles."""
+        polygons: list[Sequence[int]] = []
+        first = self._particles
+        for wall in self._walls:
+            polygons += [[first + corner for corner in polygon] for polygon in wall.polygons]
+            first += len(wall.points)
+        return polygons
 
     def sync(self) -> None:
         """Flush the snapshots to the disk.
@@ -293,6 +322,9 @@ class SnapshotFile:
             ],
         }
         placed = [each.position + place for each, place in zip(cavities, self._places, strict=True)]
+        placed += [wall.points + moved for wall, moved in zip(self._walls, displacement + self._places, strict=True)]
+        for field, shape in _MOVING.items():  # the corners of the walls have neither spin nor contacts
+            moving[field].append(np.zeros((self._wall_cavity.size, *shape)))
         # Without a lock, other programs can read the file during the run.
         with disk_errors(self.path, _DISK_HINT), h5py.File(self.path, "r+", locking=False) as file:
             root, blocks = file[ROOT], _blocks(number, self._fixed["radius"].size, len(cavities))
@@ -358,7 +390,9 @@ class Snapshots:
             self.case_toml, self.numbers = str(file.attrs["case"]), str(file.attrs["numbers"])
             root = file[ROOT]
             self.planned: FloatArray = root["Steps/Values"][...]
-            self._fixed = {field: root[f"PointData/{field}"][...] for field in _FIXED}
+            self._particles = int(file.attrs["particles"])
+            self._points = int(root["NumberOfPoints"][0])
+            self._fixed = {field: root[f"PointData/{field}"][: self._particles] for field in _FIXED}
             self._places: FloatArray = root["FieldData/place"][...]
             self.times = self.planned[: self._count_complete(file)]
 
@@ -401,7 +435,7 @@ class Snapshots:
 
     def _read(self, file: Any, number: int) -> list[FloatArray] | None:
         """Return points, moving fields and displacements of a snapshot; None if it is damaged."""
-        blocks = _blocks(number, self._fixed["radius"].size, len(self._places))
+        blocks = _blocks(number, self._points, len(self._places))
         parts = [file[ROOT][name][rows] for name, rows in blocks.items()]
         return parts if array_digest(parts) == file[_DIGESTS][number].tobytes() else None
 
@@ -427,7 +461,8 @@ class Snapshots:
             parts = self._read(file, number)
         if parts is None:
             raise self._damaged(f"snapshot {number}")
-        points, velocity, spin, contact_force, displacement = parts
+        *of_points, displacement = parts
+        points, velocity, spin, contact_force = (part[: self._particles] for part in of_points)
         return Frame(
             time=float(self.times[number]),
             position=points - self._places[self._fixed["cavity"]],

@@ -12,6 +12,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox._util.atomic_io import reserve_space
+from rattlebox.model.surfaces import surface
 from rattlebox.results.snapshots import SnapshotFile, Snapshots
 
 
@@ -76,6 +77,54 @@ def test_contact_force_of_a_stack(tmp_path: Path) -> None:
     assert frame.contact_force / (9.81 * frame.mass[0]) == pytest.approx([3, 1], rel=1e-2)
 
 
+def edges(frame: Any) -> tuple[float, float]:
+    """Return the smallest and the largest x of the walls of the box and the can."""
+    return frame.displacement[0, 0] - 0.01, 1.25 * 0.02 + frame.displacement[1, 0] + 0.01
+
+
+CAVITIES = [
+    rb.Box(size=("20 mm", "16 mm", "12 mm")),
+    rb.Cylinder(diameter="20 mm", length="30 mm"),
+    rb.Cylinder(radius="1 m", length="0.1 m", axis=(1, 2, 3)),
+    rb.SphericalCavity(radius="3 mm"),
+]
+
+
+@pytest.mark.parametrize("cavity", CAVITIES)
+def test_surface_of_a_cavity(cavity: Any) -> None:
+    """The surface is closed, its corners are on the walls, its faces look inward, and it has the volume of the cavity."""
+    walls = surface(cavity)
+    np.testing.assert_allclose(cavity.depth(walls.points), 0, atol=1e-12 * cavity.lengths.max())
+    sides = [(a, b) for face in walls.polygons for a, b in zip(face, (*face[1:], face[0]), strict=True)]
+    assert len(sides) == len(set(sides)) and {(b, a) for a, b in sides} == set(sides)
+    volume = 0.0
+    for face in walls.polygons:
+        corners = walls.points[list(face)]
+        fans = [np.linalg.det([corners[0], corners[k], corners[k + 1]]) for k in range(1, len(face) - 1)]
+        assert max(fans) <= 1e-12 * cavity.volume
+        volume -= sum(fans) / 6
+    assert volume == pytest.approx(cavity.volume, rel=0.015) and volume <= cavity.volume * (1 + 1e-12)
+
+
+def test_walls_move_with_the_structure(written: Any) -> None:
+    """The file has the walls of both cavities after the particles, at each time displaced like their cavity."""
+    run, path = written
+    walls = [surface(damper.cavity).points for damper in run.case.dampers]
+    total = 18 + sum(map(len, walls))
+    with h5py.File(path) as file:
+        root = file["VTKHDF"]
+        assert list(root["NumberOfPoints"]) == [total] and len(root["Points"]) == 11 * total
+        assert root["Vertices/NumberOfCells"][0] == 18
+        assert root["Polygons/Offsets"][-1] == len(root["Polygons/Connectivity"]) == 6 * 4 + 72 * 4 + 2 * 72
+        assert set(root["Polygons/Connectivity"]) == set(range(18, total))
+        points = root["Points"][...].reshape(11, total, 3)
+        moved = root["FieldData/displacement"][...].reshape(11, 2, 3)
+        for k, (first, corners) in enumerate(zip((18, 26), walls, strict=True)):
+            here = corners + root["FieldData/place"][k]
+            np.testing.assert_allclose(points[:, first : first + len(here)], here + moved[:, None, k], atol=1e-15)
+        assert np.ptp(moved[:, 0, 0]) > 1e-3, "the box moves"
+
+
 def test_vtk_reads_what_was_written(written: Any) -> None:
     """VTK's own reader finds every time, point, field and the displacements of the cavities, which stand side by side."""
     pytest.importorskip("vtkmodules", reason="VTK is not installed: python -m pip install 'rattlebox[3d]'")
@@ -95,11 +144,14 @@ def test_vtk_reads_what_was_written(written: Any) -> None:
         assert reader.GetTimeValue() == frame.time
         cloud = reader.GetOutput()
         assert cloud.GetNumberOfVerts() == 18
-        points = vtk_to_numpy(cloud.GetPoints().GetData())
+        points = vtk_to_numpy(cloud.GetPoints().GetData())[:18]
         aside = np.where(frame.cavity == 1, 1.25 * 0.02, 0.0)
         np.testing.assert_allclose(points, frame.position + np.outer(aside, [1, 0, 0]), atol=1e-16)
         for name in ("velocity", "spin", "contact_force", "radius", "mass", "cavity", "species"):
-            np.testing.assert_array_equal(vtk_to_numpy(cloud.GetPointData().GetArray(name)), getattr(frame, name))
+            stored = vtk_to_numpy(cloud.GetPointData().GetArray(name))
+            np.testing.assert_array_equal(stored[:18], getattr(frame, name))
+            assert name == "cavity" or np.all(stored[18:] == (-1 if name == "species" else 0))
+        assert cloud.GetNumberOfPolys() == 6 + 74 and cloud.GetBounds()[:2] == pytest.approx(edges(frame), abs=1e-15)
         moved = vtk_to_numpy(cloud.GetFieldData().GetArray("displacement"))
         np.testing.assert_array_equal(moved, frame.displacement)
         assert np.abs(moved[:, 1]).max() == 0
@@ -109,8 +161,11 @@ def test_vtk_reads_what_was_written(written: Any) -> None:
 def test_all_room_on_disk_is_taken_at_once(steps: int, count: int, cavities: int, tmp_path: Path) -> None:
     """The room that is asked for is enough for the file, and the file has no holes that a full disk would not fill."""
     fixed = {name: np.ones(count) for name in ("radius", "mass", "cavity", "species")}
+    walls = [surface(rb.SphericalCavity(radius=1))] * cavities
     text = "# ein längerer Fall\n" * 1000
-    file = SnapshotFile(tmp_path / "run.vtkhdf", np.arange(steps), np.zeros((cavities, 3)), fixed, text, "numbers")
+    file = SnapshotFile(
+        tmp_path / "run.vtkhdf", np.arange(steps), np.zeros((cavities, 3)), fixed, walls, text, "numbers"
+    )
     asked: list[int] = []
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(
