@@ -1,4 +1,4 @@
-"""How fast neighbouring motions part."""
+"""Divergence of neighbouring motions."""
 
 from __future__ import annotations
 
@@ -14,33 +14,47 @@ if TYPE_CHECKING:
 
 
 def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: float) -> xarray.Dataset:
-    """Finite-time Lyapunov exponent from the growth of small separations.
-
-    The exponent is the slope of the straight line that fits the mean logarithmic growth best, from the first sample
-    to the last before the geometric mean of the separations reaches `saturation`. Positive means chaos, for as long
-    as it was watched.
+    """Compute the finite-time Lyapunov exponent from the growth of small separations.
 
     Parameters
     ----------
     time : (N,) array_like
         Increasing times [s].
     separations : (N,) or (P, N) array_like
-        Distances of P pairs of neighbouring motions, in one unit, all above zero. Let the pairs start at different
-        places: pairs along one motion share its luck, and their spread says little.
+        Distances of P pairs of neighbouring motions, in one unit, all above zero. Pairs should start at different
+        places: pairs along one motion are correlated, and their spread underestimates the error.
     saturation
-        Separation at which growth is no longer exponential, in the same unit: some hundredth of the reach of the motion.
+        Separation at which growth is no longer exponential, in the same unit: about a hundredth of the range of the motion.
 
     Returns
     -------
     xarray.Dataset
-        `growth`, the mean over pairs of ln(separation/first separation), and `fit`, the line where it was fitted and
-        NaN beyond, over `time` [s]; `exponent` [1/s]; `standard_error` [1/s], from the spread between pairs, or for a
-        single pair from the scatter about the line, as if its samples were independent.
+        `growth`, the mean over pairs of ln(separation/first separation), and `fit`, the fitted line, NaN outside the fitted
+        range, over `time` [s]; `exponent` [1/s]; `standard_error` [1/s], from the spread between pairs, or for a single pair
+        from the scatter about the line, for independent samples.
 
     Raises
     ------
     ValueError
-        When a separation is not finite and above zero, or fewer than 3 samples come before saturation.
+        If a separation is not finite and above zero, or there are fewer than 3 samples before saturation.
+
+    Notes
+    -----
+    The exponent is the slope of the least-squares line through the mean logarithmic growth, from the first sample to the
+    last one before the geometric mean of the separations reaches `saturation`. A positive exponent indicates chaos during
+    the run.
+
+    References
+    ----------
+    M. T. Rosenstein, J. J. Collins, C. J. De Luca (1993), Physica D 65, 117-134, doi:10.1016/0167-2789(93)90009-P.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> time = np.linspace(0, 1, 101)
+    >>> result = lyapunov_exponent(time, 1e-9 * np.exp(3 * time), saturation=1e-3)
+    >>> round(float(result.exponent), 6)
+    3.0
     """
     import xarray
 
@@ -50,8 +64,8 @@ def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: fl
     t, *pairs = sampled(time, 3, **{f"separations[{k}]": row for k, row in enumerate(rows)})
     if np.min(pairs) <= 0:
         raise ValueError(
-            f"separations go down to {np.min(pairs):g}, but all must be above zero; start farther apart, or cut the record "
-            "where the motions have become equal"
+            f"separations are as small as {np.min(pairs):g}, but must be above zero; try: a larger first separation, or end "
+            "the record before the motions become equal"
         )
     saturation = positive("saturation", saturation, "")
     logs = np.log(pairs)
@@ -59,8 +73,8 @@ def lyapunov_exponent(time: ArrayLike, separations: ArrayLike, *, saturation: fl
     size = int(reached[0]) if reached.size else t.size
     if size < 3:
         raise ValueError(
-            f"only {size} samples come before the separation reaches {saturation:g}, but at least 3 are needed; start "
-            "closer or sample more densely"
+            f"only {size} samples precede a separation of {saturation:g}, but at least 3 are needed; try: a smaller first "
+            "separation, or a higher sampling rate"
         )
     growth = logs - logs[:, :1]
     (slopes, offsets), covariance = np.polyfit(t[:size] - t[0], growth[:, :size].T, 1, cov=True)

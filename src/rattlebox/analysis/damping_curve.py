@@ -19,31 +19,31 @@ if TYPE_CHECKING:
     from rattlebox.results.run import Run
 
 SKIPPED = 2.0
-"""Cycles at the start that are left out: particles that rest are thrown first."""
+"""Cycles at the start that are ignored: particles at rest must first be set in motion."""
 
 
 def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: ArrayLike) -> xarray.Dataset:
     """Compute the damping ratio and frequency of a free decay at given amplitudes.
 
-    The damping at an amplitude is the mean over the part of the decay in which the amplitude falls through a band about it,
-    which reaches halfway (in the logarithm) to its neighbours. The rest position, which a weight may shift, is removed as
-    the mean over one cycle about each sample.
+    The damping at an amplitude is the mean over the part of the decay in which the envelope falls through a band around it,
+    whose edges are the geometric means with the neighbouring amplitudes. The rest position, which a weight may shift, is
+    removed as the mean over one cycle around each sample.
 
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s], at least 5 a cycle.
+        Evenly spaced times [s], at least 5 per cycle.
     values : (N,) array_like
-        Free decay of one mode; a DataArray passes its unit on.
+        Free decay of one mode; the unit of a DataArray is used.
     amplitudes : (A,) array_like
-        At least two amplitudes, rising, above zero, in the unit of the values.
+        At least two ascending amplitudes above zero, in the unit of the values.
 
     Returns
     -------
     xarray.Dataset
         `damping_ratio`, `frequency` [Hz], the times `begin` and `end` of each band [s], and the integral `squares` of the
-        squared envelope over the phase, over `amplitude`; NaN where the decay does not fall through the whole band,
-        where the band holds less than half a cycle, or in the first two cycles.
+        squared envelope over the phase, over `amplitude`; NaN if the decay does not fall through the whole band,
+        passes it in less than half a cycle, or enters it in the first two cycles.
 
     Raises
     ------
@@ -61,20 +61,22 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
     >>> import numpy as np
     >>> time = np.arange(40_000) / 1000
     >>> decay = np.exp(-0.02 * 2 * np.pi * 10 * time) * np.cos(2 * np.pi * 10 * time)
-    >>> found = damping_over_amplitude(time, decay, [0.05, 0.1, 0.2])
-    >>> found.damping_ratio.values.round(4)
+    >>> curve = damping_over_amplitude(time, decay, [0.05, 0.1, 0.2])
+    >>> curve.damping_ratio.values.round(4)
     array([0.02, 0.02, 0.02])
     """
     import xarray
 
     levels = finite("amplitudes", amplitudes, 2)
     if levels[0] <= 0 or np.any(np.diff(levels) <= 0):
-        raise ValueError(f"amplitudes are {levels.tolist()}, but they must rise and be above zero")
+        raise ValueError(
+            f"amplitudes are {levels.tolist()}, but must be ascending and above zero; try: sorted amplitudes"
+        )
     t, x, cycle = oscillation(time, values)
     step = (t[-1] - t[0]) / (t.size - 1)
     inner, mean = mean_over_period(t, x, cycle * step)
     inner, signal, _ = analytic_signal(inner, x[np.isin(t, inner)] - mean)
-    # The envelope up to its first fall below each level: particles may pass energy back for a while.
+    # The smallest envelope so far, since particles may return energy to the structure for a while.
     envelope = np.minimum.accumulate(np.abs(signal))
     phase = np.unwrap(np.angle(signal))
     edges = band_edges(levels)
@@ -116,9 +118,8 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
 def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str | None = None) -> float:
     """Return the damping ratio of the free decay in a run, at one amplitude.
 
-    It is a measure for studies: `functools.partial(analysis.equivalent_damping, amplitude=0.5e-3)`. One run of chaotic
-    motion gives one value of several that are possible; vary the start or the packing for its scatter, as
-    `rattlebox.damping_curve` does.
+    As a measure of studies: `functools.partial(analysis.equivalent_damping, amplitude=0.5e-3)`. One run of chaotic motion is
+    one random sample; vary the start or the packing to estimate its scatter, as `rattlebox.damping_curve` does.
 
     Parameters
     ----------
@@ -128,7 +129,7 @@ def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str |
         Displacement amplitude of the point [m]; default half of the largest one of the decay, or the middle of a shorter
         decay.
     point
-        Point whose amplitude is meant; default the one that the mode moves most.
+        Point of the amplitude; default the one with the largest motion in the mode.
 
     Returns
     -------
@@ -161,14 +162,14 @@ def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str |
 
 
 def band_edges(levels: FloatArray) -> FloatArray:
-    """Return the limits between amplitudes, (A + 1,), in the logarithm halfway; the outer ones as far as the inner ones."""
+    """Return the edges of bands around amplitudes, (A + 1,): geometric means, extrapolated at both ends."""
     logs = np.log(levels)
     middle = 0.5 * (logs[1:] + logs[:-1])
     return np.asarray(np.exp(np.concatenate([[2 * logs[0] - middle[0]], middle, [2 * logs[-1] - middle[-1]]])))
 
 
 def mean_over_period(t: FloatArray, x: FloatArray, period: float) -> tuple[FloatArray, FloatArray]:
-    """Return the samples at least half a period from both ends, (M,), and the mean over one period about each."""
+    """Return the times at least half a period from both ends, (M,), and the mean over one period around each."""
     from scipy.interpolate import CubicSpline
 
     whole = CubicSpline(t, x).antiderivative()
@@ -177,7 +178,7 @@ def mean_over_period(t: FloatArray, x: FloatArray, period: float) -> tuple[Float
 
 
 def _crossing(t: FloatArray, envelope: FloatArray, phase: FloatArray, level: float) -> tuple[float, float]:
-    """Return time and phase at which a falling envelope first comes to a level."""
+    """Return time and phase at which a falling envelope first reaches a level."""
     k = int(np.argmax(envelope <= level))
     if k == 0:
         return float(t[0]), float(phase[0])

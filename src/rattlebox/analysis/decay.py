@@ -19,16 +19,12 @@ _KAISER = 10.0
 
 
 def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
-    """Amplitude of a decaying oscillation over time.
-
-    The magnitude of the analytic signal, from a Hilbert transformer four cycles long: it sees only the neighbourhood
-    of each sample, so that the strong start does not leak into the weak end as it does in a transform of the whole
-    record. Two cycles are lost at each end.
+    """Compute the amplitude of a decaying oscillation over time.
 
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s], at least 5 a cycle, over more than 6 cycles.
+        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles.
     values : (N,) array_like
         Oscillation about zero with one dominant frequency; subtract the rest position first. A DataArray passes its
         unit on.
@@ -36,12 +32,26 @@ def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
     Returns
     -------
     xarray.DataArray
-        Amplitude over `time` [s].
+        Amplitude over `time` [s], without the first and the last two cycles.
 
     Raises
     ------
     ValueError
-        When times are not evenly spaced, a sample is not finite, or the record is too short or too coarse.
+        If times are not evenly spaced, a sample is not finite, or the record is too short or too coarse.
+
+    Notes
+    -----
+    The amplitude is the magnitude of the analytic signal, from a Hilbert transformer of four cycles. It depends only on the
+    neighbourhood of each sample, so that large amplitudes at the start do not leak into small ones at the end, as in a
+    transform of the whole record.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> time = np.arange(2000) / 1000
+    >>> envelope = decay_envelope(time, np.exp(-time) * np.cos(2 * np.pi * 10 * time))
+    >>> round(float(envelope.sel(time=1.0, method="nearest")), 4)
+    0.3679
     """
     t, signal, _ = analytic_signal(time, values)
     return labelled("amplitude", np.abs(signal), units_of(values), "amplitude", time=t)
@@ -50,17 +60,17 @@ def decay_envelope(time: ArrayLike, values: ArrayLike) -> xarray.DataArray:
 def damping_ratio(
     time: ArrayLike, values: ArrayLike, *, method: Literal["hilbert", "decrement"] = "hilbert"
 ) -> xarray.Dataset:
-    """Damping ratio of a free decay, amplitude by amplitude.
+    """Compute the damping ratio of a free decay over time and amplitude.
 
     Parameters
     ----------
     time : (N,) array_like
-        Evenly spaced times [s], at least 5 a cycle, over more than 6 cycles.
+        Evenly spaced times [s], at least 5 per cycle, over more than 6 cycles.
     values : (N,) array_like
-        Free decay about zero of one mode. A DataArray passes its unit on.
+        Free decay about zero of one mode. The unit of a DataArray is used.
     method
-        "hilbert": slope of the logarithmic envelope over the instantaneous frequency, both from a cubic through two
-        cycles about each sample; resolves ratios to 1e-6 and loses three cycles at each end. "decrement": logarithmic
+        "hilbert": slope of the logarithmic envelope over the instantaneous frequency, both from a cubic fit over two cycles
+        around each sample; resolves ratios to 1e-6, without the first and last three cycles. "decrement": logarithmic
         decrement between extremes one cycle apart, a value every half cycle, at the time of the extreme between them.
 
     Returns
@@ -71,8 +81,16 @@ def damping_ratio(
     Raises
     ------
     ValueError
-        When times are not evenly spaced, a sample is not finite, the record is too short or too coarse, or the method
+        If times are not evenly spaced, a sample is not finite, the record is too short or too coarse, or the method
         is unknown.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> time = np.arange(2000) / 1000
+    >>> decay = np.exp(-0.02 * 2 * np.pi * 10 * time) * np.cos(2 * np.pi * 10 * time)
+    >>> round(float(damping_ratio(time, decay).damping_ratio.mean()), 4)
+    0.02
     """
     import xarray
 
@@ -97,7 +115,7 @@ def _by_hilbert(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatAr
     t, signal, cycle = analytic_signal(time, values)
     dead = np.abs(signal) < 1e-15 * np.max(np.abs(signal))
     if dead.any():
-        raise ValueError(f"values have died out by {t[dead][0]:.4g} s; cut the record before")
+        raise ValueError(f"values are zero from {t[dead][0]:.4g} s on; try: end the record before that time")
     half = round(cycle)
     slope = savgol_coeffs(2 * half + 1, 3, deriv=1, delta=step_of(t))
     decay = -oaconvolve(np.log(np.abs(signal)), slope, mode="valid")
@@ -112,7 +130,7 @@ def _by_decrement(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, Float
     t, x, cycle = oscillation(time, values)
     size = np.abs(x)
     k = find_peaks(size, distance=max(1.0, 0.35 * cycle))[0]
-    # The vertex of the sinusoid through three samples.
+    # Extreme of the sinusoid through three samples.
     sign, turn = np.sign(x[k]), 2 * np.pi / cycle
     rise = sign * (x[k + 1] - x[k - 1]) / (2 * np.sin(turn))
     times, peaks = t[k] + np.arctan2(rise, size[k]) / turn * step_of(t), np.hypot(rise, size[k])
@@ -125,7 +143,7 @@ def _by_decrement(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, Float
 
 
 def analytic_signal(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, np.ndarray, float]:
-    """Return times, analytic signal and samples a cycle."""
+    """Return times, analytic signal and samples per cycle."""
     from scipy.signal import oaconvolve
 
     t, x, cycle = oscillation(time, values)
@@ -134,14 +152,14 @@ def analytic_signal(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, np.
     odd = n % 2 == 1
     transformer = np.zeros(n.size)
     transformer[odd] = 2 / (np.pi * n[odd])
-    # In blocks, so that the rounding of a strong start does not drown a weak end.
+    # Convolution in blocks keeps rounding errors of large amplitudes away from small ones.
     quadrature = oaconvolve(x, transformer * np.kaiser(n.size, _KAISER), mode="valid")
     inner = slice(half, t.size - half)
     return t[inner], x[inner] + 1j * quadrature, cycle
 
 
 def oscillation(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatArray, float]:
-    """Return a signal and the samples in a cycle of its dominant frequency."""
+    """Return times, signal, and samples per cycle of its dominant frequency."""
     from scipy.signal import periodogram
 
     t, x = sampled(time, 16, values=values)
@@ -149,7 +167,7 @@ def oscillation(time: ArrayLike, values: ArrayLike) -> tuple[FloatArray, FloatAr
     frequency, power = periodogram(x, 1 / step, nfft=4 * t.size, detrend="constant")
     peak = float(frequency[np.argmax(power)])
     if not peak > 0:
-        raise ValueError("values do not oscillate")
+        raise ValueError("values do not oscillate; a record of an oscillation about zero is needed")
     cycle = 1 / (peak * step)
     if cycle < 5:
         raise ValueError(f"values have {cycle:.3g} samples in a cycle of {peak:.4g} Hz, but at least 5 are needed")

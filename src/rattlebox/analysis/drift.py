@@ -20,9 +20,9 @@ def drift(run: Run, upper: str, lower: str | None = None) -> xarray.DataArray:
     run
         Run of T output times.
     upper
-        Name of the point whose displacement is taken.
+        Name of the first point.
     lower
-        Name of the point whose displacement is subtracted; None for the base.
+        Name of the point whose displacement is subtracted; default the base.
 
     Returns
     -------
@@ -32,11 +32,11 @@ def drift(run: Run, upper: str, lower: str | None = None) -> xarray.DataArray:
     Raises
     ------
     ValueError
-        If the structure has no point of such a name.
+        If the structure has no point of this name.
 
     Notes
     -----
-    x_upper(t) - x_lower(t). Displacements of a run are relative to the base already.
+    x_upper(t) - x_lower(t). Displacements of a run are relative to the base.
 
     Examples
     --------
@@ -51,7 +51,7 @@ def drift(run: Run, upper: str, lower: str | None = None) -> xarray.DataArray:
     for name in (upper,) if lower is None else (upper, lower):
         if name not in points:
             raise ValueError(f"there is no point {name!r} in this run; there are {', '.join(points) or 'none'}")
-    moved = run.arrays.displacement[:, points.index(upper)]
+    values = run.arrays.displacement[:, points.index(upper)]
     if lower is not None:
-        moved = moved - run.arrays.displacement[:, points.index(lower)]
-    return labelled("drift", moved, "m", f"drift of {upper} over {lower or 'the base'}", time=run.arrays.time)
+        values = values - run.arrays.displacement[:, points.index(lower)]
+    return labelled("drift", values, "m", f"drift of {upper} over {lower or 'the base'}", time=run.arrays.time)

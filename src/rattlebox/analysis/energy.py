@@ -1,4 +1,4 @@
-"""Where the energy went, and what a damper takes from each cycle."""
+"""Energy balance of a run, and measures of the energy that a damper dissipates in each cycle."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ T = TypeVar("T", float, FloatArray, "xarray.DataArray")
 
 
 def energy_shares(run: Run) -> xarray.DataArray:
-    """Shares of the energy put in, by where it is at the end of the run.
+    """Return the distribution of the energy input over loss channels and motion at the end of a run.
 
     Parameters
     ----------
     run
-        Any run.
+        A run.
 
     Returns
     -------
     xarray.DataArray
-        Over `channel`: lost in the structure ("viscous"), in contacts by normal damping ("normal"), in plastic flow
-        ("plastic"), in 3-D runs by "sliding" and "rolling", and left in "motion". They add up to one, to the energy
-        residual; NaN when nothing was put in.
+        Shares over `channel`: dissipated in the structure ("viscous"), in contacts by normal damping ("normal") and plastic
+        flow ("plastic"), in 3-D runs by "sliding" and "rolling", and remaining in "motion". Their sum is one to within the
+        energy residual; NaN without energy input.
     """
     shares = run.ledger.shares
     channel = ("channel", list(shares), {"units": "", "long_name": "channel of the energy"})
@@ -38,55 +38,75 @@ def energy_shares(run: Run) -> xarray.DataArray:
 
 
 def specific_damping_capacity(dissipated: T, stored: T) -> T:
-    """Energy dissipated in a cycle over the largest energy stored in it.
+    """Return the energy dissipated in a cycle over the largest energy stored in it.
 
     Parameters
     ----------
     dissipated, stored
         Energies [J]: numbers, lists, arrays or DataArrays that broadcast.
 
+    Returns
+    -------
+    float, array or DataArray
+        Specific damping capacity.
+
     Raises
     ------
     ValueError
-        When an energy is not finite, or the stored energy is not above zero.
+        If an energy is not finite, or the stored energy is not above zero.
+
+    Examples
+    --------
+    >>> specific_damping_capacity(0.2, 0.5)
+    0.4
     """
     if isinstance(dissipated, (list, tuple)) or isinstance(stored, (list, tuple)):
         return specific_damping_capacity(np.asarray(dissipated, float), np.asarray(stored, float))
     if not np.all(np.isfinite(dissipated)) or not np.all(np.isfinite(stored)):
-        raise ValueError("dissipated and stored energies must be finite; drop cycles that are not")
+        raise ValueError("dissipated and stored energies must be finite; try: remove the other cycles")
     if not np.all(np.asarray(stored) > 0):
-        raise ValueError(f"stored energy goes down to {np.min(stored):g} J, but it must be above zero")
+        raise ValueError(f"stored energy is as small as {np.min(stored):g} J, but must be above zero")
     return dissipated / stored
 
 
 def loss_factor(dissipated: T, stored: T) -> T:
-    """Loss factor: the specific damping capacity over 2 pi.
+    """Return the loss factor, the specific damping capacity over 2 pi.
 
     Parameters
     ----------
     dissipated, stored
         Energies [J], as for `specific_damping_capacity`.
 
+    Returns
+    -------
+    float, array or DataArray
+        Loss factor.
+
     Raises
     ------
     ValueError
-        When an energy is not finite, or the stored energy is not above zero.
+        If an energy is not finite, or the stored energy is not above zero.
+
+    Examples
+    --------
+    >>> round(loss_factor(0.2, 0.5), 4)
+    0.0637
     """
     return specific_damping_capacity(dissipated, stored) / (2 * np.pi)
 
 
 def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, frequency: float) -> xarray.Dataset:
-    """Compute the power that a damper takes up under a harmonic motion, and its effective mass.
+    """Compute the power that a damper absorbs in harmonic motion, and its effective mass.
 
     Parameters
     ----------
     time : (N,) array_like
         Increasing times [s] that cover at least one cycle.
     force : (N,) array_like
-        Force that drives the damper [N]: the force of the balls on their cavity with its sign reversed. Forty samples in
-        each contact give the power to some 0.2 %; hard impacts have no force to sample.
+        Force that drives the damper [N]: minus the force of the balls on their cavity. With forty samples in each contact
+        the error of the power is about 0.2 %; hard impacts have no finite force.
     velocity : (N,) array_like
-        Velocity of the point where it acts [m/s].
+        Velocity of the point at which the force acts [m/s].
     frequency
         Frequency of the motion [Hz].
 
@@ -104,15 +124,15 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
     Notes
     -----
     P = F* V / 2, with the complex amplitudes F of the force and V of the velocity over the last whole number of cycles. The
-    real part is the power taken up; the imaginary part is -pi f m abs(V)^2, with the effective mass m. The amplitudes are
-    a fit of a mean, a cosine and a sine, which is exact for harmonic samples at any times.
+    real part is the absorbed power; the imaginary part is -pi f m abs(V)^2, with the effective mass m. The amplitudes are
+    least-squares fits of a mean, a cosine and a sine, which are exact for harmonic samples at any times.
 
     Examples
     --------
     >>> import numpy as np
     >>> time = np.linspace(0, 1, 101)
-    >>> found = complex_power(time, 2 * np.cos(20 * time), np.cos(20 * time), frequency=20 / (2 * np.pi))
-    >>> round(float(found.active_power), 9)
+    >>> result = complex_power(time, 2 * np.cos(20 * time), np.cos(20 * time), frequency=20 / (2 * np.pi))
+    >>> round(float(result.active_power), 9)
     1.0
     """
     import xarray
@@ -127,7 +147,7 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
     weights = trapezoid_weights(t, max(t[-1] - cycles / frequency, t[0]))
     f_amplitude, v_amplitude = first_harmonic(t, np.stack([f, v], axis=-1), weights, frequency)
     if not abs(v_amplitude) > 1e-9 * np.abs(v).max():
-        raise ValueError(f"velocity has no part at {frequency:g} Hz")
+        raise ValueError(f"velocity has no component at {frequency:g} Hz; try: the frequency of the motion")
     power = f_amplitude.conjugate() * v_amplitude / 2
     with np.errstate(divide="ignore", invalid="ignore"):
         loss_factor = float(np.divide(power.real, abs(power.imag)))
@@ -138,7 +158,7 @@ def complex_power(time: ArrayLike, force: ArrayLike, velocity: ArrayLike, *, fre
 
     return xarray.Dataset(
         {
-            "active_power": scalar(power.real, "W", "power taken up"),
+            "active_power": scalar(power.real, "W", "absorbed power"),
             "reactive_power": scalar(power.imag, "W", "reactive power"),
             "effective_mass": scalar(mass, "kg", "effective mass"),
             "loss_factor": scalar(loss_factor, "1", "loss factor"),

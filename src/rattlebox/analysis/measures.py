@@ -1,4 +1,4 @@
-"""How soon and how far a motion is reduced."""
+"""Settling time and reduction of a motion."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .signals import FloatArray, finite, positive, sampled
 
 
 def settling_time(time: ArrayLike, values: ArrayLike, *, band: float = 0.05, reference: float | None = None) -> float:
-    """Time after which a signal stays within a band about zero.
+    """Compute the time after which a signal remains within a band around zero.
 
     Parameters
     ----------
@@ -18,35 +18,41 @@ def settling_time(time: ArrayLike, values: ArrayLike, *, band: float = 0.05, ref
     values : (N,) array_like
         Signal about its rest position.
     band
-        Half width of the band, as a share of the reference.
+        Half width of the band over the reference.
     reference
-        In the unit of the values; their largest magnitude when left out. Give the peak of the bare structure to compare
-        dampers by one measure.
+        Reference in the unit of the values; default their largest magnitude. Use the peak of the bare structure to compare
+        dampers.
 
     Returns
     -------
     float
-        On the axis of `time` [s], linear between samples; the first time for a signal that never leaves the band, NaN
-        for one that is outside it at the end, or within it for less time than it took from side to side before: it may just
-        pass through.
+        Time [s], interpolated linearly between samples; the first time for a signal that never leaves the band. NaN if the
+        signal is outside the band at the end, or has been inside for less than its last half cycle across the band.
 
     Raises
     ------
     ValueError
-        When a sample is not finite, times do not increase, or band or reference is not above zero.
+        If a sample is not finite, times do not increase, or band or reference is not above zero.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> time = np.linspace(0, 10, 1001)
+    >>> round(settling_time(time, np.exp(-time)), 2)
+    3.0
     """
     t, x = sampled(time, 2, values=values)
     size = np.abs(x)
     peak = float(size.max()) if reference is None else positive("reference", reference, "")
     limit = positive("band", band, "") * peak
     side = np.where(size > limit, np.sign(x), 0.0)
-    begins = np.flatnonzero(np.diff(side, prepend=np.nan))  # of samples on one side, or within the band
+    begins = np.flatnonzero(np.diff(side, prepend=np.nan))  # of intervals on one side, or within the band
     if side[-1]:
         return float("nan")
     if begins.size == 1:
         return float(t[0])
     k = int(begins[-1]) - 1
-    # A fast oscillation may cross zero between two samples; signed values tell where it passed the band.
+    # A fast oscillation may cross zero between two samples; signed values give the time at the edge of the band.
     out = np.copysign(limit, x[k])
     passed = float(t[k] + (t[k + 1] - t[k]) * (out - x[k]) / (x[k + 1] - x[k]))
     swings = [begin for begin in begins[:-1] if side[begin]][-2:]
@@ -56,34 +62,54 @@ def settling_time(time: ArrayLike, values: ArrayLike, *, band: float = 0.05, ref
 
 
 def peak_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:
-    """One minus the ratio of the largest magnitudes; negative when the damper makes it worse.
+    """Return one minus the ratio of the peaks with and without a damper.
 
     Parameters
     ----------
     without, with_damper : (N,), (M,) array_like
         The same signal without and with the damper.
 
+    Returns
+    -------
+    float
+        Reduction; negative if the damper increases the peak.
+
     Raises
     ------
     ValueError
-        When a sample is not finite, or nothing moves without the damper.
+        If a sample is not finite, or the signal without the damper is zero.
+
+    Examples
+    --------
+    >>> peak_reduction([0.0, 2.0, -1.0], [0.0, 0.5, -0.5])
+    0.75
     """
     a, b = finite("without", without), finite("with_damper", with_damper)
     return _reduction(float(np.max(np.abs(a))), float(np.max(np.abs(b))))
 
 
 def rms_reduction(without: ArrayLike, with_damper: ArrayLike) -> float:
-    """One minus the ratio of the root mean squares; negative when the damper makes it worse.
+    """Return one minus the ratio of the root mean squares with and without a damper.
 
     Parameters
     ----------
     without, with_damper : (N,) array_like
         The same signal without and with the damper, sampled at the same, evenly spaced times.
 
+    Returns
+    -------
+    float
+        Reduction; negative if the damper increases the RMS value.
+
     Raises
     ------
     ValueError
-        When a sample is not finite, the lengths differ, or nothing moves without the damper.
+        If a sample is not finite, the lengths differ, or the signal without the damper is zero.
+
+    Examples
+    --------
+    >>> rms_reduction([3.0, 4.0], [1.5, 2.0])
+    0.5
     """
     a, b = finite("without", without), finite("with_damper", with_damper)
     if a.size != b.size:
@@ -97,5 +123,5 @@ def _rms(x: FloatArray) -> float:
 
 def _reduction(before: float, after: float) -> float:
     if before == 0:
-        raise ValueError("without is zero throughout, so that there is nothing to reduce")
+        raise ValueError("without is zero throughout; a signal that moves is needed")
     return 1 - after / before

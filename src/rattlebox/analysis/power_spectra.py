@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 WINDOW = "hann"
 OVERLAP = 0.5
-FEWEST_BINS = 4
-"""Frequency bins in a band whose level is given."""
+MIN_BINS = 4
+"""Fewest frequency bins in a band with a level."""
 
 
 @dataclass(frozen=True)
 class _Segments:
-    """Segments into which a signal is cut for Welch's average.
+    """Segments of a signal for Welch's average.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class _Segments:
 def _segments(time: FloatArray, resolution: float | None) -> _Segments:
     step, size = step_of(time), time.size
     if resolution is None:
-        # Eight segments of this length, each overlapping half of the next, cover the signal.
+        # Eight segments of this length with 50 % overlap cover the signal.
         length = max(2 * size // 9, 4)
     else:
         length = round(1 / (positive("resolution", resolution, "Hz") * step))
@@ -82,10 +82,10 @@ def power_spectral_density(time: ArrayLike, values: ArrayLike, *, resolution: fl
     time : (N,) array_like
         Evenly spaced times [s].
     values : (N,) array_like
-        Signal; a DataArray passes its unit on. The mean of each segment is removed.
+        Signal; the unit of a DataArray is used. The mean of each segment is removed.
     resolution
-        Spacing of the frequencies [Hz]. A fine one leaves few segments to average. By default the signal is cut into eight
-        segments of equal length, half of each overlapping the next.
+        Spacing of the frequencies [Hz]; the finer, the fewer segments are averaged. By default the signal has eight segments
+        of equal length with 50 % overlap.
 
     Returns
     -------
@@ -101,8 +101,8 @@ def power_spectral_density(time: ArrayLike, values: ArrayLike, *, resolution: fl
 
     Notes
     -----
-    Hann windows with 50 % overlap; the interval is that of a Gaussian signal, for each frequency alone. Peaks narrower than
-    two or three times the resolution are smeared: a mode of damping ratio z at f needs a resolution below z f / 2.
+    Hann windows with 50 % overlap; the interval is that of a Gaussian signal, for each frequency separately. Peaks narrower
+    than two or three times the resolution are broadened: a mode of damping ratio z at f needs a resolution below z f / 2.
 
     References
     ----------
@@ -153,13 +153,13 @@ def band_levels(density: xarray.DataArray, *, fraction: int = 3) -> xarray.DataA
     -------
     xarray.DataArray
         RMS values over `band`, the exact mid-band frequency [Hz], with the coordinates `lower` and `upper` (band edges
-        [Hz]) and `nominal` (the name of the band, "31.5"). Only bands that lie wholly within the frequencies of the density
-        and from which on all hold at least four of them.
+        [Hz]) and `nominal` (the name of the band, "31.5"). Bands outside the frequencies of the density are omitted, and
+        low bands up to the last one with fewer than four frequencies.
 
     Raises
     ------
     ValueError
-        If the fraction is not one of those allowed, or no band is wide enough; ask for a finer resolution.
+        If the fraction is not allowed, or no band has four frequencies.
 
     Notes
     -----
@@ -187,15 +187,15 @@ def band_levels(density: xarray.DataArray, *, fraction: int = 3) -> xarray.DataA
     )
     middle = 1000 * octave ** ((numbers + shift) / fraction)
     lower, upper = middle * octave ** (-0.5 / fraction), middle * octave ** (0.5 / fraction)
-    held = np.searchsorted(f, upper, "right") - np.searchsorted(f, lower, "left")
-    inside = (lower >= f[0]) & (upper <= f[-1]) & (held >= FEWEST_BINS)
-    narrow = np.flatnonzero((held < FEWEST_BINS) & (lower < f[-1]))
+    bins = np.searchsorted(f, upper, "right") - np.searchsorted(f, lower, "left")
+    inside = (lower >= f[0]) & (upper <= f[-1]) & (bins >= MIN_BINS)
+    narrow = np.flatnonzero((bins < MIN_BINS) & (lower < f[-1]))
     inside[: narrow[-1] + 1 if narrow.size else 0] = False
     middle, lower, upper = middle[inside], lower[inside], upper[inside]
     if not middle.size:
         raise ValueError(
-            f"density has frequencies from {f[0]:g} Hz to {f[-1]:g} Hz, in which no band holds {FEWEST_BINS} of them; "
-            "use a finer resolution or a smaller fraction"
+            f"density has frequencies from {f[0]:g} Hz to {f[-1]:g} Hz, and no band has {MIN_BINS} of them; "
+            "try: a finer resolution or a smaller fraction"
         )
     total = np.concatenate([[0.0], np.cumsum(0.5 * (d[1:] + d[:-1]) * np.diff(f))])
 
@@ -229,9 +229,9 @@ def transfer_function(
     time : (N,) array_like
         Evenly spaced times [s].
     source, response : (N,) array_like
-        What drives and what responds; DataArrays pass their units on.
+        Input and output signals; the units of DataArrays are used.
     resolution
-        Spacing of the frequencies [Hz]; by default as of `power_spectral_density`.
+        Spacing of the frequencies [Hz]; default as in `power_spectral_density`.
 
     Returns
     -------
@@ -242,15 +242,15 @@ def transfer_function(
     Raises
     ------
     ValueError
-        If times are not evenly spaced, a sample is not finite, the source is zero throughout, or the resolution does not fit
-        the signal or leaves fewer than two segments, with which the coherence is one whatever the signals.
+        If times are not evenly spaced, a sample is not finite, the source is zero throughout, the resolution does not fit
+        the signal, or there is one segment only, for which the coherence is one for any signals.
 
     Notes
     -----
-    H1 = S_xy / S_xx of Welch averages: unbiased by noise in the response, low where there is noise in the source.
+    H1 = S_xy / S_xx of Welch averages: noise in the response does not bias it, noise in the source reduces it.
     coherence = abs(S_xy)^2 / (S_xx S_yy); random error = sqrt((1 - coherence) / (2 n coherence)) with n independent
-    segments. A damper whose damping depends on amplitude has no transfer function of its own: what is returned is the best
-    linear fit at this level, and the coherence falls below one without any noise.
+    segments. For a damper whose damping depends on amplitude the result is the best linear approximation at this level, and
+    the coherence is below one even without noise.
 
     References
     ----------
@@ -272,11 +272,11 @@ def transfer_function(
     cut = _segments(t, resolution)
     if cut.count < 2:
         raise ValueError(
-            f"resolution is {cut.rate / cut.length:.4g} Hz, which leaves one segment, but at least 2 are needed; use a "
+            f"resolution is {cut.rate / cut.length:.4g} Hz, which leaves one segment, but at least 2 are needed; try: a "
             "coarser one or a longer signal"
         )
     if not x.any():
-        raise ValueError("source is zero throughout, so that nothing is transferred")
+        raise ValueError("source is zero throughout; a source that moves is needed")
     options = (cut.rate, WINDOW, cut.length, cut.length - cut.shift)
     frequency, cross = csd(x, y, *options, detrend="constant")
     source_density, response_density = (welch(z, *options, detrend="constant")[1] for z in (x, y))
@@ -301,7 +301,7 @@ def transfer_function(
 def transmissibility(
     time: ArrayLike, base: ArrayLike, response: ArrayLike, *, resolution: float | None = None
 ) -> xarray.Dataset:
-    """Estimate how much of the motion of the base reaches a point, frequency by frequency.
+    """Estimate the transmissibility, the motion of a point over the motion of the base, from two signals.
 
     Parameters
     ----------
@@ -310,7 +310,7 @@ def transmissibility(
     base, response : (N,) array_like
         The same quantity at the base and at the point, both absolute, such as two accelerations.
     resolution
-        Spacing of the frequencies [Hz]; by default as of `power_spectral_density`.
+        Spacing of the frequencies [Hz]; default as in `power_spectral_density`.
 
     Returns
     -------
@@ -354,8 +354,8 @@ def miles_rms(frequency: float, damping_ratio: float, density: float) -> float:
 
     Notes
     -----
-    sqrt(pi f W (1 + 4 z^2) / (4 z)), exact for a density that is flat over all frequencies. Miles' equation of 1954 leaves
-    out 4 z^2.
+    sqrt(pi f W (1 + 4 z^2) / (4 z)), exact for a density that is flat over all frequencies. Miles' equation of 1954
+    neglects 4 z^2.
 
     References
     ----------

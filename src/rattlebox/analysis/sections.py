@@ -1,4 +1,4 @@
-"""Portraits and sections of a run's motion, and impacts a cycle."""
+"""Phase portraits, Poincare sections, and impacts per cycle."""
 
 from __future__ import annotations
 
@@ -16,57 +16,59 @@ if TYPE_CHECKING:
 
 
 def phase_portrait(run: Run, of: str | None = None) -> xarray.Dataset:
-    """Position and velocity of a ball in its cavity, or of a point of the structure.
+    """Return position and velocity of a ball in its cavity, or of a point of the structure.
 
     Parameters
     ----------
     run
         Run of T output times.
     of
-        Name of a ball or of a point; the first ball when left out, or the first point without balls.
+        Name of a ball or point; default the first ball, or the first point without balls.
 
     Returns
     -------
     xarray.Dataset
-        `position` [m] and `velocity` [m/s] over `time` [s]. Those of a ball are relative to the cavity, the position
-        counted from the ball's place in the packed, centred row; those of a point are relative to the base.
+        `position` [m] and `velocity` [m/s] over `time` [s]. Those of a ball are relative to the cavity, with the origin at
+        its place in the packed and centred row; those of a point are relative to the base.
 
     Raises
     ------
     ValueError
-        When no ball or point has that name.
+        If no ball or point has this name.
     """
     name, x, v = _motion(run, of)
     return _portrait(run, name, run.arrays.time, x, v)
 
 
 def poincare_section(run: Run, period: float, *, phase: float = 0.0, of: str | None = None) -> xarray.Dataset:
-    """Strobe the motion once a period.
-
-    A motion that repeats every n periods shows n points. Between output times the motion is a cubic through positions
-    and velocities; so let output times fall on the strobes, or lie dense, where an impact may be near.
+    """Sample the motion once per period.
 
     Parameters
     ----------
     run
         Run of at least 2 output times.
     period
-        Time between strobes [s].
+        Time between samples [s].
     phase
-        Phase of the strobes [rad]: they fall on (n + phase/(2 pi)) period, for every whole n within the run.
+        Phase of the samples [rad]: their times are (n + phase/(2 pi)) period, for every integer n within the run.
     of
-        Name of a ball or of a point, as for `phase_portrait`.
+        Name of a ball or point, as for `phase_portrait`.
 
     Returns
     -------
     xarray.Dataset
-        `position` [m] and `velocity` [m/s] over `time` [s], the times of the strobes; transients included, so that
-        one drops them with `.sel(time=slice(start, None))`.
+        `position` [m] and `velocity` [m/s] over `time` [s], including transients; `.sel(time=slice(start, None))` removes
+        them.
 
     Raises
     ------
     ValueError
-        When no ball or point has that name, the period is not above zero, or no strobe falls into the run.
+        If no ball or point has this name, the period is not above zero, or no sample is within the run.
+
+    Notes
+    -----
+    A motion of period n has n points. Between output times the motion is interpolated by cubics through positions and
+    velocities, which do not resolve impacts: choose output times at the samples, or dense ones.
     """
     from scipy.interpolate import CubicHermiteSpline
 
@@ -74,11 +76,11 @@ def poincare_section(run: Run, period: float, *, phase: float = 0.0, of: str | N
     t = finite("time", run.arrays.time, 2)
     period = positive("period", period, "s")
     offset = float(finite("phase", [phase])[0]) / (2 * np.pi)
-    slack = 1e-9  # of a period: a strobe on the first or last time counts in spite of its rounding
+    slack = 1e-9  # tolerance in periods for samples at the first or last time
     first = np.ceil(t[0] / period - offset - slack)
     last = np.floor(t[-1] / period - offset + slack)
     if last < first:
-        raise ValueError(f"no strobe of period {period:g} s falls into the run, {t[0]:g} s to {t[-1]:g} s")
+        raise ValueError(f"no sample of period {period:g} s is within the run, {t[0]:g} s to {t[-1]:g} s")
     strobes = np.clip((np.arange(first, last + 1) + offset) * period, t[0], t[-1])
     path = CubicHermiteSpline(t, x, v)
     return _portrait(run, name, strobes, path(strobes), path(strobes, 1))
@@ -90,7 +92,7 @@ def impacts_per_cycle(impact_times: ArrayLike, period: float, *, start: float, e
     Parameters
     ----------
     impact_times : (I,) array_like
-        Times of impacts [s], in any order; those outside the cycles are left out.
+        Times of impacts [s], in any order; those outside the cycles are ignored.
     period
         Length of a cycle [s].
     start, end
@@ -99,13 +101,18 @@ def impacts_per_cycle(impact_times: ArrayLike, period: float, *, start: float, e
     Returns
     -------
     xarray.DataArray
-        Counts over `cycle`, the times at which the cycles begin [s]. An impact on the border of two cycles, to 1e-9 of
-        a period, belongs to the one that begins.
+        Counts over `cycle`, the times at which the cycles begin [s]. An impact at the border of two cycles, to 1e-9 of a
+        period, counts in the later one.
 
     Raises
     ------
     ValueError
-        When no whole cycle fits between start and end, or a number is not finite.
+        If there is no whole cycle between start and end, or a number is not finite.
+
+    Examples
+    --------
+    >>> impacts_per_cycle([0.1, 0.6, 1.2], period=1.0, start=0.0, end=2.0).values
+    array([2, 1])
     """
     times = finite("impact_times", impact_times, 0)
     period = positive("period", period, "s")

@@ -1,4 +1,4 @@
-"""What a shaken cavity with particles takes up and how heavy it seems, from forces and from energies."""
+"""Loss and effective mass of particles in a shaken cavity, from forces and from energies."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ if TYPE_CHECKING:
 WAYS = ("complex power", "energy")
 
 
-LEAST_SAMPLES = 8
-"""In a cycle, below which higher harmonics pass for the first."""
+MIN_SAMPLES = 8
+"""Fewest samples in a cycle; with fewer, higher harmonics are aliased to the first."""
 
-_LEAST_SHARE = 0.02  # of the mean square speed
+_LEAST_SHARE = 0.02  # smallest share of the harmonic in the mean square speed
 
 
 class StillCavity(DataError):
-    """A cavity has hardly any motion at the frequency that is looked at."""
+    """The motion of a cavity has almost no component at a frequency."""
 
 
 def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, after: float = 0.0) -> xarray.Dataset:
     """Compute the loss and the effective mass of the particles in a cavity that moves harmonically, in two ways.
 
-    Both evaluate the last whole number of cycles. "complex power" takes the force that drives the particles and the
-    velocity of the cavity. "energy" takes the energy lost in contacts, and the momentum of the particles in phase with
+    Both evaluate the last whole number of cycles. "complex power" uses the force that drives the particles and the
+    velocity of the cavity. "energy" uses the energy lost in contacts, and the momentum of the particles in phase with
     the cavity.
 
     Parameters
     ----------
     run
-        Run of a shaker, or of a structure that vibrates harmonically, with some twenty samples or more a cycle.
+        Run of a shaker, or of a structure that vibrates harmonically, with about twenty samples per cycle or more.
     frequency
         Frequency of the motion [Hz].
     damper
-        Name of the damper; not needed if there is only one.
+        Name of the damper; needed if there are several.
     after
         Time before which samples are ignored [s].
 
@@ -53,8 +53,8 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
         Over `way`: `active_power` [W], `loss_per_cycle` [J], `effective_mass` [kg], `loss_factor` (active power over the
         magnitude of the reactive power, which is the energy of a cycle over 2 pi times the largest kinetic energy of the
         effective mass) and `reduced_loss` (energy of a cycle over m V^2, with the mass m of all particles and the velocity
-        amplitude V). Besides, `stored_power` [W]: the mean rise of the energy of the particles, which complex power counts
-        as taken up and the energy lost does not. Attributes: frequency, cycles, velocity amplitude, damper.
+        amplitude V). Also `stored_power` [W], the mean rate of change of the energy of the particles, which is included in
+        complex power but not in the energy lost. Attributes: frequency, cycles, velocity amplitude, damper.
 
     Raises
     ------
@@ -66,11 +66,11 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
 
     Notes
     -----
-    With the complex amplitudes F of the force and V of the velocity, P = F* V / 2; the real part is the power taken up, and
+    With the complex amplitudes F of the force and V of the velocity, P = F* V / 2; the real part is the absorbed power, and
     the effective mass is -Im P / (pi f abs(V)^2). The samples give the mean force of each sampling step h, the change of the
     momentum over h. The mean over a step has the amplitude sinc(f h) = sin(pi f h) / (pi f h) of a harmonic, by which the
     amplitude F is divided. Both amplitudes are exact for harmonic motions at any number of samples. Of a force of short
-    impulses, harmonic 1 + k N at N samples a cycle adds to F with the factor 1 / (1 + k N): raise N until P is steady.
+    impulses, harmonic 1 + k N at N samples per cycle adds to F with the factor 1 / (1 + k N): increase N until P converges.
     """
     import xarray
 
@@ -88,9 +88,9 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
     begin = times[-1] - cycles / frequency
     mass = float(particle_mass[number])
     samples = np.count_nonzero(times > begin + 1e-9 / frequency)
-    if samples < LEAST_SAMPLES * cycles:
+    if samples < MIN_SAMPLES * cycles:
         raise ValueError(
-            f"the run has {samples / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {LEAST_SAMPLES}"
+            f"the run has {samples / cycles:.3g} samples in a cycle of {frequency:g} Hz, and needs {MIN_SAMPLES}"
             f"\n  try: rb.Output(rate={20 * frequency:g})"
         )
     velocity = arrays.base_velocity + arrays.cavity_velocity[:, number]
@@ -103,7 +103,11 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
     whole = float(weights @ np.sum(about**2, axis=1)) / span
     if not 0.5 * size**2 > _LEAST_SHARE * whole:
         share = 50 * size**2 / whole if whole else 0.0
-        raise StillCavity(f"the cavity hardly moves at {frequency:g} Hz: {share:.2g} % of its mean square speed")
+        raise StillCavity(
+            f"the motion of the cavity at {frequency:g} Hz is {share:.2g} % of its mean square speed, but at least "
+            f"{100 * _LEAST_SHARE:g} % are needed",
+            "the frequency of the motion",
+        )
     step = np.diff(times)
     middle = 0.5 * (times[1:] + times[:-1])
     # The weight is constant, so the change of momentum gives the first harmonic of the force.
@@ -123,27 +127,30 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
 
     return xarray.Dataset(
         {
-            "active_power": over(powers, "W", "power taken up"),
-            "loss_per_cycle": over(powers / frequency, "J", "energy taken up in a cycle"),
+            "active_power": over(powers, "W", "absorbed power"),
+            "loss_per_cycle": over(powers / frequency, "J", "energy absorbed in a cycle"),
             "effective_mass": over(masses, "kg", "effective mass"),
             "loss_factor": over(powers / reactive, "1", "loss factor"),
             "reduced_loss": over(powers / (frequency * mass * size**2), "1", "energy of a cycle over m v^2"),
             "stored_power": ((), stored, {"units": "W", "long_name": "rise of the particles' energy"}),
         },
-        {"way": ("way", list(WAYS), {"long_name": "where it comes from"})},
+        {"way": ("way", list(WAYS), {"long_name": "method"})},
         {"frequency": frequency, "cycles": cycles, "velocity_amplitude": size, "damper": damper},
     )
 
 
 def _losses(run: Run, damper: int) -> FloatArray:
-    """Energy lost in the contacts of a damper, (T,)."""
+    """Return the energy lost in the contacts of a damper, (T,) [J]."""
     arrays = run.arrays
     parts = (arrays.normal_loss, arrays.plastic_loss, arrays.sliding_loss, arrays.rolling_loss)
     return np.asarray(sum(part[:, damper].sum(axis=1) for part in parts))
 
 
 def _energy(run: Run, damper: int) -> FloatArray:
-    """Energy of the particles of a damper seen from outside, (T,); gravity's without that of the base's place."""
+    """Return the energy of the particles of a damper in the inertial frame, (T,) [J].
+
+    The potential energy of gravity is relative to the base.
+    """
     arrays = run.arrays
     mass, base = arrays.particle_mass[damper], arrays.base_velocity
     own = arrays.kinetic_energy + arrays.rotation_energy + arrays.contact_energy + arrays.gravity_energy

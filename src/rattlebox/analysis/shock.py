@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     import xarray
 
 SAMPLES_PER_PERIOD = 32
-FEWEST_PARTS = 2
-"""The response is computed this often in a period of the oscillator and in an interval between samples; the peak lies on a
-parabola through the highest values. Measured on random records: within 5e-4 of the peak."""
+MIN_STEPS_PER_SAMPLE = 2
+"""Fewest steps of the response in a period of the oscillator and in an interval between samples. The peak is that of a
+parabola through the highest values; its error on random records is below 5e-4."""
 
-COARSEST = 2.0
+MIN_SAMPLES_PER_PERIOD = 2.0
 """Fewest samples of the record in a period of the highest oscillator."""
 
 
@@ -36,9 +36,9 @@ def shock_response_spectrum(
     time : (N,) array_like
         Evenly spaced times [s].
     acceleration : (N,) array_like
-        Acceleration of the base; a DataArray passes its unit on. Straight lines between samples; zero before and after.
+        Acceleration of the base, linear between samples and zero before and after; the unit of a DataArray is used.
     frequencies : (F,) array_like
-        Natural frequencies of the oscillators [Hz]; by default twelve an octave, from one over the duration to a tenth of
+        Natural frequencies of the oscillators [Hz]; default twelve per octave, from one over the duration to a tenth of
         the sampling rate.
     damping_ratio
         Damping ratio of the oscillators, from 0 to below 1; 0.05 is a quality factor of 10.
@@ -60,9 +60,8 @@ def shock_response_spectrum(
     Notes
     -----
     z'' + 2 zeta w z' + w^2 z = -a; absolute acceleration a + z'' = -(2 zeta w z' + w^2 z). The recursion is exact for
-    straight lines between samples (ramp invariant, ISO 18431-4), at least 32 steps a period. A record that is
-    band-limited to half its sampling rate is not made of straight lines: above a tenth of the rate they take more than 3 %
-    from it.
+    straight lines between samples (ramp invariant, ISO 18431-4), with at least 32 steps per period. Straight lines
+    reduce the amplitude of a band-limited record by more than 3 % above a tenth of the sampling rate.
 
     References
     ----------
@@ -73,8 +72,8 @@ def shock_response_spectrum(
     >>> import numpy as np
     >>> time = np.linspace(0, 0.5, 50_001)
     >>> pulse = np.where(time < 0.011, 20 * np.sin(np.pi * time / 0.011), 0)
-    >>> found = shock_response_spectrum(time, pulse, [75.0], damping_ratio=0.0)
-    >>> round(float(found.maximax[0]) / 20, 2)  # largest for f T = 0.8
+    >>> spectrum = shock_response_spectrum(time, pulse, [75.0], damping_ratio=0.0)
+    >>> round(float(spectrum.maximax[0]) / 20, 2)  # largest for f T = 0.8
     1.77
     """
     import xarray
@@ -91,10 +90,10 @@ def shock_response_spectrum(
         f = finite("frequencies", frequencies)
         for value in f:
             positive("frequencies", value, "Hz")
-    if f.max() > 1 / (COARSEST * step):
+    if f.max() > 1 / (MIN_SAMPLES_PER_PERIOD * step):
         raise ValueError(
-            f"frequencies go up to {f.max():g} Hz, but a record sampled at {1 / step:g} Hz says nothing above "
-            f"{1 / (COARSEST * step):g} Hz; leave them out or sample the record faster"
+            f"frequencies go up to {f.max():g} Hz, but a record sampled at {1 / step:g} Hz has no information above "
+            f"{1 / (MIN_SAMPLES_PER_PERIOD * step):g} Hz; try: lower frequencies, or a higher sampling rate"
         )
     peaks = np.array([_peaks(a, step, 2 * math.pi * value, zeta) for value in f])
     unit = units_of(acceleration)
@@ -115,7 +114,7 @@ def _peaks(acceleration: FloatArray, step: float, w: float, zeta: float) -> tupl
     """Return the largest positive and negative absolute acceleration and relative displacement of one oscillator."""
     from scipy.signal import lfilter
 
-    split = max(math.ceil(SAMPLES_PER_PERIOD * step * w / (2 * math.pi)), FEWEST_PARTS)
+    split = max(math.ceil(SAMPLES_PER_PERIOD * step * w / (2 * math.pi)), MIN_STEPS_PER_SAMPLE)
     h = step / split
     size = acceleration.size
     fine = np.interp(np.arange((size - 1) * split + 1) / split, np.arange(size), acceleration)

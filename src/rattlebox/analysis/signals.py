@@ -1,4 +1,4 @@
-"""What every function asks of a sampled signal."""
+"""Validation and labelling of sampled signals."""
 
 from __future__ import annotations
 
@@ -15,15 +15,17 @@ TIME = {"units": "s", "long_name": "time"}
 
 
 def finite(name: str, values: ArrayLike, least: int = 1) -> FloatArray:
-    """Return a signal as (N,) floats; refuse NaN, infinity, other shapes and fewer than `least` samples."""
+    """Return a signal as (N,) floats; raise for NaN, infinity, other shapes and fewer than `least` samples."""
     array = np.asarray(values, dtype=np.float64)
     if array.ndim != 1:
-        raise ValueError(f"{name} has shape {array.shape}, but one signal (N,) is needed; pick one point or ball")
+        raise ValueError(f"{name} has shape {array.shape}, but one signal (N,) is needed; try: one point or ball")
     if array.size < least:
         raise ValueError(f"{name} has {array.size} samples, but at least {least} are needed")
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
-        raise ValueError(f"{name}[{bad[0]}] is {array[bad[0]]}, but all samples must be finite; drop or repair them")
+        raise ValueError(
+            f"{name}[{bad[0]}] is {array[bad[0]]}, but all samples must be finite; try: remove or interpolate such samples"
+        )
     return array
 
 
@@ -41,25 +43,25 @@ def sampled(time: ArrayLike, least: int = 2, **signals: ArrayLike) -> tuple[Floa
 
 
 def step_of(time: FloatArray) -> float:
-    """Return the sampling interval; refuse times that are not evenly spaced."""
+    """Return the sampling interval; raise if times are not evenly spaced."""
     steps = np.diff(time)
     step = float(time[-1] - time[0]) / steps.size
-    # Times of 17 digits far from zero are uneven by their own rounding.
+    # The second term is for the rounding of times that are large compared with their step.
     if np.max(np.abs(steps - step)) > 1e-6 * step + 4 * np.spacing(np.max(np.abs(time))):
         raise ValueError(
             f"time must be evenly spaced, but its steps range from {steps.min():g} s to {steps.max():g} s; "
-            "ask the run for Output(rate=...), or interpolate"
+            "try: a run with Output(rate=...), or interpolation"
         )
     return step
 
 
 def steps_inside(time: FloatArray, begin: float) -> FloatArray:
-    """Return the part of each interval between samples that lies after `begin`, (N - 1,) [s]."""
+    """Return the length of the part of each sampling interval after `begin`, (N - 1,) [s]."""
     return np.clip(time[1:] - begin, 0.0, np.diff(time))
 
 
 def trapezoid_weights(time: FloatArray, begin: float) -> FloatArray:
-    """Return the weights of samples in the integral, from `begin` on, of straight lines between them, (N,) [s]."""
+    """Return the weights of samples in the integral from `begin` on by the trapezoidal rule, (N,) [s]."""
     inside = steps_inside(time, begin)
     of_earlier = 0.5 * inside**2 / np.diff(time)
     weights = np.zeros(time.size)
@@ -84,7 +86,7 @@ def first_harmonic(
     frequency
         Frequency of the harmonic [Hz].
     gain : (N,) float
-        Amplitude that a harmonic of amplitude one has in the samples: sinc(frequency step) in means over steps.
+        Amplitude in the samples of a harmonic of amplitude one: sinc(frequency step) for means over steps.
 
     Returns
     -------
@@ -93,8 +95,8 @@ def first_harmonic(
 
     Notes
     -----
-    The weighted least squares of a mean, a cosine and a sine. At even steps that divide a cycle this is the Fourier
-    coefficient over the gain; at any other steps it is still exact for harmonic samples.
+    Weighted least squares of a mean, a cosine and a sine. With equal steps that divide a cycle this is the Fourier
+    coefficient over the gain; with other steps it is exact for harmonic samples.
     """
     angle = 2 * np.pi * frequency * time
     basis = np.stack([np.ones(time.size), gain * np.cos(angle), gain * np.sin(angle)])
@@ -116,12 +118,12 @@ def positive(name: str, value: Any, unit: str) -> float:
 
 
 def units_of(values: Any) -> str:
-    """Return the unit that labelled values carry; a plain array has none."""
+    """Return the unit of labelled values; "" for a plain array."""
     return str(getattr(values, "attrs", {}).get("units", ""))
 
 
 def labelled(name: str, values: ArrayLike, units: str, long_name: str, **coords: Any) -> xarray.DataArray:
-    """Return a named array; a coordinate is a time axis, or given as (dim, values, attrs)."""
+    """Return a labelled array; each coordinate is an array of times or a tuple (dim, values, attrs)."""
     import xarray
 
     coords = {dim: c if isinstance(c, tuple) else (dim, c, TIME) for dim, c in coords.items()}

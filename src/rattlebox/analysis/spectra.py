@@ -17,34 +17,48 @@ if TYPE_CHECKING:
 def amplitude_spectrum(
     time: ArrayLike, values: ArrayLike, *, window: str | tuple[str, float] = "hann", padding: int = 1
 ) -> xarray.DataArray:
-    """Amplitude of each frequency in a signal, in the signal's own unit.
-
-    A sine of amplitude a whose frequency lies on a bin reads a, whatever the window; between two bins it reads less, by
-    the scalloping loss of the window (hann 15 %, boxcar 36 %, flattop 0.1 %; less with padding). The mean is kept: it
-    is the absolute value at zero frequency.
+    """Compute the amplitude spectrum of a signal, in the unit of the signal.
 
     Parameters
     ----------
     time : (N,) array_like
         Evenly spaced times [s].
     values : (N,) array_like
-        Signal; a DataArray passes its unit on.
+        Signal; the unit of a DataArray is used.
     window
         Name of a window of `scipy.signal.get_window`, or a tuple of name and parameter such as ("kaiser", 14.0).
     padding
-        Length of the transform in lengths of the signal: zeros appended to draw the spectrum finer. The resolution
-        remains one over the duration.
+        Length of the transform over that of the signal: appended zeros interpolate the spectrum. The resolution remains one
+        over the duration.
 
     Returns
     -------
     xarray.DataArray
-        Over `frequency` [Hz], from zero to half the sampling rate.
+        Amplitude over `frequency` [Hz], from zero to half the sampling rate.
 
     Raises
     ------
     ValueError
-        When times are not evenly spaced, a sample is not finite, there are fewer than 4, or the window or padding is
+        If times are not evenly spaced, a sample is not finite, there are fewer than 4, or the window or padding is
         unknown.
+
+    Notes
+    -----
+    A sine of amplitude a at the frequency of a bin has the amplitude a for any window; between two bins it is reduced by
+    the scalloping loss of the window (hann 15 %, boxcar 36 %, flattop 0.1 %; less with padding). The value at zero
+    frequency is the magnitude of the mean.
+
+    References
+    ----------
+    F. J. Harris (1978), Proceedings of the IEEE 66, 51-83, doi:10.1109/PROC.1978.10837.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> time = np.arange(1000) / 1000
+    >>> spectrum = amplitude_spectrum(time, 3 * np.sin(2 * np.pi * 50 * time))
+    >>> round(float(spectrum.sel(frequency=50)), 6)
+    3.0
     """
     from scipy.signal import periodogram
 
@@ -54,7 +68,7 @@ def amplitude_spectrum(
     size = int(padding) * t.size
     _check_window(window)
     frequency, power = periodogram(x, 1 / step_of(t), window, size, detrend=False, scaling="spectrum")
-    # The power of a sine is half its amplitude squared, but neither the mean nor the last even bin is a pair of bins.
+    # The power of a sine is half its amplitude squared; the mean and the Nyquist bin have no factor of two.
     power[1 : None if size % 2 else -1] *= 2
     spectrum = labelled(
         "amplitude",

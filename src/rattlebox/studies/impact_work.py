@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox.analysis.shaken import LEAST_SAMPLES
+from rattlebox.analysis.shaken import MIN_SAMPLES
 from rattlebox.core import _core
 from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.engines.simulate import simulate_many
@@ -336,9 +336,9 @@ class ImpactWork:
             seen = (settings.duration - np.asarray(start)) / period
             usual = max(usual, 1 + int(np.ceil(20 * np.max(seen))))
             each = ((self.samples or usual) - 1) / float(np.max(seen))
-            if each < LEAST_SAMPLES * (1 - 1e-6):
+            if each < MIN_SAMPLES * (1 - 1e-6):
                 raise Hint(
-                    f"{harmonic[0]} needs {LEAST_SAMPLES} samples in a cycle, and there are {each:.3g}",
+                    f"{harmonic[0]} needs {MIN_SAMPLES} samples in a cycle, and there are {each:.3g}",
                     "more samples; without a number there are enough",
                 )
         output = BlockOutput(

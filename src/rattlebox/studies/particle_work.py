@@ -15,7 +15,7 @@ from scipy.integrate import trapezoid
 
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox.analysis import settling_time, shaken_cavity
-from rattlebox.analysis.shaken import LEAST_SAMPLES, StillCavity
+from rattlebox.analysis.shaken import MIN_SAMPLES, StillCavity
 from rattlebox.core._core import Status
 from rattlebox.engines.dem import simulate_dem
 from rattlebox.engines.responses import base_at_points
@@ -422,8 +422,8 @@ def _check_begun(case: Case, skip: float) -> None:
 def _check_dense(case: Case, name: str) -> None:
     """Refuse a measure of the first harmonic where samples are too few to know it."""
     each = (case.sample_times().size - 1) / (case.duration * _frequency(case))
-    if each < LEAST_SAMPLES * (1 - 1e-6):
+    if each < MIN_SAMPLES * (1 - 1e-6):
         raise Hint(
-            f"{name} needs {LEAST_SAMPLES} samples in a cycle, and there are {each:.3g}",
+            f"{name} needs {MIN_SAMPLES} samples in a cycle, and there are {each:.3g}",
             "more samples; without a number there are enough",
         )

@@ -118,8 +118,8 @@ def test_unstable_orbit_of_a_bouncing_ball():
 @pytest.mark.parametrize(
     ("separations", "saturation", "said"),
     [
-        (np.zeros(201), 1.0, "separations go down to 0.*start farther apart"),
-        (np.ones(201), 0.5, r"only 0 samples come before the separation reaches 0\.5"),
+        (np.zeros(201), 1.0, "separations .* 0, but must be above zero"),
+        (np.ones(201), 0.5, r"only 0 samples .* 0\.5"),
         (np.ones(201), 0.0, r"saturation is 0\.0"),
         (np.ones((3, 200)), 1.0, r"separations\[0\] has 200 samples, but time has 201"),
         (np.ones((2, 3, 201)), 1.0, r"shape \(2, 3, 201\)"),

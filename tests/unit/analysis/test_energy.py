@@ -73,8 +73,8 @@ def test_lists_of_energies_are_taken():
 @pytest.mark.parametrize(
     ("dissipated", "stored", "said"),
     [
-        (1.0, 0.0, "stored energy goes down to 0 J"),
-        (1.0, np.array([1.0, -2.0]), "goes down to -2 J"),
+        (1.0, 0.0, "stored energy .* 0 J"),
+        (1.0, np.array([1.0, -2.0]), "stored energy .* -2 J"),
         (np.nan, 1.0, "must be finite"),
     ],
 )
@@ -149,7 +149,7 @@ def test_complex_power_of_a_simulated_damper():
     [
         ({"frequency": 0.0}, r"frequency is 0\.0 Hz"),
         ({"frequency": 0.4}, r"covers 0\.8 cycles of 0\.4 Hz"),
-        ({"velocity": np.zeros(2001)}, "velocity has no part at 8 Hz"),
+        ({"velocity": np.zeros(2001)}, "velocity .* 8 Hz"),
         ({"force": np.zeros(5)}, "force has 5 samples, but time has 2001"),
     ],
 )

@@ -154,7 +154,7 @@ def test_bad_strobes_are_refused():
     run = run_of(time, time, time)
     with pytest.raises(ValueError, match=r"period is -1\.0 s"):
         poincare_section(run, -1.0)
-    with pytest.raises(ValueError, match=r"no strobe of period 0\.1 s falls into the run, 0\.01 s to 0\.05 s"):
+    with pytest.raises(ValueError, match=r"period 0\.1 s .* 0\.01 s to 0\.05 s"):
         poincare_section(run, 0.1)
 
 

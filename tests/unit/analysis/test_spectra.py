@@ -92,7 +92,7 @@ def test_result_says_what_it_is():
         ({"time": TIME[:-1]}, "values has 1000 samples, but time has 999"),
         ({"time": TIME[:3], "values": TIME[:3]}, "time has 3 samples.*at least 4"),
         ({"values": np.where(TIME == 1.0, np.nan, 0.0)}, r"values\[500\] is nan"),
-        ({"values": np.ones((1000, 2))}, r"shape \(1000, 2\).*pick one"),
+        ({"values": np.ones((1000, 2))}, r"shape \(1000, 2\).*one signal"),
     ],
 )
 def test_bad_input_is_named(change, said):

@@ -266,7 +266,7 @@ def test_loss_and_mass_of_a_shaken_cavity_in_two_ways() -> None:
         rb.analysis.shaken_cavity(run, frequency=40, damper="none")
     with pytest.raises(ValueError, match="no whole cycle"):
         rb.analysis.shaken_cavity(run, frequency=40, after=0.24)
-    with pytest.raises(ValueError, match=r"hardly moves at 50 Hz: .* % of its mean square speed"):
+    with pytest.raises(ValueError, match=r"at 50 Hz is .* % of its mean square speed"):
         rb.analysis.shaken_cavity(run, frequency=50)
     with pytest.raises(TypeError, match="frequency is '40 Hz', but a number is needed, in Hz"):
         rb.analysis.shaken_cavity(run, frequency="40 Hz")
