@@ -27,14 +27,14 @@ RIGID_WALL = rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid"), ending="zero_ov
 
 
 def sampled(dense: float, duration: float) -> rb.Output:
-    """Return output times that are dense up to a time [s] by which some impacts have happened, and sparse later."""
+    """Return output times that are dense up to a time [s] that covers some impacts, and sparse later."""
     return rb.Output(times=np.concatenate([np.linspace(0, min(dense, duration), 41), np.linspace(0, duration, 11)]))
 
 
 ENDS = rb.Output(times=[0.0])
-"""Output at the start and the end alone."""
+"""Output at the start and the end only."""
 DEFAULT = rb.Output()
-"""Output as a user gets it who asks for nothing."""
+"""Default output."""
 
 
 def reference(
@@ -85,7 +85,7 @@ LAWS: dict[str, Any] = {
 
 
 def five_balls(contact: Any = None, output: Any = None, duration: float = 0.5, **options: Any) -> rb.Case:
-    """Return a row of five unlike balls at the tip of a structure with three modes, struck and shaken."""
+    """Return a row of five different balls at the tip of a structure with three modes, under a pulse and a harmonic load."""
     materials = ["steel", "brass", "glass", "steel", "aluminium"]
     radii = [6e-3, 5e-3, 4e-3, 5e-3, 7e-3]
     start = options.pop("start", [-0.5, -0.2, 0.0, 0.3, 0.6])
@@ -228,7 +228,7 @@ STEP = 2e-6
 
 
 def moving(size: tuple[int, int, int], inside: Callable[[Any], Any] | None = None, seed: int = 4) -> rb.Positions:
-    """Return spheres of 3 mm on a lattice that almost touch, with random velocities and spins; all or some places of it."""
+    """Return spheres of 3 mm with small gaps on a lattice, or on part of it, with random velocities and spins."""
     rng = np.random.default_rng(seed)
     places = (np.stack(np.meshgrid(*map(np.arange, size), indexing="ij"), -1).reshape(-1, 3) + 0.5) * 3.15e-3
     places -= np.array(size) / 2 * 3.15e-3
@@ -251,7 +251,7 @@ ROUND = {"cavity": rb.SphericalCavity(radius="15 mm"), "packing": IN_SPHERE}
 
 
 def filling(**options: Any) -> dict[str, Any]:
-    """Return the arguments of a damper filled with rough soft spheres that move from the start."""
+    """Return the arguments of a damper filled with moving soft spheres with friction."""
     usual: dict[str, Any] = {
         "particles": rb.Particles(material=SOFT, diameter="3 mm"),
         "cavity": BOX,
@@ -274,7 +274,7 @@ def particles(
     checkpoint_every: float | None = None,
     **options: Any,
 ) -> rb.Case:
-    """Return one filled cavity, or several, followed for a number of steps."""
+    """Return one or several filled cavities, simulated for a number of steps."""
     duration = steps * STEP
     return rb.Case(
         structure=structure,
@@ -297,7 +297,7 @@ PAIR_TABLE = [
     rb.PairLaws(between=("light", "heavy"), contact=rb.Tsuji(restitution=0.6), friction=0.6),
     rb.PairLaws(between=("heavy", "wall"), friction=0, contact=rb.Tsuji(restitution=0.95)),
 ]
-IN_SPACE = rb.Modal(
+SPATIAL = rb.Modal(
     frequencies=[40.0, 170.0],
     damping_ratios=[0.02, 0.05],
     shapes={"tip": [[0.0, 0.3, 1.0], [1.0, 0.0, -0.4]]},
@@ -356,8 +356,8 @@ DEM: dict[str, dict[str, Any]] = {
     "recorded load": {"load": RECORDED},
     "base motion": {"base": rb.Harmonic(amplitude="300 m/s^2", frequency=400.0)},
     "shaker": {"structure": SHAKEN},
-    "modes in space": {
-        "structure": IN_SPACE,
+    "spatial modes": {
+        "structure": SPATIAL,
         "point": "tip",
         "load": rb.HalfSine(amplitude=50.0, duration="0.3 ms", point="tip", direction="z"),
     },
@@ -384,7 +384,7 @@ BITS_ONLY: dict[str, Callable[[], rb.Case]] = {
     **{f"dem {name}, long": partial(particles, LONG, **options) for name, options in DEM.items()},
     "dem settled": partial(particles, SHORT, **SETTLED),
 }
-"""Cases whose bits alone are stored: at their end, or once particles have settled, the motion is chaotic."""
+"""Cases of which only bits are stored, because the motion is chaotic at their end or after settling."""
 
 CASES = VALUES | BITS_ONLY
 """All cases with golden results."""
@@ -408,14 +408,14 @@ BALL_RUNS, ROW_RUNS, PARTICLE_RUNS = 200, 100, 40
 
 
 def _starts(build: Callable[..., rb.Case], around: float = 0.0, **options: Any) -> list[rb.Case]:
-    """Return cases whose balls start within 1e-4 of the gap of each other."""
+    """Return cases whose start positions differ by up to 1e-4 of the gap."""
     inward = -np.sign(around) if around else 1.0
     shifts = np.random.default_rng(1).uniform(0, 1e-4, BALL_RUNS)
     return [build(start=around + inward * shift, **options) for shift in shifts]
 
 
 def _five_balls(contact: Any = None, method: Any = None, duration: float = 0.5) -> list[rb.Case]:
-    """Return rows of five balls that start a little apart from each other."""
+    """Return rows of five balls with slightly different start positions."""
     shifts = np.random.default_rng(1).uniform(0, 1e-4, (ROW_RUNS, 5))
     start = np.array([-0.5, -0.2, 0.0, 0.3, 0.6])
     method = method or rb.EventDriven()
@@ -428,7 +428,7 @@ def _settled() -> list[rb.Case]:
 
 
 def _packings(**options: Any) -> list[rb.Case]:
-    """Return shaken cavities with as many random packings."""
+    """Return shaken cavities with random packings."""
     usual = {"particles": rb.Particles(material=SOFT, diameter="3 mm", count=150)}
     return [
         particles(20_000, packing=rb.Lattice(noise=0.9, seed=seed), load=_SHAKING, **(usual | options))
@@ -457,4 +457,4 @@ ENSEMBLES: dict[str, Callable[[], list[rb.Case]]] = {
     "settled particles": _settled,
     "two species": partial(_packings, particles=FEWER, pairs=PAIR_TABLE),
 }
-"""Ensembles of runs that differ in their starts."""
+"""Ensembles of runs with different initial states."""

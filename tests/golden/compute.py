@@ -21,7 +21,7 @@ else:
 import rattlebox as rb
 
 THREADS, RESTART = " [two threads]", " [restart]"
-"""What is appended to the name of a case that is run in another way, and must give the same bits."""
+"""Suffixes of case names for other ways of running a case, which must give the same bits."""
 
 
 def with_variants(names: Sequence[str]) -> list[str]:
@@ -41,7 +41,7 @@ def impacts_compared(name: str) -> int:
 
 
 def compute(level: str, names: Sequence[str]) -> dict[str, quantities.Quantities]:
-    """Run cases with one instruction set, in a process of its own, and return their quantities by name."""
+    """Run cases with one instruction set in a separate process, and return their quantities by name."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "quantities.npz"
         environment = {**os.environ, "RATTLEBOX_SIMD": level}
@@ -68,7 +68,7 @@ def run(name: str) -> Any:
 
 
 def _restarted(case: rb.Case) -> Any:
-    """Run a case until it is half done, and the rest from a checkpoint."""
+    """Run the first half of a case, and the rest from a checkpoint."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.checkpoint"
         first = rb.simulate(case, checkpoint=path, progress=lambda done, total: done < total // 2)

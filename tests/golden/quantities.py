@@ -1,7 +1,6 @@
-"""The physical quantities of a run under names of our own: the one place that depends on how a run presents its data.
+"""Physical quantities of a run under names that do not change with the public interface.
 
-Everything else in this folder uses the names that are defined here, so that a renamed attribute changes this module and
-no stored result.
+The stored results use the names that are defined here, so that a renamed attribute changes only this module.
 """
 
 from __future__ import annotations
@@ -75,9 +74,9 @@ KINDS = (
     ),
     ("cavity_force", "load", "impact_peak_force"),
 )
-"""Quantities whose rounding errors share a scale: energies [J] and forces [N]. Each other one has a scale of its own."""
+"""Quantities whose rounding errors share a scale: energies [J] and forces [N]. Each of the others has a separate scale."""
 _EVERY = 5
-"""One particle in so many has its final state among the values; the bits cover all of them."""
+"""Interval of the particles whose final state is among the values; the bits cover all particles."""
 
 
 def quantities(run: Any) -> Quantities:
@@ -108,15 +107,15 @@ def quantities(run: Any) -> Quantities:
 
 
 def was_stopped(run: Any) -> bool:
-    """Return whether a run ended because its progress function asked for it."""
+    """Return whether the progress function of a run stopped it."""
     return bool(run.status == "interrupted")
 
 
 def predictable(found: Mapping[str, NDArray[Any]], impacts: int) -> Quantities:
     """Return the part of the quantities that does not depend on rounding.
 
-    That is the part up to some number of impacts, without the durations of contacts that begin at rest: when such a contact
-    begins is ill-conditioned. Of the final state of particles one in five is kept, to store less.
+    That is the part up to a number of impacts, without the durations of contacts that begin at rest, whose begin is
+    ill-conditioned. Of the particles one in five is included, to store less.
     """
     kept = dict(found)
     if "impact_duration" in kept:
@@ -136,7 +135,7 @@ def predictable(found: Mapping[str, NDArray[Any]], impacts: int) -> Quantities:
 
 
 def measures(found: Mapping[str, NDArray[Any]]) -> dict[str, float]:
-    """Return what characterises a chaotic run: losses by the end [J], and impacts or contacts counted."""
+    """Return measures of a chaotic run: final losses [J], and the number of impacts or contacts."""
     values = {name: float(np.sum(found[name][-1])) for name in LOSSES if name in found}
     if "impact_time" in found:
         values["impacts"] = float(found["impact_time"].size)

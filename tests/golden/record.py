@@ -87,7 +87,7 @@ def _print(name: str, changes: Sequence[str]) -> None:
 
 
 def main() -> None:
-    """Record what is asked for."""
+    """Record the requested results."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("case", nargs="*")
     parser.add_argument("--level", action="append", choices=LEVELS)

@@ -1,6 +1,6 @@
 """Both engines give their golden results.
 
-`record.py` beside this file stores new ones where a change of the results is intended.
+`record.py` in this folder stores new results after an intended change.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from . import cases, compute, quantities, store
 
 @pytest.mark.parametrize("level", ["v1", "v3", "v4", "native"])
 def test_golden_results(level: str) -> None:
-    """Each instruction set gives the stored values to 1e-11, and the stored bits; threads and restarts change no bit."""
+    """Each instruction set reproduces the stored values to 1e-11 and the stored bits, also with threads and restarts."""
     if level not in quantities.levels():
         pytest.skip(f"{level} is not built, or this processor cannot run it")
     found = compute.compute(level, compute.with_variants(list(cases.CASES)))
@@ -53,7 +53,7 @@ def test_golden_results(level: str) -> None:
 def test_golden_statistics(name: str) -> None:
     """Means over an ensemble of chaotic runs have 95 % intervals that overlap with the stored ones.
 
-    Without a change of the physics two such intervals are apart once in about 200 comparisons.
+    Without a change of the physics two such intervals are disjoint once in about 200 comparisons.
     """
     runs = rb.simulate_many(cases.ENSEMBLES[name]())
     found = store.statistics([quantities.measures(quantities.quantities(run)) for run in runs])

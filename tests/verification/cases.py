@@ -12,7 +12,7 @@ from .exact import masri_caughey, shaken
 from .exact.impact_oscillator import StopOrbit
 
 YOUNG, POISSON, DENSITY, YIELD = 200e9, 0.3, 7850.0, 1030e6
-"""The steel of the seed."""
+"""Steel of the reference paper."""
 RADIUS = 0.01
 GAP = 1e-3
 MODULUS = YOUNG / (2 * (1 - POISSON**2))
@@ -21,7 +21,7 @@ STIFFNESS = 4 / 3 * MODULUS * math.sqrt(RADIUS)
 
 
 def ball(mass: float | None = None, material: Any = "steel") -> Any:
-    """Return the small ball, of a given mass where theory asks for one."""
+    """Return the small ball, optionally with the mass that a theory prescribes."""
     return rb.Sphere(radius=RADIUS, material=material, mass=mass)
 
 
@@ -55,7 +55,7 @@ def impact_damper(
     soft: Any = None,
     shift: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
 ) -> Any:
-    """Return the damper of Masri and Caughey on its orbit, begun where the structure passes through rest.
+    """Return the damper of Masri and Caughey on its orbit, starting at a zero crossing of the displacement.
 
     The ball is of a `soft` material against rigid walls, or of steel against steel.
     `shift` disturbs the start: displacement and velocity of the structure, position and velocity of the ball.
@@ -93,7 +93,7 @@ def impact_damper(
 
 
 def shaken_cavity(orbit: shaken.TwoImpacts, cycles: float) -> Any:
-    """Return a ball in a cavity that moves as orbit.amplitude sin t, begun in the middle of a flight."""
+    """Return a ball in a cavity that moves as orbit.amplitude sin t, starting in the middle of a flight."""
     begin = 0.5 * math.pi
     phase = begin + orbit.phase
     return rb.Case(
@@ -126,7 +126,7 @@ TABLE_GAP = 50.0
 
 
 def table(orbit: shaken.TableOrbit, bounces: float, shift: Sequence[float] = (0.0, 0.0)) -> Any:
-    """Return a ball bouncing on a shaken table, g = omega = 1, begun at the top of a flight.
+    """Return a ball bouncing on a shaken table, g = omega = 1, starting at the top of a flight.
 
     `shift` disturbs the ball's position and velocity relative to the table.
     """
@@ -183,7 +183,7 @@ STOP_GAP = 20.0
 
 
 def impact_oscillator(orbit: StopOrbit, cycles: float) -> Any:
-    """Return an oscillator whose stop is a ball of enormous mass; begun half a cycle after an impact."""
+    """Return an oscillator whose stop is a ball of very large mass, starting half a cycle after an impact."""
     begin = math.pi / orbit.omega
     x, v = orbit.state(begin)
     return rb.Case(
@@ -205,7 +205,7 @@ def impact_oscillator(orbit: StopOrbit, cycles: float) -> Any:
     )
 
 
-def seed_case(
+def reference_case(
     *,
     start: float = 0.0,
     force: float = 5000.0,
@@ -216,7 +216,7 @@ def seed_case(
     times: Sequence[float] | None = None,
     mass: float | None = None,
 ) -> Any:
-    """Return the steel ball of the seed on its oscillator, under a half sine of one millisecond."""
+    """Return the steel ball of the reference paper on its oscillator, under a half sine of one millisecond."""
     return rb.Case(
         structure=rb.SDOF(mass=20.0, stiffness=80e3, damping=25.3),
         damper=rb.ImpactDamper(

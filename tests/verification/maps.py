@@ -1,4 +1,4 @@
-"""What ready maps find where an exact value is known: shared by the tests and by the table of the docs."""
+"""Results of maps for which an exact value is known, for the tests and the verification table."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -19,10 +19,10 @@ Key = tuple[float, float, float]
 
 AMPLITUDE = "structure.motion.amplitude"
 STEP = 5e-4
-"""Between two values of a bifurcation diagram."""
+"""Step between two values of a bifurcation diagram."""
 SAMPLES = 512
 PEAK = (math.pi / SAMPLES) ** 2
-"""What samples may miss of the peak, relative: twice that of a sine, as its harmonics make the motion more curved."""
+"""Relative error of the peak of samples: twice that of a sine, because of harmonics."""
 STABLE = [key for key, (*_, multiplier) in printed.MASRI_CAUGHEY.items() if multiplier < 1]
 UNSTABLE = [key for key in printed.MASRI_CAUGHEY if key not in STABLE]
 LIMITS = (
@@ -41,7 +41,7 @@ def around(threshold: float, below: int, above: int, step: float = STEP) -> Arra
 
 
 def lost(values: Array, held: Any) -> float:
-    """Return the middle between the last value at which a motion holds and the next, in the order in which they are run."""
+    """Return the mean of the last value at which a motion is stable and the next value, in the order of the runs."""
     held = np.asarray(held)
     last = int(np.argmin(held)) - 1
     assert held[: last + 1].all() and not held[last + 1 :].any()
@@ -52,7 +52,7 @@ def lost(values: Array, held: Any) -> float:
 
 
 def table_thresholds(restitution: float, cycles: int) -> tuple[float, float]:
-    """Return where an orbit of the bouncing ball ends on the way down, and where it doubles on the way up."""
+    """Return the values at which an orbit of the bouncing ball ends (descending), and doubles (ascending)."""
     begin, double = shaken.table_bounds(restitution, cycles)
 
     def diagram(gamma: float, values: Array, skip: int, direction: Any) -> Any:
@@ -71,7 +71,7 @@ def table_thresholds(restitution: float, cycles: int) -> tuple[float, float]:
 
 
 def two_impacts_threshold(restitution: float) -> float:
-    """Return the least amplitude that feeds two impacts a cycle in a shaken cavity; above it their speed is exact."""
+    """Return the least amplitude with two impacts per cycle in a shaken cavity; above it their speed is exact."""
     down = around(shaken.threshold(restitution), 10, 20)
     case = cases.shaken_cavity(shaken.two_impacts(restitution, float(down[-1])), 1)
     maps = rb.bifurcation(

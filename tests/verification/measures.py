@@ -1,4 +1,4 @@
-"""What runs give where an exact value is known: shared by the tests and by the table of the docs."""
+"""Results of runs for which an exact value is known, for the tests and the verification table of the documentation."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -19,7 +19,7 @@ ENDINGS = ("zero_overlap", "zero_force")
 
 @dataclass(frozen=True)
 class Line:
-    """One comparison: the exact value, ours and the relative difference that the method allows."""
+    """One comparison: exact value, simulated value and the relative tolerance of the method."""
 
     item: str
     case: str
@@ -33,8 +33,8 @@ class Line:
         return abs(self.ours - self.exact) / abs(self.exact)
 
     @property
-    def held(self) -> bool:
-        """Whether the difference is within what the method allows."""
+    def within_tolerance(self) -> bool:
+        """Whether the difference is within the tolerance."""
         return self.difference <= self.allowed
 
 
@@ -89,8 +89,8 @@ def linear() -> Iterator[Line]:
             yield Line("1", f"{name}: largest force", top, force, 1e-10)
 
 
-def asked() -> Iterator[Line]:
-    """Yield the restitution that a contact returns when it is asked for."""
+def prescribed_restitution() -> Iterator[Line]:
+    """Yield the restitution of contacts with a prescribed restitution."""
     for e in (0.05, 0.3, 0.8, 0.99117, 1.0):
         for ending in ENDINGS:
             for contact in (
@@ -100,7 +100,7 @@ def asked() -> Iterator[Line]:
                 got = first_impact(cases.single_impact(contact, 0.3, 1e-3))[0]
                 yield Line(
                     "1",
-                    f"{type(contact).__name__}, e = {e} asked for, {ending.replace('_', ' ')}",
+                    f"{type(contact).__name__}, e = {e} prescribed, {ending.replace('_', ' ')}",
                     e,
                     got,
                     1e-10,
@@ -113,14 +113,14 @@ def jackson_green() -> Iterator[Line]:
     critical = restitution_laws.jackson_green_speed(cases.RADIUS, cases.MASS, cases.MODULUS, cases.YIELD, cases.POISSON)
     contact = rb.Tsuji(restitution=rb.JacksonGreen())
     for ratio in printed.JACKSON_GREEN:
-        # At the very end of the law a rounded speed would lie beyond it.
+        # At the limit of the law a rounded speed could exceed it.
         case = cases.single_impact(contact, ratio * critical * (1 - 1e-14), 3e-4)
         exact = restitution_laws.jackson_green(ratio, strain)
         yield Line("2", f"Jackson-Green, V/V_c = {ratio}: restitution", exact, first_impact(case)[0], 1e-10)
     log = simulate(cases.still_cavity(contact, 10 * critical, 0.2)).arrays.impacts
     for hits in printed.JACKSON_GREEN_HITS:
         exact = restitution_laws.jackson_green_after(10, hits, strain)
-        # Every contact adds its own error to the speed.
+        # The error of the speed grows with the number of contacts.
         yield Line(
             "2",
             f"Jackson-Green, V/V_c after {hits} hits",
@@ -161,7 +161,7 @@ def differences(state: Callable[[NDArray[np.float64]], NDArray[np.float64]], ste
 
 
 def damper_multiplier(orbit: masri_caughey.Orbit) -> float:
-    """Largest multiplier of the mirrored half-cycle map, from disturbed runs."""
+    """Return the largest multiplier of the mirrored half-cycle map, from perturbed runs."""
 
     def end(shift: NDArray[np.float64]) -> NDArray[np.float64]:
         a = simulate(cases.impact_damper(orbit, 1.0, shift=tuple(shift))).arrays
@@ -177,8 +177,8 @@ def impact_damper() -> Iterator[Line]:
         orbit = stable(key)
         name = "Masri-Caughey, mass ratio {}, e {}, clearance {}".format(*key)
         exact = max(abs(orbit.multipliers()))
-        # Differences of fourth order with steps of a thousandth: some 1e-11 of truncation and rounding,
-        # times the condition of the eigenvalue.
+        # Differences of fourth order with steps of a thousandth have truncation and rounding errors of about 1e-11,
+        # times the condition number of the eigenvalue.
         yield Line("4", f"{name}: multiplier", exact, damper_multiplier(orbit), 1e-7)
         if exact < 1:
             a = simulate(cases.impact_damper(orbit, 40.0)).arrays
@@ -188,7 +188,7 @@ def impact_damper() -> Iterator[Line]:
 
 
 def largest_displacement(orbit: masri_caughey.Orbit) -> float:
-    """Return the largest displacement of the structure in half a cycle, from samples and a parabola at the top."""
+    """Return the largest displacement of the structure in half a cycle, from samples and a parabola through the peak."""
     span = orbit.half_period
     case = cases.impact_damper(orbit, 1.0)
     case = case.model_copy(update={"output": rb.Output(times=np.linspace(0, span, 4001))})
@@ -244,7 +244,7 @@ def soft_limit() -> Iterator[Line]:
     orbit = stable(SOFT_KEY)
     for law in SOFT_DAMPERS:
         times, error = soft_errors(law)
-        # Polynomial through the four runs; what is left is of fourth order in the contact time, at most 1e-5.
+        # Polynomial through the four runs; the remaining error is of fourth order in the contact time, at most 1e-5.
         limit = sum(
             e * math.prod(t / (t - own) for j, t in enumerate(times) if j != i)
             for i, (own, e) in enumerate(zip(times, error, strict=True))
@@ -299,7 +299,7 @@ def collect_and_collide() -> Iterator[Line]:
 
 
 def table_multiplier(orbit: shaken.TableOrbit) -> Any:
-    """Return the Jacobian of the map from one flight's top to the next, from disturbed runs."""
+    """Return the Jacobian of the map from the top of one flight to the next, from perturbed runs."""
 
     def end(shift: NDArray[np.float64]) -> NDArray[np.float64]:
         a = simulate(cases.table(orbit, 1.0, tuple(shift))).arrays
@@ -309,7 +309,7 @@ def table_multiplier(orbit: shaken.TableOrbit) -> Any:
 
 
 def doubling(restitution: float, cycles: int) -> float:
-    """Return the acceleration at which the bouncing motion doubles its period, from disturbed runs."""
+    """Return the acceleration at which the bouncing motion doubles its period, from perturbed runs."""
 
     def flip(gamma: float) -> float:
         jacobian = table_multiplier(shaken.table_orbit(restitution, gamma, cycles))
@@ -326,7 +326,7 @@ def vibrating_table() -> Iterator[Line]:
         log = simulate(cases.table(orbit, 30.0)).arrays.impacts
         name = f"vibrating table, e {e}, {n} cycles"
         yield Line("7", f"{name}: approach speed", orbit.approach, log.approach_speed[-1], 1e-10)
-        # The table's velocity at the impact does not depend on its acceleration; where the orbit begins it is the largest.
+        # The velocity of the table at the impact does not depend on its acceleration; it peaks at the birth of the orbit.
         phase = log.time[-1] + orbit.phase + math.pi * n
         yield Line("7", f"{name}: begin", shaken.table_bounds(e, n)[0], orbit.gamma * math.cos(phase), 1e-9)
         yield Line("7", f"{name}: doubling", shaken.table_bounds(e, n)[1], doubling(e, n), 1e-7)
@@ -338,7 +338,7 @@ def chatter() -> Iterator[Line]:
     log = simulate(cases.dropped(height, e, gravity, 4.0)).arrays.impacts
     bounced = np.asarray(log.separation_speed > 0)
     speed = log.separation_speed[bounced]
-    # Bounces below the threshold of sticking are summed as the geometric series they are.
+    # Bounces below the threshold of sticking are summed as a geometric series.
     rest = float(log.time[bounced][-1] + 2 * speed[-1] / (gravity * (1 - e)))
     path = float(height + (speed**2).sum() / gravity + (speed[-1] * e) ** 2 / gravity / (1 - e * e))
     yield Line("7", "chatter: time to rest", shaken.chatter_time(height, e, gravity), rest, 1e-9)
@@ -380,7 +380,7 @@ def oscillator_with_stop() -> Iterator[Line]:
 ALL: tuple[Callable[[], Iterator[Line]], ...] = (
     tsuji,
     linear,
-    asked,
+    prescribed_restitution,
     jackson_green,
     thornton,
     impact_damper,

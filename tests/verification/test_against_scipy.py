@@ -1,4 +1,4 @@
-"""Several dampers, and rows in them, on one structure: equations written anew and integrated by SciPy."""
+"""Several dampers with rows of balls on one structure, compared with independent equations integrated by SciPy."""
 
 import math
 from itertools import pairwise
@@ -61,7 +61,7 @@ def case(ending: str) -> Any:
 
 
 class Equations:
-    """The same, as the right-hand side of an ordinary differential equation; places count from the packed rows."""
+    """Right-hand side of the equations of motion of the case; positions are relative to the packed rows."""
 
     def __init__(self, ending: str) -> None:
         self.clip = ending == "zero_force"
@@ -70,12 +70,12 @@ class Equations:
         self.modulus = SOFT.young / (2 * (1 - SOFT.poisson**2))
 
     def start(self) -> Array:
-        """Return modes, places, and their rates."""
+        """Return modal coordinates, positions and their rates."""
         places = [x * d["gap"] for d in DAMPERS for x in d["start"]]
         return np.array([0.0, 0.0, *places, 0.0, 0.0, *(v for d in DAMPERS for v in d["velocity"])])
 
     def row(self, y: Array, number: int) -> tuple[Array, Array]:
-        """Return the places and rates of a row with the walls on both sides."""
+        """Return the positions and rates of a row, including the walls on both sides."""
         d, half = DAMPERS[number], y.size // 2
         shape = np.array(SHAPE[d["point"]])
         own = slice(2 + self.first[number], 2 + self.first[number + 1])
@@ -84,7 +84,7 @@ class Equations:
         return np.array([z - d["gap"], *y[:half][own], z + d["gap"]]), np.array([v, *rates, v])
 
     def force(self, number: int, contact: int, overlap: float, rate: float) -> float:
-        """Return the force of a contact, zero where it is open."""
+        """Return the force of a contact; zero if it is open."""
         if overlap <= 0:
             return 0.0
         d, masses = DAMPERS[number], self.masses[number]
@@ -99,7 +99,7 @@ class Equations:
         return max(push, 0.0) if self.clip else push
 
     def __call__(self, t: float, y: Array) -> Array:
-        """Return the rates of all."""
+        """Return the derivative of the state."""
         half = y.size // 2
         pull = np.array(SHAPE["a"]) * FORCE * math.sin(LOAD_RATE * t)
         accelerations = []
@@ -115,7 +115,7 @@ class Equations:
         return np.concatenate([y[half:], modes, accelerations])
 
     def gap(self, number: int, contact: int) -> Any:
-        """Return a function that falls through zero at a first touch."""
+        """Return an event function that crosses zero downwards at first touch."""
 
         def value(t: float, y: Array) -> float:
             x, _ = self.row(y, number)
@@ -126,8 +126,8 @@ class Equations:
 
 
 @pytest.mark.parametrize("ending", ["zero_force", "zero_overlap"])
-def test_rows_in_several_cavities_move_as_scipy_says(ending: str) -> None:
-    """Every first touch of three cavities with six balls comes at SciPy's time, and the motion is SciPy's."""
+def test_rows_in_several_cavities_agree_with_scipy(ending: str) -> None:
+    """Times of first touch and the motion of three cavities with six balls agree with SciPy."""
     run = rb.simulate(case(ending))
     equations = Equations(ending)
     contacts = [(d, c) for d, own in enumerate(DAMPERS) for c in range(len(own["radii"]) + 1)]

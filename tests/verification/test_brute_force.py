@@ -1,4 +1,4 @@
-"""No first touch is missed: random flights, many of them grazing, against an independent motion and search."""
+"""Detection of the first touch in random flights, many of them grazing, against an independent solution and search."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 DURATION = 1.0
 GRID = 4001
 CLOSE = 1e-9
-"""Two passes closer than this part of the clearance to touching cannot be told apart in double precision."""
+"""Minimum gaps below this fraction of the clearance cannot be distinguished from touching in double precision."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Flights:
     gravity: Array
 
     def cavity(self, k: NDArray[np.intp], t: Array) -> Array:
-        """Displacement of the cavity of flights k (K,) at times t (K, T), free and forced motion."""
+        """Return the displacement of the cavity of flights k (K,) at times t (K, T), free and forced motion."""
         total = np.zeros_like(t)
         for j in range(self.rate.shape[1]):
             w, z, f = self.rate[k, j, None], self.ratio[k, j, None], self.shape[k, j, None]
@@ -51,7 +51,7 @@ class Flights:
             inside = np.ones_like(t, bool) if self.harmonic else t < stop
             forced = (gain * np.exp(1j * (omega * t + phase))).imag + _free(w, z, q - q0, p - p0, t)
             if not self.harmonic:
-                # After a half sine the load's continuation is cancelled by the same load begun at its end.
+                # After a half sine the continued load is cancelled by the same load started at its end.
                 late = np.maximum(t - stop, 0)
                 echo = (gain * np.exp(1j * omega * late)).imag + _free(
                     w, z, -gain.imag, -(gain * 1j * omega).imag, late
@@ -61,14 +61,14 @@ class Flights:
         return total
 
     def margin(self, k: NDArray[np.intp], t: Array) -> tuple[Array, Array]:
-        """Gaps to the trailing and leading wall of flights k at times t."""
+        """Return the gaps to the trailing and leading wall of flights k at times t."""
         s = self.ball[k, None] + self.speed[k, None] * t + 0.5 * self.gravity[k, None] * t * t
         off = s - self.cavity(k, t)
         half = 0.5 * self.clearance[k, None]
         return half + off, half - off
 
     def case(self, k: int) -> Any:
-        """Return flight k as a case; the first touch is the first line of its log."""
+        """Return flight k as a case; the first touch is the first impact of its log."""
         names = {"frequency": f"{float(self.omega[k])!r} rad/s", "phase": float(self.phase[k])}
         load = (
             rb.Harmonic(amplitude=float(self.force[k]), point="tip", **names)
@@ -106,7 +106,7 @@ def _free(w: Array, z: Array, q: Array, p: Array, t: Array) -> Array:
 
 
 def random_flights(modes: int, harmonic: bool, count: int, seed: int) -> Flights:
-    """Draw flights; the clearance of half of them is tuned so that they graze or nearly miss."""
+    """Return random flights; the clearance of half of them is such that they graze or nearly miss."""
     rng = np.random.default_rng(seed)
     shape = (count, modes)
     flights = Flights(
@@ -136,13 +136,13 @@ def random_flights(modes: int, harmonic: bool, count: int, seed: int) -> Flights
         top = off[np.arange(part.size), first]
         dip = 10 ** rng.uniform(-8, -3, part.size) * rng.choice([-1, 1], part.size)
         flights.clearance[part] = np.maximum(2 * top * (1 - dip), 4 * np.abs(flights.ball[part] - start[part]) + 1e-6)
-    # The ball starts inside, by a share of the clearance, in the frame of the base as in that of the cavity.
+    # The ball starts inside by a fraction of the clearance, in the frames of both the base and the cavity.
     flights.clearance[:] = np.maximum(flights.clearance, 2.2 * (np.abs(flights.ball) + np.abs(start)))
     return flights
 
 
 def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray[np.intp], Array]:
-    """First touch by a fine grid with polished minima and bisection.
+    """Return the first touches, by a fine grid with refined minima and bisection.
 
     Returns time (infinite where there is none), side, and how near to a tangent the decision was taken: the
     smallest |gap| over the clearance among the minima before the touch.
@@ -154,7 +154,7 @@ def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray
     for wall, gap in enumerate(margins):
         dips = (gap[:, 1:-1] <= gap[:, :-2]) & (gap[:, 1:-1] <= gap[:, 2:])
         curve = gap[:, 2:] - 2 * gap[:, 1:-1] + gap[:, :-2]
-        # Minima that a parabola through three points puts within reach of zero: golden section.
+        # Minima that may be below zero by a parabola through three points are refined by golden section.
         near = dips & (gap[:, 1:-1] < 4 * np.abs(curve) + 1e-3 * flights.clearance[k, None])
         row, column = np.nonzero(near)
         low, high = t[column], t[column + 2]
@@ -169,7 +169,7 @@ def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray
             low, high = np.where(left, low, a), np.where(left, b, high)
         bottom = 0.5 * (low + high)
         depth = value(row, bottom)
-        # Brackets: the first grid point or polished minimum that is beyond the wall.
+        # Brackets: the first grid point or refined minimum that is beyond the wall.
         beyond = gap < 0
         grid_hit = np.where(beyond.any(axis=1), beyond.argmax(axis=1), GRID)
         high = np.where(grid_hit < GRID, t[np.minimum(grid_hit, GRID - 1)], np.inf)
@@ -200,7 +200,7 @@ KINDS = pytest.mark.parametrize(
 
 @KINDS
 def test_no_first_touch_of_some_is_missed(modes: int, harmonic: bool, share: float) -> None:
-    """Every first touch of a brute-force search is found, at its time, and no other is invented."""
+    """The engine finds every first touch of a brute-force search, at its time, and no others."""
     compare(modes, harmonic, int(400 * share))
 
 
@@ -231,13 +231,13 @@ def compare(modes: int, harmonic: bool, count: int) -> None:
     assert wrong.size == 0, f"flights {wrong[:10]}: brute force {time[wrong[:10]]}, ours {ours[wrong[:10]]}"
     both = clear & hit
     assert np.array_equal(wall[both], side[both])
-    # A touch at a shallow angle is known to rounding over its slope, and that slope is the root of the dip.
+    # The time of a grazing touch is known to rounding error over its slope, which is the root of the depth of the minimum.
     known = 1e-9 + 1e-15 / np.sqrt(np.minimum(doubt[both], 1.0)) * 1e3
     assert np.all(np.abs(ours[both] - time[both]) <= known)
 
 
 def test_brute_force_finds_a_known_touch() -> None:
-    """The search itself finds the touch of a ball flying freely at a cavity that stays still."""
+    """The brute-force search finds the touch of a freely flying ball in a cavity at rest."""
     one = np.ones((1, 1))
     flights = Flights(
         rate=10 * one,

@@ -1,4 +1,4 @@
-"""Contacts that close from rest, or are about to, slower than rounding can tell: time goes on all the same."""
+"""Contacts that close from rest at speeds below rounding errors do not stall the integration."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ PULSE = rb.HalfSine(amplitude="50 N", duration="2 ms")
 
 
 def packed(balls: list[Any], contact: Any, duration: str, gravity: str = "0 m/s^2", **case: Any) -> Any:
-    """Run balls packed in a cavity without play, with a small budget of events."""
+    """Run balls packed in a cavity without clearance, with a low limit of events."""
     return rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass="1 kg", stiffness="1e4 N/m"),
@@ -35,7 +35,7 @@ def packed(balls: list[Any], contact: Any, duration: str, gravity: str = "0 m/s^
     ids=lambda base: base.kind,
 )
 def test_a_ball_without_play_follows_a_base_that_moves_off_gently(base: Any) -> None:
-    """A contact that nothing closes at first is integrated in a few thousand steps, whatever moves it later."""
+    """A contact without closing force at first is integrated in a few thousand steps, whichever motion follows."""
     run = packed([STEEL], rb.Tsuji(restitution=0.9), "50 ms", base=base)
     assert run.ok, run.message
     assert run.counts["contact_steps"] < 10_000
@@ -50,15 +50,15 @@ def test_a_ball_without_play_follows_a_base_that_moves_off_gently(base: Any) -> 
     ],
 )
 def test_packed_rows_close_once(balls: list[Any], restitution: float, load: Any) -> None:
-    """Neighbours in a row that rounding moves to and fro are no events."""
+    """Rounding errors of neighbours in a row cause no events."""
     run = packed(balls, rb.Tsuji(restitution=restitution), "3 ms", gravity="-9.81 m/s^2", load=load)
     assert run.ok, run.message
     assert run.counts["events"] < 20
 
 
 @pytest.mark.parametrize("other", [rb.Tsuji(restitution=1), rb.Linear(stiffness="1e6 N/m", restitution=1)])
-def test_dents_are_met_again_in_a_few_steps(other: Any) -> None:
-    """Balls that fall back into the dents they left move there in steps of that way, however near to its edge they are."""
+def test_residual_overlaps_are_reached_again_in_a_few_steps(other: Any) -> None:
+    """Balls that return to a residual overlap use steps of the size of the remaining distance, however small it is."""
     damper = rb.ImpactDamper(balls=[STEEL] * 2, gap="10 um", start=1, contact=rb.Thornton(yield_pressure="1 GPa"))
     run = rb.simulate(
         rb.Case(
@@ -74,7 +74,7 @@ def test_dents_are_met_again_in_a_few_steps(other: Any) -> None:
 
 
 def test_balls_that_lie_on_a_wall_at_a_distance_are_pressed_at_once() -> None:
-    """A contact that closes from rest begins also where rounding of the places loses the way that it has come."""
+    """A contact that closes from rest begins also if its overlap is below the rounding error of the positions."""
     run = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass="1 kg", stiffness="1e3 N/m"),
@@ -91,7 +91,7 @@ def test_balls_that_lie_on_a_wall_at_a_distance_are_pressed_at_once() -> None:
 
 
 def test_a_row_that_is_struck_does_not_stop_the_clock() -> None:
-    """Overlaps and speeds too small for a number, of a row without play that a moving wall strikes, are waited for."""
+    """A row without clearance that a moving wall hits has overlaps and speeds that underflow at first."""
     steel, alike = rb.Sphere(radius="10 mm", material="steel"), rb.Tsuji(alpha=0, ending="zero_force")
     run = rb.simulate(
         rb.Case(
@@ -112,7 +112,7 @@ def test_a_row_that_is_struck_does_not_stop_the_clock() -> None:
 
 
 def test_a_slow_contact_of_fast_bodies_takes_few_steps() -> None:
-    """Errors are not held below what rounding leaves of velocities: 1 m/s each, 0.1 nm/s towards each other."""
+    """The error tolerance is not below the rounding errors of velocities: 1 m/s each, 0.1 nm/s relative."""
     run = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass="1 kg", stiffness=0, velocity=1.0),
@@ -129,7 +129,7 @@ def test_a_slow_contact_of_fast_bodies_takes_few_steps() -> None:
 
 
 def test_a_released_contact_closes_again_only_where_rounding_can_tell() -> None:
-    """A force about zero, of a row without play, does not close and release a contact again and again at one instant."""
+    """A force near zero in a row without clearance does not close and release a contact repeatedly at the same time."""
     steel = rb.Sphere(radius="10 mm", material="steel")
     run = rb.simulate(
         rb.Case(
@@ -166,7 +166,7 @@ def test_a_released_contact_closes_again_only_where_rounding_can_tell() -> None:
 
 
 def test_a_contact_that_recovers_is_not_taken_for_one_that_closes() -> None:
-    """Where the ball leaves one wall as it meets the other, nearer than the clock can tell, the other is met."""
+    """A ball that leaves one wall and touches the other within the resolution of time has both contacts."""
     steel, plastic = rb.Sphere(radius="10 mm", material="steel"), rb.Thornton(yield_pressure="1 GPa")
     run = rb.simulate(
         rb.Case(
@@ -202,7 +202,7 @@ def test_a_contact_that_recovers_is_not_taken_for_one_that_closes() -> None:
     ids=lambda law: law.kind,
 )
 def test_a_contact_begins_when_the_load_begins_to_rise(contact: Any, start: str) -> None:
-    """A ball that lies on a wall is pressed from the instant at which the load rises, not from where its force is felt."""
+    """The contact of a ball at rest on a wall begins when the load begins, not when its force is significant."""
     run = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass="20 kg", stiffness="80 kN/m"),
@@ -220,7 +220,7 @@ def test_a_contact_begins_when_the_load_begins_to_rise(contact: Any, start: str)
 
 
 def test_a_packed_row_is_pressed_at_once_from_end_to_end() -> None:
-    """In a row without play every contact begins with the load, each with a higher power of the time."""
+    """In a row without clearance every contact begins with the load, each with a higher power of time."""
     run = packed([STEEL] * 3, rb.Tsuji(restitution=0.9), "3 ms", load=rb.HalfSine(amplitude="5 kN", duration="1 ms"))
     impacts = run.arrays.impacts
     assert impacts.contact[:3].tolist() == [0, 1, 2]
@@ -228,7 +228,7 @@ def test_a_packed_row_is_pressed_at_once_from_end_to_end() -> None:
 
 
 def test_a_contact_that_is_pressed_late_begins_late() -> None:
-    """A ball at rest on a wall, while another one bounces, is pressed when the structure is struck."""
+    """A ball at rest on a wall, while another one bounces, is loaded when a pulse acts on the structure."""
     run = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass="1 kg", stiffness=0),

@@ -13,15 +13,15 @@ from rattlebox.results.schema import variables
 
 Array = NDArray[np.float64]
 CLOSE = 1e-8
-"""Passes nearer to touching than this part of the clearance are not told apart: so far the grid is exact."""
+"""Minimum gaps below this fraction of the clearance are not distinguished from touching: the accuracy of the grid."""
 HARD = [308, 327, 342, 518, 1027]
 """Contacts that reopen within a step, or that close from rest while others are closed."""
 IN_CONTACT = 16
-"""Parts of each contact; between contacts the grid has a step of 0.1 ms, some thousandth of a period."""
+"""Grid intervals in each contact; between contacts the grid has a step of 0.1 ms, about a thousandth of a period."""
 
 
 def random_damper(rng: np.random.Generator, number: int) -> Any:
-    """Return a cavity with one to four balls that fly, lie or are thrown."""
+    """Return a cavity with one to four balls, at rest or moving."""
     count = int(rng.choice([1, 1, 2, 3, 4]))
     e = float(rng.uniform(0.3, 1.0))
     ending = str(rng.choice(["zero_force", "zero_overlap"]))
@@ -102,8 +102,8 @@ def on_a_grid(case: Any) -> Any:
     return rb.simulate(case.model_copy(update={"output": rb.Output(times=times)}))
 
 
-def complaints(a: Any, seen: Counter[str]) -> Iterator[str]:
-    """Compare every gap at all times of the grid with the log; tell where they differ, and count what was looked at."""
+def log_differences(a: Any, seen: Counter[str]) -> Iterator[str]:
+    """Yield the differences between the gaps on the grid and the log, and count the comparisons."""
     log = a.impacts
     end = np.where(log.complete, log.time + np.nan_to_num(log.duration), np.inf)
     for damper in range(len(a.dampers)):
@@ -115,7 +115,7 @@ def complaints(a: Any, seen: Counter[str]) -> Iterator[str]:
                 speed = log.approach_speed[i]
                 if a.time[begin] != log.time[i]:
                     yield f"{damper}/{contact}: no touch at {log.time[i]}"
-                # What closes from rest is logged a moment later, when it has hardly moved.
+                # Contacts from rest are logged an instant later, after a negligible motion.
                 deep, fast = (max(blur, 1e-5 * log.peak_overlap[i]), 1e-4) if speed == 0 else (blur, 1e-7)
                 if not abs(value[begin]) <= deep or not abs(rate[begin] + speed) <= fast:
                     yield f"{damper}/{contact}: logged at {log.time[i]}, gap {value[begin]}, rate {rate[begin]}"
@@ -127,7 +127,7 @@ def complaints(a: Any, seen: Counter[str]) -> Iterator[str]:
                     np.count_nonzero((log.time <= log.time[i]) & (end > log.time[i])) > 1
                 )
                 seen["from rest"] += bool(speed == 0)
-                # What was released recovers, and the surfaces part a little later.
+                # After a release the bodies recover, and the surfaces separate slightly later.
                 parted = np.flatnonzero(value[stop:] >= 0)
                 free[begin - (begin > 0 and speed == 0) : stop + (int(parted[0]) if parted.size else a.time.size)] = (
                     False
@@ -141,11 +141,11 @@ def complaints(a: Any, seen: Counter[str]) -> Iterator[str]:
 
 
 def check(seeds: Iterable[int]) -> Counter[str]:
-    """Check these cases, and return how much was looked at."""
+    """Check these cases, and return the counts of comparisons."""
     seen: Counter[str] = Counter()
     for seed in seeds:
         run = on_a_grid(random_case(seed))
-        wrong = list(complaints(run.arrays, seen))
+        wrong = list(log_differences(run.arrays, seen))
         assert not wrong, f"case {seed}: " + "; ".join(wrong[:3])
         assert run.ok and run.energy_residual <= 1e-9, (
             f"case {seed}: {run.status}, energy residual {run.energy_residual}"
@@ -154,7 +154,7 @@ def check(seeds: Iterable[int]) -> Counter[str]:
 
 
 def test_every_contact_of_two_hundred_cases_is_logged() -> None:
-    """Rows of balls in several cavities: what a fine grid shows of contacts and what the log says are the same."""
+    """In rows of balls in several cavities the contacts on a fine grid are those of the log."""
     seen = check([*range(200), *HARD])
     assert seen["contacts"] > 10_000
     assert seen["while another is closed"] > 5_000
@@ -170,9 +170,9 @@ def test_every_contact_of_ten_thousand_cases_is_logged(block: int) -> None:
 
 @pytest.mark.parametrize("fault", ["missed", "invented", "shifted"])
 def test_grid_finds_a_wrong_log(fault: str) -> None:
-    """A log that lacks a line, has one too many, or a time that is off by a microsecond, is found out."""
+    """The comparison detects a missing impact, an additional one, and an error of one microsecond."""
     a = on_a_grid(random_case(3)).arrays
-    assert not list(complaints(a, Counter()))
+    assert not list(log_differences(a, Counter()))
     log = a.impacts
     lines = {v.name: np.array(getattr(log, v.name)) for v in variables("impact", "impacts")}
     k = len(log) // 2
@@ -183,4 +183,4 @@ def test_grid_finds_a_wrong_log(fault: str) -> None:
         lines["time"][-1] = 0.5 * (a.time[5] + a.time[6])
     else:
         lines["time"][k] -= 1e-6
-    assert list(complaints(a.replaced(impacts=lines), Counter()))
+    assert list(log_differences(a.replaced(impacts=lines), Counter()))

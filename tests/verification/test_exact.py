@@ -1,4 +1,4 @@
-"""The exact solutions themselves, against printed values and against what they must satisfy."""
+"""The exact solutions, compared with printed values and with the conditions that they must satisfy."""
 
 import math
 
@@ -90,7 +90,7 @@ def test_masri_caughey_has_the_printed_values(key: tuple[float, float, float]) -
 
 @pytest.mark.parametrize("key", printed.MASRI_CAUGHEY)
 def test_masri_caughey_repeats_mirrored(key: tuple[float, float, float]) -> None:
-    """Half a cycle later the structure is at the mirrored place with the mirrored speed."""
+    """After half a cycle displacement and velocity of the structure are mirrored."""
     for orbit in masri_caughey.orbits(*key):
         end = orbit.structure(orbit.half_period)
         assert end == pytest.approx((-orbit.position, -orbit.before), rel=1e-11, abs=1e-11)

@@ -1,4 +1,4 @@
-"""Damping that couples modes, and tuned masses: against exponentials of matrices, the ledger, other methods and engines."""
+"""Damping that couples modes, and tuned masses: against matrix exponentials, the ledger, other methods and engines."""
 
 import math
 from typing import Any
@@ -40,7 +40,7 @@ START = np.array([1e-3, -2e-3, 0.5e-3, 0.3, 0.0, -0.2])
 @pytest.mark.parametrize("damping", DASHPOTS.values(), ids=DASHPOTS)
 @pytest.mark.parametrize("method", [rb.EventDriven(), rb.TwoStep(dt_flight=1e-4)], ids=["exact", "two steps"])
 def test_free_motion(damping: Array, method: Any) -> None:
-    """Free motion of any symmetric damping is that of the exponential of the matrix."""
+    """The free motion with any symmetric damping matrix agrees with the matrix exponential."""
     if isinstance(method, rb.TwoStep) and damping.max() > 1e4:
         method = rb.TwoStep(dt_flight=1e-5)
     case = rb.Case(
@@ -59,7 +59,7 @@ def test_free_motion(damping: Array, method: Any) -> None:
 
 
 def test_forced_motion() -> None:
-    """The steady response to a harmonic force is that of the dynamic stiffness."""
+    """The steady response to a harmonic force agrees with the inverse of the dynamic stiffness."""
     damping, frequency = DASHPOTS["between two"] + 0.001 * STIFFNESS, 14.0
     case = rb.Case(
         structure=structure(damping),
@@ -76,7 +76,7 @@ def test_forced_motion() -> None:
 
 
 def impacts_case(structure: Any, **options: Any) -> rb.Case:
-    """Return a ball in a cavity at the tip of a structure that swings."""
+    """Return a ball in a cavity at the tip of a vibrating structure."""
     damper = rb.ImpactDamper(
         ball=rb.Sphere(radius="12 mm", material="steel"), gap="0.4 mm", point="tip", contact=rb.Tsuji(restitution=0.6)
     )
@@ -85,14 +85,14 @@ def impacts_case(structure: Any, **options: Any) -> rb.Case:
 
 @pytest.mark.parametrize("damping", DASHPOTS.values(), ids=DASHPOTS)
 def test_the_ledger_closes_with_impacts(damping: Array) -> None:
-    """Energy is kept to rounding with a ball that hits the coupled structure, if its point is not held."""
+    """The energy ledger of a ball on a structure with coupled modes closes to rounding, unless its point is fixed."""
     run = rb.simulate(impacts_case(structure(damping, displacement=[1e-3, -2e-3, 0.0], velocity=10 * START[3:])))
     assert run.ok and (len(run.arrays.impacts) > 10) == (damping[2, 2] < 1e3)
     assert run.ledger.energy_residual < 1e-11
 
 
-def test_a_dashpot_that_is_hardly_coupled_changes_little() -> None:
-    """The path for coupled modes and that for modes on their own agree up to the tenth impact."""
+def test_weak_coupling_changes_little() -> None:
+    """The algorithms for coupled and uncoupled modes agree up to the tenth impact."""
     damping = 0.002 * STIFFNESS
     off = np.zeros((3, 3))
     off[0, 2] = off[2, 0] = 2e-6
@@ -107,7 +107,7 @@ def test_a_dashpot_that_is_hardly_coupled_changes_little() -> None:
 
 
 def test_both_engines_agree() -> None:
-    """One ball in a box, computed in 3-D, gives the motion of the impact engine on a coupled structure."""
+    """The 3-D engine with one ball in a box agrees with the 1-D engine on a structure with coupled modes."""
     own = structure(DASHPOTS["between two"], displacement=[1e-3, -2e-3, 0.0])
     duration = 0.05
     ball = rb.Particles(material="steel", radius="12 mm", count=1)
@@ -157,8 +157,8 @@ def two_masses(tuned: rb.TunedMass, mass: float, stiffness: float, damping: floa
     )
 
 
-def test_a_tuned_mass_beside_a_damper() -> None:
-    """SDOF, tuned mass and ball behave as the same two masses given by matrices, and under a moving base, too."""
+def test_a_tuned_mass_and_a_damper() -> None:
+    """SDOF, tuned mass and ball move like the same two masses given by matrices, also with a base motion."""
     tuned = rb.TunedMass(mass="0.4 kg", frequency="9 Hz", damping_ratio=0.1)
     base = rb.Harmonic(amplitude="3 m/s^2", frequency="10 Hz")
     own = rb.Modal(frequencies=[10.0], damping_ratios=[0.01], shapes={"tip": [0.25**0.5]}, participation=[2.0])
@@ -190,7 +190,7 @@ def peak(structure: rb.SDOF, tuned: rb.TunedMass, *, base: bool) -> float:
 
 @pytest.mark.parametrize("mass", [0.2, 1.0, 4.0])
 def test_den_hartog(mass: float) -> None:
-    """Den Hartog's peak is sqrt(1 + 2 / mu), and no other frequency makes it lower by more than one per mille."""
+    """Den Hartog's peak is sqrt(1 + 2 / mu), and no other frequency lowers it by more than one per mille."""
     own = rb.SDOF(mass=20.0, stiffness=80e3)
     tuned = rb.TunedMass.den_hartog(own, mass=mass)
     optimum = peak(own, tuned, base=False)
@@ -205,7 +205,7 @@ def test_den_hartog(mass: float) -> None:
 
 @pytest.mark.parametrize("mass", [0.2, 1.0, 4.0])
 def test_warburton(mass: float) -> None:
-    """With a moving base, Warburton's frequency makes the largest displacement smallest; Den Hartog's does not."""
+    """With a base motion Warburton's frequency minimises the largest displacement; Den Hartog's does not."""
     own = rb.SDOF(mass=20.0, stiffness=80e3)
     tuned = rb.TunedMass.warburton(own, mass=mass)
     optimum = peak(own, tuned, base=True)
@@ -219,7 +219,7 @@ def test_warburton(mass: float) -> None:
 
 
 def test_the_simulated_response_is_that_of_the_optimum() -> None:
-    """The steady response at the frequency of the structure, simulated, is that of the two masses."""
+    """The simulated steady response at the frequency of the structure is that of the two masses."""
     own = rb.SDOF(mass=20.0, stiffness=80e3)
     tuned = rb.TunedMass.den_hartog(own, mass=1.0)
     frequency = math.sqrt(80e3 / 20) / (2 * math.pi)
@@ -239,8 +239,8 @@ def test_the_simulated_response_is_that_of_the_optimum() -> None:
     assert exact / 1e-3 < math.sqrt(1 + 2 * 20)
 
 
-def test_a_tuned_mass_at_a_point_in_space() -> None:
-    """It swings along its direction, with the motion of the same mass in the plane of the structure."""
+def test_a_tuned_mass_in_three_dimensions() -> None:
+    """A tuned mass moves along its direction like the same mass on the structure in 1-D."""
     own = rb.Modal(
         frequencies=[10.0, 10.0],
         damping_ratios=[0.0, 0.0],
@@ -280,7 +280,7 @@ def test_a_tuned_mass_at_a_point_in_space() -> None:
 
 
 def test_studies_vary_a_tuned_mass() -> None:
-    """A sweep over its mass and frequency gives what single runs give."""
+    """A sweep over mass and frequency agrees with single runs."""
     own = rb.SDOF(mass="4 kg", stiffness="16 kN/m", damping_ratio=0.01, velocity="0.1 m/s")
     case = rb.Case(
         structure=own,
@@ -307,7 +307,7 @@ def test_studies_vary_a_tuned_mass() -> None:
 
 
 def test_case_files_hold_tuned_masses() -> None:
-    """A case goes to TOML and back; one of two tuned masses is found by its path."""
+    """A case survives a round trip through TOML; the path of one of two tuned masses selects it."""
     case = rb.Case(
         structure=rb.SDOF(mass=4, stiffness=16e3),
         tuned_masses=[

@@ -1,4 +1,4 @@
-"""The builds of the core for each instruction set: which one is picked, and that all give the verified numbers."""
+"""The builds of the core for each instruction set: the choice at import, and the verified numbers of each."""
 
 import os
 import subprocess
@@ -23,8 +23,8 @@ def test_every_build_gives_the_verified_numbers(level: str) -> None:
     if level == core.choice()[0]:
         pytest.skip(f"{level} is what all other tests run with")
     environment = {**os.environ, "RATTLEBOX_SIMD": level}
-    tell = "from rattlebox.core.choose import core; print(core().__name__)"
-    name = subprocess.run([sys.executable, "-c", tell], env=environment, capture_output=True, text=True, check=True)
+    program = "from rattlebox.core.choose import core; print(core().__name__)"
+    name = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
     assert name.stdout.strip() == f"rattlebox.core._core_{level}"
     files = ["test_reference_w1.py", "test_known_solutions.py::test_run_has_the_exact_value"]
     lines = "reference or tsuji or jackson_green or thornton or slow_manifold or chatter or oscillator_with_stop"
@@ -50,7 +50,7 @@ def test_every_build_gives_the_verified_numbers(level: str) -> None:
     ],
 )
 def test_best_build_is_picked(flags: set[str], level: str, why: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A processor gets the best build whose instructions it has, and is told why."""
+    """The best build whose instructions the processor has is chosen, with the reason."""
     monkeypatch.delenv("RATTLEBOX_SIMD", raising=False)
     monkeypatch.setattr(core, "_processor_flags", lambda: flags)
     monkeypatch.setattr(core, "built", lambda: ("v4", "v3", "v1"))
@@ -60,7 +60,7 @@ def test_best_build_is_picked(flags: set[str], level: str, why: str, monkeypatch
 
 
 def test_build_that_cannot_run_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Asking for a build that the processor cannot run names those that it can."""
+    """The message about a build that the processor cannot run lists the possible ones."""
     monkeypatch.setenv("RATTLEBOX_SIMD", "v4")
     monkeypatch.setattr(core, "_processor_flags", lambda: V3)
     monkeypatch.setattr(core, "built", lambda: ("v4", "v3", "v1"))

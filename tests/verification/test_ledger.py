@@ -1,4 +1,4 @@
-"""The energy ledger closes: what the loads put in is found somewhere."""
+"""The energy ledger closes: the work of the loads equals losses and stored energy."""
 
 import math
 from typing import Any
@@ -24,26 +24,26 @@ STARTS = (0.0, -1.0, 1.0)
 @pytest.mark.parametrize("start", STARTS)
 @pytest.mark.parametrize("force", [100.0, 5000.0])
 @pytest.mark.parametrize("law", LAWS)
-def test_ledger_of_the_seed_closes(law: str, force: float, start: float) -> None:
+def test_ledger_of_the_reference_case_closes(law: str, force: float, start: float) -> None:
     """Work, losses and energy balance to 1e-10 of the work at every output time of five seconds."""
     contact, wall = LAWS[law]
-    run = measures.simulate(cases.seed_case(start=start, force=force, contact=contact(), wall=wall))
+    run = measures.simulate(cases.reference_case(start=start, force=force, contact=contact(), wall=wall))
     assert run.arrays.load_work[-1] > 0
     assert run.energy_residual <= 1e-10
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_impact_log_adds_up_to_the_loss(law: str) -> None:
-    """The losses of the single impacts sum to what the ledger lost in impacts."""
+    """The losses of the single impacts sum to the impact loss of the ledger."""
     contact, wall = LAWS[law]
-    a = measures.simulate(cases.seed_case(contact=contact(), wall=wall, duration=2.0)).arrays
+    a = measures.simulate(cases.reference_case(contact=contact(), wall=wall, duration=2.0)).arrays
     lost = a.normal_loss[-1, 0] + a.plastic_loss[-1, 0]
     assert a.impacts.energy_lost.sum() == pytest.approx(lost, abs=1e-11 * a.load_work[-1])
 
 
 def test_small_pulse_never_moves_the_ball() -> None:
-    """At 100 N the structure of the centred case never reaches the ball, which stays where it was."""
-    a = measures.simulate(cases.seed_case(force=100.0, duration=0.1)).arrays
+    """At 100 N the structure of the centred case never reaches the ball, which does not move."""
+    a = measures.simulate(cases.reference_case(force=100.0, duration=0.1)).arrays
     assert len(a.impacts) == 0
     # The impulse without damping would give 0.0503 mm; the pulse lasts a hundredth of a period.
     rate, zeta = math.sqrt(80e3 / 20), 25.3 / (2 * math.sqrt(20 * 80e3))
@@ -63,7 +63,7 @@ def test_ledger_of_a_row_of_balls_closes() -> None:
 
 
 def test_row_of_balls_stays_in_order() -> None:
-    """Balls of a crowded row never pass through each other or a wall: gaps stay above the largest overlap logged."""
+    """Balls of a crowded row never pass through each other or a wall: no overlap exceeds the largest one of the log."""
     run = measures.simulate(cases.five_balls())
     a = run.arrays
     place = a.relative_position - a.ball_centre
@@ -74,7 +74,7 @@ def test_row_of_balls_stays_in_order() -> None:
 
 
 @pytest.mark.parametrize("balls", [2, 3, 4])
-def test_hard_rows_collapse_stick_and_go_on(balls: int) -> None:
+def test_hard_rows_collapse_and_stick(balls: int) -> None:
     """Random rows of hard balls, collapses included, stay in order, finish and balance to 1e-10 of the work."""
     rng = np.random.default_rng(balls)
     for _ in range(8):
@@ -85,7 +85,7 @@ def test_hard_rows_collapse_stick_and_go_on(balls: int) -> None:
         place = run.arrays.relative_position - run.arrays.ball_centre
         half = 0.5 * run.arrays.clearance[0]
         gaps = np.hstack([place[:, :1] + half, np.diff(place, axis=1), half - place[:, -1:]])
-        # Two that touch drift by what rounding leaves of their speeds' difference, and as much again goes unseen.
+        # Touching balls drift by the rounding error of their relative speed; the detection has an error of that size.
         fastest = max(np.abs(run.arrays.ball_velocity).max(), run.arrays.impacts.approach_speed.max())
         drift = 2 * 16 * np.finfo(float).eps * fastest * case.duration
         assert gaps.min() >= -drift

@@ -1,4 +1,4 @@
-"""Structures without dampers: every kind of mode under every kind of load against exponentials of matrices."""
+"""Structures without dampers: every kind of mode under every kind of load against matrix exponentials."""
 
 import math
 from typing import Any
@@ -52,7 +52,7 @@ def wave(amplitude: float, omega: float, angle: float) -> tuple[Array, Array]:
 
 
 def steady(begin: float, *, amplitude: float, frequency: float, phase: float) -> tuple[Array, Array]:
-    """Return a harmonic from some time on."""
+    """Return a harmonic that begins at a time."""
     omega = 2 * math.pi * frequency
     return wave(amplitude, omega, omega * begin + phase)
 
@@ -103,7 +103,7 @@ def exact(stiffness: float, damping: float, load: str, x: float, v: float) -> Ar
 @pytest.mark.parametrize("load", LOADS)
 @pytest.mark.parametrize("kind", DAMPINGS)
 def test_motion_is_exact(kind: str, load: str) -> None:
-    """A mode of any damping follows any load exactly, from a start that is not at rest."""
+    """The response of a mode with any damping to any load, from an initial motion, is exact."""
     structure = {"mass": MASS, "stiffness": STIFFNESS, **DAMPINGS[kind]}
     case = rb.Case(
         structure=rb.SDOF(**structure, displacement=1e-3, velocity=0.2),
@@ -140,7 +140,7 @@ def test_several_modes_add_up() -> None:
 
 
 def test_the_clock_keeps_to_a_fast_mode_under_a_load() -> None:
-    """Eight thousand periods under a slow load end where the closed form does: cell by cell the clock does not drift."""
+    """The end of eight thousand periods under a slow load agrees with the closed form: time does not drift."""
     omega, slow, times = 1e5, 66 * math.pi, np.linspace(0, 0.5, 11)
     run = rb.simulate(
         rb.Case(

@@ -1,4 +1,4 @@
-"""Steady motions found by basins of attraction, against exact orbits."""
+"""Steady motions of basins of attraction against exact orbits."""
 
 import math
 
@@ -14,14 +14,14 @@ RESTITUTION, GAMMA = 0.8, 0.9
 
 
 def state(orbit: shaken.TableOrbit, since: float) -> tuple[float, float]:
-    """Height of the ball over the table and its rate, some time after an impact."""
+    """Return the height of the ball over the table and its rate, some time after an impact."""
     table = orbit.phase + since
     height = orbit.gamma * (math.sin(orbit.phase) - math.sin(table)) + orbit.launch * since - 0.5 * since**2
     return height, orbit.launch - since - orbit.gamma * math.cos(table)
 
 
 def test_bouncing_balls_coexist() -> None:
-    """Orbits that bounce every cycle and every second one exist beside rest on the table, and all are found to 1e-8."""
+    """Rest on the table and the orbits that bounce every cycle and every second cycle coexist, and are found to 1e-8."""
     case = cases.table(shaken.table_orbit(RESTITUTION, GAMMA, 1), 1)
     begin = case.structure.motion[0].phase
     gap = cases.TABLE_GAP

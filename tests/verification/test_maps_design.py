@@ -28,7 +28,7 @@ def test_trials_have_the_exact_loss() -> None:
 
 
 def test_loss_map_of_an_inelastic_ball() -> None:
-    """Effective mass and loss of an inelastic ball on a shaker are the published ones, whatever the frequency."""
+    """Effective mass and loss of an inelastic ball on a shaker are the published ones at any frequency."""
     case = cases.inelastic_ball(1.2, 1.0)
     gammas = np.array(list(printed.APPARENT_MASS))
     # g = 1: at twice the frequency a quarter of the amplitude is the same motion.
@@ -46,7 +46,7 @@ def test_loss_map_of_an_inelastic_ball() -> None:
 
 
 def test_loss_map_of_two_impacts_a_cycle() -> None:
-    """Above its threshold a ball that hits both walls once a cycle loses what the exact orbit loses, at any frequency."""
+    """Above its threshold a ball that hits both walls once a cycle has the loss of the exact orbit, at any frequency."""
     e = 0.6
     ratios = np.array([1.2, 1.5, 2.0]) * shaken.threshold(e)
     for ratio in ratios.tolist():
@@ -69,7 +69,7 @@ def struck() -> rb.Case:
 
 
 def pulse_indices(low: float, high: float, first: float, last: float) -> tuple[np.ndarray, np.ndarray]:
-    """First-order and total indices of F^2 / M for uniform F in low to high and M in first to last."""
+    """Return first-order and total indices of F^2 / M for uniform F in low to high and M in first to last."""
 
     def moment(power: int, a: float, b: float) -> float:
         return np.log(b / a) / (b - a) if power == -1 else (b ** (power + 1) - a ** (power + 1)) / (power + 1) / (b - a)
@@ -82,7 +82,7 @@ def pulse_indices(low: float, high: float, first: float, last: float) -> tuple[n
 
 
 def test_sensitivity_of_the_energy_of_a_pulse() -> None:
-    """The work of a short pulse goes as F^2 / M: the indices of force and mass are exact, that of the stiffness is none."""
+    """The work of a short pulse is F^2 / M: the indices of force and mass are exact, that of stiffness is zero."""
     bounds = {"load.amplitude": (2.0, 4.0), "structure.mass": (1.0, 5.0), "structure.stiffness": (100.0, 300.0)}
     found = rb.sensitivity(struck(), bounds, "work", n=1024, progress=False).isel(measure=0)
     first, total = pulse_indices(2.0, 4.0, 1.0, 5.0)
@@ -96,7 +96,7 @@ def test_sensitivity_of_the_energy_of_a_pulse() -> None:
 
 
 def test_indices_converge() -> None:
-    """With sixteen times the points, the indices come at least three times closer to the exact ones."""
+    """With sixteen times the points, the errors of the indices are at least three times smaller."""
     bounds = {"load.amplitude": (2.0, 4.0), "structure.mass": (1.0, 5.0)}
     exact = np.concatenate(pulse_indices(2.0, 4.0, 1.0, 5.0))
 

@@ -28,14 +28,14 @@ def test_levels_scale_with_the_clearance() -> None:
 
 @pytest.mark.parametrize("key", UNSTABLE)
 def test_unstable_motions_are_left(key: tuple[float, float, float]) -> None:
-    """Begun on an orbit that is unstable, the response is another motion."""
+    """A response that starts on an unstable orbit is another motion."""
     ours, exact = followed(key, np.array([1.0]), "up", 200)
     assert abs(ours[0] / exact[0] - 1) > 0.01
 
 
 @pytest.mark.parametrize("key", UNSTABLE)
 def test_exponent_of_an_unstable_orbit(key: tuple[float, float, float]) -> None:
-    """As long as rounding has not grown, the exponent is that of the unstable orbit."""
+    """Before rounding errors grow, the exponent is that of the unstable orbit."""
     found = rb.lyapunov(cases.impact_damper(orbit(key, 1.0), 1.0), cycles=(0, 24), reach=0.0, progress=False)
     assert float(found.growth_per_cycle) == pytest.approx(2 * growth(key, 1.0), rel=2e-3)
 

@@ -1,4 +1,4 @@
-"""Random records have the density that is asked for, and drive both engines as the signal that they stand for."""
+"""Random records have the prescribed spectral density, and the same effect in both engines as their signal."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def coefficients(record: rb.Record, fine: int = 8) -> tuple[np.ndarray, np.ndarr
 
 
 def test_the_density_is_the_one_asked_for() -> None:
-    """The mean density of each third of the band is the one asked for."""
+    """The mean density of each third of the band is the prescribed one."""
     frequency, coefficient, _ = coefficients(rb.Random(PSD, 40.0, 4000.0, seed=1), fine=4)
     power = 2 * np.abs(coefficient) ** 2
     for band in range(3):
@@ -62,7 +62,7 @@ def response(frequency: Any) -> Any:
 
 
 def test_rms_of_an_oscillator_near_the_highest_frequency() -> None:
-    """The mean square response of an oscillator at 0.9 of the highest frequency is the integral of its theory."""
+    """The mean square response of an oscillator at 0.9 of the highest frequency is the integral of the theory."""
     grid = np.linspace(LOW, HIGH, 200_001)
     theory = np.trapezoid(DENSITY * np.abs(response(grid)) ** 2, grid)
     squares = []
@@ -75,7 +75,7 @@ def test_rms_of_an_oscillator_near_the_highest_frequency() -> None:
 
 
 def floating(**changes: Any) -> rb.ParticleDamper:
-    """Return a box in which one light particle floats and touches nothing."""
+    """Return a box with one light particle that touches nothing."""
     return rb.ParticleDamper(
         particles=rb.Particles(material=rb.Material(density=10.0, young="1 GPa", poisson=0.3), diameter="1 mm"),
         packing=rb.Positions(positions=[[0, 0, 0]]),
@@ -113,7 +113,7 @@ def test_both_engines_move_as_the_signal_says(rate: float | None, parts: dict[st
 
 @pytest.mark.parametrize("rate", [4500.0, 8000.0])
 def test_the_loss_stated_for_a_record_is_what_a_run_loses(rate: float) -> None:
-    """What a user's own record loses by straight lines between samples is what the note computes."""
+    """The loss of a record by linear interpolation between samples agrees with the note."""
     random = np.random.default_rng(5)
     count = round(0.5 * rate)
     frequency = np.fft.rfftfreq(count, 1 / rate)

@@ -1,4 +1,4 @@
-"""The seed's steel ball, centred, constant alpha, against a computation in 113-bit arithmetic."""
+"""The reference case, centred, with constant alpha, against a computation in 113-bit arithmetic."""
 
 import json
 from pathlib import Path
@@ -16,8 +16,8 @@ SAMPLES = np.array([row for row in REFERENCE["samples"] if row[0] <= HORIZON])
 
 @pytest.fixture(scope="module")
 def run() -> Any:
-    """Return the run up to the time that double precision can hold."""
-    return measures.simulate(cases.seed_case(duration=HORIZON + 0.05, times=SAMPLES[:, 0], mass=1.2))
+    """Return the run up to the time to which double precision is accurate."""
+    return measures.simulate(cases.reference_case(duration=HORIZON + 0.05, times=SAMPLES[:, 0], mass=1.2))
 
 
 def test_first_thirty_impacts_come_at_the_reference_times(run: Any) -> None:
@@ -36,7 +36,7 @@ def test_first_thirty_impacts_have_the_reference_speeds(run: Any) -> None:
 
 
 def test_structure_stays_within_a_nanometre(run: Any) -> None:
-    """The structure is within 1e-9 m of the reference as long as double precision can hold that."""
+    """The structure is within 1e-9 m of the reference while double precision permits it."""
     a = run.arrays
     at = np.searchsorted(a.time, SAMPLES[:, 0])
     assert a.time[at] == pytest.approx(SAMPLES[:, 0], rel=1e-15)

@@ -1,4 +1,4 @@
-"""What must not change the answer: mirrors, units, order of balls, a stop on the way, threads, processes."""
+"""Invariance under reflections, units, order of balls, restarts, threads and processes."""
 
 import hashlib
 import subprocess
@@ -17,8 +17,8 @@ TIMES = np.linspace(0, 0.5, 101)
 
 
 def short(sign: float = 1.0) -> Any:
-    """Return the seed's ball off centre, or its mirror image."""
-    return cases.seed_case(start=0.3 * sign, force=5000.0 * sign, duration=0.5, times=TIMES)
+    """Return the reference case with the ball off centre, or its mirror image."""
+    return cases.reference_case(start=0.3 * sign, force=5000.0 * sign, duration=0.5, times=TIMES)
 
 
 def row(sign: float = 1.0, order: int = 1) -> Any:
@@ -37,7 +37,7 @@ def row(sign: float = 1.0, order: int = 1) -> Any:
 
 
 def test_mirrored_case_is_the_mirrored_run() -> None:
-    """Start, pulse and motion change their sign together, bit for bit."""
+    """With reversed start and pulse the motion changes its sign bit for bit."""
     a, b = measures.simulate(short()).arrays, measures.simulate(short(-1.0)).arrays
     assert np.array_equal(a.displacement, -b.displacement)
     assert np.array_equal(a.ball_position, -b.ball_position)
@@ -85,15 +85,15 @@ def test_rescaled_units_give_the_rescaled_run(exact: bool) -> None:
 
 
 def test_run_split_in_a_flight_is_the_whole_run() -> None:
-    """A run ended in a flight and continued from its last state goes on as the unbroken one."""
-    log = measures.simulate(cases.seed_case(duration=0.3, times=[0.0])).arrays.impacts
+    """A run ended in a flight and continued from its last state agrees with the uninterrupted one."""
+    log = measures.simulate(cases.reference_case(duration=0.3, times=[0.0])).arrays.impacts
     middles = 0.5 * (log.time[:-1] + log.duration[:-1] + log.time[1:])
-    whole = measures.simulate(cases.seed_case(duration=0.3, times=middles)).arrays
+    whole = measures.simulate(cases.reference_case(duration=0.3, times=middles)).arrays
     # A flight that has the ball near the place where the cavity is at rest, as a start asks for.
     near = np.abs(whole.ball_position[1:-1, 0]) < 0.39e-3
     number = int(np.nonzero(near[4:])[0][0]) + 4
     split = float(middles[number])
-    first = measures.simulate(cases.seed_case(duration=split, times=[0.0])).arrays
+    first = measures.simulate(cases.reference_case(duration=split, times=[0.0])).arrays
     second = measures.simulate(
         rb.Case(
             structure=rb.SDOF(
@@ -120,16 +120,16 @@ def test_run_split_in_a_flight_is_the_whole_run() -> None:
 
 
 def test_output_times_do_not_change_the_run() -> None:
-    """Impacts are the same bits whatever output is asked for."""
-    few = measures.simulate(cases.seed_case(duration=1.0, times=[0.0])).arrays.impacts
-    many = measures.simulate(cases.seed_case(duration=1.0, times=np.linspace(0, 1, 5001))).arrays.impacts
+    """The bits of the impacts do not depend on the output."""
+    few = measures.simulate(cases.reference_case(duration=1.0, times=[0.0])).arrays.impacts
+    many = measures.simulate(cases.reference_case(duration=1.0, times=np.linspace(0, 1, 5001))).arrays.impacts
     assert few == many
 
 
 def fingerprint() -> str:
     """Return a digest of the bits of some runs."""
     digest = hashlib.sha256()
-    for case in (cases.seed_case(duration=1.0), row(), cases.five_balls(0.3)):
+    for case in (cases.reference_case(duration=1.0), row(), cases.five_balls(0.3)):
         a = rb.simulate(case).arrays
         for values in (a.displacement, a.ball_position, a.impacts.time, a.normal_loss):
             digest.update(np.ascontiguousarray(values).tobytes())
@@ -148,8 +148,8 @@ def test_other_process_gives_the_same_bits() -> None:
 
 
 def test_threads_give_the_same_bits() -> None:
-    """Many runs are the same bits on one thread, on two, and one by one, in the order of the cases."""
-    group = [cases.seed_case(start=s, duration=0.5, times=TIMES) for s in np.linspace(-0.9, 0.9, 16)]
+    """Many runs have the same bits on one thread, on two threads and one by one, in the order of the cases."""
+    group = [cases.reference_case(start=s, duration=0.5, times=TIMES) for s in np.linspace(-0.9, 0.9, 16)]
     one, two = rb.simulate_many(group, threads=1), rb.simulate_many(group, threads=2)
     for case, a, b in zip(group, one, two, strict=True):
         alone = rb.simulate(case).arrays

@@ -1,4 +1,4 @@
-"""Power laws and measured curves rebound as an independent integration of their equation says, in both engines."""
+"""The rebound with power laws and measured curves agrees with an independent integration in both engines."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_restitution_asked_for_is_met(exponent: float, ending: str) -> None:
 
 
 def test_hunt_and_crossley_lose_in_proportion_to_the_speed() -> None:
-    """Restitution is 1 - a V for slow impacts, with c = (3/2) a k, as Hunt and Crossley chose it."""
+    """Restitution is 1 - a V for slow impacts, with c = (3/2) a k, as in Hunt and Crossley."""
     a = 0.02
     law = rb.PowerLaw(damping_exponent=1.5, damping=1.5 * a * HERTZ)
     for speed in (0.5, 1.0):
@@ -139,7 +139,7 @@ MEASURED = rb.TabulatedNormal(
 
 
 def energy_left(speed: float) -> float:
-    """Return the restitution that the two measured curves give, by quadrature of SciPy's interpolation."""
+    """Return the restitution of the two measured curves, by quadrature of SciPy's interpolation."""
     from scipy.interpolate import PchipInterpolator
     from scipy.optimize import brentq
 
@@ -153,7 +153,7 @@ def energy_left(speed: float) -> float:
 
 @pytest.mark.parametrize("speed", [0.2, 1.0])
 def test_measured_curves_give_back_what_unloading_holds(speed: float) -> None:
-    """Restitution is the root of the ratio of the areas under both curves, in both engines; the ledger has the rest."""
+    """Restitution is the root of the ratio of the areas under both curves, in both engines; the ledger contains the loss."""
     expected = energy_left(speed)
     assert expected < 0.95
     run = impact(MEASURED, speed)
@@ -169,7 +169,7 @@ def test_measured_curves_give_back_what_unloading_holds(speed: float) -> None:
 
 
 def test_a_measured_curve_without_unloading_is_elastic() -> None:
-    """Nothing is lost; the largest overlap is where the work of loading has taken up the energy."""
+    """There is no loss; at the largest overlap the work of loading equals the kinetic energy."""
     law = rb.TabulatedNormal(overlap=tuple(OVERLAP), force=tuple(FORCE))
     run = impact(law)
     assert float(run.impacts.separation_speed[0]) == pytest.approx(SPEED, rel=1e-9)
@@ -179,7 +179,7 @@ def test_a_measured_curve_without_unloading_is_elastic() -> None:
 
 
 def test_user_laws_work_with_friction_in_tables_and_sweeps(tmp_path: Any) -> None:
-    """A case file holds them, a sweep varies their numbers, and balls rub as with other laws."""
+    """The laws work in case files, in sweeps of their coefficients, and with friction."""
     for law in (rb.PowerLaw(restitution=0.8, impact_speed=1.0), MEASURED):
         run = particle(law, friction=0.3, rolling=0.01)
         case = rb.Case.from_toml(run.case_toml)
@@ -231,6 +231,6 @@ def test_power_laws_that_are_not_determined_are_refused(values: dict[str, Any], 
     ],
 )
 def test_curves_that_make_no_sense_are_refused(values: dict[str, Any]) -> None:
-    """Lengths, order, beginnings, the meeting of both curves and creation of energy are checked."""
+    """Lengths, order, begin, common end of both curves, and generation of energy are checked."""
     with pytest.raises(rb.CaseError):
         rb.TabulatedNormal(**values)

@@ -1,1 +1,1 @@
-"""Verification of particles in space."""
+"""Verification of the 3-D engine."""

@@ -1,4 +1,4 @@
-"""Contacts and forces of elastic, smooth spheres, by looking at every pair and every wall."""
+"""Contacts and forces of elastic, frictionless spheres, by a search through all pairs and walls."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Found:
-    """What touches: pairs (first, second), second counted on beyond the particles for walls; overlaps, forces on each."""
+    """Contacts: pairs (first, second), where walls are numbered after the particles; overlaps; force on each particle."""
 
     pairs: set[tuple[int, int]]
     doubtful: set[tuple[int, int]]

@@ -1,4 +1,4 @@
-"""Cases of particles in space, built through the public interface only."""
+"""Cases of the 3-D engine, built through the public interface only."""
 
 import math
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ HERTZ_TIME = 3.2180655
 
 
 def run(case: Any, *, closes: bool = True) -> Any:
-    """Run a case that must finish; steps that are long on purpose leave the ledger more open than the engine likes."""
+    """Run a case that must finish; with long steps the energy residual may exceed the limit of the engine."""
     result = rb.simulate(case)
     if not result.ok and (closes or result.status != "energy_error"):
         raise AssertionError(f"{result.status}: {result.message}")
@@ -24,7 +24,7 @@ def run(case: Any, *, closes: bool = True) -> Any:
 
 
 def dem_of(case: Any, threads: int = 1) -> Any:
-    """Return one of the core's simulations of a case, and the number of its last step."""
+    """Return the simulation object of the core for a case, and the number of its last step."""
     prepared = prepare(case)
     packed, step = pack_particles(prepared), prepared.step
     dem = _core.Dem(packed)
@@ -34,7 +34,7 @@ def dem_of(case: Any, threads: int = 1) -> Any:
 
 @dataclass(frozen=True)
 class Ball:
-    """One particle: size, material, and how it moves at the start."""
+    """One particle: size, material and initial motion."""
 
     radius: float
     position: Sequence[float] = (0.0, 0.0, 0.0)
@@ -44,17 +44,17 @@ class Ball:
 
     @property
     def stuff(self) -> Any:
-        """The material itself."""
+        """Material of the ball."""
         return rb.materials()[self.material] if isinstance(self.material, str) else self.material
 
     @property
     def mass(self) -> float:
-        """Of the ball [kg]."""
+        """Mass of the ball [kg]."""
         return self.stuff.density * 4 / 3 * math.pi * self.radius**3
 
 
 def damper(balls: Sequence[Ball], *, one_kind: bool = False, **options: Any) -> Any:
-    """Return a damper with these balls, each a species of its own, or all of the first one's material as one species."""
+    """Return a damper with these balls: one species each, or all as one species of the material of the first."""
     packing: dict[str, Any] = {
         "positions": [list(ball.position) for ball in balls],
         "velocities": [list(ball.velocity) for ball in balls],
@@ -73,7 +73,7 @@ def damper(balls: Sequence[Ball], *, one_kind: bool = False, **options: Any) -> 
 
 
 def case(balls: Sequence[Ball], *, dt: float, steps: int, samples: int = 1, **options: Any) -> Any:
-    """Return balls in a cavity that does not move, followed for a number of steps."""
+    """Return balls in a fixed cavity, simulated for a number of steps."""
     structure = options.pop("structure", rb.Fixed())
     own = {key: options.pop(key) for key in ("load", "base") if key in options}
     # Rounding must not make the engine take one step more between two samples.
@@ -88,12 +88,12 @@ def case(balls: Sequence[Ball], *, dt: float, steps: int, samples: int = 1, **op
 
 
 def reduced(first: float, second: float) -> float:
-    """Half the harmonic mean."""
+    """Return half the harmonic mean."""
     return 1 / (1 / first + 1 / second)
 
 
 def stiffness(first: Ball, second: Ball | None = None, wall: Any = None) -> float:
-    """Hertz stiffness A of two balls, or of one against a wall of a material or "rigid" (None: its own material)."""
+    """Return the Hertz stiffness A of two balls, or of one and a wall of a material or "rigid" (None: its own material)."""
 
     def compliance(material: Any) -> float:
         return (1 - material.poisson**2) / material.young
@@ -107,7 +107,7 @@ def stiffness(first: Ball, second: Ball | None = None, wall: Any = None) -> floa
 
 
 def contact_time(first: Ball, second: Ball | None, speed: float, wall: Any = None) -> float:
-    """How long an elastic Hertz contact lasts [s]."""
+    """Return the duration of an elastic Hertz contact [s]."""
     mass = first.mass if second is None else reduced(first.mass, second.mass)
     return HERTZ_TIME * (mass / stiffness(first, second, wall)) ** 0.4 * speed**-0.2
 
@@ -117,7 +117,7 @@ def head_on(
 ) -> Any:
     """Return a ball that meets another one, or a wall if there is none, along x; five steps and a `phase` after the start.
 
-    Alone it has all of the speed, else each of them half of it. The run goes on for `lasts` after they touch.
+    A single ball has the whole speed, each of two balls half of it. The run lasts for `lasts` after first touch.
     """
     gap = (5 + phase) * dt * speed
     share = 1.0 if second is None else 0.5
@@ -130,7 +130,7 @@ def head_on(
 
 
 def rebound(result: Any) -> float:
-    """Relative velocity along x at the end: of two balls, or of one [m/s]."""
+    """Return the relative velocity along x at the end, of two balls or of one [m/s]."""
     v = result.arrays.particles.velocity[:, 0]
     return float(-v[0] if v.size == 1 else v[1] - v[0])
 

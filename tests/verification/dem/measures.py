@@ -1,4 +1,4 @@
-"""What runs of particles in space give where an exact value is known: shared by the tests and by the table of the docs."""
+"""Results of the 3-D engine for which an exact value is known, for the tests and the verification table."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -17,7 +17,7 @@ from . import cases
 from .cases import Ball
 
 FINE = 2000
-"""Steps in a contact."""
+"""Time steps per contact."""
 
 
 def stuff(young: float, poisson: float, density: float) -> Any:
@@ -31,7 +31,7 @@ IMPACTS: dict[str, tuple[Ball, bool, float]] = {
     "aluminium on a rigid plane": (Ball(0.1, material=stuff(70e9, 0.30, 2699)), True, 0.2),
     "magnesium on a rigid plane": (Ball(0.1, material=stuff(40e9, 0.35, 1800)), True, 0.2),
 }
-"""Tests 1 and 2 of Chung and Ooi: the ball, whether it hits a plane, and the speed at which two come closer."""
+"""Tests 1 and 2 of Chung and Ooi: the ball, whether it hits a plane, and the approach speed."""
 
 
 def elastic_impact(ball: Ball, plane: bool, speed: float) -> tuple[float, float, float]:
@@ -69,8 +69,8 @@ def elastic_impacts() -> Iterator[Line]:
             yield Line("dem", f"{name}: {what}", a, b, 2e-6)
 
 
-def asked() -> Iterator[Line]:
-    """Yield the restitution that comes out where one is asked for."""
+def prescribed_restitution() -> Iterator[Line]:
+    """Yield the restitution of impacts with a prescribed restitution."""
     ball = Ball(0.01)
     time = cases.contact_time(ball, None, 1.0)
     for e in (0.1, 0.2, 0.4, 0.6, 0.8, 0.99):
@@ -80,11 +80,11 @@ def asked() -> Iterator[Line]:
             got = cases.rebound(cases.run(case))
             # Orders and factors: see test_normal.
             allowed = 2.4 * FINE**-2 if ending == "zero_force" else 0.38 * FINE**-1.25
-            yield Line("dem", f"e = {e} asked for, {ending.replace('_', ' ')}", e, got, allowed / e)
+            yield Line("dem", f"e = {e} prescribed, {ending.replace('_', ' ')}", e, got, allowed / e)
 
 
 def contact_end(case: Any, ball: Ball, ending: str, about: float) -> float:
-    """Return when the force of a ball on the wall at +x ends [s], to the second order; `about` then at the earliest."""
+    """Return the time at which the force of a ball on the wall at +x ends [s], to second order; not before `about`."""
     dem, last = cases.dem_of(case)
     if ending == "zero_overlap":
         dem.run(last)
@@ -102,7 +102,7 @@ def contact_end(case: Any, ball: Ball, ending: str, about: float) -> float:
 
 
 def damped() -> Iterator[Line]:
-    """Yield contact times of Tsuji's law, and a restitution next to nothing."""
+    """Yield contact times of Tsuji's law, and a restitution close to zero."""
     ball = Ball(0.01)
     elastic = cases.contact_time(ball, None, 1.0)
     unit = (ball.mass / cases.stiffness(ball)) ** 0.4
@@ -112,7 +112,7 @@ def damped() -> Iterator[Line]:
             law = rb.Tsuji(alpha=zeta * math.sqrt(5), ending=ending)
             case = cases.head_on(ball, None, 1.0, dt=elastic / FINE, phase=0.5, lasts=1.5 * exact, contact=law)
             time = contact_end(case, ball, ending, 0.99 * exact) - 5.5 * elastic / FINE
-            # Order 2; measured with steps of 1/500 to 1/4000: up to 7.2, and 2.6 where the flight tells the end.
+            # Order 2; factors measured with steps of 1/500 to 1/4000: up to 7.2, and 2.6 if the end follows from the flight.
             allowed = (8.0 if ending == "zero_force" else 3.2) * FINE**-2
             yield Line("dem", f"zeta = {zeta}, {ending.replace('_', ' ')}: contact time", exact, time, allowed)
     law = rb.Tsuji(alpha=0.9 * math.sqrt(5), ending="zero_overlap")
@@ -161,7 +161,7 @@ def oblique_impact(angle: float, per_contact: int, **options: Any) -> tuple[floa
 def oblique_law(
     angle: float, e: float, damping: float, steps: int = 4000, keeps: str = "eased"
 ) -> tuple[float, float, float]:
-    """Return tangential and normal velocity and spin from a fine integration of the law, or of one like it."""
+    """Return tangential and normal velocity and spin from an accurate integration of the law or of a variant of it."""
     down = OBLIQUE_SPEED * math.cos(angle)
     law = oblique.Impact(
         alpha=float(alpha_of_restitution(e)),
@@ -176,7 +176,7 @@ def oblique_law(
 
 
 def oblique_impacts() -> Iterator[Line]:
-    """Yield tangential restitution and spin of test 4 of Chung and Ooi, against the closed form and a fine integration."""
+    """Yield tangential restitution and spin of test 4 of Chung and Ooi, against closed form and accurate integration."""
     for degrees in (10, 20, 30, 50, 70):
         angle = math.radians(degrees)
         before = OBLIQUE_SPEED * math.sin(angle)
@@ -201,7 +201,7 @@ def ball_that_falls(e: float, height: float, end: float, dt: float) -> Any:
 
 
 def first_touch(dt: float = 1e-5) -> float:
-    """Return when the ball of that test is first known to touch, less half a step [s]."""
+    """Return the time of the first step in contact of that test, less half a step [s]."""
     dem, last = cases.dem_of(ball_that_falls(0.9, 2.0, 0.3, dt))
     for step in range(round(0.28 / dt), last):
         dem.run(step)
@@ -222,7 +222,7 @@ def falling(e: float, dt: float = 1e-5) -> tuple[float, float, float]:
 
 
 def bounce(e: float) -> tuple[float, float, float]:
-    """Return the same, from the swing of a spring and dashpot under gravity until the overlap is zero again."""
+    """Return the same from the exact solution of spring and dashpot under gravity until the overlap is zero again."""
     mass, stiffness = 2600 * 4 / 3 * math.pi * 0.1**3, 1e4
     approach = math.sqrt(2 * 9.81 * 0.4)
     zeta = -math.log(e) / math.hypot(math.pi, math.log(e))
@@ -241,7 +241,7 @@ def bounce(e: float) -> tuple[float, float, float]:
 
 def falling_ball() -> Iterator[Line]:
     """Yield first touch, speeds and contact time of MFiX's falling ball."""
-    # Known to half a step.
+    # Accurate to half a step.
     yield Line("dem", "ball falling on a linear spring: first touch", math.sqrt(2 * 0.4 / 9.81), first_touch(), 1.8e-5)
     for e in (0.6, 0.9):
         for what, a, b in zip(("touches at", "leaves at", "contact time"), bounce(e), falling(e), strict=True):
@@ -280,7 +280,7 @@ def along(result: Any) -> tuple[Any, Any]:
 
 
 def slip_to_roll() -> Iterator[Line]:
-    """Yield velocity and time of a ball that slips till it rolls (MFiX's test DEM04)."""
+    """Yield velocity and time of a ball that slips until it rolls (MFiX's test DEM04)."""
     start, friction = 1.0, 0.2
     result = on_floor(start, 0.0, friction, duration=0.25)
     _, speed = along(result)
@@ -295,7 +295,7 @@ def slip_to_roll() -> Iterator[Line]:
 
 
 def rolls_out() -> Iterator[Line]:
-    """Yield how far a ball rolls until rolling resistance stops it, and how fast it gets on a slope."""
+    """Yield the distance that a ball rolls with rolling resistance, and its velocity on a slope."""
     start, resistance = 0.3, 0.05
     brake = 5 / 7 * resistance * GRAVITY
     path, _ = along(on_floor(start, start / 0.02, 0.5, rolling=rb.Rolling(resistance, damping=0.3)))
@@ -312,7 +312,7 @@ def rolls_out() -> Iterator[Line]:
 
 
 def shaken_ball(gamma: float, per_contact: int = 400) -> Any:
-    """Return the run of a ball on a shaker of 20 Hz whose contact is short and takes nearly all, and its amplitude."""
+    """Return the run of a ball on a shaker of 20 Hz with a short, strongly damped contact, and the amplitude."""
     frequency, radius, half, cycles, time = 20.0, 2e-3, 0.02, 6, 1e-4
     amplitude = gamma * GRAVITY / (2 * math.pi * frequency) ** 2
     samples = 400 * cycles
@@ -372,7 +372,7 @@ def hydrostatic() -> Iterator[Line]:
     """Yield the load of a settled fill on its cavity."""
     for name in FILLED:
         force, weight = settled(name)
-        # A bed comes to rest by and by: some tenths of a second after it was settled a ball may still roll.
+        # A bed comes to rest slowly: some tenths of a second after settling a ball may still roll.
         yield Line("dem", f"two hundred spheres settled in a {name}: load over weight", 1.0, -force[2] / weight, 1e-6)
 
 
@@ -386,7 +386,7 @@ FLIGHT, PLAY, TIMES = 0.02, 5e-4, 100
 
 
 def one_ball(law: str, dt: float) -> tuple[Any, Any]:
-    """Return displacement of the structure and place of the ball, (T,) each, by the dem engine."""
+    """Return displacement of the structure and position of the ball, (T,) each, by the 3-D engine."""
     result = cases.run(
         cases.case(
             [Ball(0.01, (0, 0, 0), (1.0, 0, 0))],
@@ -402,7 +402,7 @@ def one_ball(law: str, dt: float) -> tuple[Any, Any]:
 
 
 def one_ball_exactly(law: str) -> tuple[Any, Any, int]:
-    """Return the same by the impact engine, and how many impacts there are."""
+    """Return the same by the 1-D engine, and the number of impacts."""
     arrays = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass=2.0, stiffness=2e5, damping=8.0),
@@ -417,7 +417,7 @@ def one_ball_exactly(law: str) -> tuple[Any, Any, int]:
 
 
 def in_one_direction() -> Iterator[Line]:
-    """Yield where one ball and its structure are after eight impacts or more, against the impact engine."""
+    """Yield positions of one ball and its structure after eight impacts or more, against the 1-D engine."""
     for law in LAWS:
         displacement, place, _ = one_ball_exactly(law)
         ours, flown = one_ball(law, 2.5e-8)
@@ -430,7 +430,7 @@ def in_one_direction() -> Iterator[Line]:
 
 ALL: tuple[Callable[[], Iterator[Line]], ...] = (
     elastic_impacts,
-    asked,
+    prescribed_restitution,
     damped,
     yielding,
     oblique_impacts,

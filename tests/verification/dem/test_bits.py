@@ -1,4 +1,4 @@
-"""The same bits: for any number of threads, after a stop and a restart, for any output."""
+"""Bitwise reproducibility for any number of threads, after stop and restart, and for any output."""
 
 import os
 import subprocess
@@ -27,7 +27,7 @@ LAWS: dict[str, tuple[Any, Any]] = {
 def shaken(
     law: str, *, duration: float = 0.02, rate: float = 2000.0, threads: int | None = None, count: int = 400
 ) -> Any:
-    """Return two cavities of rough, soft spheres of two kinds on a structure that shakes; what lies and what flies."""
+    """Return two cavities of soft spheres of two species with friction on a vibrating structure, at rest and moving."""
     soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25, yield_stress=5e6)
     contact, friction = LAWS[law]
     common: dict[str, Any] = {
@@ -62,7 +62,7 @@ SIZES = rb.NormalSizes(mean="3 mm", deviation="0.3 mm", smallest="2.5 mm", large
 
 
 def flat(value: Any) -> bytes:
-    """Return all bits of arrays in results of the core and lists of them."""
+    """Return the bits of all arrays in results of the core and lists of them."""
     if isinstance(value, _core.Node):
         names = sorted(value.fields().keys() - {"seconds", "memory_bytes"})
         return b"".join(flat(getattr(value, name)) for name in names)
@@ -72,7 +72,7 @@ def flat(value: Any) -> bytes:
 
 
 def end(dem: Any) -> bytes:
-    """Return all bits that tell of a simulation so far, but for its samples."""
+    """Return the bits of all results of a simulation except its samples."""
     return flat(dem.state()) + flat(dem.counts()) + flat([dem.contacts(k) for k in range(2)])
 
 
@@ -90,7 +90,7 @@ def test_threads_give_the_same_bits(law: str) -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 def test_restart_gives_the_same_bits(law: str) -> None:
-    """A run that goes on from a saved state, with other threads, has the bits of the unbroken one, history and all."""
+    """A run from a saved state with another number of threads has the bits of the uninterrupted run, including history."""
     case = shaken(law, duration=0.01)
     whole, last = cases.dem_of(case)
     for until in (7, 7, last // 3, last // 2):
@@ -112,7 +112,7 @@ def test_restart_gives_the_same_bits(law: str) -> None:
 
 
 def test_very_different_sizes_give_the_same_bits() -> None:
-    """A few large spheres among many small ones: any number of threads, and a run that goes on, give the same bits."""
+    """A few large spheres among many small ones give the same bits for any number of threads and after a restart."""
     soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25)
     counts = {"1.5 mm": 1500, "3.5 mm": 40, "12 mm": 4}
     kinds = [rb.Particles(name=size, material=soft, diameter=size, count=count) for size, count in counts.items()]
@@ -142,8 +142,8 @@ def test_very_different_sizes_give_the_same_bits() -> None:
 
 
 @pytest.mark.skipif(CORES == 0, reason="cores of a process can be chosen on Linux only")
-def test_teams_on_one_core_give_the_same_bits() -> None:
-    """Members who wait for each other on a single core let each other have it, compute the same bits, and keep to it."""
+def test_threads_on_one_core_give_the_same_bits() -> None:
+    """Threads that share a single core yield it to each other, compute the same bits, and do not leave the core."""
     before = os.sched_getaffinity(0)
     told = []
     try:
@@ -159,7 +159,7 @@ def test_teams_on_one_core_give_the_same_bits() -> None:
 
 
 def large_bed(count: int, edge: float, *, mass: float, duration: float, rate: float) -> Any:
-    """Return soft spheres that fall in a cube on a structure that was kicked, of 40 kN/m a kilogram."""
+    """Return soft spheres that fall in a cube on a moving structure with 40 kN/m per kilogram."""
     soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25)
     return rb.Case(
         structure=rb.SDOF(mass=mass, stiffness=4e4 * mass, velocity=1.0),
@@ -177,7 +177,7 @@ def large_bed(count: int, edge: float, *, mass: float, duration: float, rate: fl
 
 
 def test_large_beds_give_the_same_bits() -> None:
-    """Beds beyond the caches, which take their memory from a store of their own, do not depend on threads or stops."""
+    """Results of beds that exceed the caches do not depend on threads or stops."""
     count = 21_000
     case = large_bed(count, 0.11, mass=5.0, duration=0.008, rate=1000.0)
     one, last = cases.dem_of(case)
@@ -198,7 +198,7 @@ def test_large_beds_give_the_same_bits() -> None:
 
 @pytest.mark.slow
 def test_a_million_spheres() -> None:
-    """A million spheres that begin to pile up on a floor run as few do: the ledger closes, with less than 1 kB for each."""
+    """A million spheres that fall on a floor run with a closed ledger and less than 1 kB per sphere."""
     count = 1_000_000
     run = rb.simulate(large_bed(count, 0.32, mass=50.0, duration=0.001, rate=10_000.0))
     assert run.ok and run.energy_residual < 0.01
@@ -207,7 +207,7 @@ def test_a_million_spheres() -> None:
 
 
 def test_restart_in_another_process_gives_the_same_bits(tmp_path: Path) -> None:
-    """Another process that goes on from a file of the state ends with the bits of this one."""
+    """Another process that continues from a file of the state ends with the same bits."""
     case = shaken("Hertz", duration=0.01)
     dem, last = cases.dem_of(case)
     dem.run(last // 2)
@@ -215,7 +215,7 @@ def test_restart_in_another_process_gives_the_same_bits(tmp_path: Path) -> None:
     dem.run(last)
     code = (
         "import sys, importlib; sys.path.insert(0, sys.argv[1]);"
-        "importlib.import_module('verification.dem.test_bits').go_on(*sys.argv[2:])"
+        "importlib.import_module('verification.dem.test_bits').finish(*sys.argv[2:])"
     )
     folder = Path(__file__).resolve().parents[2]
     command = [sys.executable, "-c", code, str(folder), str(tmp_path / "state.npy"), str(tmp_path / "end")]
@@ -223,7 +223,7 @@ def test_restart_in_another_process_gives_the_same_bits(tmp_path: Path) -> None:
     assert (tmp_path / "end").read_bytes() == end(dem)
 
 
-def go_on(state: str, target: str) -> None:
+def finish(state: str, target: str) -> None:
     """Finish the case of the test above from a saved state, and write the bits of its end."""
     dem, last = cases.dem_of(shaken("Hertz", duration=0.01))
     dem.restore(np.load(state))
@@ -233,7 +233,7 @@ def go_on(state: str, target: str) -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 def test_output_does_not_change_the_run(law: str) -> None:
-    """Whether every step is sampled or only the last one: the end has the same bits."""
+    """The end has the same bits whether every step is sampled or only the last one."""
     case = shaken(law, duration=0.004, rate=500.0)
     prepared = cases.prepare(case)
     packed, step = cases.pack_particles(prepared), prepared.step
@@ -246,8 +246,8 @@ def test_output_does_not_change_the_run(law: str) -> None:
     assert ends[0] == ends[1]
 
 
-def test_contacts_of_a_stopped_run_are_not_told_in_part() -> None:
-    """Where a run was stopped in between, single contacts are refused; they are there where the next one is asked to end."""
+def test_contacts_of_a_stopped_run_are_refused() -> None:
+    """After an early stop the contact forces are refused; they are available at the requested end of the next run."""
     at_rest = rb.Case(
         structure=rb.Fixed(),
         damper=rb.ParticleDamper(
@@ -266,7 +266,7 @@ def test_contacts_of_a_stopped_run_are_not_told_in_part() -> None:
     dem.run(2000)  # however soon it is stopped then, all that lie on each other touch
     for _ in range(3):  # at times as many touch as before
         assert not dem.run(last, lambda _: False)
-        with pytest.raises(RuntimeError, match="asked to end"):
+        with pytest.raises(RuntimeError, match="contact forces"):
             dem.contacts(0)
         dem.run(dem.step + 1)
         assert len(dem.contacts(0).first) > 50
@@ -274,7 +274,7 @@ def test_contacts_of_a_stopped_run_are_not_told_in_part() -> None:
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_a_run_that_is_stopped_again_and_again_gives_the_same_bits(threads: int) -> None:
-    """Wherever a team is asked to stop, none of it is ahead, and the run goes on from there as if it never had."""
+    """After a stop at any step all workers are at the same step, and the run continues with the same bits."""
     case = shaken("Hertz", rate=500.0, duration=0.1)  # many times as long as it takes to be heard
     whole, last = cases.dem_of(case)
     whole.run(last)
@@ -288,8 +288,8 @@ def test_a_run_that_is_stopped_again_and_again_gives_the_same_bits(threads: int)
 
 @pytest.mark.skipif(CORES == 0, reason="cores of a process can be chosen on Linux only")
 @pytest.mark.skipif(CORES == 1, reason="a team is held up on cores that it shares: two are needed")
-def test_a_team_that_is_held_up_lets_one_go_on() -> None:
-    """Where others have the cores of a team, one member goes on alone for a while, and the bits stay."""
+def test_contention_leaves_one_worker() -> None:
+    """If other programs use the cores, a single worker runs for a while, with the same bits."""
     before = os.sched_getaffinity(0)
     command = [sys.executable, "-c", "import time\nend = time.time() + 30\nwhile time.time() < end: pass"]
     case = shaken("Hertz", duration=0.02)

@@ -1,4 +1,4 @@
-"""Momentum and angular momentum are kept to rounding, whatever the laws; forces on the cavity answer those on particles."""
+"""Conservation of momentum and angular momentum to rounding for all laws; action and reaction at the cavity."""
 
 from typing import Any
 
@@ -27,7 +27,7 @@ LAWS: dict[str, dict[str, Any]] = {
 def cloud(
     law: str, *, inwards: float = 0.0, random: float = 0.0, size: float = 0.04, count: int = 120, **options: Any
 ) -> Any:
-    """Return a case of spheres of many sizes that turn, and fly at random and towards the middle."""
+    """Return a case of spinning spheres of many sizes that fly at random and towards the centre."""
     rng = np.random.default_rng(3)
     structure, duration = options.pop("structure", rb.Fixed()), options.pop("duration", 0.02)
     method, rate = options.pop("method", rb.Dem()), options.pop("rate", 5000.0)
@@ -57,7 +57,7 @@ def momenta(now: Any, contents: Any) -> tuple[Any, Any]:
 
 @pytest.mark.parametrize("law", LAWS)
 def test_particles_alone_keep_both_momenta(law: str) -> None:
-    """Spheres that collide far from walls keep momentum and angular momentum to rounding, friction and rolling included."""
+    """Spheres that collide far from walls conserve momentum and angular momentum to rounding, with friction and rolling."""
     case = cloud(law, inwards=2.0, random=0.3, size=0.4)
     contents = case.dampers[0].contents
     dem, last = cases.dem_of(case)
@@ -88,7 +88,7 @@ FREE = rb.Modal(
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("cavity", [rb.Box(size=(0.04,) * 3), rb.SphericalCavity(radius=0.04)], ids=["box", "sphere"])
 def test_a_free_cavity_and_its_particles_keep_their_momentum(law: str, cavity: Any) -> None:
-    """A cavity that nothing holds and what is in it keep their momentum in all three directions, to rounding."""
+    """A free cavity and its particles conserve their momentum in all three directions to rounding."""
     case = cloud(law, random=1.0, cavity=cavity, structure=FREE)
     result = cases.run(case)
     arrays = result.arrays
@@ -100,7 +100,7 @@ def test_a_free_cavity_and_its_particles_keep_their_momentum(law: str, cavity: A
 
 
 def test_cavities_at_several_points_keep_the_momentum_of_each_mode() -> None:
-    """What three cavities of unlike shape at three points of a free structure take from its modes, their particles have."""
+    """Different cavities at three points of a free structure conserve, with their particles, the momentum of each mode."""
     shapes = {
         "a": [[2.0, 0.3, 0.5], [0.2, 1.4, 1.0]],
         "b": [[0.3, 2.0, 0.1], [1.0, 0.0, -0.5]],
@@ -134,7 +134,7 @@ def test_cavities_at_several_points_keep_the_momentum_of_each_mode() -> None:
 
 @pytest.mark.parametrize("law", LAWS)
 def test_force_on_the_cavity_is_the_change_of_momentum(law: str) -> None:
-    """In each step the mean force on a cavity is the rate at which its particles lose momentum, and their weight."""
+    """In each step the mean force on a cavity is the loss rate of the momentum of its particles plus their weight."""
     dt = 4e-6
     case = cloud(
         law,
@@ -162,7 +162,7 @@ def test_force_on_the_cavity_is_the_change_of_momentum(law: str) -> None:
     "cavity", [rb.Box(size=(0.04,) * 3), rb.Cylinder(radius=0.027, length=0.041)], ids=["box", "can"]
 )
 def test_moment_on_the_cavity_is_the_change_of_angular_momentum(law: str, cavity: Any) -> None:
-    """In each step the mean moment on a cavity is that of the weight in it less what angular momentum its particles gain."""
+    """In each step the mean moment on a cavity is that of the weight less the rate of the particles' angular momentum."""
     gravity, dt, steps = np.array([1.0, 2.0, -9.81]), 4e-6, 600
     case = cloud(
         law,

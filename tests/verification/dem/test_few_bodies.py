@@ -1,7 +1,7 @@
-"""Three balls in a cavity on three modes: the engine against an independent program written from the documents alone.
+"""Three balls in a cavity on three modes: the engine against an independent program written from the documentation only.
 
-All that acts at once is checked here together: round and flat walls, modes in space, gravity, a pulse, friction, rolling
-resistance, laws of restitution by speed and laws of their own at walls, losses by channel and by partner.
+The cases combine curved and flat walls, spatial modes, gravity, a pulse, friction, rolling resistance, velocity-dependent
+restitution, separate laws at walls, and losses by type and partner.
 """
 
 from dataclasses import dataclass, field
@@ -43,9 +43,9 @@ def pulse(t: float) -> float:
 
 @dataclass(frozen=True)
 class Setup:
-    """One case, for both programs: laws among balls and at walls, how long it lasts, and how well both agree.
+    """One case for both programs: laws between balls and at walls, duration, and tolerance.
 
-    `step` is that of the independent program [s], `touches` are those of two balls and of a ball and a wall.
+    `step` is that of the independent program [s]; `touches` are the first touches between balls and at walls.
     """
 
     cavity: Any
@@ -113,8 +113,8 @@ SETUPS = {
 }
 
 
-def by_engine(setup: Setup) -> Any:
-    """Return what the engine computes."""
+def run_engine(setup: Setup) -> Any:
+    """Return the results of the engine."""
     wall = "rigid" if setup.wall is None else MATERIALS[setup.wall]
     balls = [cases.Ball(b.radius, b.position, b.velocity, b.spin, MATERIALS[b.matter]) for b in BALLS]
     laws = {"contact": setup.contact, "wall_contact": setup.wall_contact} | setup.options
@@ -137,8 +137,8 @@ def by_engine(setup: Setup) -> Any:
     )
 
 
-def by_hand(setup: Setup) -> Bodies:
-    """Return what the independent program computes."""
+def run_independently(setup: Setup) -> Bodies:
+    """Return the results of the independent program."""
     bodies = Bodies(BALLS, setup.walls, setup.wall, MODES, setup.laws, GRAVITY, pulse, TOWARDS)
     for end in (3e-3, 7e-3, setup.until):
         bodies.run(end, setup.step, 1e-4)
@@ -146,7 +146,7 @@ def by_hand(setup: Setup) -> Bodies:
 
 
 def differences(bodies: Bodies, arrays: Any) -> dict[str, float]:
-    """Return the largest difference of each result, over the largest of its kind: energies over all there is."""
+    """Return the largest relative difference of each result; energies relative to the total energy."""
     x, v, w, q = (bodies.part(bodies.state, name) for name in ("x", "v", "w", "q"))
     u = q @ bodies.shape
     pairs = {
@@ -166,9 +166,9 @@ def differences(bodies: Bodies, arrays: Any) -> dict[str, float]:
 
 @pytest.mark.parametrize("name", SETUPS)
 def test_three_balls_move_as_in_an_independent_program(name: str) -> None:
-    """After eight or nine contacts, places, velocities, spins, motion of the cavity, work, energies and losses agree."""
+    """After eight or nine contacts, positions, velocities, spins, motion of the cavity, work, energies and losses agree."""
     setup = SETUPS[name]
-    ours, theirs = by_hand(setup), by_engine(setup)
+    ours, theirs = run_independently(setup), run_engine(setup)
     counts = (theirs.counts["first_touches_particle"], theirs.counts["first_touches_wall"])
     assert counts == setup.touches
     assert len(ours.touches) == sum(counts)

@@ -1,4 +1,4 @@
-"""The ledger of particles in space closes at the second order of the step, and no channel ever gives back."""
+"""The ledger of the 3-D engine closes at second order of the step, and no loss is negative."""
 
 from typing import Any
 
@@ -31,8 +31,8 @@ DRIVES: dict[str, dict[str, Any]] = {
 }
 
 
-def flown(law: str, dt: float, drive: str = "a start") -> Any:
-    """Return the run of a hundred and twenty spheres that are driven somehow, with gravity."""
+def run_spheres(law: str, dt: float, drive: str = "a start") -> Any:
+    """Return the run of a hundred and twenty spheres with gravity and a type of excitation."""
     case = cloud(
         law, random=1.0, gravity=(1.0, 0, -9.81), duration=0.0048, rate=6250.0, method=rb.Dem(dt=dt * (1 + 1e-9))
     )
@@ -44,18 +44,18 @@ def flown(law: str, dt: float, drive: str = "a start") -> Any:
     ("law", "drive"), [*((law, "a start") for law in LAWS), *(("rough", drive) for drive in list(DRIVES)[1:])]
 )
 def test_ledger_closes_at_second_order(law: str, drive: str) -> None:
-    """At all samples what was put in, lost and kept balances, four times as well with half the step."""
-    coarse, fine = (flown(law, dt, drive).energy_residual for dt in (4e-6, 5e-7))
+    """At all samples supplied, lost and stored energy balance; the residual is four times smaller with half the step."""
+    coarse, fine = (run_spheres(law, dt, drive).energy_residual for dt in (4e-6, 5e-7))
     assert coarse < 2e-3
-    # Without dashpots it is the order 5/2 to 3 of Verlet's energy.
+    # Without dashpots the order is 5/2 to 3, that of the energy of Verlet's method.
     order = np.log2(coarse / fine) / 3
     assert order == pytest.approx(2.7 if law == "yielding" else 2, abs=0.35)
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_no_channel_gives_back(law: str) -> None:
-    """What is lost in each channel, among particles and at walls, is never negative and never falls."""
-    arrays = flown(law, 4e-6).arrays
+def test_no_loss_decreases(law: str) -> None:
+    """Each loss, between particles and at walls, is never negative and never decreases."""
+    arrays = run_spheres(law, 4e-6).arrays
     for name in CHANNELS:
         lost = getattr(arrays, name)
         assert lost.min() >= 0, name
@@ -68,7 +68,7 @@ def test_no_channel_gives_back(law: str) -> None:
 @pytest.mark.parametrize("law", ["Hertz", "linear"])
 @pytest.mark.parametrize("e", [0.1, 0.3, 0.6, 0.9])
 def test_ledger_of_one_impact_closes(law: str, e: float) -> None:
-    """With the automatic step a single impact closes to a hundredth of its energy, however much it loses."""
+    """With the automatic step a single impact closes to a hundredth of its energy, whatever its loss."""
     ball = Ball(2e-3)
     contact = rb.Tsuji(restitution=e) if law == "Hertz" else rb.Linear(contact_time="10 us", restitution=e)
     for gap in np.linspace(1.00, 1.05, 7):
@@ -82,8 +82,8 @@ def test_ledger_of_one_impact_closes(law: str, e: float) -> None:
 
 
 @pytest.mark.parametrize("law", ["rough", "rolling"])
-def test_work_on_balls_that_are_thrown_begins_at_nothing(law: str) -> None:
-    """Balls that fly at the start on a shaken base have had no work done on them then, and the ledger closes from there."""
+def test_work_on_moving_balls_begins_at_zero(law: str) -> None:
+    """The work on balls that move at the start on a shaken base begins at zero, and the ledger closes."""
     residuals = []
     for dt in (2e-6, 2.5e-7):
         case = cloud(law, random=1.0, duration=0.0048, rate=6250.0, method=rb.Dem(dt=dt * (1 + 1e-9)))
@@ -97,7 +97,7 @@ def test_work_on_balls_that_are_thrown_begins_at_nothing(law: str) -> None:
 
 @pytest.mark.parametrize("law", ["sliding", "rolling"])
 def test_springs_of_sliding_contacts_hold_what_friction_allows(law: str) -> None:
-    """Of a ball that slides, or rolls against resistance, springs hold (mu N)^2 / (2 k_t) and alike, to the second order."""
+    """The springs of a sliding ball, or of one with rolling resistance, store (mu N)^2 / (2 k_t) to second order."""
     rolls = law == "rolling"
     radius, pull, stiffness, ratio, half = 5e-3, 1000.0, 1e6, 0.3, 0.05
     friction, resistance = (0.5, 0.02) if rolls else (0.05, 0.0)

@@ -1,4 +1,4 @@
-"""Nothing that touches is missed, and nothing else pushes: against every pair and every wall."""
+"""Contact detection and elastic forces against a brute-force search through all pairs and walls."""
 
 from typing import Any
 
@@ -38,7 +38,7 @@ def gas(
     one: Any = None,
     others: int = 0,
 ) -> Any:
-    """Return soft elastic spheres that fly about at random in a cavity.
+    """Return soft elastic spheres with random velocities in a cavity.
 
     `one` of them has a velocity of its own; `others` more are of a harder material.
     """
@@ -60,7 +60,7 @@ def gas(
 
 
 def follow(case: Any, checks: int = 40) -> dict[str, int]:
-    """Compare contacts, forces, force and moment on the cavity with brute force all along a run."""
+    """Compare contacts, forces, and force and moment on the cavity with brute force during a run."""
     damper = case.dampers[0]
     dem, last = cases.dem_of(case)
     contents, walls = damper.contents, damper.cavity.walls()
@@ -85,7 +85,7 @@ def follow(case: Any, checks: int = 40) -> dict[str, int]:
         np.add.at(force, listed.first, listed.force)
         between = listed.second < n
         np.subtract.at(force, listed.second[between], listed.force[between])
-        # Of an overlap of micrometres some 1e-10 is lost when places are rounded.
+        # Rounding of positions is about 1e-10 of an overlap of micrometres.
         scale = np.abs(found.force).max() + 1e-30
         assert np.abs(force - found.force).max() < 1e-8 * scale
         assert np.abs(raw.force[-1, 0] - found.on_cavity).max() < 1e-8 * scale
@@ -101,27 +101,27 @@ def follow(case: Any, checks: int = 40) -> dict[str, int]:
 
 
 def cavity_shape(case: Any) -> Any:
-    """Displacement of the cavity for each mode, (m, 3)."""
+    """Return the displacement of the cavity for each mode, (m, 3)."""
     damper = case.dampers[0]
     return case.modes.space_shape(damper.point, damper.direction)
 
 
 @pytest.mark.parametrize("name", CAVITIES)
 def test_nothing_is_missed_in_any_cavity(name: str) -> None:
-    """Spheres that fly and crowd in a cavity touch just those that overlap, with just the force that the overlap tells."""
+    """Contacts of spheres in a cavity are exactly the overlapping pairs, with the elastic force of the overlap."""
     seen = follow(gas(CAVITIES[name], ALIKE, 150, 1.0), checks=100)
     assert seen["pairs"] > 150 and seen["walls"] > 50 and seen["builds"] > 3
 
 
 @pytest.mark.parametrize("name", ["box", "can askew"])
 def test_nothing_is_missed_among_many_sizes(name: str) -> None:
-    """So it is where the largest sphere is ten times the smallest."""
+    """The same with the largest sphere ten times the smallest."""
     seen = follow(gas(CAVITIES[name], WIDE, 110, 1.0), checks=200)
     assert seen["pairs"] > 40 and seen["walls"] > 40
 
 
 def of_sizes(cavity: Any, sizes: dict[str, int], speed: float) -> Any:
-    """Return soft elastic spheres of some diameters, so many of each, that fly about at random in a cavity."""
+    """Return soft elastic spheres of given diameters and numbers with random velocities in a cavity."""
     kinds = [rb.Particles(name=size, material=SOFT, diameter=size, count=count) for size, count in sizes.items()]
     radii = np.repeat([kind.radius for kind in kinds], list(sizes.values()))
     start = rb.Positions(
@@ -139,38 +139,38 @@ def of_sizes(cavity: Any, sizes: dict[str, int], speed: float) -> Any:
     ids=["two", "five"],
 )
 def test_nothing_is_missed_among_a_few_large_and_many_small(cavity: str, sizes: dict[str, int]) -> None:
-    """So it is where cells fit the small ones only, and the large ones lie in layers of their own."""
+    """The same with fine cells for the small spheres and coarse levels for the large ones."""
     seen = follow(of_sizes(CAVITIES[cavity], sizes, 2.0), checks=25)
     assert seen["pairs"] > 300 and seen["walls"] > 200 and seen["builds"] > 3
 
 
 def test_each_pair_has_its_own_stiffness() -> None:
-    """Spheres of two materials push each other with the modulus of both, and the wall, which is of the first one."""
+    """Contacts of spheres of two materials, and with a wall of the first one, have the effective modulus."""
     seen = follow(gas(CAVITIES["box"], ALIKE, 80, 1.0, others=70), checks=150)
     assert seen["pairs"] > 100 and seen["walls"] > 50
 
 
 def test_nothing_is_missed_by_the_fast() -> None:
-    """So it is where spheres cross many cells between two looks, and lists are made anew again and again."""
+    """The same with spheres that cross many cells between two checks, so that lists are rebuilt often."""
     seen = follow(gas(CAVITIES["long box"], ALIKE, 60, 8.0), checks=150)
     assert seen["pairs"] > 100 and seen["builds"] > 100
 
 
 def test_nothing_is_missed_where_most_rest_and_one_is_fast() -> None:
-    """So it is where one sphere flies through a bed at rest, whose lists would last for long."""
+    """The same with one sphere that flies through a bed at rest, whose lists would be valid for long."""
     seen = follow(gas(CAVITIES["box"], ALIKE, 150, 1e-3, one=(3.0, 6.0, 9.0)), checks=80)
     assert seen["pairs"] > 20
 
 
 def test_nothing_is_missed_in_a_moving_cavity() -> None:
-    """So it is in a light cavity that the spheres themselves throw about."""
+    """The same in a light cavity that the spheres move."""
     light = rb.SDOF(mass=0.02, stiffness=2000.0, velocity=2.0)
     seen = follow(gas(CAVITIES["box"], ALIKE, 150, 0.5, structure=light, gravity=9.81), checks=80)
     assert seen["pairs"] > 150 and seen["walls"] > 100
 
 
 def test_nothing_is_missed_after_a_blow_within_one_step() -> None:
-    """Spheres at rest that get to 1 km/s in a microsecond touch just those that overlap."""
+    """The same with spheres at rest that are accelerated to 1 km/s in a microsecond."""
     seen = follow(
         rb.Case(
             structure=rb.Shaker(
@@ -193,7 +193,7 @@ def test_nothing_is_missed_after_a_blow_within_one_step() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_nothing_is_missed_in_random_cases(seed: int) -> None:
-    """Cavity, sizes, number, speed, gravity, structure and one fast sphere drawn at random: nothing is missed."""
+    """The same with random cavity, sizes, number, speed, gravity, structure and one fast sphere."""
     rng = np.random.default_rng(seed)
     sizes = WIDE if rng.random() < 0.3 else ALIKE
     most = 110 if sizes is WIDE else 300

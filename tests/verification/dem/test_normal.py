@@ -1,4 +1,4 @@
-"""Head-on impacts through the dem engine: what restitution is asked for comes out, at the order of the step."""
+"""Head-on impacts in the 3-D engine: restitution and its order of convergence."""
 
 import math
 from collections.abc import Callable
@@ -37,19 +37,19 @@ PAIRS: dict[str, tuple[Ball, Ball | None]] = {
 
 
 def hertz(e: float, ending: str, *_: Any) -> Any:
-    """Hertz contact."""
+    """Return a Hertz contact."""
     return rb.Tsuji(restitution=e, ending=ending)
 
 
 def linear(e: float, ending: str, time: float, mass: float) -> Any:
-    """Linear contact as long as that of Hertz."""
+    """Return a linear contact of the same duration."""
     return rb.Linear(stiffness=mass * (math.pi / time) ** 2, restitution=e, ending=ending)
 
 
 def worst(
     make: Callable[..., Any], e: float, ending: str, pair: tuple[Ball, Ball | None], speed: float, per_contact: int
 ) -> float:
-    """Return the largest error of the restitution over some phases of the first touch."""
+    """Return the largest error of the restitution over several times of first touch within a step."""
     first, second = pair
     time = cases.contact_time(first, second, speed)
     mass = first.mass if second is None else cases.reduced(first.mass, second.mass)
@@ -70,8 +70,8 @@ def worst(
 
 @pytest.mark.parametrize("ending", ["zero_force", "zero_overlap"])
 @pytest.mark.parametrize("e", [0.1, 0.25, 0.5, 0.75, 0.9, 1.0])
-def test_restitution_asked_for_is_got(e: float, ending: str) -> None:
-    """For steel and glass, small and large, slow and fast, the rebound is as asked for, to the order of the step."""
+def test_prescribed_restitution(e: float, ending: str) -> None:
+    """The restitution of steel and glass, small and large, slow and fast balls is the prescribed one within the order."""
     for number, pair in enumerate(PAIRS.values()):
         speed = (0.01, 0.2, 5.0)[number % 3]
         for make, per_contact in ((hertz, 40), (hertz, 160), (linear, 80)):
@@ -82,7 +82,7 @@ def test_restitution_asked_for_is_got(e: float, ending: str) -> None:
 @pytest.mark.parametrize("ending", ["zero_force", "zero_overlap"])
 @pytest.mark.parametrize("make", [hertz, linear])
 def test_restitution_converges_at_the_stated_order(make: Callable[..., Any], ending: str) -> None:
-    """With steps sixteen times as short the largest error falls at the order stated; at 5/2 or 3 where nothing is lost."""
+    """With sixteen times shorter steps the largest error decreases at the stated order; at 5/2 or 3 without loss."""
     for e, order in ((0.5, ERRORS[make.__name__, ending][1]), (1.0, ELASTIC[make.__name__])):
         coarse, fine = (worst(make, e, ending, PAIRS["wall"], 1.0, n) for n in (40, 640))
         assert math.log2(coarse / fine) / 4 == pytest.approx(order, abs=0.25)
@@ -91,7 +91,7 @@ def test_restitution_converges_at_the_stated_order(make: Callable[..., Any], end
 @pytest.mark.parametrize("share", [0.2, 1.0, 5.0])
 @pytest.mark.parametrize("e", [0.3, 0.9])
 def test_wall_counts_with_the_mass_behind_it(e: float, share: float) -> None:
-    """A free cavity of a fifth to five times the ball's mass rebounds as asked for: a wall has the mass of its structure."""
+    """At a free cavity of a fifth to five times the mass of the ball the effective mass includes the structure."""
     ball, speed, per_contact = Ball(5e-3), 1.0, 160
     together = ball.mass * share / (1 + share)
     time = cases.HERTZ_TIME * (together / cases.stiffness(ball)) ** 0.4 * speed**-0.2
@@ -118,31 +118,31 @@ STEEL = rb.materials()["steel"]
 
 
 def modulus(wall: bool) -> float:
-    """E* of steel on steel, or on a rigid wall [Pa]."""
+    """Return E* of steel on steel, or on a rigid wall [Pa]."""
     return STEEL.young / (1 - STEEL.poisson**2) / (1 if wall else 2)
 
 
 def jackson_green(radius: float, mass: float, speed: float, wall: bool) -> float:
-    """Exact restitution after Jackson and Green."""
+    """Return the exact restitution after Jackson and Green."""
     scale = restitution_laws.jackson_green_speed(radius, mass, modulus(wall), STEEL.yield_stress, STEEL.poisson)
     return restitution_laws.jackson_green(speed / scale, STEEL.yield_stress / STEEL.young)
 
 
 def thornton(radius: float, mass: float, speed: float, wall: bool) -> float:
-    """Exact restitution after Thornton."""
+    """Return the exact restitution after Thornton."""
     scale = restitution_laws.thornton_speed(radius, mass, modulus(wall), 1.6 * STEEL.yield_stress)
     return restitution_laws.thornton(speed / scale)
 
 
 def johnson(radius: float, mass: float, speed: float, wall: bool) -> float:
-    """Exact restitution after Johnson."""
+    """Return the exact restitution after Johnson."""
     strength = STEEL.yield_stress
     scale = 3.8**4 * (strength / modulus(wall)) ** 2 * math.sqrt(2 * strength * radius**3 / mass)
     return min(1.0, (speed / scale) ** -0.25)
 
 
 def table(radius: float, mass: float, speed: float, wall: bool) -> float:
-    """Restitution by a table of speeds alone."""
+    """Return the restitution of a table of speeds."""
     return float(np.interp(speed, [0.1, 1.0, 10.0], [0.95, 0.8, 0.3]))
 
 
@@ -157,7 +157,7 @@ LAWS: dict[str, tuple[Any, Callable[..., float]]] = {
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("speed", [0.05, 0.5, 8.0])
 @pytest.mark.parametrize("ending", ["zero_force", "zero_overlap"])
-def test_laws_of_restitution_know_the_sizes_that_meet(law: str, speed: float, ending: str) -> None:
+def test_laws_of_restitution_use_the_sizes_of_the_pair(law: str, speed: float, ending: str) -> None:
     """In one species of many sizes each pair has the restitution of its own radii and masses, at its own speed."""
     contact = rb.Tsuji(restitution=LAWS[law][0], ending=ending)
     factor, order = ERRORS["hertz", ending]
@@ -171,7 +171,7 @@ def test_laws_of_restitution_know_the_sizes_that_meet(law: str, speed: float, en
             first, second, speed, dt=time / 80, phase=0.5, lasts=4 * time, contact=contact, wall="rigid"
         )
         assert cases.rebound(cases.run(case)) / speed == pytest.approx(exact, abs=factor * 80**-order)
-        # The same pair among others of another size, which stand aside: only the reference changes.
+        # The same pair with another ball of another size, which changes only the reference pair.
         many = with_bystander(case, 0.5 * small.radius)
         assert cases.rebound(cases.run(many)) == pytest.approx(cases.rebound(cases.run(case)), rel=1e-9)
 

@@ -1,4 +1,4 @@
-"""Impacts askew, and of spinning balls: friction against closed forms and a fine integration."""
+"""Oblique impacts and impacts of spinning balls: friction against closed forms and an accurate integration."""
 
 import dataclasses
 import itertools
@@ -32,7 +32,7 @@ def impact(angle: float, *, per_contact: int = 200, **options: Any) -> tuple[flo
 @pytest.mark.parametrize("e", [0.5, 0.98])
 @pytest.mark.parametrize("degrees", [2, 5, 10, 15, 20, 25, 30, 40, 60, 80])
 def test_oblique_impacts_follow_the_law(degrees: float, e: float, damping: float) -> None:
-    """At every angle velocities and spin are those of a fine integration of Mindlin's law with its history."""
+    """Velocities and spin agree with an accurate integration of Mindlin's law with history at every angle."""
     angle = math.radians(degrees)
     friction = rb.Mindlin(FRICTION, damping=damping)
     along, up, spin, _ = impact(angle, contact=rb.Tsuji(restitution=e), friction=friction)
@@ -45,7 +45,7 @@ def test_oblique_impacts_follow_the_law(degrees: float, e: float, damping: float
 @pytest.mark.parametrize("e", [0.5, 0.98])
 @pytest.mark.parametrize("degrees", [5, 10, 20, 30, 60])
 def test_oblique_impacts_of_unlike_balls_follow_the_law(degrees: float, e: float) -> None:
-    """Balls of two sizes and materials that meet askew turn and slide on each other as a fine integration says."""
+    """Oblique impacts of balls of two sizes and materials agree with an accurate integration."""
     first, second = Ball(2e-3, material="steel"), Ball(5e-3, material="glass")
     speed, angle, both = 1.0, math.radians(degrees), first.radius + second.radius
     down, per_contact = speed * math.cos(angle), 200
@@ -79,13 +79,13 @@ def test_oblique_impacts_of_unlike_balls_follow_the_law(degrees: float, e: float
     slip, swirl, up = law.follow(math.tan(angle))
     relative = arrays.particles.velocity[0] - arrays.particles.velocity[1]
     turned = first.radius * arrays.particles.spin[0, 2] + second.radius * arrays.particles.spin[1, 2]
-    # The line between the centres turns during the contact, by some 1e-3, and what is along it with it.
+    # The normal rotates during the contact by about 1e-3.
     assert relative == pytest.approx((-up * down, -slip * down, 0), abs=3e-3)
     assert turned == pytest.approx(-swirl * down, abs=3e-3)
 
 
 def test_friction_converges_at_second_order() -> None:
-    """At 20 degrees, where the contact sticks and slides in turn, the error falls with the square of the step."""
+    """At 20 degrees, where the contact alternates between sticking and sliding, the error is of second order."""
     angle = math.radians(20)
     exact = 2 * oblique_law(angle, E, 1.0)[0] - impact(angle, per_contact=6400)[0]
     assert exact == pytest.approx(oblique_law(angle, E, 1.0)[0], rel=1e-6)
@@ -96,7 +96,7 @@ def test_friction_converges_at_second_order() -> None:
 @pytest.mark.parametrize("degrees", [40, 50, 60, 70, 80, 85])
 @pytest.mark.parametrize("e", [0.3, 0.98])
 def test_gross_sliding_has_the_closed_form(degrees: float, e: float) -> None:
-    """Far from the normal the tangential impulse is mu times the normal one, and all of it turns the ball."""
+    """At large angles the tangential impulse is mu times the normal one, and it determines the spin."""
     angle = math.radians(degrees)
     along, up, spin, result = impact(angle, contact=rb.Tsuji(restitution=e))
     before = SPEED * math.sin(angle), SPEED * math.cos(angle)
@@ -119,11 +119,11 @@ def test_sliding_impacts_are_the_printed_ones(degrees: int) -> None:
 
 
 READ, SPIN_READ, ANGLE_READ = 0.003, 4.0, 0.2
-"""What a figure is read to: restitution, spin [rad/s], and angles [degrees]. Where all slide, 0.002 and 3.5 are missed."""
+"""Reading accuracy of a figure: restitution, spin [rad/s], angles [degrees]. In gross sliding: 0.002 and 3.5."""
 
 
 def is_printed(degrees: int, damping: float, keeps: str) -> bool:
-    """Tell whether a tangential spring gives what is printed, within what a figure is read to."""
+    """Return whether a tangential spring gives the printed values within the reading accuracy."""
     shown, turning = printed.OBLIQUE[degrees]
     near = np.radians(degrees + np.linspace(-ANGLE_READ, ANGLE_READ, 5))
     laws = [(angle, *oblique_law(angle, E, damping, 4000, keeps)) for angle in near]
@@ -133,16 +133,16 @@ def is_printed(degrees: int, damping: float, keeps: str) -> bool:
     return fits and min(spins) - SPIN_READ < turning < max(spins) + SPIN_READ
 
 
-def test_the_printed_springs_keep_their_stretch() -> None:
-    """Test 4 of Chung and Ooi below 30 degrees: of six springs the undamped one that keeps its stretch gives the print."""
+def test_the_printed_springs_have_constant_displacement() -> None:
+    """Test 4 of Chung and Ooi below 30 degrees: of six springs only the undamped one with constant displacement agrees."""
     sticking = [degrees for degrees in printed.OBLIQUE if degrees < 30]
     springs = itertools.product(("eased", "force", "stretch"), (0.0, 1.0))
     fits = {(keeps, damping) for keeps, damping in springs if all(is_printed(d, damping, keeps) for d in sticking)}
     assert fits == {("stretch", 0.0)}
 
 
-def test_springs_that_keep_their_stretch_give_energy() -> None:
-    """Stretched, then pressed together, such a spring holds more than was put in; one that keeps its force does not."""
+def test_springs_with_constant_displacement_generate_energy() -> None:
+    """During loading such a spring gains energy without work; one with constant force does not."""
 
     def most(keeps: str) -> float:
         """Energy after an elastic impact without dashpots over that before, less one: at most, over angle and friction."""
@@ -160,7 +160,7 @@ def test_springs_that_keep_their_stretch_give_energy() -> None:
 
 @pytest.mark.parametrize("degrees", printed.OBLIQUE_MEASURED)
 def test_oblique_impacts_are_near_measured_ones(degrees: float) -> None:
-    """Alumina spheres rebound as the table of the documentation says, beside what was measured."""
+    """The rebound of alumina spheres agrees with the table of the documentation, which lists it with measurements."""
     along, *_ = impact(math.radians(degrees))
     got, measured = along / (SPEED * math.sin(math.radians(degrees))), printed.OBLIQUE_MEASURED[degrees]
     rows = (line.strip(" |").split(" | ") for line in VERIFICATION.read_text(encoding="utf-8").splitlines())
@@ -170,7 +170,7 @@ def test_oblique_impacts_are_near_measured_ones(degrees: float) -> None:
 
 @pytest.mark.parametrize("ratio", [0.1, 2 / 7, 0.6, 1.0])
 def test_sticking_springs_have_the_closed_form(ratio: float) -> None:
-    """Linear springs that never slide swing the tangential velocity through a phase that the ratio of stiffness tells."""
+    """The tangential velocity with linear springs that never slide has the phase of the ratio of the stiffnesses."""
     per_contact, speed = 400, 0.1
     stiffness = BALL.mass * (math.pi / (time := 1e-4)) ** 2
     half, dt = 20 * RADIUS, time / per_contact
@@ -183,7 +183,7 @@ def test_sticking_springs_have_the_closed_form(ratio: float) -> None:
     )
     arrays = cases.run(case).arrays
     e = oblique.sticking(ratio)
-    # The lever is shorter than the radius by the overlap, 0.13 %, which turns the phase by as much of 2 pi.
+    # The lever arm is shorter than the radius by the overlap, 0.13 %, which shifts the phase by the same part of 2 pi.
     assert arrays.particles.velocity[0] == pytest.approx((0.03 * e, -0.04 * e, speed), abs=0.05 * 3e-3)
     turn = 2.5 * (1 - e) / RADIUS
     assert arrays.particles.spin[0] == pytest.approx((0.04 * turn, 0.03 * turn, 0), abs=2.5 * 0.05 * 3e-3 / RADIUS)
@@ -230,8 +230,8 @@ def test_spinning_balls_slide_on_each_other(factor: float) -> None:
     change = (arrays.particles.velocity - [[speed / 2, 0, 0], [-speed / 2, 0, 0]]) * arrays.particles.mass[:, None]
     impulse = -change[0, 0]
     assert impulse == pytest.approx((1 + e) * mass * speed, rel=3e-4)
-    # The surface of the first ball at the contact moves up, and so does that of the second: they rub with both speeds.
-    # The line between the centres turns a little meanwhile.
+    # The surfaces of both balls move in opposite directions at the contact, so they slide with the sum of the speeds.
+    # The normal rotates slightly.
     assert change[0, 1] == pytest.approx(-friction * impulse, rel=1e-3)
     assert change[1, :2] == pytest.approx(-change[0, :2], rel=1e-12)
     for number, one in enumerate((ball, other)):

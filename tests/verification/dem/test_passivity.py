@@ -1,4 +1,4 @@
-"""No impact gives energy: random ones at all angles, with all laws, up to the longest step that is not refused."""
+"""No impact generates energy: random impacts at all angles, with all laws, up to the longest permitted step."""
 
 from typing import Any
 
@@ -43,7 +43,7 @@ FITS = [
 
 
 def bound(case: Any) -> float:
-    """Return the longest step that the engine takes [s]."""
+    """Return the longest step that the engine permits [s]."""
     damper = case.dampers[0]
     tables, speeds = [damper.contact_table], expected_speeds(case, [np.zeros((0, 3))])
     return min(limit.bound for limit in limits(case, tables, speeds))
@@ -70,7 +70,7 @@ def spins(rng: np.random.Generator, radii: Any) -> Any:
 
 
 def pairs(count: int, seed: int) -> tuple[Any, dict[str, Any]]:
-    """Return a wide box and so many pairs in it that are about to meet."""
+    """Return a wide box and a number of pairs in it that are about to collide."""
     rng = np.random.default_rng(seed)
     number = int(np.ceil(count ** (1 / 3)))
     cell = 8 * LARGEST
@@ -95,7 +95,7 @@ def at_wall(count: int, seed: int) -> tuple[Any, dict[str, Any]]:
     rng = np.random.default_rng(seed)
     radii = rng.uniform(SMALLEST, LARGEST, count)
     _, velocity = directions(rng, count)
-    # Spread evenly over the sphere; velocities that go outwards.
+    # Uniformly distributed over the sphere, with outward velocities.
     k = np.arange(count) + 0.5
     polar, turn = np.arccos(1 - 2 * k / count), np.pi * (1 + 5**0.5) * k
     normal = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
@@ -108,7 +108,7 @@ def at_wall(count: int, seed: int) -> tuple[Any, dict[str, Any]]:
 
 
 def prepared(make: Any, **laws: Any) -> Any:
-    """Return the case of three hundred impacts, without a step of its own."""
+    """Return the case of three hundred impacts with the automatic step."""
     cavity, start = make(300, 11)
     damper = rb.ParticleDamper(
         particles=rb.Particles(material=GLASS),
@@ -121,7 +121,7 @@ def prepared(make: Any, **laws: Any) -> Any:
 
 
 def gains(make: Any, share: float, **laws: Any) -> tuple[Any, Any]:
-    """Return what each impact gains over the energy before, and the run; the step is a share of the bound."""
+    """Return the relative energy gain of each impact, and the run; the step is a fraction of the bound."""
     plain = prepared(make, **laws)
     (damper,) = plain.dampers
     dt = share * bound(plain)
@@ -151,8 +151,8 @@ LOOSE = {"elastic": 0.01, "yielding": 0.01, "linear": 1e-9}
 
 @pytest.mark.parametrize("make", [pairs, at_wall])
 @pytest.mark.parametrize(("contact", "friction"), FITS)
-def test_no_impact_gives_energy(contact: str, friction: str, make: Any) -> None:
-    """Three hundred impacts, grazing to head-on, spinning or not, never end with more than they began with."""
+def test_no_impact_generates_energy(contact: str, friction: str, make: Any) -> None:
+    """The energy of three hundred impacts, grazing to head-on, with and without spin, never increases."""
     for share in (0.999, 0.4, 0.08):
         gained, result = gains(make, share, contact=CONTACTS[contact], **FRICTIONS[friction])
         counts = result.counts
@@ -162,7 +162,7 @@ def test_no_impact_gives_energy(contact: str, friction: str, make: Any) -> None:
 
 
 def test_gain_of_elastic_impacts_falls_at_the_stated_order() -> None:
-    """Without any loss the mean error of the energy falls with the power 5/2 of the step."""
+    """Without loss the mean error of the energy decreases with the power 5/2 of the step."""
     coarse, fine = (np.abs(gains(pairs, share, contact=CONTACTS["elastic"])[0]).mean() for share in (0.8, 0.05))
     assert coarse > 1e-5
     assert np.log2(coarse / fine) / 4 == pytest.approx(2.5, abs=0.2)
@@ -170,13 +170,13 @@ def test_gain_of_elastic_impacts_falls_at_the_stated_order() -> None:
 
 @pytest.mark.parametrize("friction", ["none", "strong dashpot", "stiff spring", "stiff rolling", "strong rolling"])
 def test_step_beyond_the_bound_is_refused(friction: str) -> None:
-    """A little more than the bound is refused, whatever it is that sets it."""
+    """A step slightly above the bound is refused, for each of the conditions that determine it."""
     with pytest.raises(rb.CaseError, match="is too long: the bound is"):
         gains(pairs, 1.001, contact=CONTACTS["Hertz"], **FRICTIONS[friction])
 
 
 def test_friction_may_need_shorter_steps_than_the_contact() -> None:
-    """Stiff springs and strong dashpots lower the bound; common ones hardly do."""
+    """Stiff springs and strong dashpots lower the bound; common ones change it little."""
 
     def least(friction: str) -> float:
         return bound(prepared(pairs, contact=CONTACTS["Hertz"], **FRICTIONS[friction]))

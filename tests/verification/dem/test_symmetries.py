@@ -1,4 +1,4 @@
-"""What must not change the answer: turns, mirrors, the order of the particles, units."""
+"""Invariance under rotations, reflections, order of the particles and units."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ DT = 4e-6
 
 
 def balls(count: int = 60) -> list[Ball]:
-    """Return spheres of two materials and many sizes that fly about and turn."""
+    """Return moving, spinning spheres of two materials and many sizes."""
     rng = np.random.default_rng(5)
     radii = rng.uniform(1e-3, 2.5e-3, count)
     places = rb.Lattice(noise=1.0, seed=2).place(rb.SphericalCavity(diameter=0.03), radii)
@@ -32,7 +32,7 @@ def balls(count: int = 60) -> list[Ball]:
     ]
 
 
-def flown(
+def run_spheres(
     group: list[Ball], law: str, cavity: Any, gravity: Any = GRAVITY, structure: Any = None, steps: int = 3000
 ) -> Any:
     """Return the run of two species of spheres in a cavity that is shaken or free."""
@@ -60,7 +60,7 @@ def flown(
 
 
 def shaking(turn: Any) -> Any:
-    """Return a light cavity on springs in three directions, turned; it is thrown about by what is in it."""
+    """Return a light cavity on springs in three directions, rotated, which the particles move."""
     return rb.Modal(
         frequencies=[30.0, 40.0, 50.0],
         damping_ratios=[0.01, 0.02, 0.03],
@@ -70,13 +70,13 @@ def shaking(turn: Any) -> Any:
 
 
 def turned(group: list[Ball], turn: Any) -> list[Ball]:
-    """Return the spheres turned, or mirrored: spins turn the other way then."""
+    """Return the spheres rotated, or mirrored with reversed spins."""
     sign = np.linalg.det(turn)
     return [Ball(b.radius, turn @ b.position, turn @ b.velocity, sign * (turn @ b.spin), b.material) for b in group]
 
 
 def compare(one: Any, other: Any, turn: Any, rtol: float) -> None:
-    """Assert that the second run ends as the first one, turned or mirrored."""
+    """Assert that the end of the second run is that of the first one, rotated or mirrored."""
     sign = np.linalg.det(turn)
     for name, factor in (("position", 1.0), ("velocity", 1.0), ("spin", sign)):
         a, b = getattr(one.arrays.particles, name) @ turn.T * factor, getattr(other.arrays.particles, name)
@@ -105,11 +105,11 @@ CHAOS = 1e-8
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("name", QUARTERS)
 def test_quarter_turns_and_mirrors(name: str, law: str) -> None:
-    """A box turned by a quarter, or mirrored, with all that moves in it, gives the turned or mirrored answer."""
+    """A box and its contents, rotated by 90 degrees or mirrored, have the rotated or mirrored result."""
     turn = QUARTERS[name]
-    one = flown(balls(), law, rb.Box(size=BOX), structure=shaking(np.eye(3)))
+    one = run_spheres(balls(), law, rb.Box(size=BOX), structure=shaking(np.eye(3)))
     size = np.abs(turn @ BOX)
-    other = flown(turned(balls(), turn), law, rb.Box(size=size), turn @ GRAVITY, shaking(turn.T))
+    other = run_spheres(turned(balls(), turn), law, rb.Box(size=size), turn @ GRAVITY, shaking(turn.T))
     compare(one, other, turn, CHAOS)
 
 
@@ -119,26 +119,26 @@ ASKEW = Rotation.from_rotvec([0.4, -1.1, 0.7]).as_matrix()
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("name", ["sphere", "can"])
 def test_any_turn(name: str, law: str) -> None:
-    """A sphere or a can turned anyhow, with all that moves in it, gives the turned answer."""
+    """A sphere or cylinder and its contents in any orientation have the rotated result."""
 
     def cavity(turn: Any) -> Any:
         if name == "sphere":
             return rb.SphericalCavity(diameter=0.04)
         return rb.Cylinder(diameter=0.035, length=0.04, axis=tuple(turn @ [0, 0, 1.0]))
 
-    one = flown(balls(), law, cavity(np.eye(3)), structure=shaking(np.eye(3)))
-    other = flown(turned(balls(), ASKEW), law, cavity(ASKEW), ASKEW @ GRAVITY, shaking(ASKEW.T))
+    one = run_spheres(balls(), law, cavity(np.eye(3)), structure=shaking(np.eye(3)))
+    other = run_spheres(turned(balls(), ASKEW), law, cavity(ASKEW), ASKEW @ GRAVITY, shaking(ASKEW.T))
     compare(one, other, ASKEW, CHAOS)
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_order_of_the_particles(law: str) -> None:
-    """Particles listed in another order move as they did."""
+    """The order of the particles does not change their motion."""
     group = balls()
     order = np.random.default_rng(8).permutation(len(group) // 2)
     mixed = [group[2 * k] for k in order] + [group[2 * k + 1] for k in order]
     plain = [group[2 * k] for k in range(len(order))] + [group[2 * k + 1] for k in range(len(order))]
-    one, other = (flown(g, law, rb.Box(size=BOX), structure=shaking(np.eye(3))) for g in (plain, mixed))
+    one, other = (run_spheres(g, law, rb.Box(size=BOX), structure=shaking(np.eye(3))) for g in (plain, mixed))
     places = np.concatenate([order, len(order) + order])
     assert np.array_equal(one.arrays.particles.radius[places], other.arrays.particles.radius)
     for name in ("position", "velocity", "spin"):

@@ -1,4 +1,4 @@
-"""Laws of pairs through the engine: each pair meets by its own, told or mixed; softening does what is told of it."""
+"""Laws of pairs in the 3-D engine, given or mixed; softening has the effects that the run reports."""
 
 import math
 import re
@@ -38,7 +38,7 @@ def entry(first: str, second: str, name: str) -> Any:
 
 
 def meeting(first: Ball, second: Ball | None, **table: Any) -> tuple[Any, ...]:
-    """Return velocities and spins after an oblique impact of two balls, or of one and a wall, in a damper of both kinds."""
+    """Return velocities and spins after an oblique impact of two balls, or of one and a wall, with both species present."""
     aside = (0.8 * HALF,) * 3
     gap = 5.5 * DT * 2.0
     if second is None:
@@ -85,8 +85,8 @@ PAIRS = {
 
 
 @pytest.mark.parametrize("pair", PAIRS)
-def test_each_pair_meets_by_its_own_laws(pair: str) -> None:
-    """In a damper with laws of their own for pairs an impact goes as where these were the laws of all."""
+def test_each_pair_has_its_laws(pair: str) -> None:
+    """An impact in a damper with laws for pairs is the same as with these laws for all."""
     first, second, own = PAIRS[pair]
     table = meeting(
         first,
@@ -105,8 +105,8 @@ def test_each_pair_meets_by_its_own_laws(pair: str) -> None:
     assert np.abs(table[0] - other[0]).max() > 0.01
 
 
-def test_mixed_pairs_meet_by_the_mean_of_their_laws() -> None:
-    """With a mixing rule unlike balls meet as by the mean of what each kind has among its own."""
+def test_mixed_pairs_have_the_mean_of_the_laws() -> None:
+    """With a mixing rule the law of two species is the mean of the laws of each species."""
     mixed = meeting(SHOT, BEAD, **laws("all"), mixing="geometric", pairs=[entry("bead", "bead", "bead and bead")])
     e, friction, rolling = (math.sqrt(a * b) for a, b in zip(LAWS["all"], LAWS["bead and bead"], strict=True))
     alone = meeting(SHOT, BEAD, contact=rb.Tsuji(restitution=e), friction=friction, rolling=rolling)
@@ -116,7 +116,7 @@ def test_mixed_pairs_meet_by_the_mean_of_their_laws() -> None:
 
 @pytest.mark.parametrize("radii", [(2e-3, 2e-3), (2e-3, 6e-3), (6e-3, 6e-3), (2e-3, None), (6e-3, None)])
 def test_a_ratio_of_stiffnesses_holds_for_every_pair(radii: tuple[float, float | None]) -> None:
-    """Of balls of two sizes whose linear contacts last alike each pair that sticks rebounds sideways as its ratio tells."""
+    """With linear contacts of equal duration the tangential rebound of sticking pairs follows the ratio of stiffnesses."""
     first, second = radii
     ratio, lasts, speed, aside, half = 0.3, 1e-4, 0.05, 0.01, 0.1
     dt = lasts / 1000
@@ -159,8 +159,8 @@ SOFTENED: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("law", SOFTENED)
-def test_softening_does_what_is_told(law: str) -> None:
-    """Softened a hundredfold, a contact lasts and overlaps as many times as much as the run says, and rebounds as before."""
+def test_softening_has_the_reported_effects(law: str) -> None:
+    """Softened a hundredfold, a contact has the reported duration and overlap, and the same restitution."""
     ball, speed = Ball(3e-3), 0.5
     found = []
     for softening in (1.0, 100.0):

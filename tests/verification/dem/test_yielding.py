@@ -1,4 +1,4 @@
-"""Contacts that yield, through the dem engine: restitution, plastic loss and reloading have the closed form."""
+"""Plastic contacts in the 3-D engine: restitution, plastic loss and reloading against closed forms."""
 
 import math
 from typing import Any
@@ -22,12 +22,12 @@ FACTOR, ORDER = 0.8, 2
 
 
 def modulus(wall: Any = None) -> float:
-    """E* of steel against steel, or a rigid wall [Pa]."""
+    """Return E* of steel against steel, or a rigid wall [Pa]."""
     return STEEL.young / (1 - STEEL.poisson**2) / (1 if wall == "rigid" else 2)
 
 
 def yield_speed(first: Ball, second: Ball | None) -> float:
-    """V_y of a pair, or of a ball at a wall of steel [m/s]."""
+    """Return V_y of a pair, or of a ball at a wall of steel [m/s]."""
     radius = first.radius if second is None else cases.reduced(first.radius, second.radius)
     mass = first.mass if second is None else cases.reduced(first.mass, second.mass)
     return restitution_laws.thornton_speed(radius, mass, modulus(), PRESSURE)
@@ -53,7 +53,7 @@ def impact(
 @pytest.mark.parametrize("pair", [(SMALL, None), (SMALL, LARGE), (LARGE, LARGE)], ids=["wall", "unequal", "equal"])
 @pytest.mark.parametrize("ratio", [0.9, *printed.THORNTON])
 def test_restitution_and_plastic_loss_have_the_closed_form(ratio: float, pair: tuple[Ball, Ball | None]) -> None:
-    """A contact that yields rebounds as the closed form says, and loses m V^2/2 (1 - e^2) by plastic flow alone."""
+    """A plastic contact has the exact restitution, and only the plastic loss m V^2/2 (1 - e^2)."""
     exact = restitution_laws.thornton(ratio)
     for per_contact, phase in ((80, 0.3), (80, 0.8), (320, 0.55)):
         e, plastic, others = impact(*pair, ratio, per_contact, phase)
@@ -65,7 +65,7 @@ def test_restitution_and_plastic_loss_have_the_closed_form(ratio: float, pair: t
 
 
 def test_errors_fall_at_the_stated_order() -> None:
-    """With steps sixteen times as short the largest error of the restitution over a range of speeds falls 2^8-fold."""
+    """With sixteen times shorter steps the largest error of the restitution over a range of speeds is 2^8 times smaller."""
 
     def worst(per_contact: int) -> float:
         errors = [
@@ -82,7 +82,7 @@ GRAVITY = 2e5  # presses the ball into the floor about as far as yielding begins
 
 
 def pressed(swing: float) -> tuple[Any, Any]:
-    """Return run and overlap of a ball that lies down on a floor of steel, which shakes from half of the run on."""
+    """Return run and overlap of a ball that settles on a steel floor, which shakes in the second half of the run."""
     depth = (SMALL.mass * GRAVITY / cases.stiffness(SMALL)) ** (2 / 3)
     time = 2 * math.pi * math.sqrt(depth / GRAVITY)
     dt, steps = time / 200, 8000
@@ -121,7 +121,7 @@ def forces(overlap: Any) -> tuple[Any, Any]:
 
 
 def test_reloading_is_elastic_up_to_the_deepest_overlap() -> None:
-    """A ball pressed and shaken follows the curve of its deepest overlap so far down and up, and yields on beyond it."""
+    """A loaded ball on a shaken floor follows the unloading curve of its deepest overlap, and yields beyond it."""
     arrays, overlap = pressed(0.5)
     half = overlap.size // 2
     force, plastic = forces(overlap)
@@ -129,8 +129,7 @@ def test_reloading_is_elastic_up_to_the_deepest_overlap() -> None:
     assert np.abs(-arrays.cavity_force[:, 0, 2] - force).max() < 1e-9 * force.max()
     loss = arrays.plastic_loss[:, 0, 1]
     assert loss == pytest.approx(plastic, rel=1e-9, abs=1e-12 * plastic[-1])
-    # Twenty swings without loss, but for what lies between the step that was deepest at first and the very top:
-    # (pi/200)^2/2 of a swing.
+    # Twenty cycles without loss, except for the difference between the deepest step and the peak: (pi/200)^2/2 of a cycle.
     assert loss[half] == pytest.approx(loss[200], rel=2e-4)
     assert np.ptp(overlap[half - 400 : half]) == pytest.approx(np.ptp(overlap[400:800]), rel=1e-4)
     assert loss[-1] > 1.3 * loss[half]
