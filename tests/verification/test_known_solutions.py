@@ -77,7 +77,7 @@ def test_chatter_has_the_exact_times() -> None:
 
 @pytest.mark.parametrize("clock", [1e5, 1e7])
 def test_chatter_costs_the_same_late_in_a_long_run(clock: float) -> None:
-    """A ball that comes to rest in each cycle needs as few flights at large times, with coarse time resolution, as at first."""
+    """A ball that comes to rest in each cycle needs as few flights at large times as at first, with few digits of time."""
 
     def flights(start: float) -> int:
         run = rb.simulate(
