@@ -149,11 +149,11 @@ ANSWERS = {
     ),
     "restitution above one": (
         changed("0.9", "1.2"),
-        "damper.contact.restitution = 1.2\n  restitution lies between 0 (no rebound) and 1 (no loss)",
+        "damper.contact.restitution = 1.2\n  restitution is between 0 (no rebound) and 1 (no loss)",
     ),
     "restitution in a law above one": (
         changed("0.9", '{ kind = "constant", e = 1.2 }'),
-        "damper.contact.restitution.e = 1.2\n  restitution lies between 0 (no rebound) and 1 (no loss)",
+        "damper.contact.restitution.e = 1.2\n  restitution is between 0 (no rebound) and 1 (no loss)",
     ),
     "restitution in a table above one": (
         changed("0.9", '{ kind = "table", speeds = [1, 2], values = [0.9, 1.8] }'),

@@ -40,7 +40,7 @@ def test_snapshots_take_any_whole_number() -> None:
 def test_a_velocity_without_the_frequency_is_told() -> None:
     """Power at a frequency at which nothing moves is no number of rounding."""
     time = np.linspace(0.0, 1.0, 2001)
-    with pytest.raises(ValueError, match="velocity has no part at 10 Hz"):
+    with pytest.raises(ValueError, match=r"velocity .* 10 Hz"):
         complex_power(time, np.cos(40 * np.pi * time), np.sin(40 * np.pi * time), frequency=10.0)
 
 

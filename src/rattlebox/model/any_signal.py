@@ -1,4 +1,4 @@
-"""All signals that a case may have."""
+"""Union of all signals."""
 
 from __future__ import annotations
 

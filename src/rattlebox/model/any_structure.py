@@ -1,4 +1,4 @@
-"""All structures that a case may have."""
+"""Union of all structures."""
 
 from __future__ import annotations
 

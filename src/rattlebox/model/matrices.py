@@ -1,4 +1,4 @@
-"""Structures given by their matrices of mass, damping and stiffness."""
+"""Structures defined by mass, damping and stiffness matrices."""
 
 from __future__ import annotations
 
@@ -23,30 +23,28 @@ if TYPE_CHECKING:
 
 
 class Matrices(DampedModes):
-    """A structure given by its matrices, M z'' + C z' + K z = F, reduced to modes.
+    """Structure defined by its matrices, M z'' + C z' + K z = F, and reduced to modes.
 
-    C is any symmetric, positive semidefinite matrix. Where it is not diagonal in the modes of the undamped structure, it
+    C is any symmetric, positive semidefinite matrix. If it is not diagonal in the modes of the undamped structure, it
     couples them: flights are then computed as Taylor series, step by step, which takes longer. `damping_ratio` and
-    `rayleigh` stand in its place.
+    `rayleigh` are alternatives.
 
     Parameters
     ----------
     M, C, K
-        Mass, damping and stiffness, (n, n), SI units; C is left out for a structure without damping, or with `damping_ratio`
-        or `rayleigh` in its place.
+        Mass, damping and stiffness matrices, (n, n), SI units; default without damping.
     points
-        Named points: number of the degree of freedom, counted from 0, or a vector of n weights; or three of them, along x, y
-        and z, for a point that moves in space.
+        Named points: index of the degree of freedom, from 0, or a vector of n weights; three vectors, along x, y and z, for
+        a point in 3-D.
     file
-        Instead of M, C, K: files in Matrix Market format, `{"M": "M.mtx", "K": "K.mtx"}`, or a NPZ or MAT file that holds
-        them under these names, full or sparse, and, if it likes, points as vectors of n weights, or three of them:
-        `point_tip` for a point "tip", or the fields of a struct `points`. Points given beside the file come before those in
-        it.
+        Files in place of M, C and K: in Matrix Market format, `{"M": "M.mtx", "K": "K.mtx"}`, or a NPZ or MAT file with full
+        or sparse matrices of these names. NPZ and MAT files may also contain points as vectors of weights: `point_tip` for
+        a point "tip", or the fields of a struct `points`. Points of the case override those of the file.
     influence
-        Motion of each degree of freedom with the base; default 1 for all. Where points move in space three rows, for motion
-        of the base along x, y and z, without which there is none.
+        Motion of each degree of freedom with the base; default 1 for all. With points in 3-D, three rows for motion of the
+        base along x, y and z, which are then needed for base motion.
     displacement, velocity
-        Of each degree of freedom at the start [m], [m/s]; default 0.
+        Initial displacements and velocities of the degrees of freedom [m], [m/s]; default 0.
     """
 
     elementwise: ClassVar[bool] = False
@@ -105,7 +103,7 @@ class Matrices(DampedModes):
                     self._where(name),
                 )
         if np.linalg.eigvalsh(mass).min() <= 0:
-            raise Hint("M is not positive definite: some motion would have no mass", place=self._where("M"))
+            raise Hint("M is not positive definite; every motion needs a mass", place=self._where("M"))
         if not self.points:
             raise Hint("at least one named point is needed", "points = { tip = 0 }", ["points"])
         for name, point in self.points.items():
@@ -120,12 +118,12 @@ class Matrices(DampedModes):
             if row is not None and np.shape(row)[-1] != n:
                 raise Hint(f"{np.shape(row)[-1]} numbers, but there are {n} degrees of freedom", place=[name])
         if self.influence is not None and (np.ndim(self.influence) == 2) != bool(self._spatial()):
-            raise Hint("influence has three rows if points move in space, else one", place=["influence"])
+            raise Hint("influence has three rows if points move in 3-D, else one", place=["influence"])
         self.modes()
         return self
 
     def _spatial(self) -> frozenset[str]:
-        """Points that move in space."""
+        """Points that move in 3-D."""
         return frozenset(name for name, point in self.points.items() if np.ndim(point) == 2)
 
     def _where(self, name: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Random vibration of a given power spectral density."""
+"""Random vibration with a given power spectral density."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from typing import Self
 
 POINTS_PER_PERIOD = 16
-"""Least number of points in a period of the highest frequency of random vibration."""
+"""Fewest points in a period of the highest frequency of random vibration."""
 
 LEVELS: dict[str, tuple[tuple[float, float], ...]] = {
     "gevs_qualification": ((20.0, 0.026), (50.0, 0.16), (800.0, 0.16), (2000.0, 0.026)),
     "gevs_acceptance": ((20.0, 0.013), (50.0, 0.08), (800.0, 0.08), (2000.0, 0.013)),
 }
-"""Densities with a name: frequency [Hz] and density [g_0^2/Hz]."""
+"""Named densities: frequency [Hz] and density [g_0^2/Hz]."""
 
 _GRAVITY = 9.80665  # m/s^2
 
@@ -53,10 +53,10 @@ Density = Annotated[
 
 
 class Random(Sampled):
-    """Gaussian random vibration of a given power spectral density.
+    """Gaussian random vibration with a given power spectral density.
 
-    It has the density asked for, although it consists of straight lines between points: below the highest frequency of `psd`
-    the expected density is the one given, and less than 0.1 % of the power lies above it.
+    The signal consists of straight lines between points. Its expected density up to the highest frequency of `psd` is exact,
+    and less than 0.1 % of the power is above that frequency.
 
     Parameters
     ----------
@@ -71,8 +71,8 @@ class Random(Sampled):
         Points per second [Hz]. There are at least 16 points in a period of the highest frequency: a lower rate is raised to
         that, which is the default.
     seed
-        Seed of the random amplitudes. The same seed and duration give the same signal, at any rate. Directions that shake at
-        once need seeds that differ.
+        Random seed of the amplitudes. The signal depends on seed and duration, not on the rate. Simultaneous signals in
+        several directions need different seeds.
     unit
         Unit of the signal, whose square per Hz is the unit of densities without one: "N", "m/s^2", "m", or another of these
         dimensions, such as "g_0", "gal", "kN" or "mm".
@@ -81,10 +81,10 @@ class Random(Sampled):
     -----
     The signal is a sum of harmonics at the multiples of 1 / duration, whose sine and cosine amplitudes are independent
     Gaussian numbers of variance S(f) / duration (compare Shinozuka and Deodatis 1991). The mean square of one realisation of
-    bandwidth B scatters about its expectation by a relative standard deviation of about 1 / sqrt(B duration), as that of
-    measured vibration does. Straight lines between points at the rate R multiply the amplitude at f by
-    sinc^2(f / R) = (sin(pi f / R) / (pi f / R))^2, by which it is divided here, and add images at k R +- f with
-    sinc^2(k +- f / R) of it: at 16 points a period, less than 4e-5 of the power.
+    bandwidth B has a relative standard deviation of about 1 / sqrt(B duration), like that of measured vibration. Straight
+    lines between points at the rate R multiply the amplitude at f by sinc^2(f / R) = (sin(pi f / R) / (pi f / R))^2, by
+    which it is divided here, and add images at k R +- f with sinc^2(k +- f / R) of it: at 16 points a period, less than 4e-5
+    of the power.
 
     References
     ----------
@@ -116,7 +116,7 @@ class Random(Sampled):
             return values
         if isinstance(values["psd"], str):
             if values["psd"] not in LEVELS:
-                raise Hint("no density has this name", nearest(values["psd"], LEVELS), ["psd"])
+                raise Hint("unknown name of a density", nearest(values["psd"], LEVELS), ["psd"])
             if values.get("unit") not in (None, "m/s^2"):
                 raise Hint(f"{values['psd']} is an acceleration", "leave unit out", ["unit"])
             return {**values, "unit": "m/s^2"}
@@ -158,7 +158,7 @@ class Random(Sampled):
         return self._points.values
 
     def polyline(self) -> tuple[Vector, Vector]:
-        """Return times [s] and values of its points."""
+        """Return times [s] and values of the points."""
         return self._points.times, self._points.values
 
     @property
@@ -169,7 +169,7 @@ class Random(Sampled):
 
     @property
     def _harmonics(self) -> NDArray[np.intp]:
-        """Numbers of the harmonics that lie in the band."""
+        """Indices of the harmonics in the band."""
         rate, count = self._sampling
         frequency = np.fft.rfftfreq(count, 1 / rate)
         return np.flatnonzero((frequency >= self.corners[0, 0]) & (frequency <= self.corners[-1, 0]))

@@ -1,4 +1,4 @@
-"""Restitution laws e(V); the formulas themselves are in core/contact/restitution, one file each."""
+"""Restitution laws e(V); their formulas are in core/contact/restitution, one file each."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _restitution(value: Any) -> float:
         raise Hint("a number from 0 to 1 is needed", "0.8") from None
     if not 0 <= number <= 1:
         raise Hint(
-            "restitution lies between 0 (no rebound) and 1 (no loss): above 1 an impact would create energy", "0.8"
+            "restitution is between 0 (no rebound) and 1 (no loss); above 1 an impact would create energy", "0.8"
         )
     return number
 
@@ -37,12 +37,12 @@ Fraction = Annotated[float, BeforeValidator(_restitution), _fraction]
 
 
 class Restitution(Part):
-    """What all restitution laws share.
+    """Base class of restitution laws.
 
     Parameters
     ----------
     maximum
-        Cap on e.
+        Upper limit of the restitution.
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("restitution",)
@@ -50,12 +50,12 @@ class Restitution(Part):
     maximum: Fraction = 1.0
 
     def coefficients(self, pair: Pair) -> Coefficients:
-        """Return the core's name of the law and its coefficients for a pair of bodies."""
+        """Return the name of the law in the core and its coefficients for a pair of bodies, in SI units."""
         raise NotImplementedError
 
 
 class Constant(Restitution):
-    """The same restitution at every speed.
+    """Constant restitution.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Constant(Restitution):
     kind: Literal["constant"] = "constant"
     e: Fraction = Field(examples=[0.8])
 
-    if TYPE_CHECKING:  # the first field may be given without its name
+    if TYPE_CHECKING:  # The first field is also a positional argument.
 
         def __init__(self, e: Any = ..., **values: Any) -> None: ...
 
@@ -106,16 +106,21 @@ class Tabulated(Restitution):
 
 
 class JacksonGreen(Restitution):
-    """Elasto-plastic restitution after Jackson and Green, from yield stress and elastic constants.
+    """Restitution of elasto-plastic impacts after Jackson and Green, from yield stress and elastic constants.
 
     Parameters
     ----------
     wall
-        Elasticity of the wall in the critical speed: a material, "rigid", or None for the damper's wall.
+        Wall for the critical speed: a material, or "rigid"; default the wall of the damper.
     yield_stress
-        Instead of the materials' [Pa]; that of the one with the lower Poisson's ratio, or the softer one.
+        Yield stress [Pa] of the body with the lower Poisson's ratio, or of the softer one of two with the same ratio;
+        default that of the materials.
     extrapolate
-        Use the law above 1000 critical speeds; counted in the run.
+        Whether the law is used above 1000 critical speeds; a run counts these impacts.
+
+    References
+    ----------
+    R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 (2010) 217, doi:10.1007/s11071-009-9591-z.
     """
 
     kind: Literal["jackson_green"] = "jackson_green"
@@ -124,7 +129,7 @@ class JacksonGreen(Restitution):
     extrapolate: bool = False
 
     def critical_speed(self, pair: Pair) -> float:
-        """Return V_c [m/s], the speed at which yield begins."""
+        """Return the critical speed V_c at which yield begins [m/s]."""
         pair = pair.against(self.wall)
         strength, _ = self._strength(pair)
         pressure = math.pi * strength / 2
@@ -157,7 +162,7 @@ class JacksonGreen(Restitution):
 
 
 def yield_pressure(pair: Pair, given: float | None, need: str) -> float:
-    """Return the limiting contact pressure p_y [Pa]: as given, or 1.6 yield stress of the body that yields first."""
+    """Return the limiting contact pressure p_y [Pa], by default 1.6 times the yield stress of the body that yields first."""
     if given is not None:
         return given
     material = present(pair.first_to_yield(need).material)
@@ -170,14 +175,18 @@ class ThorntonRestitution(Restitution):
     Parameters
     ----------
     yield_pressure
-        Limiting contact pressure [Pa]; default 1.6 yield stress.
+        Limiting contact pressure [Pa]; default 1.6 times the smaller yield stress.
+
+    References
+    ----------
+    C. Thornton, J. Appl. Mech. 64 (1997) 383, doi:10.1115/1.2787319.
     """
 
     kind: Literal["thornton"] = "thornton"
     yield_pressure: Modulus | None = None
 
     def yield_speed(self, pair: Pair) -> float:
-        """Return V_y [m/s]."""
+        """Return the speed V_y at which yield begins [m/s]."""
         pressure = yield_pressure(pair, self.yield_pressure, "Thornton's law")
         speed: float = (
             power(math.pi / (2 * pair.modulus), 2)
@@ -197,8 +206,11 @@ class Johnson(Restitution):
     Parameters
     ----------
     speed_scale
-        V_0 [m/s]; default from the yield stress Y of the body that yields first,
-        V_0 = 3.8^4 (Y/E*)^2 sqrt(2 Y R*^3/m*) (K. L. Johnson, Contact Mechanics 1985, eq. 11.47).
+        V_0 [m/s]; default 3.8^4 (Y/E*)^2 sqrt(2 Y R*^3/m*), with the yield stress Y of the body that yields first.
+
+    References
+    ----------
+    K. L. Johnson, Contact Mechanics, Cambridge University Press (1985), eq. 11.47, doi:10.1017/CBO9781139171731.
     """
 
     kind: Literal["johnson"] = "johnson"
@@ -215,7 +227,7 @@ class Johnson(Restitution):
 
 
 def as_restitution(value: Any) -> Any:
-    """Let a bare number stand for Constant."""
+    """Return the table of a constant restitution for a bare number, any other value unchanged."""
     return bare_number(
         value,
         lambda e: {"kind": "constant", "e": e},

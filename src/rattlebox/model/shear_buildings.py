@@ -1,4 +1,4 @@
-"""Buildings whose floors are rigid and move sideways."""
+"""Shear buildings: rigid floors that move sideways."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 class ShearBuilding(DampedModes):
-    """A shear building: floors that move along one line, each on the columns of the storey below it.
+    """Shear building: floors that move along one line, each on the columns of the storey below it.
 
-    Its points are the floors, "storey 1" to "storey n" from the ground up. All modes are kept.
+    Its points are the floors, "storey 1" to "storey n" from the ground up. It has all n modes.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class ShearBuilding(DampedModes):
         return np.sqrt(self.modes().stiffness) / (2 * math.pi)
 
     def modes(self) -> ModalModel:
-        """Compute the modes."""
+        """Compute the mass-normalised modes."""
         from scipy.linalg import eigh_tridiagonal
 
         root, storeys = np.sqrt(np.array(self.masses)), np.array(self.stiffnesses)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Shock(Signal):
-    """What all shocks share."""
+    """Base class of shocks."""
 
     amplitude: Amplitude
     duration: PositiveTime
@@ -46,10 +46,10 @@ class HalfSine(Shock):
         return np.where(inside, self.amplitude * np.sin(math.pi * (t - self.start) / self.duration), 0.0)
 
     def coefficients(self) -> dict[str, Any]:
-        """Return what the core reads."""
+        """Return the coefficients for the core."""
         return {
             "kind": "half_sine",
-            "amplitude": +self.amplitude,  # a plain number
+            "amplitude": +self.amplitude,  # a float without the unit of the input
             "frequency": math.pi / self.duration,
             "phase": 0.0,
             "start": self.start,
@@ -58,7 +58,7 @@ class HalfSine(Shock):
 
 
 class Sawtooth(Shock, Polyline):
-    """A sawtooth pulse: a straight rise to the peak at the end, or a straight fall from the peak at the begin.
+    """A sawtooth pulse: a linear rise to the peak at the end, or a linear fall from the peak at the begin.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Sawtooth(Shock, Polyline):
     duration, start
         Length D and begin of the pulse [s].
     peak
-        "terminal", at the end, or "initial", at the begin; there the pulse jumps.
+        "terminal", at the end, or "initial", at the begin; the pulse has a jump there.
 
     Notes
     -----
@@ -78,7 +78,7 @@ class Sawtooth(Shock, Polyline):
     peak: Literal["terminal", "initial"] = "terminal"
 
     def polyline(self) -> tuple[Vector, Vector]:
-        """Return times [s] and values of its corners."""
+        """Return times [s] and values of the corners."""
         stop = self.start + self.duration
         jump = self.start if self.peak == "initial" else stop
         times = sorted([self.start - self.duration, self.start, stop, jump, stop + self.duration])
@@ -87,17 +87,17 @@ class Sawtooth(Shock, Polyline):
 
 
 class Trapezoid(Shock, Polyline):
-    """A trapezoidal pulse: a straight rise, a constant value, and a straight fall.
+    """A trapezoidal pulse: a linear rise, a constant value, and a linear fall.
 
     Parameters
     ----------
     amplitude
         Constant value, with its unit.
     duration, start
-        Length D of the whole pulse and its begin [s].
+        Length D and begin of the pulse [s].
     rise, fall
-        Length of the rise and of the fall [s]; without `fall` it is as long as the rise. Left out, each is a tenth of the
-        duration; 0 is a jump.
+        Length of the rise and of the fall [s]; 0 is a jump. The default of the rise is a tenth of the duration, that of the
+        fall is the rise.
 
     Notes
     -----
@@ -123,7 +123,7 @@ class Trapezoid(Shock, Polyline):
         return rise, rise if self.fall is None else self.fall
 
     def polyline(self) -> tuple[Vector, Vector]:
-        """Return times [s] and values of its corners."""
+        """Return times [s] and values of the corners."""
         rise, fall = self._ramps()
         stop = self.start + self.duration
         full = self.start + rise

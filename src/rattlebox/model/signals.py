@@ -1,4 +1,4 @@
-"""What loads and motions in time share."""
+"""Base classes of signals, for loads and motions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ UNIT_NAMES = {"N": "a force", "m/s^2": "an acceleration", "m": "a displacement"}
 
 
 class _Amplitude(float):
-    """A number that remembers which unit it was given in."""
+    """A number with the unit of the input."""
 
     unit: str | None = None
 
@@ -48,17 +48,17 @@ Amplitude = Annotated[
 
 
 class Signal(Part):
-    """What all signals share.
+    """Base class of signals.
 
     Parameters
     ----------
     unit
-        SI unit of the values, "N", "m/s^2" or "m"; taken from the amplitude, or from the place of use.
+        SI unit of the values, "N", "m/s^2" or "m"; default that of the amplitude, or of the field of the case.
     point
-        Point of the structure that a load acts at; not needed where there is one only.
+        Point of the structure at which a load acts; needed if there are several.
     direction
-        Of a load at a point that moves in space, or of a motion of the base with particle dampers: "x", "y", "z" or three
-        numbers. Left out, the base moves along the direction of the dampers.
+        Direction of a load at a point in 3-D, or of a motion of the base with particle dampers: "x", "y", "z" or three
+        numbers. By default the base moves along the direction of the dampers.
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("load", "loads", "base", "motion")
@@ -100,19 +100,24 @@ class Signal(Part):
         return values
 
     def placed(self, allowed: Sequence[Unit], place: str) -> Signal:
-        """Return the signal with its unit settled for the place it is used in.
+        """Return the signal with the unit of the field in which it is used.
 
         Parameters
         ----------
         allowed
-            SI units that the place takes; the first is what bare numbers mean.
+            SI units that the field accepts; the first is the unit of bare numbers.
         place
-            Name of the place, for the message.
+            Name of the field, for the message.
+
+        Returns
+        -------
+        Signal
+            The signal with its unit.
 
         Raises
         ------
         Hint
-            When the signal is in another unit.
+            If the signal is in another unit.
         """
         unit = allowed[0] if self.unit is None else self.unit
         if unit not in allowed:
@@ -122,16 +127,16 @@ class Signal(Part):
         return self if self.unit == unit else self.model_copy(update={"unit": unit})
 
     def evaluate(self, time: Any) -> NDArray[np.float64]:
-        """Return the values at the given times [s], in the signal's unit, same shape."""
+        """Return the values at the given times [s], in the unit of the signal, same shape."""
         raise NotImplementedError
 
     def coefficients(self) -> dict[str, Any]:
-        """Return the coefficients of the core's signal of this kind, by name."""
+        """Return the coefficients for the core, by name."""
         raise NotImplementedError
 
 
 ROUNDING = 1e-9
-"""Of the duration: what times of a record may miss by where they were added up."""
+"""Tolerance for the rounding of accumulated times of a record, relative to the duration."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,9 +148,9 @@ class Points:
 
 
 class Polyline(Signal):
-    """A signal of straight lines between points, which the core takes as it does a record; zero outside them.
+    """Piecewise linear signal, zero before its first and after its last point.
 
-    Two points at one time make a jump.
+    Two points at the same time are a jump.
     """
 
     elementwise: ClassVar[bool] = False
@@ -155,7 +160,7 @@ class Polyline(Signal):
         raise NotImplementedError
 
     def evaluate(self, time: Any) -> NDArray[np.float64]:
-        """Return the values at the given times [s]; at a jump the later one."""
+        """Return the values at the given times [s]; at a jump, the value after it."""
         t = np.asarray(time, dtype=float)
         times, values = self.polyline()
         after = np.clip(np.searchsorted(times, t, side="right"), 1, times.size - 1)
@@ -165,16 +170,16 @@ class Polyline(Signal):
         return np.where(inside, values[after - 1] + share * (values[after] - values[after - 1]), 0.0)
 
     def coefficients(self) -> dict[str, Any]:
-        """Return what the core reads."""
+        """Return the coefficients for the core."""
         times, values = self.polyline()
         return {"kind": "record", "times": times, "values": values}
 
 
 class Sampled(Polyline):
-    """A signal that was sampled at evenly spaced times, and must cover the run."""
+    """Piecewise linear signal of samples, which must cover the run."""
 
     def covers(self, duration: float) -> bool:
-        """Return whether it lasts from 0 to the end of a run [s]; times that were added up may miss both by rounding."""
+        """Return whether the signal covers a run from 0 to its duration [s], to within rounding."""
         slack = ROUNDING * duration
         times, _ = self.polyline()
         return bool(times[0] <= slack and times[-1] >= duration - slack)
@@ -183,25 +188,25 @@ class Sampled(Polyline):
         """Return the values at the given times [s]."""
         t = np.asarray(time, dtype=float)
         times, values = self.polyline()
-        near = np.clip(t, times[0], times[-1])  # the end of a run that it covers but for rounding
+        near = np.clip(t, times[0], times[-1])  # The last time may differ from the end of the run by rounding.
         t = np.where(np.abs(t - near) <= ROUNDING * times[-1], near, t)
         return np.asarray(np.interp(t, times, values, left=0.0, right=0.0))
 
     @property
     def where(self) -> tuple[str, ...]:
-        """The field that sets its length, for messages."""
+        """Field that determines the length, for messages."""
         return ("duration",)
 
 
 def as_several(value: Any) -> Any:
-    """Let one stand for a list of one, None for none."""
+    """Return a tuple; a single value becomes a tuple of one, None an empty tuple."""
     if value is None:
         return ()
     return tuple(value) if isinstance(value, (list, tuple)) else (value,)
 
 
 def signals_in(*units: Unit) -> BeforeValidator:
-    """Return a validator that lets one signal stand for a list of one, and looks at the units of amplitudes."""
+    """Return a validator of one or several signals that checks the units of amplitudes."""
 
     def read(value: Any) -> Any:
         signals = as_several(value)

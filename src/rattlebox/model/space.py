@@ -1,4 +1,4 @@
-"""Vectors and directions in space, axes x, y, z."""
+"""Vectors and directions in 3-D, with axes x, y, z."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _direction(value: Any) -> Any:
         return value
     vector = numbers(_three(value, "numbers", "[0, 0, 1]"))
     if not np.linalg.norm(vector) > 0:
-        raise Hint("a direction needs some length", "[0, 0, 1]")
+        raise Hint("a direction must not be zero", "[0, 0, 1]")
     return tuple(vector.tolist())
 
 
@@ -76,8 +76,8 @@ def unit_vector(direction: str | Triple) -> Vector:
         vector = np.zeros(3)
         vector[AXES.index(direction[-1])] = -1.0 if direction[0] == "-" else 1.0
         return vector
-    given = np.array(direction)
-    return np.asarray(given / np.linalg.norm(given))
+    vector = np.array(direction)
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 Accelerations = Annotated[Triple, *triple("m/s^2", "accelerations", "[0, 0, -9.81]")]

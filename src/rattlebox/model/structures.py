@@ -1,4 +1,4 @@
-"""Structures: single degree of freedom, modes, a fixed cavity, a shaker; and what all structures share."""
+"""Structures: single degree of freedom, modes, a fixed cavity, a shaker, and their base classes."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _point(value: Any) -> Any:
     try:
         return operator.index(value)
     except TypeError:
-        raise Hint("the number of a degree of freedom is needed, counted from 0, or a list of weights") from None
+        raise Hint("the index of a degree of freedom is needed, from 0, or a list of weights") from None
 
 
 Numbers = Annotated[list[float], BeforeValidator(_numbers)]
@@ -96,7 +96,7 @@ Ratio = Annotated[Number, Field(ge=0, le=LARGEST), _ratio_schema]
 
 
 class StructurePart(Part):
-    """What all structures share."""
+    """Base class of structures."""
 
     field_names: ClassVar[tuple[str, ...]] = ("structure",)
     kind: str
@@ -106,27 +106,33 @@ class StructurePart(Part):
         raise NotImplementedError
 
     def notes(self) -> Iterator[str]:
-        """Return what was assumed about data that do not say it, such as units of files."""
+        """Return notes on assumptions, such as the units of files."""
         return iter(())
 
     def warnings(self) -> Iterator[str]:
-        """Return where the structure leaves the limits of its theory."""
+        """Return warnings about exceeded limits of the theory."""
         return iter(())
 
 
 class SDOF(StructurePart):
-    """Mass, spring and dashpot: M z'' + C z' + K z = F. Its only point is called "mass".
+    """Single degree of freedom, M z'' + C z' + K z = F, with the point "mass".
 
     Parameters
     ----------
     mass
         M [kg].
     stiffness, frequency
-        K [N/m], 0 for a free body; or instead the undamped natural frequency sqrt(K / M) / (2 pi) [Hz].
+        K [N/m], 0 for a free body; or the undamped natural frequency sqrt(K / M) / (2 pi) [Hz].
     damping, damping_ratio
-        C [N s/m] or C / (2 sqrt(K M)); at most one of them, none means undamped. Any ratio, also above 1.
+        C [N s/m] or C / (2 sqrt(K M)), which may exceed 1; default undamped.
     displacement, velocity
-        At the start, relative to the base [m], [m/s].
+        Initial displacement and velocity relative to the base [m], [m/s].
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping_ratio=0.01).modes().decay.round(4)
+    array([0.6325])
     """
 
     alternatives: ClassVar[tuple[tuple[str, str], ...]] = (
@@ -146,13 +152,13 @@ class SDOF(StructurePart):
     def _one_of_each(self) -> Self:
         one_of('stiffness = "80 kN/m"', stiffness=self.stiffness, frequency=self.frequency)
         if self.damping is not None and self.damping_ratio is not None:
-            raise Hint("damping and damping_ratio say the same thing twice", "give one of them")
+            raise Hint("damping and damping_ratio exclude each other", "give one of them")
         if self.damping_ratio and self.stiffness == 0:
             raise Hint("a damping ratio has no meaning without stiffness", 'damping = "5 N s/m"')
         return self
 
     def modes(self) -> ModalModel:
-        """Reduce to one mode."""
+        """Return the only mode."""
         by_frequency = self.stiffness is None
         stiffness = (
             power(2 * math.pi * present(self.frequency), 2) if by_frequency else present(self.stiffness) / self.mass
@@ -178,10 +184,9 @@ class DampedModes(StructurePart):
     Parameters
     ----------
     damping_ratio
-        Damping ratio of all modes, or a list with one for each mode; left out, there is no damping. Modes of frequency 0
-        have none.
+        Damping ratio of all modes, or a list with one for each mode; default undamped. Rigid-body modes have no damping.
     rayleigh
-        Instead: alpha [1/s] and beta [s] of Rayleigh damping, C = alpha M + beta K; the damping ratio at the angular
+        Coefficients alpha [1/s] and beta [s] of Rayleigh damping, C = alpha M + beta K; the damping ratio at the angular
         frequency omega is alpha / (2 omega) + beta omega / 2.
     """
 
@@ -207,7 +212,7 @@ class DampedModes(StructurePart):
         Raises
         ------
         Hint
-            If a list of damping ratios has another length.
+            If the number of damping ratios differs from the number of modes.
         """
         if self.rayleigh is not None:
             return np.asarray((self.rayleigh[0] + self.rayleigh[1] * stiffness) / 2)
@@ -221,12 +226,12 @@ class DampedModes(StructurePart):
 
 
 def check_damping(matrix: Vector, count: int) -> None:
-    """Raise if a modal damping matrix does not fit.
+    """Raise if a modal damping matrix is invalid.
 
     Raises
     ------
     Hint
-        If it has another size than (count, count), is not symmetric, or would give energy to a motion.
+        If its shape is not (count, count), or it is not symmetric and positive semidefinite.
     """
     place = ["damping_matrix"]
     if matrix.shape != (count, count):
@@ -245,7 +250,7 @@ def _one_each(value: Any) -> Any:
 
 
 class Modal(StructurePart):
-    """A structure given by its modes, in the case or in a file.
+    """Structure defined by its modes, in the case or in a file.
 
     Parameters
     ----------
@@ -256,24 +261,24 @@ class Modal(StructurePart):
         is 2 w times the ratios; one of them.
     shapes
         Mass-normalised mode shapes at named points, one number for each mode [kg^-1/2]; or three, along x, y and z, for a
-        point that moves in space.
+        point in 3-D.
     participation
-        Inertia of each mode per unit of base acceleration [kg^1/2]; needed only with base motion. Three for each mode where
-        points move in space.
+        Inertia of each mode per unit of base acceleration [kg^1/2], needed for base motion; three numbers for each mode if
+        points move in 3-D.
     displacement, velocity
-        Modal amplitudes at the start [kg^1/2 m], [kg^1/2 m/s]; default 0.
+        Initial modal displacements and velocities [kg^1/2 m], [kg^1/2 m/s]; default 0.
     file
-        Instead of frequencies, shapes and what else it holds: a table of modes (.csv, .toml), a universal file (.uff, .unv),
-        a result (.rst) or the matrices (.full) of Ansys.
+        File with frequencies, shapes and possibly more: a table of modes (.csv, .toml), a universal file (.uff, .unv), a
+        result (.rst) or the matrices (.full) of Ansys.
     points
-        Which points of the file are taken, by their new names: `{"tip": 21}` for node 21, which moves in space, or
-        `{"tip": "21 z"}` for its motion along z; left out, all of them, if there are few.
+        Points of the file by their new names: `{"tip": 21}` for node 21 in 3-D, or `{"tip": "21 z"}` for its motion along z;
+        default all points, if there are few.
     mode_count
-        How many modes of the file are taken, the first ones; of a .full file how many are computed, 10 if left out.
+        Number of modes, the first ones of the file; the number of computed modes of a .full file, default 10.
     mass_unit
-        The file's unit of mass, "kg", "t" or "g", where it states none.
+        Unit of mass of the file, "kg", "t" or "g", if the file does not state it.
     modal_masses
-        Modal mass of each mode of the file [kg], where it states none; "1 kg" for shapes that are mass-normalised.
+        Modal mass of each mode of the file [kg], if the file does not state them; "1 kg" for mass-normalised shapes.
     """
 
     file_fields: ClassVar[tuple[str, ...]] = ("frequencies", "damping_ratios", "shapes", "participation")
@@ -306,14 +311,19 @@ class Modal(StructurePart):
         Parameters
         ----------
         model
-            What `modes()` of a structure returns.
+            Modes, from `modes()` of a structure.
         **options
-            displacement and velocity in the place of those of the model.
+            displacement and velocity in place of those of the model.
+
+        Returns
+        -------
+        Modal
+            The structure.
 
         Raises
         ------
         CaseError
-            If the modes do not fit.
+            If the options and the modes differ in length.
         """
         rigid = model.stiffness <= 0
         matrix = np.diag(2 * model.decay) + (0.0 if model.coupling is None else model.coupling)
@@ -378,7 +388,7 @@ class Modal(StructurePart):
         return cls(**{"file": os.fspath(path), **options})
 
     def notes(self) -> Iterator[str]:
-        """Return what was assumed about the units of the file."""
+        """Return notes on the assumed units of the file."""
         return iter(self._notes)
 
     def fields_from_file(self) -> tuple[str, ...]:
@@ -386,7 +396,7 @@ class Modal(StructurePart):
         return self._read
 
     @model_serializer(mode="wrap")
-    def _file_stands_for_numbers(self, handler: Any) -> Any:
+    def _without_file_fields(self, handler: Any) -> Any:
         data = handler(self)
         for name in self._read:
             data.pop(name, None)
@@ -411,7 +421,7 @@ class Modal(StructurePart):
         kinds = ("damping_ratios", "damping_ratio", "damping_matrix")
         given = [name for name in kinds if getattr(self, name) is not None]
         if len(given) != 1:
-            both = f"{' and '.join(given)} say the same thing twice" if given else "damping is needed"
+            both = f"{' and '.join(given)} exclude each other" if given else "damping is needed"
             raise Hint(both, "damping_ratios = [0.01, 0.01], 0 for no damping", ["damping_ratios"])
         if self.damping_matrix is not None:
             check_damping(np.array(self.damping_matrix), count)
@@ -419,7 +429,7 @@ class Modal(StructurePart):
             raise Hint("at least one named point is needed", "shapes = { tip = [...] }", ["shapes"])
         if self.participation is not None and isinstance(self.participation[0], list) != bool(self._spatial()):
             raise Hint(
-                "participation has three numbers for each mode if points move in space, else one",
+                "participation has three numbers for each mode if points move in 3-D, else one",
                 place=["participation"],
             )
         return self
@@ -438,7 +448,7 @@ class Modal(StructurePart):
         return coupling if coupling.any() else None
 
     def _spatial(self) -> frozenset[str]:
-        """Points that move in space."""
+        """Return the points that move in 3-D."""
         return frozenset(name for name, row in self.shapes.items() if isinstance(row[0], list))
 
     def modes(self) -> ModalModel:

@@ -1,4 +1,4 @@
-"""What other programs and books call things, for suggestions where a name is not known."""
+"""Synonyms of names in other programs and books, for suggestions."""
 
 _OTHERS = {  # ours: others'
     # fields

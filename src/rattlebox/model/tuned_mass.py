@@ -21,29 +21,29 @@ if TYPE_CHECKING:
     from .any_structure import Structure
 
 _NO_COUPLING = 1e-12
-"""Damping between modes, over their largest damping, that is rounding."""
+"""Damping between modes, relative to the largest damping, up to which it counts as rounding error."""
 
 
 class TunedMass(Part):
-    """A tuned mass damper: a mass that a spring and a dashpot hold at a point of the structure.
+    """Tuned mass damper: a mass on a spring and a dashpot at a point of the structure.
 
-    It moves along the line of the point, or along `direction` where the point moves in space; its inertia across that
-    direction is left out. The run records its motion as that of a point called by its name.
+    It moves along the line of the point, or along `direction` at a point in 3-D; its inertia perpendicular to that direction
+    is neglected. The run records its motion as that of a point with its name.
 
     Parameters
     ----------
     mass
         Mass [kg].
     frequency
-        Natural frequency of the mass on its spring, with the structure held [Hz].
+        Natural frequency of the mass on its spring, with the structure fixed [Hz].
     damping_ratio
         Damping ratio, relative to that frequency.
     point
         Point of the structure; needed if there are several.
     direction
-        Direction of the motion, where the point moves in space.
+        Direction of the motion, if the point moves in 3-D.
     displacement, velocity
-        At the start, relative to the base [m], [m/s]. By default the spring is not stretched and the mass is at rest.
+        Initial displacement and velocity relative to the base [m], [m/s]; default an undeformed spring and a mass at rest.
     name
         Name of its point in the results; default "tuned mass".
 
@@ -68,12 +68,12 @@ class TunedMass(Part):
     name: Annotated[str | None, Field(min_length=1)] = None
 
     def label(self, index: int, count: int) -> str:
-        """Return the name of its point."""
+        """Return the name of the point of the tuned mass."""
         return self.name or ("tuned mass" if count == 1 else f"tuned mass {index + 1}")
 
     @classmethod
     def den_hartog(cls, structure: Structure, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
-        """Return the tuned mass that makes the highest response to a harmonic force on the structure smallest.
+        """Return the tuned mass that minimises the largest response to a harmonic force on the structure.
 
         Parameters
         ----------
@@ -89,11 +89,11 @@ class TunedMass(Part):
         Raises
         ------
         CaseError
-            If there is no such point or mode, or the mode does not move the point.
+            If the point or mode does not exist, or the mode does not move the point.
 
         Notes
         -----
-        f / f_s = 1 / (1 + mu) and zeta = sqrt(3 mu / (8 (1 + mu))), relative to the own frequency f of the damper, with mu
+        f / f_s = 1 / (1 + mu) and zeta = sqrt(3 mu / (8 (1 + mu))), relative to the frequency f of the damper, with mu
         the ratio of its mass to the modal mass 1 / shape^2 at the point. Optimal for an undamped structure with one mode,
         whose largest displacement is then sqrt(1 + 2 / mu) times the static one.
 
@@ -107,17 +107,17 @@ class TunedMass(Part):
 
     @classmethod
     def warburton(cls, structure: Structure, mass: Any, *, mode: int = 1, **options: Any) -> TunedMass:
-        """Return the tuned mass that makes the highest displacement from a harmonically accelerated base smallest.
+        """Return the tuned mass that minimises the largest displacement under a harmonic acceleration of the base.
 
         Parameters
         ----------
         structure, mass, mode, **options
-            As of `den_hartog`.
+            As in `den_hartog`.
 
         Raises
         ------
         CaseError
-            If there is no such point or mode, or the mode does not move the point.
+            If the point or mode does not exist, or the mode does not move the point.
 
         Notes
         -----
@@ -144,10 +144,10 @@ class TunedMass(Part):
         """Return mass over modal mass, and the natural frequency [Hz]."""
         trial = cls(mass=mass, frequency=1.0, **options)
         modes = structure.modes()
-        swinging = np.flatnonzero(modes.stiffness > 0)
-        if not (isinstance(mode, int) and 1 <= mode <= modes.stiffness.size and mode - 1 in swinging):
-            known = ", ".join(str(k + 1) for k in swinging) or "none"
-            raise Hint(f"mode is {mode!r}, which is no mode with a frequency", f"one of these: {known}", ["mode"])
+        elastic = np.flatnonzero(modes.stiffness > 0)
+        if not (isinstance(mode, int) and 1 <= mode <= modes.stiffness.size and mode - 1 in elastic):
+            known = ", ".join(str(k + 1) for k in elastic) or "none"
+            raise Hint(f"mode is {mode!r}, which is not a mode with a frequency", f"one of these: {known}", ["mode"])
         shape = float(modes.shape(trial.point, trial.direction)[mode - 1])
         if shape == 0:
             raise Hint(f"mode {mode} does not move the point", "another point or direction", ["point"])
@@ -158,7 +158,7 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
     """Return the modes of a structure with tuned masses.
 
     The equations of the structure's modes and of the tuned masses, scaled to unit masses, are x'' + D x' + K x = f. The
-    eigenvectors of K are the new, undamped modes; the damping matrix turned into them is not diagonal.
+    eigenvectors of K are the new, undamped modes; the transformed damping matrix is not diagonal.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
     if not count:
         raise Hint("a tuned mass needs a structure that moves", "SDOF, Modal or Matrices", ["tuned_masses", 0])
 
-    # Numbers may be arrays over a grid, which has its axes after those of vectors and matrices.
+    # Numbers may be arrays over a grid, whose axes follow those of vectors and matrices.
     numbers = [number for part in tuned for number in (part.mass, part.frequency, part.damping_ratio, part.velocity)]
     numbers += [part.displacement for part in tuned if part.displacement is not None]
     own = (modes.decay, modes.stiffness, modes.q0, modes.p0)
@@ -215,7 +215,7 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
                 raise Hint(hint.complaint, hint.suggestion, hint.place or ["point"]) from None
             name = part.label(index, len(tuned))
             if name in modes.shapes or name in names:
-                raise Hint(f"there is a point {name!r} already", 'name = "another name"', ["name"])
+                raise Hint(f"the point {name!r} already exists", 'name = "another name"', ["name"])
         names.append(name)
         root = power(part.mass, 0.5)
         roots.append(root)
@@ -249,7 +249,7 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
         own_place = [1 / root if k == index else 0.0 for k, root in enumerate(roots)]
         shapes[name] = into_modes(np.zeros(count), own_place)
     places = [
-        root * (_moved(modes, part) if part.displacement is None else part.displacement)
+        root * (_initial_displacement(modes, part) if part.displacement is None else part.displacement)
         for part, root in zip(tuned, roots, strict=True)
     ]
     speeds = [root * part.velocity for part, root in zip(tuned, roots, strict=True)]
@@ -272,8 +272,8 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
     )
 
 
-def _moved(modes: ModalModel, part: TunedMass) -> Any:
-    """Return the displacement of its point at the start."""
+def _initial_displacement(modes: ModalModel, part: TunedMass) -> Any:
+    """Return the initial displacement of the point of a tuned mass."""
     shape = modes.shape(part.point, part.direction)
     return sum(one * q for one, q in zip(shape, modes.q0, strict=True))
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pint
 
 LARGEST = 1e30
-"""Numbers beyond it, and positive ones below its inverse, are slips: their powers would leave double precision."""
+"""Largest number in SI units; its inverse is the smallest positive one. Powers of other numbers would overflow."""
 
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
@@ -31,10 +31,9 @@ _DENSITY = re.compile(r"^\s*\(?\s*([^()]+?)\s*\)?\s*\^2\s*/\s*Hz\s*$")
 
 _COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(.*?)\s*$")
 
-# Factors of the usual units, by dimension: text is looked up here before pint reads it. A unit means what it means for the
-# quantity asked for: pint reads g as gram, mg as milligram and gal as gallon, also where an acceleration is needed. And most
-# case files need no unit registry. Exact powers of ten are applied as one correctly rounded operation: x / 1000 rather
-# than x * 0.001.
+# Factors of common units by dimension, which have priority over pint: pint reads g as gram, mg as milligram and gal as
+# gallon, also where an acceleration is needed, and loading it takes time. Exact powers of ten are applied as one correctly
+# rounded operation: x / 1000 rather than x * 0.001.
 _COMMON: dict[str, dict[str, tuple[float, float]]] = {
     "m": {
         "m": (1, 1),
@@ -104,7 +103,7 @@ _COMMON: dict[str, dict[str, tuple[float, float]]] = {
 _DENSITIES = {"m/s^2": ("m^2/s^3", "m^2/s^4/Hz", "(m/s^2)^2/Hz"), "N": ("N^2/Hz",), "m": ("m^2/Hz",)}
 
 _LABELS = re.compile(r"[txyzTXYZ]|\d*")
-"""What may stand in brackets above a column without being a unit: a(t), a (X), force (1)."""
+"""Text in brackets above a column that is not a unit: a(t), a (X), force (1)."""
 
 _NAMES = {
     "m": "length", "s": "time", "kg": "mass", "N": "force", "N/m": "stiffness", "N s/m": "damping coefficient",
@@ -153,7 +152,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     value
         A number in SI, text such as "0.4 mm", a pair (number, unit) or a pint Quantity.
     units
-        SI units allowed; the first is what a bare number means.
+        SI units allowed; the first is the unit of bare numbers.
 
     Returns
     -------
@@ -163,7 +162,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
     Raises
     ------
     Hint
-        When there is no finite number, the unit is unknown, or the dimension is another.
+        If there is no finite number, the unit is unknown, or the dimension is wrong.
     """
     if isinstance(value, (bool, np.bool_, bytes)):
         raise Hint(_wanted(units), _example(units))
@@ -197,7 +196,7 @@ def parse(value: Any, units: tuple[str, ...]) -> tuple[float, str | None]:
                 if unit == "rad/s" and not angular:
                     return _finite(float(value.to("Hz").magnitude) * (2 * math.pi)), unit
                 return _finite(float(value.to(_pint_unit(unit)).magnitude)), unit
-        grams = "m/s^2" in units and str(value.units) == "gram"  # and g is meant
+        grams = "m/s^2" in units and str(value.units) == "gram"  # g of gravity is meant
         advice = f'"{value.magnitude:.12g} g_0"' if grams else _example(units)
         raise Hint(f"{_wanted(units)}, not {_described(value)}", advice)
     try:
@@ -214,7 +213,7 @@ def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None
     value
         Number, or text such as "0.04 g_0^2/Hz" or "3.8 (m/s^2)^2/Hz".
     units
-        SI units that the signal may have.
+        SI units allowed for the signal.
 
     Returns
     -------
@@ -246,12 +245,12 @@ def parse_density(value: Any, units: tuple[str, ...]) -> tuple[float, str | None
 
 
 def factor_of(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:
-    """Return the factor to SI of a unit that stands alone, and the SI unit; None if it is none of these dimensions.
+    """Return the factor of a unit to SI, and the SI unit; None if it has none of these dimensions.
 
     Parameters
     ----------
     unit
-        Unit from the tables of these dimensions, in any usual spelling, or a quotient that pint reads.
+        Unit in any common spelling, or a quotient that pint can read.
     units
         SI units of the dimensions allowed.
     """
@@ -268,7 +267,7 @@ def factor_of(unit: str, units: tuple[str, ...]) -> tuple[float, str] | None:
 
 
 def unit_above(heads: list[str], units: tuple[str, ...]) -> tuple[float, str] | None:
-    """Return the factor to SI and the SI unit that the lines above a column state, None if they state none.
+    """Return the factor to SI and the SI unit from the header lines of a column; None if they have no unit.
 
     Parameters
     ----------
@@ -295,7 +294,7 @@ def unit_above(heads: list[str], units: tuple[str, ...]) -> tuple[float, str] | 
 
 
 def _spelt(unit: str) -> str:
-    """Return the spelling that the tables use: m/s², m/s2, m/s**2, m/s/s, m/sec^2 and m s^-2 are m/s^2."""
+    """Return the normalised spelling of a unit: m/s², m/s2, m/s**2, m/s/s, m/sec^2 and m s^-2 are m/s^2."""
     unit = unit.replace("**", "^").replace("²", "^2").replace("μ", "µ").replace("·", " ")
     unit = re.sub(r"/\s*sec\b|/\s*sec(?=[\d^])", "/s", unit)
     unit = re.sub(r"/s(?:2|/s)$", "/s^2", unit)
@@ -303,18 +302,18 @@ def _spelt(unit: str) -> str:
 
 
 def _check_comma(text: str) -> None:
-    """Refuse a number with a comma in it."""
+    """Raise if a number contains a comma."""
     match = _COMMA.match(text)
     if match:
         before, after, rest = match.groups()
         readings = [f'"{before}.{after}{rest}"'] if "," not in rest else []
         if readings and len(after) == 3 and before.lstrip("+-") != "0":
             readings.append(f'"{before}{after}{rest}"')
-        raise Hint("decimals follow a point, and nothing parts thousands", " or ".join(readings))
+        raise Hint("a number has a decimal point and no separator of thousands", " or ".join(readings))
 
 
 def as_written(value: Any) -> tuple[float, str] | None:
-    """Return a number and its unit, "" where none is told; None for what is neither text, a number nor a pair of them."""
+    """Return the number and the unit of a quantity as written, "" without unit; None for values of other types."""
     if isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[1], str):
         value = f"{value[0]} {value[1]}"
     if isinstance(value, (int, float)):
@@ -324,7 +323,7 @@ def as_written(value: Any) -> tuple[float, str] | None:
 
 
 def are_alike(one: str, other: str) -> bool:
-    """Return whether units as they are written are of one dimension; frequencies and angular velocities are.
+    """Return whether two units have the same dimension; frequencies and angular velocities count as the same.
 
     Raises
     ------
@@ -339,7 +338,7 @@ def are_alike(one: str, other: str) -> bool:
 
 
 def _is_angle(value: Any) -> bool:
-    """Whether a dimensionless quantity is one, and no percentage."""
+    """Return whether a dimensionless quantity is an angle or a ratio, not a percentage."""
     return str(value.units) == "dimensionless" or str(value.to_root_units().units) == "radian"
 
 
@@ -374,7 +373,7 @@ def radius_of_diameter(values: Any) -> Any:
     Raises
     ------
     Hint
-        When the diameter is no positive length, or both are given.
+        If the diameter is not a positive length, or both are given.
     """
     if not isinstance(values, dict) or values.get("diameter") is None:
         return values
@@ -391,12 +390,12 @@ def numbers(value: Any) -> NDArray[np.float64]:
     Raises
     ------
     Hint
-        When something in it is no finite number.
+        If an item is not a finite number.
     """
     try:
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        _find_what_is_no_number(value)
+        _raise_at_invalid_number(value)
         raise Hint("rows of numbers of one length are needed") from None
     bad = np.flatnonzero(~(np.abs(array) <= LARGEST))
     if bad.size:
@@ -406,12 +405,12 @@ def numbers(value: Any) -> NDArray[np.float64]:
 
 
 def in_si(value: Any, unit: str) -> Any:
-    """Return nested lists with numbers in an SI unit in place of quantities; arrays of numbers stay as they are.
+    """Return nested lists with numbers in an SI unit in place of quantities; arrays of numbers are returned unchanged.
 
     Raises
     ------
     Hint
-        When something in it is no quantity of this dimension.
+        If an item is not a quantity of this dimension.
     """
     if isinstance(value, np.ndarray):
         return value if value.dtype.kind in "iuf" else in_si(value.tolist(), unit)
@@ -426,11 +425,12 @@ def in_si(value: Any, unit: str) -> Any:
     return plain
 
 
-def _find_what_is_no_number(value: Any) -> None:
+def _raise_at_invalid_number(value: Any) -> None:
+    """Raise with the place of the first item of nested lists that is not a number."""
     if isinstance(value, (list, tuple)):
         for index, item in enumerate(value):
             with at(index):
-                _find_what_is_no_number(item)
+                _raise_at_invalid_number(item)
         return
     try:
         float(value)
@@ -439,19 +439,19 @@ def _find_what_is_no_number(value: Any) -> None:
 
 
 def text(value: float, unit: str) -> str:
-    """Write a quantity so that it reads back to the same bits."""
+    """Return the text of a quantity from which the same bits are read."""
     return f"{float(value)!r} {unit}"
 
 
 @dataclass(frozen=True)
 class SI:
-    """Tells the unit of a field's numbers."""
+    """Annotation with the SI unit of the numbers of a field."""
 
     unit: str
 
 
 def quantity(unit: str, description: str = "") -> Any:
-    """Return the annotations of a field that holds a quantity in this SI unit."""
+    """Return the annotations of a field with a quantity in this SI unit."""
 
     def read(value: Any) -> float:
         return parse(value, (unit,))[0]
@@ -486,12 +486,12 @@ def _not_negative(value: float) -> float:
 
 
 def not_boolean(value: Any) -> Any:
-    """Return what is given, unless it is true or false, which Python takes for 1 and 0.
+    """Return a value unchanged unless it is a boolean, which is an integer in Python.
 
     Raises
     ------
     Hint
-        When it is.
+        If the value is a boolean.
     """
     if isinstance(value, (bool, np.bool_)):
         raise Hint("a number is needed")
@@ -499,12 +499,12 @@ def not_boolean(value: Any) -> Any:
 
 
 def plain(value: Any) -> Any:
-    """Return what is given for a plain number, with percentages such as "36 %" as parts of one.
+    """Return a value for a number without unit; percentages such as "36 %" become fractions.
 
     Raises
     ------
     Hint
-        When it is true or false, or text with a comma in a number.
+        If the value is a boolean, or text with a comma in a number.
     """
     if isinstance(value, str):
         _check_comma(value)
@@ -513,12 +513,12 @@ def plain(value: Any) -> Any:
 
 
 def whole_number(value: Any, name: str, least: int) -> int:
-    """Return a whole number.
+    """Return a value as a whole number.
 
     Raises
     ------
     Hint
-        When it is none, or below the least one allowed.
+        If the value is not a whole number, or below `least`.
     """
     try:
         number = operator.index(value)
@@ -530,12 +530,12 @@ def whole_number(value: Any, name: str, least: int) -> int:
 
 
 def bare_number(value: Any, table: Callable[[float], dict[str, Any]], need: str, advice: str) -> Any:
-    """Let a bare number, or a percentage, stand for the table that is made of it; return any other table as it is.
+    """Return the table for a bare number or percentage; return any other table unchanged.
 
     Raises
     ------
     Hint
-        When it is text or a list: what is needed, and what to try.
+        If the value is text or a list; `need` and `advice` are the message.
     """
     if isinstance(value, bool):
         return value

@@ -184,7 +184,7 @@ def test_a_unit_comes_with_the_amplitude() -> None:
         ({"damper.gap": -1.0}, ["damper.gap = -1.0", "must not be negative"]),
         ({"damper.gap": "1 kg"}, ["damper.gap", "a length (m) is needed"]),
         ({"damper.gap": 1e-3, "dampers[0].gap": 2e-3}, ["dampers[0].gap and damper.gap are the same"]),
-        ({"structure.damping": 1.0, "structure.damping_ratio": 0.1}, ["say the same thing twice"]),
+        ({"structure.damping": 1.0, "structure.damping_ratio": 0.1}, ["exclude each other"]),
         ({"damper.start": 1.5}, ["inside a wall"]),
         ({"damper.contact": 3.0, "damper.contact.alpha": 0.1}, ["not both"]),
     ],
