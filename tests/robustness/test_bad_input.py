@@ -108,7 +108,7 @@ def test_the_good_case_is_accepted() -> None:
         ('duration = "5 s"', "duration = 5,5", ["not TOML", "try: a point before decimals: duration = 5.5"]),
         ('gap = "0.4 mm"', 'gap = "0,4 mm"', ["gap", "decimal point", 'try: "0.4 mm"']),
         ('amplitude = "5 kN"', 'amplitude = "5,000 N"', ["amplitude", 'try: "5.000 N" or "5000 N"']),
-        ('amplitude = "5 kN"', 'amplitude = "1,234,567 N"', ["amplitude = '1,234,567 N'", "nothing parts thousands"]),
+        ('amplitude = "5 kN"', 'amplitude = "1,234,567 N"', ["amplitude = '1,234,567 N'", "thousands"]),
         ("restitution = 0.9", 'restitution = "0,9"', ["restitution", 'try: "0.9"']),
         ('gap = "0.4 mm"\n', "", ["damper", "gap or cavity_length is needed", 'try: gap = "0.4 mm"']),
         ("restitution = 0.9", 'ending = "zero_force"', ["damper.contact", "restitution or alpha is needed"]),
@@ -312,7 +312,7 @@ def held(gap: str, method: object) -> rb.Case:
 
 def test_ball_without_play() -> None:
     """Hard impacts without any play are refused; soft contacts carry such a ball, and the ledger closes."""
-    with pytest.raises(rb.CaseError, match="need some play"):
+    with pytest.raises(rb.CaseError, match=r"damper\.gap = 0\.0"):
         held("0 mm", rb.Newton())
     assert rb.simulate(held("1 nm", rb.Newton())).energy_residual <= 1e-11
     run = rb.simulate(held("0 mm", rb.EventDriven()))
@@ -321,7 +321,7 @@ def test_ball_without_play() -> None:
 
 def test_a_function_is_no_load() -> None:
     """A function that is given as a load is refused with how to make a record of it."""
-    with pytest.raises(rb.CaseError, match=r"load = <function .*\n  a function is no signal .*\n  try: rb\.Record\("):
+    with pytest.raises(rb.CaseError, match=r"load = <function .*\n  a function .*\n  try: rb\.Record\("):
         rb.Case(structure=rb.SDOF(mass=1, stiffness=1), load=lambda t: t, duration=1)
 
 
@@ -367,9 +367,9 @@ def sweep(**changed: Any) -> rb.SineSweep:
         (lambda: rb.Random("gevs_acceptance", 2.0, unit="N"), "is an acceleration"),
         (lambda: sweep(first_frequency=-1.0, sweep_rate="2 oct/min"), "must be greater than zero"),
         (lambda: sweep(first_frequency="1 m", sweep_rate="2 oct/min"), "a frequency .* is needed"),
-        (lambda: sweep(last_frequency=5.0, sweep_rate="2 oct/min"), "two frequencies that differ"),
+        (lambda: sweep(last_frequency=5.0, sweep_rate="2 oct/min"), "two different frequencies"),
         (lambda: sweep(sweep_rate="2 octaves"), "oct/min, oct/s, dec/min, Hz/s or Hz/min"),
-        (lambda: sweep(sweep_rate="-2 oct/min"), "must be greater than zero; a sweep goes down where"),
+        (lambda: sweep(sweep_rate="-2 oct/min"), "must be greater than zero"),
         (lambda: sweep(sweep_rate="1e-9 Hz/s"), "cycles; at most"),
         (lambda: sweep(sweep_rate="1 Hz/s", duration=1.0), "a rate or a duration"),
         (lambda: sweep(), "a rate or a duration"),

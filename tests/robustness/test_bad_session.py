@@ -157,7 +157,7 @@ ANSWERS = {
     ),
     "restitution in a table above one": (
         changed("0.9", '{ kind = "table", speeds = [1, 2], values = [0.9, 1.8] }'),
-        "damper.contact.restitution.values[1] = 1.8\n  restitution lies between 0",
+        "damper.contact.restitution.values[1] = 1.8\n  restitution is between 0",
     ),
     "speeds in a table": (
         changed("0.9", '{ kind = "table", speeds = ["1 m/s", "2 m"], values = [0.9, 0.8] }'),
