@@ -164,7 +164,15 @@ def plot(
         typer.Option(help='Value of a further axis of a study, "load.amplitude=5 kN"; repeat for more.'),
     ] = None,
     number: Annotated[int | None, typer.Option(help="Which snapshot of a run, from 0; default the last.")] = None,
-    size: Annotated[str | None, typer.Option(help="column, page or slide.")] = None,
+    size: Annotated[str | None, typer.Option(help="column, page or slide; not of films.")] = None,
+    colour: Annotated[
+        str | None, typer.Option(help="Colour of particles: speed, spin, radius, species or none; default speed.")
+    ] = None,
+    view: Annotated[
+        str | None,
+        typer.Option(help="View of particles: oblique, front, side, top, corner, or azimuth,elevation in degrees."),
+    ] = None,
+    pixels: Annotated[str | None, typer.Option(help="Width and height of a film; default 1280x720.")] = None,
 ) -> None:
     """Draw a study: its own figure, or a measure over one or two of its axes. Draw a run, or film its particles."""
     _check_single(ctx, results)
@@ -174,9 +182,22 @@ def plot(
     if is_run(results):
         from rattlebox.cli.plot_run import plot_run
 
-        plot_run(results, out, kind=kind, of=of, at=at or (), number=number, size=size)
+        plot_run(
+            results,
+            out,
+            kind=kind,
+            of=of,
+            at=at or (),
+            number=number,
+            size=size,
+            colour=colour,
+            view=view,
+            pixels=pixels,
+        )
         return
-    from rattlebox.cli.plot import plot_study
+    from rattlebox.cli.plot import plot_study, refuse_particle_options
+
+    refuse_particle_options(colour=colour, view=view, pixels=pixels)
 
     plot_study(results, out, kind=kind, of=of, at=at or (), number=number, size=size)
 

@@ -76,6 +76,27 @@ def plot_study(
     terminal().print(told, soft_wrap=True)
 
 
+def refuse_particle_options(**options: str | None) -> None:
+    """Raise if an option is given that applies to pictures of particles only.
+
+    Parameters
+    ----------
+    **options
+        Values by name of the option.
+
+    Raises
+    ------
+    CaseError
+        With the first option that is given.
+    """
+    for name, value in options.items():
+        if value is not None:
+            raise CaseError(
+                f"--{name} {value}: this applies to pictures of particles",
+                "the folder of a run with particles, --kind particles",
+            )
+
+
 def target(out: Path | None, usual: str, size: str | None, formats: Sequence[str] = FORMATS) -> tuple[Path, str]:
     """Return the file to write, and what is said when it is written; refuse what cannot be.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,7 +13,7 @@ import typer
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.exit_codes import STOPPED
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS
-from rattlebox.cli.plot import FORMATS, target
+from rattlebox.cli.plot import FORMATS, refuse_particle_options, target
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
@@ -33,6 +34,9 @@ def plot_run(
     at: Sequence[str],
     number: int | None,
     size: str | None,
+    colour: str | None = None,
+    view: str | None = None,
+    pixels: str | None = None,
 ) -> None:
     """Draw a run or its snapshots and write the figure or the film.
 
@@ -50,6 +54,10 @@ def plot_run(
         Which snapshot, from 0; default the last.
     size
         Width; default that of the figure.
+    colour, view
+        Colour of particles, and name of a view or "azimuth,elevation" in degrees.
+    pixels
+        "1280x720", for films.
 
     Raises
     ------
@@ -65,7 +73,14 @@ def plot_run(
         if value:
             what = "--number" if path.suffix == ".vtkhdf" else "--kind"
             raise CaseError(f"{option} {value}: this applies to a study, and {path} is a run\n  try: {what}")
-    options: dict[str, Any] = {} if size is None else {"size": size}
+    film = out.suffix in FILMS
+    if film and size is not None:
+        raise CaseError(f"--size {size}: films have a number of pixels", "--pixels 1280x720")
+    if not film and pixels is not None:
+        raise CaseError(f"--pixels {pixels}: this applies to films", f"-o {out.with_suffix('.gif')}, or --size page")
+    particles = {"colour": colour, "view": view if view is None or "," not in view else _numbers("view", view, ",")}
+    given = {"size": size, **particles, "pixels": pixels and tuple(map(int, _numbers("pixels", pixels, "x")))}
+    options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     if not path.exists():
         raise DataError(f"there is no file {path}{_instead(path)}")
     run = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
@@ -75,7 +90,7 @@ def plot_run(
         )
     console = terminal()
     try:
-        if out.suffix in FILMS:
+        if film:
             _check_film(out, kind, number)
             _film(run, out, options)
         else:
@@ -89,6 +104,19 @@ def plot_run(
             soft_wrap=True,
         )
     console.print(told, soft_wrap=True)
+
+
+def _numbers(option: str, text: str, separator: str) -> tuple[float, ...]:
+    """Return the two numbers of an option."""
+    parts = text.split(separator)
+    try:
+        numbers = tuple(float(part) for part in parts)
+    except ValueError:
+        numbers = ()
+    if len(numbers) != 2 or not all(map(math.isfinite, numbers)):
+        example = {"view": "-60,18", "pixels": "1280x720"}[option]
+        raise CaseError(f"--{option} {text}: two numbers are needed", f"--{option} {example}")
+    return numbers
 
 
 def _instead(path: Path) -> str:
@@ -133,5 +161,7 @@ def _figure(of: Any, kind: str | None, number: int, options: dict[str, Any]) -> 
         raise CaseError(f"--kind {kind}: there is no such kind here\n  {nearest(str(kind), kinds)}")
     if isinstance(of, Snapshots):
         return plot_particles(of, number=number, **options)
+    if (kind or kinds[0]) != "particles":
+        refuse_particle_options(colour=options.get("colour"), view=options.get("view"))
     figure: Figure = getattr(of.plot, kind or kinds[0])(**options)
     return figure

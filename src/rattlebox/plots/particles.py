@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import io
 import logging
+import operator
 import os
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from pydantic import TypeAdapter
+from scipy.spatial import ConvexHull
 
 from rattlebox._util.atomic_io import atomic_write
 from rattlebox._util.exceptions import DataError
@@ -26,30 +28,72 @@ from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.progress import progress_bar
 
 from ..model.cavities import AnyCavity, Box, Cavity, Cylinder
+from ..model.surfaces import surface
 from ..results import Run
 from ..results.figures import run_figure
 from ..results.snapshots import Frame, Snapshots
 from .spheres import Renderer, draw_spheres
-from .style import INK, Size, StyledFigure, figure_style, pen, scaled
+from .style import INK, SERIES_COLOURS, WIDTHS, Size, StyledFigure, figure_style, pen, scaled
 
 Array = NDArray[np.float64]
 
 FILMS = (".gif", ".mp4")
-_FILM_DPI: dict[Size, float] = {"column": 160.0, "page": 160.0, "slide": 110.0}
 _LOST = "make room and give the same command again"
 
-_AZIMUTH, _HEIGHT = np.radians(-60.0), np.radians(18.0)
-_TOWARDS = np.array([np.cos(_HEIGHT) * np.cos(_AZIMUTH), np.cos(_HEIGHT) * np.sin(_AZIMUTH), np.sin(_HEIGHT)])
-_RIGHT = np.array([-np.sin(_AZIMUTH), np.cos(_AZIMUTH), 0.0])
-VIEW: Array = np.array([_RIGHT, np.cross(_TOWARDS, _RIGHT), _TOWARDS])
-"""Right, up and towards the viewer, (3, 3), one a row: x points to the right, z upwards."""
+Colour = Literal["speed", "spin", "radius", "species", "none"]
+COLOURS: tuple[Colour, ...] = ("speed", "spin", "radius", "species", "none")
+_WALL = "#eef2f5"
+
+VIEWS: dict[str, tuple[float, float]] = {
+    "oblique": (-60.0, 18.0),
+    "front": (-90.0, 0.0),
+    "side": (0.0, 0.0),
+    "top": (-90.0, 90.0),
+    "corner": (-45.0, 35.264),
+}
+"""Azimuth and elevation of the viewer [degrees] by name: "front" looks along y, "side" against x, "top" down along z."""
+
+
+def view_axes(view: str | tuple[float, float]) -> Array:
+    """Return the directions to the right, up and towards the viewer, (3, 3), one per row.
+
+    Parameters
+    ----------
+    view
+        Name of a view, or azimuth from x towards y and elevation over the x-y plane [degrees].
+
+    Raises
+    ------
+    ValueError
+        If there is no such view.
+    """
+    try:
+        azimuth, elevation = np.radians(np.asarray(VIEWS[view] if isinstance(view, str) else view, dtype=float))
+    except (KeyError, TypeError, ValueError):
+        names = ", ".join(map(repr, VIEWS))
+        raise ValueError(f"view {view!r} is not one of {names}, or a pair of azimuth and elevation") from None
+    if not (np.isfinite(azimuth) and abs(elevation) <= np.pi / 2):
+        raise ValueError(f"view {view!r}: the elevation must be from -90 to 90 degrees, the azimuth finite")
+    towards = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
+    right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+    return np.array([right, np.cross(towards, right), towards])
+
+
+VIEW: Array = view_axes("oblique")
+"""Directions of the usual view: x points to the right, z upwards."""
 
 
 @run_figure("particles", needs="particles")
 def plot_particles(
-    of: Run | Snapshots, *, number: int = -1, size: Size = "page", renderer: Renderer | None = None
+    of: Run | Snapshots,
+    *,
+    number: int = -1,
+    colour: Colour = "speed",
+    view: str | tuple[float, float] = "oblique",
+    size: Size = "page",
+    renderer: Renderer | None = None,
 ) -> Figure:
-    """Draw the particles in their cavities at one time, coloured by their speed, as seen from the base.
+    """Draw the particles in their cavities at one time, as seen from the base.
 
     Parameters
     ----------
@@ -57,6 +101,10 @@ def plot_particles(
         A run, whose end is drawn, or its snapshots.
     number
         Which snapshot.
+    colour
+        "speed", "spin", "radius", "species" or "none".
+    view
+        "oblique", "front" (along y), "side" (against x), "top", "corner"; or azimuth and elevation of the viewer [degrees].
     size
         Width of the figure: "column", "page" or "slide".
     renderer
@@ -84,7 +132,7 @@ def plot_particles(
         raise DataError(f"{of.path} holds no snapshot yet", "again when the run has taken one")
     frame = of[number] if isinstance(of, Snapshots) else _end(of)
     with figure_style(size):
-        return _Scene([frame], of.case_toml, size, renderer).figure
+        return _Scene([frame], of.case_toml, size, renderer, colour=colour, view=view).figure
 
 
 def film_particles(
@@ -92,7 +140,9 @@ def film_particles(
     out: str | os.PathLike[str],
     *,
     rate: int = 20,
-    size: Size = "column",
+    colour: Colour = "speed",
+    view: str | tuple[float, float] = "oblique",
+    pixels: tuple[int, int] = (1280, 720),
     renderer: Renderer | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> Path:
@@ -106,8 +156,10 @@ def film_particles(
         File to write, .gif or .mp4.
     rate
         Pictures a second.
-    size
-        Width: "column", "page" or "slide".
+    colour, view
+        Colours and direction of view, as of `plot_particles`.
+    pixels
+        Width and height of the pictures, even numbers of 160 or more.
     renderer
         "pyvista" or "plain"; default PyVista where it is installed.
     progress
@@ -124,7 +176,7 @@ def film_particles(
     TypeError
         When something else than snapshots is given, as a run, which knows its particles at the end only.
     ValueError
-        When the ending is another one.
+        When the ending is another one, or there is no such colour, view or size.
     DataError
         When there is no snapshot, or the file cannot be written; an earlier one is then as it was.
     MissingDependency
@@ -139,14 +191,16 @@ def film_particles(
         raise DataError(f"{snapshots.path} holds no snapshot yet", "again when the run has taken one")
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
-    with figure_style(size):
+    width, height = _checked_pixels(pixels)
+    with figure_style("slide"):
         import matplotlib as mpl
 
         if path.suffix == ".mp4":
             ffmpeg = optional_import("imageio_ffmpeg", "3d", "a name that ends in .gif")
             mpl.rcParams["animation.ffmpeg_path"] = ffmpeg.get_ffmpeg_exe()
-        dpi = _FILM_DPI[size]
-        scene = _Scene(snapshots, snapshots.case_toml, size, renderer, dpi)
+        dpi = width / (WIDTHS["slide"] / 25.4)
+        shape = height / width
+        scene = _Scene(snapshots, snapshots.case_toml, "slide", renderer, dpi, colour=colour, view=view, shape=shape)
         scene.figure.savefig(io.BytesIO(), dpi=dpi)
         scene.figure.set_layout_engine("none")  # all pictures are laid out as the first
         writer: Any = (PillowWriter if path.suffix == ".gif" else FFMpegWriter)(fps=rate)
@@ -162,6 +216,17 @@ def film_particles(
                 raise
             writer.finish()
     return path
+
+
+def _checked_pixels(pixels: tuple[int, int]) -> tuple[int, int]:
+    """Return width and height; raise if films cannot have them."""
+    try:
+        width, height = (operator.index(number) for number in pixels)
+    except (TypeError, ValueError):
+        width = height = 0
+    if not all(160 <= number <= 7680 and number % 2 == 0 for number in (width, height)):
+        raise ValueError(f"pixels {pixels!r}: width and height must be even numbers from 160 to 7680, as (1280, 720)")
+    return width, height
 
 
 def _let_go(writer: Any) -> None:
@@ -202,13 +267,15 @@ def _cavities(dampers: Sequence[Mapping[str, Any]]) -> list[tuple[str, Cavity]]:
     ]
 
 
-def outline(cavity: Cavity) -> list[Array]:
+def outline(cavity: Cavity, view: Array = VIEW) -> list[Array]:
     """Return lines that show a cavity, each (n, 3) [m] from its centre.
 
     Parameters
     ----------
     cavity
         What to show: edges of a box, ends and two lines of a cylinder's side, the rim of a sphere.
+    view
+        Directions to the right, up and towards the viewer, (3, 3).
     """
     if isinstance(cavity, Box):
         corners = np.array(np.meshgrid(*[(-1, 1)] * 3, indexing="ij")).reshape(3, -1).T
@@ -216,13 +283,13 @@ def outline(cavity: Cavity) -> list[Array]:
         return [corners[list(pair)] * cavity.lengths / 2 for pair in pairs]
     if isinstance(cavity, Cylinder):
         along = cavity.frame[2]
-        side = np.cross(along, VIEW[2]) if abs(along @ VIEW[2]) < 1 - 1e-9 else cavity.frame[0]
+        side = np.cross(along, view[2]) if abs(along @ view[2]) < 1 - 1e-9 else cavity.frame[0]
         side /= np.linalg.norm(side)
         rim = cavity.radius * _arc(side, np.cross(along, side))
         ends = np.array([[-1.0], [1.0]]) * cavity.length / 2 * along
         halves = [half + end for end in ends for half in (rim[:37], rim[36:])]  # of which one may be hidden
         return [*halves, *(ends + sign * cavity.radius * side for sign in (-1, 1))]
-    return [cavity.lengths[0] / 2 * _arc(VIEW[0], VIEW[1])]
+    return [cavity.lengths[0] / 2 * _arc(view[0], view[1])]
 
 
 def _arc(first: Array, second: Array) -> Array:
@@ -236,6 +303,7 @@ class _Panel:
     axes: Axes
     image: Any
     lines: list[Any]
+    wall: Any
     extent: tuple[float, float, float, float]
 
 
@@ -249,34 +317,58 @@ class _Scene:
         size: Size,
         renderer: Renderer | None,
         dpi: float = 300.0,
+        *,
+        colour: Colour = "speed",
+        view: str | tuple[float, float] = "oblique",
+        shape: float | None = None,
     ) -> None:
-        self._dpi = dpi
+        if colour not in COLOURS:
+            raise ValueError(f"colour {colour!r} is not one of {', '.join(map(repr, COLOURS))}")
+        self._dpi, self._colour, self._view = dpi, colour, view_axes(view)
         case = tomllib.loads(case_toml)
         cavities = _cavities(case["dampers"])
         self._frames, self._cavities, self._renderer = frames, cavities, renderer
-        told = [(_speed(frame), frame.displacement, frame.time) for frame in frames]
-        speeds = np.concatenate([speed for speed, _, _ in told])
+        told = [(_values(frame, colour), frame.displacement, frame.time) for frame in frames]
+        values = np.concatenate([each for each, _, _ in told])
         self._moves, self._last = np.array([moves for _, moves, _ in told]), told[-1][2]
-        self._scale = scaled(speeds, "m/s")
-        top = float(np.quantile(speeds, 0.99)) if len(frames) > 1 else float(speeds.max())
-        self._norm = Normalize(0.0, max(top, 1e-12) / self._scale.divisor)
+        self._scale = scaled(values, _UNITS[colour])
+        self._map, self._norm = self._colours(values, len(frames) > 1)
         extents = [self._extent(k) for k in range(len(cavities))]
         sides = [(right - left, top - bottom) for left, right, bottom, top in extents]
         ratio = max(h for _, h in sides) / sum(w for w, _ in sides)
-        self.figure = StyledFigure(size, min(0.86 * ratio + 0.1, 1.1))
+        self.figure = StyledFigure(size, min(0.86 * ratio + 0.1, 1.1) if shape is None else shape)
         panels = self.figure.subplots(1, len(cavities), squeeze=False, width_ratios=[w for w, _ in sides])[0]
         self._panels = [self._panel(k, axes, extents[k]) for k, axes in enumerate(panels)]
-        bar = self.figure.colorbar(ScalarMappable(self._norm, _colours()), ax=list(panels), aspect=28, pad=0.02)
-        shaken = "base" in case or case["structure"]["kind"] == "shaker"
-        speed = "Speed relative\nto the base" if shaken else "Speed"  # two lines: pictures of flat boxes are low
-        bar.set_label(f"{speed} ({self._scale.unit})")
-        bar.outline.set_visible(False)
+        if colour != "none":
+            shaken = "base" in case or case["structure"]["kind"] == "shaker"
+            self._draw_key(panels, "Speed relative\nto the base" if shaken and colour == "speed" else _TITLES[colour])
         self.show(0)
+
+    def _colours(self, values: Array, several: bool) -> tuple[Any, Normalize]:
+        """Return the colour map, and the values at its ends; a few outliers in a film do not set them."""
+        if self._colour in ("species", "none"):
+            count = int(values.max(initial=0)) + 1
+            colours = [SERIES_COLOURS[k % len(SERIES_COLOURS)] for k in range(count)]
+            return ListedColormap(colours), Normalize(-0.5, count - 0.5)
+        low = float(values.min()) if self._colour == "radius" else 0.0
+        top = float(np.quantile(values, 0.99)) if several and self._colour != "radius" else float(values.max())
+        if self._colour == "radius" and top - low < 1e-9 * top:
+            low, top = 0.5 * top, 1.5 * top
+        return _batlow(), Normalize(low / self._scale.divisor, max(top, 1e-12) / self._scale.divisor)
+
+    def _draw_key(self, panels: Any, title: str) -> None:
+        """Draw the colour bar, with whole numbers for species."""
+        bar = self.figure.colorbar(ScalarMappable(self._norm, self._map), ax=list(panels), aspect=28, pad=0.02)
+        if self._colour == "species":
+            bar.set_ticks(list(range(self._map.N)), labels=[str(number) for number in range(self._map.N)])
+        unit = f" ({self._scale.unit})" if self._scale.unit else ""
+        bar.set_label(f"{title}{unit}")  # two lines at most: pictures of flat boxes are low
+        bar.outline.set_visible(False)
 
     def _extent(self, k: int) -> tuple[float, float, float, float]:
         """Edges of a panel that holds the cavity wherever it goes."""
-        corners = np.concatenate(outline(self._cavities[k][1])) @ VIEW.T
-        moves = self._moves[:, k] @ VIEW.T
+        corners = np.concatenate(outline(self._cavities[k][1], self._view)) @ self._view.T
+        moves = self._moves[:, k] @ self._view.T
         low, high = corners.min(axis=0) + moves.min(axis=0), corners.max(axis=0) + moves.max(axis=0)
         margin = 0.03 * float((high - low)[:2].max())
         return low[0] - margin, high[0] + margin, low[1] - 3 * margin, high[1] + margin
@@ -285,8 +377,9 @@ class _Scene:
         axes.set_axis_off()
         image = axes.imshow(np.zeros((1, 1, 4), np.uint8), extent=extent, zorder=2, interpolation="antialiased")
         lines = []
-        for line in outline(self._cavities[k][1]):
-            behind = line.mean(axis=0) @ VIEW[2] < 0
+        (wall,) = axes.fill([0.0], [0.0], facecolor=_WALL, edgecolor="none", zorder=0)
+        for line in outline(self._cavities[k][1], self._view):
+            behind = line.mean(axis=0) @ self._view[2] < 0
             (drawn,) = axes.plot([], [], color=INK, linewidth=pen(0.7), alpha=0.6 if behind else 1.0)
             drawn.set_zorder(1 if behind else 3)
             lines.append((drawn, line))
@@ -294,19 +387,19 @@ class _Scene:
         axes.set_xlim(extent[0], extent[1])
         axes.set_ylim(extent[2], extent[3])
         axes.set_aspect("equal")
-        return _Panel(axes, image, lines, extent)
+        return _Panel(axes, image, lines, wall, extent)
 
     def show(self, number: int) -> None:
         """Show a frame."""
         frame = self._frames[number]
-        colours = _colours()(self._norm(_speed(frame) / self._scale.divisor))[:, :3]
+        colours = self._map(self._norm(_values(frame, self._colour) / self._scale.divisor))[:, :3]
         time = scaled([self._last], "s")
         for k, panel in enumerate(self._panels):
             here = frame.cavity == k
             width = round(self.figure.get_figwidth() * self._dpi * 0.85 / len(self._panels))
             panel.image.set_data(
                 draw_spheres(
-                    frame.position[here] @ VIEW.T,
+                    frame.position[here] @ self._view.T,
                     frame.radius[here],
                     colours[here],
                     panel.extent,
@@ -315,8 +408,10 @@ class _Scene:
                 )
             )
             for drawn, line in panel.lines:
-                placed = (line + frame.displacement[k]) @ VIEW.T
+                placed = (line + frame.displacement[k]) @ self._view.T
                 drawn.set_data(placed[:, 0], placed[:, 1])
+            corners = (surface(self._cavities[k][1]).points + frame.displacement[k]) @ self._view[:2].T
+            panel.wall.set_xy(corners[ConvexHull(corners).vertices])
             name = f"{self._cavities[k][0]}, " if len(self._panels) > 1 else ""
             panel.axes.set_title(f"{name}{frame.time / time.divisor:.4g} {time.unit}")
 
@@ -332,11 +427,19 @@ def _ruler(axes: Axes, extent: tuple[float, float, float, float]) -> None:
     axes.text(left + 1.15 * length, height, f"{length / unit.divisor:g} {unit.unit}", va="center")
 
 
-def _speed(frame: Frame) -> Array:
-    return np.asarray(np.linalg.norm(frame.velocity, axis=1))
+_UNITS: dict[Colour, str] = {"speed": "m/s", "spin": "rad/s", "radius": "m", "species": "", "none": ""}
+_TITLES: dict[Colour, str] = {"speed": "Speed", "spin": "Spin", "radius": "Radius", "species": "Species"}
 
 
-def _colours() -> Any:
+def _values(frame: Frame, colour: Colour) -> Array:
+    """Return the numbers by which particles are coloured, (N,)."""
+    if colour in ("speed", "spin"):
+        return np.asarray(np.linalg.norm(frame.velocity if colour == "speed" else frame.spin, axis=1))
+    values = {"radius": frame.radius, "species": frame.species, "none": np.zeros_like(frame.radius)}[colour]
+    return np.asarray(values, dtype=float)
+
+
+def _batlow() -> Any:
     from cmcrameri import cm  # type: ignore[import-untyped]
 
     return cm.batlow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import signal
 import subprocess
 import sys
@@ -16,7 +17,7 @@ from PIL import Image
 import rattlebox as rb
 from rattlebox.cli.main import main
 from rattlebox.model.cavities import Cavity
-from rattlebox.plots.particles import VIEW, _Scene, film_particles, outline, plot_particles
+from rattlebox.plots.particles import VIEW, _Scene, film_particles, outline, plot_particles, view_axes
 from rattlebox.plots.spheres import draw_spheres
 
 EXTENT = (-2.0, 2.0, -1.0, 1.0)
@@ -164,7 +165,7 @@ def test_films_have_a_picture_for_each_snapshot(run: Any, tmp_path: Path) -> Non
     """A GIF has as many pictures as there are snapshots, and they differ."""
     path = film_particles(rb.Snapshots(run[1]), tmp_path / "film.gif", rate=10, renderer="plain")
     with Image.open(path) as film:
-        assert film.n_frames == 5
+        assert film.n_frames == 5 and film.size == (1280, 720)
         assert film.info["duration"] == 100
         frames = []
         for number in range(5):
@@ -173,6 +174,43 @@ def test_films_have_a_picture_for_each_snapshot(run: Any, tmp_path: Path) -> Non
     assert len(set(frames)) == 5
     with pytest.raises(ValueError, match=r"a film is \.gif or \.mp4"):
         film_particles(rb.Snapshots(run[1]), tmp_path / "film.avi")
+
+
+def test_colours_and_views(run: Any) -> None:
+    """Particles are coloured by speed, spin, radius, species or not at all; a view is a name or two angles."""
+    snapshots = rb.Snapshots(run[1])
+    labels = {}
+    for colour in ("speed", "spin", "radius", "species", "none"):
+        figure = plot_particles(snapshots, colour=colour, renderer="plain")  # type: ignore[arg-type]
+        labels[colour] = figure.axes[-1].get_ylabel() if colour != "none" else str(len(figure.axes))
+    assert labels["species"] == "Species" and labels["none"] == "2"
+    assert labels["spin"].startswith("Spin (") and labels["spin"].endswith("rad/s)") and "m)" in labels["radius"]
+    np.testing.assert_allclose(view_axes("top"), [[1, 0, 0], [0, 1, 0], [0, 0, 1]], atol=1e-15)
+    np.testing.assert_allclose(view_axes("front"), [[1, 0, 0], [0, 0, 1], [0, -1, 0]], atol=1e-15)
+    np.testing.assert_allclose(view_axes((0.0, 0.0)), [[0, 1, 0], [0, 0, 1], [1, 0, 0]], atol=1e-15)
+    for view in ("below", (1.0,), (0.0, 91.0), (math.nan, 0.0)):
+        with pytest.raises(ValueError, match="view "):
+            plot_particles(snapshots, view=view)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="colour 'heat' is not one of"):
+        plot_particles(snapshots, colour="heat")  # type: ignore[arg-type]
+
+
+def test_the_wall_is_filled_and_moves(run: Any) -> None:
+    """Behind the particles each cavity is filled as far as its outline; the fill moves with the cavity."""
+    scene = _Scene(rb.Snapshots(run[1]), run[0].case_toml, "slide", "plain", 60.0, view="front", shape=0.5625)
+    frames = list(rb.Snapshots(run[1]))
+    for number in (0, 2):
+        scene.show(number)
+        middle, moved = frames[number].displacement[0, 0], scene._panels[0].wall.get_xy()
+        assert moved[:, 0].min() == pytest.approx(middle - 0.01) and moved[:, 0].max() == pytest.approx(middle + 0.01)
+    assert frames[0].displacement[0, 0] != frames[2].displacement[0, 0]
+
+
+@pytest.mark.parametrize("pixels", [(1281, 720), (100, 100), (1280,), "1280x720"])
+def test_sizes_that_films_cannot_have_are_refused(pixels: Any, run: Any, tmp_path: Path) -> None:
+    """Width and height are even numbers, as video codecs need them."""
+    with pytest.raises(ValueError, match="even numbers"):
+        film_particles(rb.Snapshots(run[1]), tmp_path / "film.gif", pixels=pixels)
 
 
 def test_films_for_talks(run: Any, tmp_path: Path) -> None:
@@ -207,8 +245,10 @@ def test_the_command_draws_and_films(
             "",
         )
     assert answer(monkeypatch, capsys, saved, "-o", "a.png") == (0, "written: a.png\n", "")
-    assert answer(monkeypatch, capsys, run[1], "-o", "a.gif") == (0, f"{get}written: a.gif\n", "")
-    assert Path("a.gif").read_bytes().startswith(b"GIF89a")
+    film = ["-o", "a.gif", "--pixels", "320x180", "--colour", "spin", "--view", "30,20"]
+    assert answer(monkeypatch, capsys, run[1], *film) == (0, f"{get}written: a.gif\n", "")
+    with Image.open("a.gif") as made:
+        assert made.size == (320, 180)
 
 
 def test_the_command_draws_what_is_in_a_folder(
@@ -267,7 +307,7 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
             ["run.nc", "--kind", "impacts"],
             "--kind impacts: there is no such kind here\n  known: energy, motion, particles",
         ),
-        (["run.vtkhdf", "--number", "5"], "holds 5 snapshots, numbered from 0; there is no number 5"),
+        (["run.vtkhdf", "--number", "5"], "holds 5 snapshots; 5 is not from 0 to 4"),
         (["run.vtkhdf", "-o", "a.jpg"], "the ending must be one of .png, .svg, .pdf, .gif, .mp4"),
         (["run.vtkhdf", "--size", "wide"], "--size wide: there is no such size"),
         (["run.vtkhdf", "--number", "0", "-o", "a.gif"], "--number 0: a film shows all snapshots\n  try: -o a.png"),
@@ -278,6 +318,14 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
         (["run.nc", "--of", "loss"], "--of loss: this applies to a study, and run.nc is a run\n  try: --kind"),
         (["run.vtkhdf", "--at", "x=1"], "--at x=1: this applies to a study, and run.vtkhdf is a run\n  try: --number"),
         (["nope.nc"], "nope.nc is not there\n  try: the folder that 'rattlebox run -o' or"),
+        (
+            [".", "-o", "a.gif", "--size", "page"],
+            "--size page: films have a number of pixels\n  try: --pixels 1280x720",
+        ),
+        ([".", "-o", "a.gif", "--pixels", "big"], "--pixels big: two numbers are needed\n  try: --pixels 1280x720"),
+        ([".", "--pixels", "320x180"], "--pixels 320x180: this applies to films"),
+        ([".", "--kind", "energy", "--colour", "spin"], "--colour spin: this applies to pictures of particles"),
+        ([".", "--kind", "particles", "--view", "below"], "view 'below' is not one of 'oblique', 'front'"),
         ([".", "--kind", "impacts"], "--kind impacts: there is no such kind here\n  known: energy, motion, particles"),
     ],
 )
