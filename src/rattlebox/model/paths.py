@@ -1,4 +1,4 @@
-"""Paths into a case, such as "damper.ball.radius": look one up, see its value, put another in its place."""
+"""Paths in a case, such as "damper.ball.radius": lookup, value, unit, replacement."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 Place = tuple[str | int, ...]
 
-_EDGES = {"length": 0, "width": 1, "depth": 1, "height": 2}  # of a box, by the names that others give them
+_EDGES = {"length": 0, "width": 1, "depth": 1, "height": 2}  # synonyms of the edges of a box
 _STEP = re.compile(r"\.?([^.\[\]]+)|\[(\d+)\]")
 
 
 def place_of(case: Case, path: str) -> Place:
-    """Find what a path means in a case.
+    """Return the place in a case that a path refers to.
 
     Parameters
     ----------
@@ -36,17 +36,17 @@ def place_of(case: Case, path: str) -> Place:
         The case.
     path
         Names of fields and numbers in lists, as in case files and messages: "damper.gap", "dampers[1].balls[0].radius",
-        "structure.damping_ratio". Where a list has one member, its number may be left out.
+        "structure.damping_ratio". The index of the only item of a list may be omitted.
 
     Returns
     -------
     tuple
-        Names of fields and numbers, with nothing left out: ("dampers", 0, "gap").
+        Names of fields and all indices: ("dampers", 0, "gap").
 
     Raises
     ------
     CaseError
-        When there is no such field, or more than one is meant.
+        If the field does not exist, or the path is ambiguous.
     """
     place: list[str | int] = []
     node: Any = case
@@ -58,9 +58,9 @@ def place_of(case: Case, path: str) -> Place:
             place.append(0)
         if isinstance(step, int):
             if not isinstance(node, (tuple, list)):
-                raise Hint(f"{path}: {so_far or 'a case'} is no list", "the same without a number in brackets")
+                raise Hint(f"{path}: {so_far or 'a case'} is not a list", "the same without an index in brackets")
             if step >= len(node):
-                raise Hint(f"{path}: {so_far} has {len(node)} member{'s' * (len(node) != 1)}, counted from 0")
+                raise Hint(f"{path}: {so_far} has {len(node)} item{'s' * (len(node) != 1)}, counted from 0")
             place.append(step)
             node = node[step]
         elif isinstance(node, Part):
@@ -84,7 +84,7 @@ def place_of(case: Case, path: str) -> Place:
 
 
 def spelt(case: Case, place: Place) -> str:
-    """Return the shortest path to a place: "damper.gap" where there is one damper, else "dampers[0].gap"."""
+    """Return the shortest path to a place: "damper.gap" for a single damper, else "dampers[0].gap"."""
     words = list(_words(place))
     for number, step in enumerate(place):
         row = part_at(case, place[:number])
@@ -98,25 +98,30 @@ def spelt(case: Case, place: Place) -> str:
 
 
 def get(case: Case, path: str) -> Any:
-    """Return what stands at a path, in SI units.
+    """Return the value at a path, in SI units.
 
     Parameters
     ----------
     case
         The case.
     path
-        See place_of.
+        Path, see `place_of`.
+
+    Returns
+    -------
+    object
+        Number, text, part or tuple of parts.
 
     Raises
     ------
     CaseError
-        When there is no such field.
+        If the field does not exist.
     """
     return part_at(case, place_of(case, path))
 
 
 def part_at(case: Case, place: Sequence[str | int]) -> Any:
-    """Return what stands at a place."""
+    """Return the value at a place."""
     node: Any = case
     for step in place:
         node = get_field(node, str(step)) if isinstance(node, Part) else node[step]
@@ -124,7 +129,7 @@ def part_at(case: Case, place: Sequence[str | int]) -> Any:
 
 
 def get_field(part: Part, name: str) -> Any:
-    """Return a field of a part, also one that was turned into its alternative."""
+    """Return a field of a part; diameters and lengths of cavities are computed from radii and gaps."""
     if name == "diameter":
         radius = getattr(part, "radius", None)
         return None if radius is None else 2 * radius
@@ -134,7 +139,7 @@ def get_field(part: Part, name: str) -> Any:
 
 
 def unit_of(case: Case, path: str) -> str | None:
-    """Return the SI unit of the numbers at a path, "1" for those without dimension, None for what is no number."""
+    """Return the SI unit of the numbers at a path, "1" for dimensionless numbers, None for other values."""
     place = place_of(case, path)
     node: Any = case
     unit: str | None = None
@@ -153,7 +158,7 @@ def unit_of(case: Case, path: str) -> str | None:
 
 
 def _units(annotations: Sequence[Any]) -> Iterator[str]:
-    """SI units that annotations tell, the plainest last."""
+    """Yield the SI units in annotations; "1" for plain numbers comes last."""
     for annotation in annotations:
         if isinstance(annotation, SI):
             yield annotation.unit
@@ -164,27 +169,32 @@ def _units(annotations: Sequence[Any]) -> Iterator[str]:
 
 
 def replaced(case: Case, values: Mapping[str, Any]) -> Case:
-    """Return a case with other values in places.
+    """Return a copy of a case with other values.
 
-    What excludes a value goes: a case with damping becomes one with a damping ratio when that is given. Dampers know their
-    gap, also those given by the length of the cavity: balls of another radius keep the gap unless a length is given.
+    A new value removes alternatives that exclude it: a damping ratio replaces a damping. Dampers store their gap: balls of
+    another radius do not change the gap unless the length of the cavity is given as well.
 
     Parameters
     ----------
     case
         The case.
     values
-        New values by path (see place_of), as one would write them in the case: numbers in SI, text with units, names of
+        New values by path (see `place_of`), in the notation of case files: numbers in SI units, text with units, names of
         materials, whole parts.
+
+    Returns
+    -------
+    Case
+        The new case.
 
     Raises
     ------
     CaseError
-        When a path leads nowhere, or the new case does not fit, with the reason.
+        If a path does not exist, or the new case is invalid.
     """
     places = places_of(case, values)
     tree: Any = case
-    for place in sorted(places, key=len):  # a whole part first, then what is in it
+    for place in sorted(places, key=len):  # whole parts before their fields
         tree = _with(tree, place, places[place])
     tree = _briefly(tree, (type(case), ImpactDamper))
     own = {material.name: material for material in _materials(case)}
@@ -195,19 +205,24 @@ def replaced(case: Case, values: Mapping[str, Any]) -> Case:
 
 
 def places_of(case: Case, values: Mapping[str, Any]) -> dict[Place, Any]:
-    """Return values by place, with None in the places of what they exclude.
+    """Return values by place, with None at the places of alternatives that they exclude.
 
     Parameters
     ----------
     case
         The case.
     values
-        By path.
+        Values by path.
+
+    Returns
+    -------
+    dict
+        Values by place.
 
     Raises
     ------
     CaseError
-        When a path leads nowhere, or two lead to one place.
+        If a path does not exist, or two paths refer to the same place.
     """
     paths: dict[Place, str] = {}
     for path in values:
@@ -239,17 +254,17 @@ def places_of(case: Case, values: Mapping[str, Any]) -> dict[Place, Any]:
 def _names_a_unit(value: Any) -> bool:
     try:
         return parse(value, ("N", "m/s^2", "m"))[1] is not None
-    except (Hint, TypeError):  # for the case to explain
+    except (Hint, TypeError):  # The validation of the case raises a better message.
         return False
 
 
 def _from_file(node: Any) -> tuple[str, ...]:
-    """Fields of a part that were read from a file."""
+    """Return the fields of a part that were read from a file."""
     return node.fields_from_file() if isinstance(node, Part) else ()
 
 
 def _with(node: Any, place: Place, value: Any) -> Any:
-    """The same with another value at a place; parts on the way become tables."""
+    """Return a copy with another value at a place, in which the parts above it are dicts."""
     if not place:
         return value
     step, *rest = place
@@ -264,7 +279,7 @@ def _with(node: Any, place: Place, value: Any) -> Any:
 
 
 def _briefly(node: Any, kinds: Sequence[type[Part]]) -> Any:
-    """The same with "damper" for a list of one damper and so on: messages speak so."""
+    """Return a copy with aliases such as "damper" for lists of one item, as in messages."""
     if isinstance(node, list):
         return [_briefly(item, kinds) for item in node]
     if not isinstance(node, dict):
@@ -309,7 +324,7 @@ def _is_row_of_parts(value: Any) -> bool:
 
 
 def _only(row: Sequence[Any], path: str, name: str) -> int:
-    """The number of the only member of a list, 0."""
+    """Return the index of the only item of a list, 0."""
     if not row:
         raise Hint(f"{path}: there is no {name} in this case")
     if len(row) > 1:
@@ -318,7 +333,7 @@ def _only(row: Sequence[Any], path: str, name: str) -> int:
 
 
 def _steps(path: str) -> list[str | int]:
-    """The names and numbers of a path."""
+    """Return the names and indices of a path."""
     steps: list[str | int] = []
     end = 0
     for match in _STEP.finditer(path):
@@ -327,7 +342,9 @@ def _steps(path: str) -> list[str | int]:
         steps.append(match[1] if match[2] is None else int(match[2]))
         end = match.end()
     if end != len(path) or not steps:
-        raise Hint(f"{path!r} is no path", 'names with dots between and numbers in brackets: "dampers[1].ball.radius"')
+        raise Hint(
+            f"{path!r} is not a path", 'names with dots between and numbers in brackets: "dampers[1].ball.radius"'
+        )
     return steps
 
 
@@ -337,7 +354,7 @@ def _words(steps: Sequence[str | int]) -> Iterator[str]:
 
 
 def _suggested(case: Case, path: str, step: str, known: set[str]) -> str:
-    """Paths like one that leads nowhere."""
+    """Return a suggestion of existing paths similar to one that does not exist."""
     if step in _EDGES and "size" in known:
         return f"did you mean '{path.removesuffix(step)}size[{_EDGES[step]}]'?"
     near = nearest(step, known)
