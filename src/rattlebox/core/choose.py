@@ -7,39 +7,32 @@ import platform
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from pathlib import Path
 from types import ModuleType
 
 from rattlebox._util.exceptions import MissingDependency, ResourceError
 
-# What each x86-64 level needs beyond the one below, in the names of Linux.
-_FLAGS = {
-    "v3": {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"},
-    "v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
-}
-
-
-def _processor_flags() -> set[str]:
-    """Return the processor's features in Linux names; empty where they cannot be read."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        return set()
-    found = next((line for line in lines if line.startswith("flags")), "")
-    return set(found.partition(":")[2].split())
+# The x86-64 level that the processor must offer for a build; 0 where it need not be an x86-64.
+_NEEDED = {"v4": 4, "v3": 3, "v1": 1, "native": 0}
 
 
 def built() -> tuple[str, ...]:
     """Return the levels whose extension was built, best first."""
-    return tuple(level for level in ("v4", "v3", "v1", "native") if find_spec(f"rattlebox.core._core_{level}"))
+    return tuple(level for level in _NEEDED if find_spec(f"rattlebox.core._core_{level}"))
 
 
 def supported() -> tuple[str, ...]:
     """Return the built levels that this processor can run, best first."""
-    flags = _processor_flags()
-    has_v3 = _FLAGS["v3"] <= flags
-    can = {"native": True, "v1": True, "v3": has_v3, "v4": has_v3 and _FLAGS["v4"] <= flags}
-    return tuple(level for level in built() if can[level])
+    offered = _x86_64_level()
+    return tuple(level for level in built() if _NEEDED[level] <= offered)
+
+
+def _x86_64_level() -> int:
+    """Return the highest of the x86-64 levels 1, 3 and 4 that processor and system offer; 0 on other processors."""
+    try:
+        from rattlebox.core._core_processor import x86_64_level
+    except ImportError:
+        return -1  # nothing was built
+    return x86_64_level()
 
 
 @cache
@@ -69,7 +62,7 @@ def choice() -> tuple[str, str]:
         return best, f"the only build for {platform.machine()}"
     if best == built()[0]:
         return best, "the best that was built, and the processor has all its instructions"
-    return best, f"the processor lacks instructions of {built()[0]}, or they could not be read"
+    return best, f"the processor or the operating system lacks instructions of {built()[0]}"
 
 
 def instructions() -> str:
