@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 def main() -> int:
-    """Write the report that the arguments of this process ask for.
+    """Write the report that the command line requests.
 
     Returns
     -------
@@ -21,17 +21,21 @@ def main() -> int:
         description="Reproduce and judge the reference paper: all figures and claims on one page.",
     )
     parser.add_argument(
-        "-o", "--out", type=Path, default=Path("report"), help="new folder, or that of an earlier report (report)"
+        "-o",
+        "--out",
+        type=Path,
+        default=Path("report"),
+        help="new folder, or the folder of an earlier report (default: report)",
     )
     parser.add_argument(
         "--only",
         action="append",
         default=[],
         metavar="FIGURE",
-        help='figure to make: "4", "7c", "A1", or "paper" for all but A1 to A5; may be repeated',
+        help='number of a figure ("4", "7c", "A1"), or "paper" for all but A1 to A5; may be repeated (default: all)',
     )
-    parser.add_argument("--workers", type=_positive, help="processes (one for each core)")
-    given = parser.parse_args()
+    parser.add_argument("--workers", type=_positive, help="number of processes (default: one per core)")
+    arguments = parser.parse_args()
 
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -43,31 +47,32 @@ def main() -> int:
     console = Console(highlight=False, markup=False, emoji=False)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     try:
-        figures = choose(given.only)
+        figures = choose(arguments.only)
     except ValueError as error:
         parser.error(str(error))
     try:
         with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-            task = bar.add_task("reproducing the paper", total=len(figures))
+            task = bar.add_task("computing figures", total=len(figures))
 
             def progress(done: int, _: int, last: str) -> None:
                 bar.update(task, completed=done, description=f"{last} done")
 
-            page = write_report(given.out, given.only, workers=given.workers or cores(), progress=progress)
+            page = write_report(arguments.out, arguments.only, workers=arguments.workers or cores(), progress=progress)
     except rb.RattleboxError as error:
         parser.error(str(error))
     except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        parser.error(f"{where}{error.strerror or error}")
+        file = f"{error.filename}: " if error.filename else ""
+        parser.error(f"{file}{error.strerror or error}")
     console.print(
-        f"written to {given.out}: {page.name}, and each figure as SVG, PNG and CSV with its case files", soft_wrap=True
+        f"written to {arguments.out}: {page.name}, and each figure as SVG, PNG and CSV with its case files",
+        soft_wrap=True,
     )
     return 0
 
 
 def _positive(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number >= 1")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes; whole numbers >= 1 are allowed")
     return int(text)
 
 

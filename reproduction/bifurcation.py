@@ -1,4 +1,4 @@
-"""Figure A3: relative speed at impact against frequency and amplitude of a harmonic load."""
+"""Figure A3: approach speed of impacts against frequency and amplitude of a harmonic load."""
 
 from __future__ import annotations
 
@@ -48,18 +48,18 @@ def _case(model: str, amplitude: float, frequency: float, offset: float = 0.0) -
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the case at which both parameters cross, by model."""
+    """Return the case at the crossing of both parameter lines, by model."""
     return {model: _case(model, AMPLITUDE, FREQUENCY) for model in SHOWN}
 
 
 def data() -> xr.Dataset:
-    """Collect the last impacts of each run, and the exact motion with two impacts a cycle."""
+    """Compute the last impacts of each run, and the exact motion with two impacts per cycle."""
     loads = [(AMPLITUDE, f) for f in FREQUENCIES] + [(a, FREQUENCY) for a in AMPLITUDES]
     grid = [(model, float(a), float(f)) for model in SHOWN for a, f in loads]
     by_model = _speeds(simulate_many([_case(*point) for point in grid])).reshape(len(SHOWN), len(loads), HITS)
     many = [_speeds(ensemble(partial(_case, *point), MEMBERS)) for point in grid]
     spread = np.reshape([band(speeds[np.isfinite(speeds)]) for speeds in many], (*by_model.shape[:2], 3))
-    alike = np.reshape([_alike(speeds).mean() for speeds in many], by_model.shape[:2])
+    alike = np.reshape([_agree(speeds).mean() for speeds in many], by_model.shape[:2])
     exact = np.array([_exact(float(a), float(f)) for a, f in loads])
     border = FREQUENCIES.size
     variables: dict[str, Any] = {
@@ -94,7 +94,7 @@ def data() -> xr.Dataset:
 
 
 def _speeds(runs: Sequence[Run]) -> NDArray[np.float64]:
-    """Speeds of the last impacts of each run, (run, hit), NaN where there are fewer [m/s]."""
+    """Return the speeds of the last impacts of each run [m/s], (run, hit), NaN if there are fewer."""
     speeds = np.full((len(runs), HITS), np.nan)
     for row, run in zip(speeds, runs, strict=True):
         last = run.arrays.impacts.approach_speed[-HITS:]
@@ -102,20 +102,20 @@ def _speeds(runs: Sequence[Run]) -> NDArray[np.float64]:
     return speeds
 
 
-def _alike(speeds: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether the speeds of a run are all alike, to a hundredth."""
+def _agree(speeds: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return whether all speeds of a run agree within 1 %."""
     return np.asarray(np.ptp(speeds, axis=-1) < 0.01 * speeds.mean(axis=-1))
 
 
 def _critical_speed() -> float:
-    """Below it the elasto-plastic model with a rigid wall loses nothing [m/s]."""
+    """Return the speed below which the elasto-plastic model with a rigid wall is lossless [m/s]."""
     law = MODELS[RIGID].restitution
     assert isinstance(law, JacksonGreen)
     return law.critical_speed(contact_pairs(_case(RIGID, AMPLITUDE, FREQUENCY), 0)[0])
 
 
 def _exact(amplitude: float, frequency: float) -> NDArray[np.float64]:
-    """Speed of the faster motion with two impacts a cycle [m/s], in the first place when stable, else in the second."""
+    """Return the speed of the faster motion with two impacts per cycle [m/s], first if it is stable, else second."""
     found: tuple[TwoImpacts, ...] = two_impacts(
         mass=MASS,
         stiffness=STIFFNESS,
@@ -133,7 +133,7 @@ def _exact(amplitude: float, frequency: float) -> NDArray[np.float64]:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw the speeds over frequency and amplitude, one row a model, with the exact motion behind the first."""
+    """Draw the speeds over frequency and amplitude, one row per model, with the exact motion in the first row."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.78)
         panels = figure.subplots(data.model.size, 2, sharex="col", sharey=True)
@@ -182,29 +182,29 @@ def _draw_exact(axes: Axes, data: xr.Dataset, name: str) -> None:
         )
 
 
-def settled(data: xr.Dataset, name: str) -> xr.DataArray:
-    """Return where the speeds of a run are all alike, to a hundredth.
+def is_settled(data: xr.Dataset, name: str) -> xr.DataArray:
+    """Return for which runs all speeds agree within 1 %.
 
     Parameters
     ----------
     data
-        Of this figure.
+        Dataset of this figure.
     name
         "frequency" or "amplitude".
     """
     speeds = data[f"speed_over_{name}"].transpose(..., "hit")
-    return speeds.isel(hit=0).copy(data=_alike(speeds.values))
+    return speeds.isel(hit=0).copy(data=_agree(speeds.values))
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what one sees."""
+    """Return the caption."""
     one = data.sel(model=CONSTANT_E)
     stable = np.isfinite(one.stable_over_frequency)
     off = np.abs(one.speed_over_frequency.mean("hit") / one.stable_over_frequency - 1)
-    met = settled(one, "frequency") & (off < 0.05)
+    met = is_settled(one, "frequency") & (off < 0.05)
     lost = one.frequency.where(~stable & (one.frequency > float(one.frequency.where(stable).min())), drop=True)
     shares = np.concatenate([one[f"alike_over_{name}"] for name in ("frequency", "amplitude")])
-    alike = int(settled(one, "frequency").sel(frequency=lost).sum())
+    alike = int(is_settled(one, "frequency").sel(frequency=lost).sum())
     return (
         f"Relative speeds of the last {data.hit.size} impacts of runs of {DURATION:g} s, over the frequency and over the "
         f"amplitude of the load: dots of one run that starts at the leading wall, median and band of {MEMBERS} starts "

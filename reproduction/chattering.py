@@ -1,4 +1,4 @@
-"""Figure A4: chattering, shown in time, and where it ends in a lasting contact."""
+"""Figure A4: chattering over time, and the loads at which it ends in a lasting contact."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _LASTING = 5.0
 
 
 def _case(model: str, amplitude: float, offset: float = 0.0) -> Case:
-    """At resonance, begun on the steady motion, so that few cycles settle."""
+    """Return a case at resonance that starts on the steady motion, so that it settles in few cycles."""
     frequency = resonance()
     end = CYCLES / frequency
     return harmonic_case(
@@ -52,13 +52,13 @@ def _case(model: str, amplitude: float, offset: float = 0.0) -> Case:
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the runs shown in time, and those of the smallest load that is only counted."""
+    """Return the runs drawn over time, and those at the smallest load of the counts."""
     shown = {f"{model}, {LOAD:g} N": _case(model, LOAD) for model in MODELS}
     return shown | {f"{model}, {LOADS[0]:g} N": _case(model, float(LOADS[0])) for model in MODELS}
 
 
 def data() -> xr.Dataset:
-    """Run all models at all loads; keep motion and impacts of one load."""
+    """Compute contacts of all models at all loads, and motion and impacts at one load."""
     runs = simulate_many([_case(model, float(load)) for model in MODELS for load in LOADS])
     grid = [runs[k : k + LOADS.size] for k in range(0, len(runs), LOADS.size)]
     shown = [
@@ -67,15 +67,15 @@ def data() -> xr.Dataset:
     begin = float(shown[0].arrays.time[1])
     hits = _padded([_hits(run, begin) for run in shown])
     ensembles = [[ensemble(partial(_case, model, float(load)), MEMBERS) for load in LOADS] for model in MODELS]
-    beside = [
+    neighbours = [
         row[int(np.flatnonzero(LOADS == LOAD)[0])]
         for row, model in zip(ensembles, MODELS, strict=True)
         if model in SHOWN
     ]
-    other_hits = _padded([_hits(run, begin) for many in beside for run in many])
+    other_hits = _padded([_hits(run, begin) for many in neighbours for run in many])
     other_hits = other_hits.reshape(len(SHOWN), MEMBERS, *other_hits.shape[1:])
-    moved = [[run.arrays.displacement[1:, 0] for run in many] for many in beside]
-    places = [[run.arrays.relative_position[1:, 0] for run in many] for many in beside]
+    displacements = [[run.arrays.displacement[1:, 0] for run in many] for many in neighbours]
+    positions = [[run.arrays.relative_position[1:, 0] for run in many] for many in neighbours]
 
     def spread(of: Callable[[Run], float], units: str, text: str) -> tuple[Any, ...]:
         values = band([[[of(run) for run in many] for many in row] for row in ensembles], axis=2)
@@ -92,14 +92,14 @@ def data() -> xr.Dataset:
             "displacement": described(("shown", "time"), motion[:, 0], "m", "displacement of the structure"),
             "displacement_spread": described(
                 ("quantile", "shown", "time"),
-                band(moved, axis=1),
+                band(displacements, axis=1),
                 "m",
                 "displacement of the structure, ensemble of start positions",
             ),
             "place": described(("shown", "time"), motion[:, 1], "m", "place of the ball in its cavity"),
             "place_spread": described(
                 ("quantile", "shown", "time"),
-                band(places, axis=1),
+                band(positions, axis=1),
                 "m",
                 "place of the ball, ensemble of start positions",
             ),
@@ -153,13 +153,13 @@ def data() -> xr.Dataset:
 
 
 def _padded(hits: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Impacts of several runs, NaN where there are fewer."""
+    """Return the impacts of several runs, padded with NaN."""
     size = max(each.shape[1] for each in hits)
     return np.array([np.pad(each, ((0, 0), (0, size - each.shape[1])), constant_values=np.nan) for each in hits])
 
 
 def _hits(run: Run, begin: float) -> NDArray[np.float64]:
-    """Time, speed, restitution and duration of each impact after a time, and whether its contact lasts."""
+    """Return time, speed, restitution and duration of each impact after a time, and whether its contact lasts."""
     log = run.arrays.impacts
     end = np.where(log.complete, log.time + log.duration, run.arrays.time[-1])
     kept = end > begin
@@ -168,7 +168,7 @@ def _hits(run: Run, begin: float) -> NDArray[np.float64]:
 
 
 def _lasting(run: Run) -> NDArray[np.bool_]:
-    """Whether each contact lasts much longer than a collision of its approach speed."""
+    """Return for each contact whether it lasts much longer than a collision at its approach speed."""
     log = run.arrays.impacts
     pair = contact_pairs(Case.from_toml(run.case_toml), 0)[0]
     depth = (1.25 * pair.mass * log.approach_speed**2 / pair.hertz_stiffness) ** 0.4
@@ -191,13 +191,13 @@ def _held(run: Run) -> bool:
 
 
 def _late(run: Run) -> NDArray[np.bool_]:
-    """Impacts whose contacts opened within the cycles that count."""
+    """Return the impacts whose contacts ended within the evaluated cycles."""
     log = run.arrays.impacts
     return np.asarray(log.complete & (log.time > run.arrays.time[-1] - COUNTED / resonance()))
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw the motion in time, one column a model, and below how contacts change with the load."""
+    """Draw the motion over time, one column per model, and below the contacts over the load."""
     with figure_style("page"):
         figure = StyledFigure("page", 1.03)
         panels = figure.subplots(4, 2, height_ratios=(0.5, 1, 1, 1))
@@ -226,13 +226,13 @@ _BESIDE: Mapping[str, Any] = {"color": SERIES_COLOURS[3]}
 
 def _draw_in_time(panels: Sequence[Axes], one: xr.Dataset, colour: str) -> None:
     time = 1e3 * one.time
-    moved, place, speed = panels
-    for axes, name in ((moved, "displacement"), (place, "place")):
+    displacements, place, speed = panels
+    for axes, name in ((displacements, "displacement"), (place, "place")):
         low, median, high = 1e3 * one[f"{name}_spread"].transpose("quantile", "time").values
         text = f"{MEMBERS} starts within 1 µm, 10 to 90 %"
         axes.fill_between(time, low, high, alpha=0.4, lw=0, zorder=1, label=text, **_BESIDE)
         axes.plot(time, median, lw=pen(0.5), zorder=1.5, label="their median", **_BESIDE)
-    moved.plot(time, 1e3 * one.displacement, color=INK)
+    displacements.plot(time, 1e3 * one.displacement, color=INK)
     place.plot(time, 1e3 * one.place, color=colour, lw=pen(0.6))
     for side in 1e3 * one.wall_place.values:
         place.axhline(side, color=INK, lw=pen(0.6))
@@ -270,7 +270,7 @@ def _draw_over_load(panels: Sequence[Axes], data: xr.Dataset) -> None:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what one sees."""
+    """Return the caption."""
     rigid, constant = data.sel(model=RIGID, shown=RIGID), data.sel(model=CONSTANT_E, shown=CONSTANT_E)
     text = (
         f"Chattering under a load of {float(data.shown_load):g} N at {float(data.frequency):.2f} Hz, where the walls reach "
@@ -317,7 +317,7 @@ def _why(speed: float, limit: float) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge the expected chattering."""
+    """Return the verdict on the expected chattering."""
     rigid = data.sel(model=RIGID)
     ours = by_model(
         {
@@ -334,7 +334,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             f"most contacts a cycle and longest contact: {ours}",
             f"expected there, not computed; up to {float(data.amplitude.max()):g} N at {float(data.frequency):.2f} Hz are "
             "ours; judged with the rigid wall",
-            "reproduced" if bool(rigid.held.any()) else "reproduced in kind" if many else "not reproducible",
+            "reproduced" if bool(rigid.held.any()) else "reproduced qualitatively" if many else "not reproducible",
         ),
     )
 

@@ -1,4 +1,4 @@
-"""Figure A2: how many contacts a cycle of a harmonic load holds, against its frequency."""
+"""Figure A2: number of contacts per cycle of a harmonic load against its frequency."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ AMPLITUDE = 20.0
 FREQUENCIES = np.arange(30, 231, 2) / 10
 """Of the load [Hz]."""
 APART = 0.5
-"""Difference of mean counts that tells motions apart."""
+"""Difference of mean counts above which two motions differ."""
 SETTLING, COUNTED = 30.0, 15.0
 """Time left to settle, and least time counted afterwards [s]."""
 MEMBERS = 6
 
 
 def _case(model: str, frequency: float, offset: float = 0.0) -> Case:
-    """The ball starts at the leading wall: from the centre it would never be touched at high frequencies."""
+    """Return a case whose ball starts at the leading wall; from the centre it has no contact at high frequencies."""
     duration = (ceil(SETTLING * frequency) + ceil(COUNTED * frequency)) / frequency
     return harmonic_case(
         MODELS[model],
@@ -47,25 +47,25 @@ def _case(model: str, frequency: float, offset: float = 0.0) -> Case:
 
 
 def cases() -> Mapping[str, Case]:
-    """Return each model's case nearest to resonance."""
+    """Return the case of each model nearest to resonance."""
     nearest = float(FREQUENCIES[np.abs(FREQUENCIES - resonance()).argmin()])
     return {f"{model}, {nearest:g} Hz": _case(model, nearest) for model in MODELS}
 
 
 def _counts(run: Run, frequency: float) -> NDArray[np.int64]:
-    """Contacts in each cycle after settling."""
+    """Return the number of contacts in each cycle after settling."""
     start, end = ceil(SETTLING * frequency) / frequency, float(run.arrays.time[-1])
     return np.asarray(impacts_per_cycle(run.arrays.impacts.time, 1 / frequency, start=start, end=end))
 
 
-def _alone(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Amplitude of the structure without the ball [m]."""
+def _bare_amplitude(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the amplitude of the structure without the ball [m]."""
     omega = 2 * pi * frequency
     return np.asarray(AMPLITUDE / np.abs(STIFFNESS - MASS * omega**2 + 1j * DAMPING * omega))
 
 
 def data() -> xr.Dataset:
-    """Count the contacts of each cycle, model by model and frequency by frequency."""
+    """Count the contacts of each cycle for all models and frequencies."""
     grid = [(model, float(frequency)) for model in MODELS for frequency in FREQUENCIES]
     runs = simulate_many([_case(model, frequency) for model, frequency in grid])
     counts = [_counts(run, frequency) for run, (_, frequency) in zip(runs, grid, strict=True)]
@@ -90,7 +90,7 @@ def data() -> xr.Dataset:
                 "mean contacts a cycle, ensemble of start positions",
             ),
             "cycles": described("frequency", [c.size for c in counts[: shape[1]]], "", "cycles counted"),
-            "alone": described("frequency", _alone(FREQUENCIES), "m", "amplitude of the structure alone"),
+            "alone": described("frequency", _bare_amplitude(FREQUENCIES), "m", "amplitude of the structure alone"),
             "gap": described((), GAP, "m", "clearance on each side of the centred ball"),
             "resonance": described((), resonance(), "Hz", "natural frequency with the ball riding along"),
             "amplitude": described((), AMPLITUDE, "N", "amplitude of the load"),
@@ -105,7 +105,7 @@ def data() -> xr.Dataset:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw how often each count occurs, one panel a model."""
+    """Draw how often each count occurs, one panel per model."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.85)
         panels = figure.subplots(data.model.size, 1, sharex=True, sharey=True)
@@ -144,12 +144,12 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _steady(one: xr.Dataset) -> NDArray[np.bool_]:
-    """Whether all cycles have the same count, over frequency."""
+    """Return for each frequency whether all cycles have the same count."""
     return np.asarray((one.share == 1).any("count"))
 
 
 def _bands(one: xr.Dataset) -> list[tuple[float, float, int]]:
-    """Widest bands of frequencies whose cycles all have one count: from, to, count; by rising frequency."""
+    """Return the widest frequency bands with the same count in all cycles, as (from, to, count) by frequency."""
     counts = np.where(_steady(one), one.share.argmax("count"), -1)
     borders = np.flatnonzero(np.diff(counts)) + 1
     bands = [
@@ -160,12 +160,12 @@ def _bands(one: xr.Dataset) -> list[tuple[float, float, int]]:
     return sorted(sorted(bands, key=lambda band: band[0] - band[1])[:3])
 
 
-def _told(bands: list[tuple[float, float, int]]) -> str:
+def _band_text(bands: list[tuple[float, float, int]]) -> str:
     return ", ".join(f"{count} from {low:g} to {high:g} Hz" for low, high, count in bands) or "in no band"
 
 
-def _parted(data: xr.Dataset) -> str:
-    """Say where a micrometre decides on the steady motion."""
+def _sensitivity(data: xr.Dataset) -> str:
+    """Return a sentence on frequencies at which a micrometre changes the steady motion."""
     low, _, high = data.mean_spread.transpose("quantile", ...)
     none, wide = (high - low) == 0, (high - low) > APART
     return (
@@ -176,30 +176,30 @@ def _parted(data: xr.Dataset) -> str:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what one sees."""
+    """Return the caption."""
     one = data.isel(model=0)
     at = float(one["mean"].idxmax())
     reached = data.frequency.values[data.alone > data.gap]
-    told = "; ".join(f"{model}: {_told(_bands(data.sel(model=model)))}" for model in data.model.values)
+    texts = "; ".join(f"{model}: {_band_text(_bands(data.sel(model=model)))}" for model in data.model.values)
     return (
         f"Number of contacts in a cycle of a load of {float(data.amplitude):g} N, after {SETTLING:g} s of settling: of one "
         "run in grey, the darker, the more cycles have it (marks: all have the same number), and the mean of the cycles for "
-        f"that run and for {MEMBERS} starts within 1 µm. {_parted(data)} The constant model has "
+        f"that run and for {MEMBERS} starts within 1 µm. {_sensitivity(data)} The constant model has "
         f"{float(one['mean'].max()):.1f} contacts a cycle on average at {at:g} Hz, close to the natural frequency with "
-        f"the ball riding along, {float(data.resonance):.2f} Hz. Wide bands with one number in all cycles: {told}. "
+        f"the ball riding along, {float(data.resonance):.2f} Hz. Wide bands with one number in all cycles: {texts}. "
         "Between them the number changes from cycle to cycle. Only from "
         f"{reached[0]:g} to {reached[-1]:g} Hz would the structure alone reach the walls around a ball at rest in the "
         "centre; elsewhere the ball may also lose touch for good."
     )
 
 
-def _listed(numbers: Sequence[int]) -> str:
+def _join(numbers: Sequence[int]) -> str:
     *first, last = map(str, numbers)
     return f"{', '.join(first)} or {last}" if first else last
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge the expected bifurcation."""
+    """Return the verdict on the expected bifurcation."""
     found = []
     for model in data.model.values:
         one = data.sel(model=model)
@@ -215,7 +215,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
         Claim(
             "The number of contacts in a cycle is expected to bifurcate as the frequency of a harmonic load varies.",
             "section 6.1",
-            f"up to {highest:.0f} contacts a cycle; all cycles have one number ({_listed(numbers)}) at {ours} of the "
+            f"up to {highest:.0f} contacts a cycle; all cycles have one number ({_join(numbers)}) at {ours} of the "
             "frequencies",
             f"expected there, not computed; {float(data.amplitude):g} N and {float(data.frequency[0]):g} to "
             f"{float(data.frequency[-1]):g} Hz are ours",

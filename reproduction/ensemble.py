@@ -1,4 +1,4 @@
-"""Runs that start within a micrometre of each other, and the band in which most of their results lie."""
+"""Ensembles of runs that start within a micrometre of each other, and bands of their results."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Band(NamedTuple):
-    """Tenth percentile, median and ninetieth percentile of an ensemble."""
+    """10 % quantile, median and 90 % quantile of an ensemble."""
 
     low: NDArray[np.float64]
     median: NDArray[np.float64]
@@ -24,7 +24,7 @@ class Band(NamedTuple):
 
 
 def ensemble(make_case: Callable[[float], Case], members: int = 64, reach: float = 1e-6) -> list[Run]:
-    """Run a case from many start positions close to each other.
+    """Simulate a case from many nearby start positions.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def ensemble(make_case: Callable[[float], Case], members: int = 64, reach: float
     members
         Number of runs.
     reach
-        Largest offset to either side [m].
+        Largest offset in either direction [m].
 
     Returns
     -------
@@ -74,7 +74,7 @@ def near(start: float, offset: float) -> float:
 
 
 def band(values: ArrayLike, axis: int = 0) -> Band:
-    """Return the median of an ensemble and the band that holds four fifths of it.
+    """Return the median of an ensemble and the band of its middle 80 %.
 
     Parameters
     ----------

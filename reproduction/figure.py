@@ -1,4 +1,4 @@
-"""What every figure of the reproduction is made of."""
+"""Parts of a reproduced figure: data, drawing, caption and claims."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
     from rattlebox import Case
 
-Verdict = Literal["reproduced", "reproduced in kind", "not reproducible", "misprint"]
+Verdict = Literal["reproduced", "reproduced qualitatively", "not reproducible", "misprint"]
 
 
 class Claim(NamedTuple):
-    """A measurable statement of the paper, judged."""
+    """Measurable statement of the paper with a verdict."""
 
     statement: str
-    """What the paper asserts, in our words."""
+    """Statement of the paper, paraphrased."""
     where: str
     """Section, figure or equation of the paper."""
     ours: str
-    """What we get, with units."""
+    """Our result, with units."""
     interpretation: str
     """Interpretation of the paper under which the result holds."""
     verdict: Verdict
@@ -32,25 +32,25 @@ class Claim(NamedTuple):
 
 @dataclass(frozen=True)
 class Reproduction:
-    """One figure: its data, its drawing, its words.
+    """One reproduced figure.
 
     Parameters
     ----------
     number
-        The paper's number ("4", "7c"), or "A1", "A2", ... for what the paper left for later.
+        Number in the paper ("4", "7c"), "A1", "A2", ... for additional studies, or "R1" for the interpretations.
     title
-        One line.
+        Title of one line.
     data
-        Computes everything that is drawn: an xarray.Dataset in SI units, each variable and coordinate with the
+        Function that computes the data: an xarray.Dataset in SI units, in which each variable and coordinate has the
         attributes `units` ("" for a pure number) and `long_name`.
     draw
-        Draws a dataset, in the style of `rattlebox.plots`.
+        Function that draws the dataset in the style of `rattlebox.plots`.
     caption
-        Says in one to four sentences what one sees, with the numbers of this dataset.
+        Function that describes the figure in one to four sentences with the numbers of the dataset.
     cases
-        The exact cases behind the figure, by name; every run of `data` is one of them, but for the values of numbers.
+        Function that returns the cases of the figure by name; all runs of `data` differ from them in numbers only.
     claims
-        Judges the paper's statements that this figure bears on, from this dataset.
+        Function that returns verdicts on the statements of the paper, based on the dataset.
     """
 
     number: str
@@ -63,6 +63,6 @@ class Reproduction:
 
     @property
     def name(self) -> str:
-        """Stem of this figure's files: "figure_07c", "figure_07de" for "7d, 7e"."""
+        """Stem of the file names of the figure: "figure_07c", "figure_07de" for "7d, 7e"."""
         whole, *parts = re.findall(r"^[A-Z]?\d+|[a-z]", self.number)
         return f"figure_{whole.zfill(2)}{''.join(parts)}"

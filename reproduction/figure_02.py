@@ -33,7 +33,7 @@ _SHARED = (1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218)
 
 
 def _impact(alpha: float, ending: Ending) -> Case:
-    """A ball that meets a wall at rest once."""
+    """Return a case of a ball that hits a wall at rest once."""
     damper = ImpactDamper(
         balls=(Sphere(radius=RADIUS, material="steel"),),
         gap=GAP,
@@ -107,14 +107,14 @@ def data() -> xr.Dataset:
 
 
 def _fit(ending: Ending, least: float) -> NDArray[np.float64]:
-    """Least squares on even steps of log10 e."""
+    """Fit by least squares on even steps of log10 e."""
     x = np.linspace(np.log10(least), 0.0, 2001)
     fit = np.polynomial.Polynomial.fit(x, alpha_of_restitution(10**x, ending), _DEGREE)
     return np.asarray(fit.convert().coef)
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw coefficients above and deviations below, over all restitutions and where steel lives."""
+    """Draw coefficients above and deviations below, over all restitutions and over those of steel."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.72)
         axes = figure.subplots(2, 2, sharex="col", height_ratios=(1.2, 1))
@@ -142,7 +142,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _column(axes: Any, data: xr.Dataset, near_one: bool) -> None:
-    """Draw one column, against e or against what misses to 1."""
+    """Draw one column, over e or over 1 - e."""
     upper, lower = axes
     x, met = (data.missed, data.simulated_missed) if near_one else (data.e, data.simulated)
     for ending, style, marker in zip(data.ending.values, _STYLES, SERIES_MARKERS, strict=False):
@@ -177,7 +177,7 @@ def _column(axes: Any, data: xr.Dataset, near_one: bool) -> None:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what one sees."""
+    """Return the caption."""
     here = data.sel(ending="zero_overlap")
     near = [f"{value:.2g}" for value in 100 * here.deviation.sel(e=0.999).values]
     ranges = [f"{value:g}" for value in data.fit_from.values]
@@ -198,7 +198,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge the printed coefficient and the fit."""
+    """Return the verdicts on the printed coefficient and the fit."""
     overlap, force = (float(value) for value in data.printed_e)
     needed = float(data.needed_alpha.sel(ending="zero_overlap"))
     alpha = float(data.printed_alpha)
@@ -218,7 +218,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             f"at e = 0.99, α is off by {' or '.join(f'{value:.2g} %' for value in off.values)}: fits from "
             f"e = {' or '.join(f'{value:g}' for value in data.fit_from.values)} on",
             "neither coefficients nor range are printed: our least squares on even steps of log10 e",
-            "reproduced in kind" if float(off.max()) < 5 else "not reproducible",
+            "reproduced qualitatively" if float(off.max()) < 5 else "not reproducible",
         ),
     )
 

@@ -1,4 +1,4 @@
-"""Figure 4: one ball with constant restitution, by the paper's time-stepping scheme and by ours."""
+"""Figure 4: one ball with constant restitution, with the paper's time-stepping scheme and with ours."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ _ALL = np.unique(np.concatenate([_SLOW, _RATE, _FAST, _LATER])).tolist()
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the centred ball under the 5000 N pulse, by the scheme that computes it, and where pairs begin."""
+    """Return the centred ball under the 5000 N pulse by scheme, and the first cases of the pairs."""
     schemes = {
         scheme: paper_case(CONSTANT, start=START[1], duration=_SPAN, times=_ALL, method=method, name=scheme)
         for scheme, method in SCHEMES.items()
@@ -82,12 +82,12 @@ def _ball(run: Run) -> NDArray[np.float64]:
 
 
 def _largest(distance: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Largest distance in each window."""
+    """Return the largest distance in each time window."""
     return np.asarray(np.abs(distance[..., 1:]).reshape(*distance.shape[:-1], -1, _WINDOW).max(axis=-1))
 
 
 def data() -> xr.Dataset:
-    """Compute the same case by each scheme, an ensemble of it, and pairs of runs that start a picometre apart."""
+    """Compute the case with each scheme, an ensemble of it, and pairs of runs that start a picometre apart."""
     ours, theirs, twin = simulate_many([cases()[scheme] for scheme in SCHEMES])
     slow, apart, fast, later = (np.isin(ours.arrays.time, times) for times in (_SLOW, _RATE, _FAST, _LATER))
     distance = np.array([_ball(run)[apart] - _ball(ours)[apart] for run in (theirs, twin)])
@@ -173,7 +173,7 @@ def _first(time: NDArray[np.float64], met: NDArray[np.bool_]) -> float:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw motion, energies and shares of both schemes, and how far apart they are."""
+    """Draw motion, energies and energy shares of both schemes, and the distance between their motions."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.95)
         panels = figure.subplot_mosaic(
@@ -197,7 +197,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _compare(axes: Axes, data: xr.Dataset, name: str, divisor: float, part: str = "") -> None:
-    """Draw ours broad and pale, theirs thin and dark on top, and the ensemble behind."""
+    """Draw our result as a broad pale line, theirs as a thin dark line, and the ensemble behind them."""
     values = data[name] / divisor
     time = values[values.dims[-1]]
     colour = CHANNEL_COLOURS["particles" if "ball" in (name, part) else "structure"]
@@ -252,7 +252,7 @@ def _percent(share: object) -> str:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say when the schemes part, and that the energies agree all the same."""
+    """Return a caption with the time at which the schemes diverge and the agreement of the energies."""
     theirs, twin = (float(data.parted.sel(other=other)) for other in (_THEIRS, _TWIN))
     low, median, high = data.scatter.values
     wide = data.ball_spread.sel(quantile=0.9) - data.ball_spread.sel(quantile=0.1)
@@ -263,13 +263,13 @@ def caption(data: xr.Dataset) -> str:
         f"{theirs:.2f} s, and even two runs that differ in rounding errors alone at {twin:.2f} s: after "
         f"{float(data.growing):.2f} s small distances grow as exp({float(data.exponent):.1f} t/s), with a standard error of "
         f"{float(data.error):.1f}, until they are as large as the cavity. The band of {_MEMBERS} starts within 1 µm has "
-        f"hardly any width before {spread:.2f} s and then fills the cavity, but the energies agree: impacts take "
+        f"almost no width before {spread:.2f} s and then fills the cavity, but the energies agree: impacts take "
         f"{_percent(median)} of the work ({_percent(low)} to {_percent(high)}, too narrow a band to be seen in the shares)."
     )
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge whether two programs can agree as figure 4 says."""
+    """Return the verdict on the agreement of two programs in figure 4."""
     parted = data.parted.sel(other=_THEIRS)
     ours, theirs = (float(share) for share in data.impact_share)
     low, _, high = data.scatter.values
@@ -277,13 +277,13 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
     early = data.distance.sel(other=_THEIRS, window=slice(0, 0.5)).max()
     return (
         Claim(
-            "A program of one's own repeats the published motion of a single ball identically.",
+            "An independent program repeats the published motion of a single ball identically.",
             "section 4.2, figure 4",
             f"the balls of two schemes stay within {1e6 * float(early):.2g} µm for 0.5 s and part at {float(parted):.2f} s; "
             f"impacts take {_percent(ours)} and {_percent(theirs)} of the work, {_percent(low)} to {_percent(high)} in an "
             "ensemble",
             "any: the motion is chaotic",
-            "reproduced" if np.isnan(parted) else "reproduced in kind" if alike else "not reproducible",
+            "reproduced" if np.isnan(parted) else "reproduced qualitatively" if alike else "not reproducible",
         ),
     )
 

@@ -1,4 +1,4 @@
-"""Figure 5: restitution against approach speed, and the speeds at which the ball really arrives."""
+"""Figure 5: restitution against approach speed, and the approach speeds that occur."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _MEMBERS = 16
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the paper's case with either wall, from each start."""
+    """Return the paper's case with each wall and start position."""
     return {f"{wall} wall, case {k}": _case(wall, start) for wall in WALLS for k, start in START.items()}
 
 
@@ -46,7 +46,7 @@ def _case(wall: str, start: float, offset: float = 0.0) -> Case:
 
 
 def data() -> xr.Dataset:
-    """Compute the laws, and how fast the impacts after a pulse of 5 kN are."""
+    """Compute the laws, and the approach speeds after a pulse of 5 kN."""
     pair = contact_pairs(paper_case(PLASTIC), 0)[0]
     pairs = {"steel": pair, "rigid": pair.against("rigid")}
     critical = np.array([JacksonGreen().critical_speed(pairs[wall]) for wall in WALLS])
@@ -54,7 +54,7 @@ def data() -> xr.Dataset:
     curves = [[restitution_curve(law, pairs[wall], speed) for wall in WALLS] for law in _LAWS.values()]
     marked = np.multiply.outer(critical, _MARKS)
     marks = [restitution_curve(JacksonGreen(), pairs[wall], at) for wall, at in zip(WALLS, marked, strict=True)]
-    met = [_met(wall, start) for wall in WALLS for start in START.values()]
+    met = [_impacts(wall, start) for wall in WALLS for start in START.values()]
     faster = np.reshape([[np.mean(speeds > x) for x in speed] for speeds, _ in met], (len(WALLS), len(START), -1))
     largest = np.reshape([speeds.max() for speeds, _ in met], (len(WALLS), len(START)))
     lowest = np.reshape([values.min() for _, values in met], (len(WALLS), len(START)))
@@ -83,8 +83,8 @@ def data() -> xr.Dataset:
     )
 
 
-def _met(wall: str, start: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Approach speeds and restitutions of all impacts of an ensemble."""
+def _impacts(wall: str, start: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return approach speeds and restitutions of all impacts of an ensemble."""
     runs = ensemble(partial(_case, wall, start), _MEMBERS)
     impacts = [run.impacts.isel(impact=run.impacts.restitution.notnull().values) for run in runs]
     speeds, values = ([log[name].values for log in impacts] for name in ("approach_speed", "restitution"))
@@ -92,7 +92,7 @@ def _met(wall: str, start: float) -> tuple[NDArray[np.float64], NDArray[np.float
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw the laws, and below them which speeds occur."""
+    """Draw the laws, and below them the distribution of the speeds."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.74)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.2, 1))
@@ -143,7 +143,7 @@ def _limit(both: tuple[Axes, Axes], data: xr.Dataset) -> None:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what one sees."""
+    """Return the caption."""
     limit = {wall: float(data.critical_speed.sel(wall=wall)) for wall in WALLS}
     largest = {wall: float(data.largest_speed.sel(wall=wall).max()) for wall in WALLS}
     lowest = {wall: float(data.lowest_restitution.sel(wall=wall).min()) for wall in WALLS}
@@ -161,7 +161,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge what the paper says of restitution at low and at high speeds."""
+    """Return the verdicts on restitution at low and at high speeds."""
     constant = float(data.constant)
     limit = {wall: float(data.critical_speed.sel(wall=wall)) for wall in WALLS}
     lowest = {wall: float(data.lowest_restitution.sel(wall=wall).min()) for wall in WALLS}
@@ -184,7 +184,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             f"the fastest of all impacts after 5 kN have e = {lowest['steel']:.4f} on a steel wall and "
             f"{lowest['rigid']:.4f} on a rigid one, against {constant:.4f} of the constant model",
             "holds for " + (" and ".join(f"the {wall} wall" for wall in lower) + " only" if lower else "no wall"),
-            "reproduced" if len(lower) == len(WALLS) else "reproduced in kind" if lower else "not reproducible",
+            "reproduced" if len(lower) == len(WALLS) else "reproduced qualitatively" if lower else "not reproducible",
         ),
     )
 

@@ -1,4 +1,4 @@
-"""Figure 6: phase portrait of the ball in a cavity that does not move."""
+"""Figure 6: phase portrait of the ball in a fixed cavity."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _YIELD = (1e6, 1e7, 1e8, 1.03e9)
 
 
 def _case(zone: str, portrait: bool, offset: float = 0.0) -> Case:
-    """A ball that flies from the middle."""
+    """Return a case of a ball that starts at the centre."""
     speed = _STARTS[zone] * _LAW.critical_speed(PAIR)
     damper = ImpactDamper(balls=(_BALL,), gap=GAP, start=near(0.0, offset), velocity=(speed,), contact=PLASTIC)
     # At the elastic limit a flight and a hit last 5.3 ms.
@@ -43,7 +43,7 @@ def _case(zone: str, portrait: bool, offset: float = 0.0) -> Case:
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the balls of the phase portrait and of the many hits, by the zone in which they start."""
+    """Return the cases of the phase portrait and of the long runs, by the zone of their start."""
     return {
         f"{zone} zone, {what}": _case(zone, portrait)
         for zone in _STARTS
@@ -52,7 +52,7 @@ def cases() -> Mapping[str, Case]:
 
 
 def data() -> xr.Dataset:
-    """Compute the phase portrait and the speeds after every hit."""
+    """Compute the phase portrait and the speed after each impact."""
     limit = _LAW.critical_speed(PAIR)
     plastic, elastic = simulate_many([_case(zone, portrait=False) for zone in _STARTS])
     portraits = [run.arrays for run in simulate_many([_case(zone, portrait=True) for zone in _STARTS])]
@@ -105,13 +105,13 @@ def data() -> xr.Dataset:
 
 
 def _speeds(runs: Sequence[Run]) -> NDArray[np.float64]:
-    """Speed after each of the first hits, (run, hit) [m/s]."""
+    """Return the speed after each of the first impacts [m/s], (run, hit)."""
     hits = min(_HITS, *(len(run.arrays.impacts) for run in runs))
     return np.array([run.arrays.impacts.separation_speed[:hits] for run in runs])
 
 
 def _predicted(hits: int) -> NDArray[np.float64]:
-    """V* after each hit, by applying the law again and again."""
+    """Return V* after each impact by repeated application of the law."""
     limit = _LAW.critical_speed(PAIR)
     speeds = [_STARTS["plastic"]]
     for _ in range(hits):
@@ -120,13 +120,13 @@ def _predicted(hits: int) -> NDArray[np.float64]:
 
 
 def _asymptote(hits: NDArray[np.int64]) -> NDArray[np.float64]:
-    """V* - 1 after many hits: near 1 the law takes 0.1 (V* - 1)^1.156 / 59^0.156 from it each time."""
+    """Return V* - 1 after many impacts; near 1, each impact subtracts 0.1 (V* - 1)^1.156 / 59^0.156."""
     taken: NDArray[np.float64] = 0.156 * 0.1 / 59.0**0.156 * hits
     return taken ** (-1 / 0.156)
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw the portrait, and beside it the approach to the elastic limit."""
+    """Draw the portrait and the approach to the elastic limit."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.52)
         left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
@@ -145,7 +145,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _portrait(axes: Axes, data: xr.Dataset) -> None:
-    """Draw velocity against place, with zones and walls."""
+    """Draw velocity against position, with zones and walls."""
     reach = 1.05 * float(np.abs(data.place).max())
     top = 1.08 * float(np.abs(data.speed).max())
     for side in data.limit.values:
@@ -164,7 +164,7 @@ def _portrait(axes: Axes, data: xr.Dataset) -> None:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what one sees."""
+    """Return the caption."""
     reduced = {n: float(data.simulated.sel(hit=n)) for n in (1, 10, 100)}
     apart = float(np.abs(data.above - data.predicted_above).max())
     last, spread = int(data.hit[-1]), float(data.spread.max())
@@ -181,7 +181,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge what the paper says of the two zones."""
+    """Return the verdicts on the two zones."""
     drift = float(data.elastic_drift)
     change = f"changes by {drift:.1g}" if drift else "does not change, to the last bit,"
     loses = bool((data.simulated.diff("hit") < 0).all() and (data.simulated > 1).all())

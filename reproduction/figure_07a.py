@@ -58,7 +58,7 @@ def _means(energies: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _rises(run: Run) -> float:
-    """What the ball gives back: damping never raises the structure's energy, so each rise comes from an impact."""
+    """Return the energy that the ball returns: only impacts can increase the energy of the structure."""
     late = run.ledger.structure[run.arrays.time >= LATE]
     return float(np.maximum(np.diff(late), 0).sum() / late[0])
 
@@ -124,7 +124,7 @@ def data(models: Sequence[str] = (STEEL, RIGID)) -> xr.Dataset:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw each model in a row: the beginning, and ten seconds on a logarithmic axis."""
+    """Draw one row per model: the beginning, and ten seconds on a logarithmic axis."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.1 + 0.26 * data.model.size)
         panels = figure.subplots(data.model.size, 2, sharex="col", sharey="col", squeeze=False, width_ratios=(1, 1.2))
@@ -141,7 +141,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _begin(axes: Axes, data: xr.Dataset) -> None:
-    """Energies while most of them is still there."""
+    """Draw the energies before most of them is dissipated."""
     scale = scaled(data.begin_energy, "J")
     for part, name in PARTS.items():
         colour = CHANNEL_COLOURS[part]
@@ -157,7 +157,7 @@ def _begin(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _whole(axes: Axes, data: xr.Dataset) -> None:
-    """All ten seconds: the single run, and median and band of the ensemble's means."""
+    """Draw all ten seconds: the single run, and median and band of the ensemble's means."""
     for part, name in PARTS.items():
         colour = CHANNEL_COLOURS[part]
         low, median, high = data["mean"].sel(part=name).transpose("quantile", "window").values
@@ -173,7 +173,7 @@ def _whole(axes: Axes, data: xr.Dataset) -> None:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say how the energies fall, and who holds them at the end."""
+    """Return a caption on the decay of the energies and their distribution at the end."""
     said = [
         f"{model}: at 10 s the structure holds {left[0]:.2g} J and the ball {left[1]:.2g} J"
         for model, left in zip(data.model.values, data["mean"].sel(quantile=0.5).values[:, :, -1], strict=True)
@@ -181,12 +181,12 @@ def caption(data: xr.Dataset) -> str:
     return (
         "Energies of structure and ball after a pulse of 5000 N on the centred ball: one run, and median and band of 64 "
         "runs that start within 1 µm; left, the beginning (medians dotted); right, the run instant by instant, the band of "
-        f"means over one period, which the run therefore leaves. {_parted(data)} Medians, {'; '.join(said)}."
+        f"means over one period, which the run therefore leaves. {_divergence(data)} Medians, {'; '.join(said)}."
     )
 
 
-def _parted(data: xr.Dataset) -> str:
-    """Say from when on the band has a width."""
+def _divergence(data: xr.Dataset) -> str:
+    """Return a sentence on the time from which the band has a width."""
     low, _, high = data.begin_spread.transpose("quantile", ...)
     width = (high - low).max("part").coarsen(begin=125, boundary="trim").mean()
     said = []
@@ -199,7 +199,7 @@ def _parted(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge whether the structure's energy falls more smoothly with the elasto-plastic model."""
+    """Return the verdict on the smoother decay with the elasto-plastic model."""
     rises = data.rises.sel(quantile=0.5)
     bound = data.rises.sel(quantile=0.1, judged=CONSTANT_E)
     smoother = [model for model in (STEEL, RIGID) if rises.sel(judged=model) < bound]

@@ -80,7 +80,7 @@ def _contacts_to_half(run: Run) -> int:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw the energy lost against time, and what the elasto-plastic model loses relative to the constant one."""
+    """Draw the energy lost over time, and the ratio of the elasto-plastic to the constant model."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.45)
         left, right = figure.subplots(1, 2)
@@ -124,7 +124,7 @@ def _ratios(axes: Axes, data: xr.Dataset) -> None:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say how much each model loses, and how the ratio to constant restitution develops."""
+    """Return a caption with the loss of each model and its ratio to constant restitution."""
     median = data.lost.sel(quantile=0.5).isel(time=-1) / data.work
     said = by_model({model: f"{100 * float(median.sel(model=model)):.2g} %" for model in data.model.values})
     low, middle, high = data.lost.isel(time=-1).transpose("quantile", "model").values
@@ -143,7 +143,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge whether constant restitution loses too little, and whether a few contacts lose most."""
+    """Return the verdicts on the loss with constant restitution, and on the loss in the first contacts."""
     final = data.lost.isel(time=-1)
     plastic = data.plastic.values
     more = [m for m in plastic if final.sel(model=m, quantile=0.1) > final.sel(model=CONSTANT_E, quantile=0.9)]

@@ -41,7 +41,7 @@ _MEMBERS, _SPAN = 12, 10.0
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the three start positions under the largest pulse of the paper, in each model."""
+    """Return the cases of the three start positions under the largest pulse of the paper, for each model."""
     return {f"{model}, case {start}": _case(model, start, PRINTED) for model in MODELS for start in START}
 
 
@@ -92,7 +92,7 @@ def data() -> xr.Dataset:
 
 
 def _consistency_of(impact: NDArray[np.float64]) -> dict[str, Any]:
-    """How much the loss varies over the amplitudes, and between starts close to each other: two ways to be consistent."""
+    """Return the variation of the loss over the amplitudes, and between nearby starts: two measures of consistency."""
     low, median, high = impact[..., : AMPLITUDES.index(PRINTED) + 1]
     with np.errstate(invalid="ignore"):
         mean = np.where(median.any(axis=-1), median.mean(axis=-1), np.nan)
@@ -104,7 +104,7 @@ def _consistency_of(impact: NDArray[np.float64]) -> dict[str, Any]:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw one column a model: loss in impacts, in viscous damping, and relative to the centred ball."""
+    """Draw one column per model: loss in impacts, in viscous damping, and relative to the centred ball."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.85)
         panels = figure.subplots(3, data.model.size, sharex=True, sharey="row")
@@ -141,7 +141,7 @@ def _draw(axes: Axes, data: xr.Dataset, name: str) -> None:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what the start position does at the paper's largest pulse."""
+    """Return a caption on the effect of the start position at the largest pulse of the paper."""
     lost = data.impact.sel(quantile=0.5, amplitude=PRINTED)
     said = by_model(
         {m: ", ".join(f"{100 * float(x):.2g}" for x in lost.sel(model=m)) + " %" for m in data.model.values}
@@ -156,7 +156,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge what the start position does."""
+    """Return the verdicts on the effect of the start position."""
     return (_half(data), _sensitivity(data), _consistency(data))
 
 
@@ -176,7 +176,7 @@ def _half(data: xr.Dataset) -> Claim:
         ours=f"from case 1 to case 2 the loss at {PRINTED:.0f} N falls by {by_model(_percents(printed))}; "
         f"from 1000 N on by {100 * float(others.min()):.0f} to {100 * float(others.max()):.0f} % ({closest})",
         interpretation=" or ".join(half) if half else f"closest: {closest}",
-        verdict="reproduced" if half else "reproduced in kind" if printed.max() >= 0.25 else "not reproducible",
+        verdict="reproduced" if half else "reproduced qualitatively" if printed.max() >= 0.25 else "not reproducible",
     )
 
 
@@ -196,7 +196,7 @@ def _sensitivity(data: xr.Dataset) -> Claim:
 
 
 def _consistency(data: xr.Dataset) -> Claim:
-    """Consistent may mean alike at all amplitudes, or alike for starts a micrometre apart."""
+    """Return the claim on consistency, over the amplitudes or for starts a micrometre apart."""
     ways = {"over amplitudes": data.variation, "between starts within 1 µm": data.width}
     compared = [(way, model) for way, values in ways.items() for model in _losing(values)]
     met = [
@@ -205,7 +205,7 @@ def _consistency(data: xr.Dataset) -> Claim:
         if ways[way].sel(model=model, start=2) < 0.9 * ways[way].sel(model=model, start=[1, 3]).min()
     ]
     constant = [values.sel(model=CONSTANT_E) for values in ways.values()]
-    told = " and ".join(
+    models = " and ".join(
         f"{100 * float(one.sel(start=2)):.0f} % {way} (case {int(best)}: {100 * float(one.sel(start=best)):.0f} %)"
         for way, one in zip(ways, constant, strict=True)
         for best in [one.sel(start=[1, 3]).idxmin()]
@@ -214,7 +214,7 @@ def _consistency(data: xr.Dataset) -> Claim:
         statement="Of the three start positions, case 2 dissipates most consistently.",
         where="section 5.1, figure 7d",
         ours=f"case 2 varies least in {len(met)} of {len(compared)} comparisons; with constant restitution its loss varies "
-        f"by {told}",
+        f"by {models}",
         interpretation=" or ".join(met)
         if met
         else "over amplitudes, or between starts; all models that lose energy in case 2",
@@ -223,7 +223,7 @@ def _consistency(data: xr.Dataset) -> Claim:
 
 
 def _losing(values: xr.DataArray) -> list[str]:
-    """Models that lose energy in case 2."""
+    """Return the models that lose energy in case 2."""
     return [str(model) for model in values.model.values if np.isfinite(values.sel(model=model, start=2))]
 
 

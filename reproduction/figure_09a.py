@@ -149,16 +149,16 @@ def data() -> xr.Dataset:
 
 
 def draw_portraits(data: xr.Dataset, texts: tuple[str, str], walls: bool) -> Figure:
-    """Draw six portraits, a row for each model and a column for each start, and below them the ensembles.
+    """Draw six portraits, one row per model and one column per start, and below them the ensembles.
 
     Parameters
     ----------
     data
-        As `portraits` returns it.
+        Dataset from `portraits`.
     texts
         Labels of the axes.
     walls
-        Mark the walls of the cavity.
+        Whether to draw the walls of the cavity.
     """
     with figure_style("page"):
         figure = StyledFigure("page", 0.86)
@@ -199,7 +199,7 @@ def draw_portraits(data: xr.Dataset, texts: tuple[str, str], walls: bool) -> Fig
 
 
 def _draw_portrait(axes: Axes, one: xr.Dataset, length: float, speed: float) -> LineCollection:
-    """Draw a line whose colour is the time."""
+    """Draw a line coloured by time."""
     points = np.column_stack((one.position / length, one.velocity / speed))
     line = LineCollection(
         list(np.stack((points[:-1], points[1:]), axis=1)),
@@ -244,12 +244,12 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _touching_pulse(data: xr.Dataset) -> float:
-    """Amplitude of the pulse [N] from which the centred ball is touched: up to there everything is linear."""
+    """Return the amplitude of the pulse [N] above which the centred ball has contacts; below, the system is linear."""
     return AMPLITUDE * GAP / float(np.abs(data.position.sel(case=1)).max())
 
 
 def _counted(data: xr.Dataset, k: int) -> str:
-    """Contacts of one case by model, with their bands."""
+    """Return the contacts of one case by model, with their bands, as text."""
     each = (data.sel(case=k, model=model) for model in data.model)
     return ", ".join(
         f"{int(one.contacts)} with {one.model.item()} restitution "
@@ -259,7 +259,7 @@ def _counted(data: xr.Dataset, k: int) -> str:
 
 
 def outside(data: xr.Dataset) -> str:
-    """Return a sentence on single runs beyond the bands of their ensembles; nothing when there are none."""
+    """Return a sentence on single runs outside the bands of their ensembles, or an empty text."""
     low, high = (data.contacts_spread.sel(quantile=q) for q in (0.1, 0.9))
     apart = ((data.contacts < low) | (data.contacts > high)).any("model")
     found = [str(k) for k in data.case.values[apart]]
@@ -272,7 +272,7 @@ def outside(data: xr.Dataset) -> str:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what the portraits show."""
+    """Return the caption."""
     lost = data.impact_loss.sel(model="elasto-plastic")
     speed = float(data.approach_speed.max())
     share = (data.impact_loss / data.work).sel(model="constant")
@@ -292,7 +292,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge who touches a wall at this amplitude, and why the portraits shrink."""
+    """Return the verdicts on contacts at this amplitude, and on the decay of the portraits."""
     never = float(data.contacts_spread.sel(case=1).max()) == 0 and int(data.contacts.sel(case=1).max()) == 0
     third = int(data.contacts.sel(case=3).min())
     peak = float(np.abs(data.position.sel(case=1)).max())
@@ -313,7 +313,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
         Claim(
             f"After a pulse of {AMPLITUDE:g} N the ball of case 3 dissipates nothing, because it never reaches a wall.",
             "section 5.1",
-            f"contacts of case 3 (in an ensemble): {_counted(data, 3)}; what is said holds for case 1",
+            f"contacts of case 3 (in an ensemble): {_counted(data, 3)}; the statement holds for case 1",
             "case 3 touching either wall",
             "misprint" if never and third else "reproduced" if not third else "not reproducible",
         ),
@@ -325,7 +325,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             f"{float(share.sel(model='elasto-plastic').max()):.2g} % with the elasto-plastic model"
             + ("; it leaves all of the loss to the viscous damper" if elastic else ""),
             "both models, steel or rigid wall",
-            ("reproduced in kind" if elastic else "reproduced") if slower else "not reproducible",
+            ("reproduced qualitatively" if elastic else "reproduced") if slower else "not reproducible",
         ),
     )
 

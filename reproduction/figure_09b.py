@@ -24,18 +24,18 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _amplitude(data: xr.Dataset) -> xr.DataArray:
-    """Radius [m] of the portrait in the plane of displacement and velocity over the natural frequency."""
+    """Return the radius of the portrait [m], with the velocity divided by the natural frequency."""
     radius: xr.DataArray = (data.position**2 + data.velocity**2 * (MASS / STIFFNESS)) ** 0.5
     return radius.where(data.time > PULSE, drop=True)
 
 
 def _decay(amplitude: xr.DataArray) -> float:
-    """Rate [1/s] of the exponential that fits an amplitude."""
+    """Return the rate [1/s] of the exponential fitted to an amplitude."""
     return -float(np.polyfit(amplitude.time, np.log(amplitude), 1)[0])
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what the portraits show."""
+    """Return the caption."""
     amplitude = _amplitude(data)
     first, last = amplitude.isel(time=0), amplitude.isel(time=-1)
     centred = amplitude.sel(model="constant", case=1)
@@ -57,7 +57,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge the focus of case 1 and what contacts change."""
+    """Return the verdicts on the focus of case 1 and on the effect of contacts."""
     amplitude = _amplitude(data)
     centred = amplitude.sel(case=1)
     rate, viscous = _decay(centred.sel(model="constant")), DAMPING / (2 * MASS)
@@ -75,7 +75,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             "reproduced" if focus else "not reproducible",
         ),
         Claim(
-            "With contacts (cases 2 and 3) the behaviour differs in kind.",
+            "With contacts (cases 2 and 3) the behaviour differs qualitatively.",
             "section 5.1, figure 9b",
             f"contacts throw the structure outwards by up to {outwards:.1f} µm at once, "
             f"while case 1 {'only shrinks' if smooth < 0 else f'grows by {smooth:.2g} µm'}; after "

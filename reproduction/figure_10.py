@@ -40,7 +40,7 @@ def _case(model: str, start: float = START[1]) -> Case:
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the centred runs at 5000 N: constant restitution, both walls of the elasto-plastic model, no damper."""
+    """Return the centred cases at 5000 N: constant restitution, both walls of the elasto-plastic model, no damper."""
     return {model: _case(model) for model in (*MODELS, _WITHOUT)}
 
 
@@ -53,7 +53,7 @@ def _ball(run: Run) -> np.ndarray:
 
 
 def _spectra(runs: Sequence[Run], signal: Callable[[Run], np.ndarray], shown: slice, padding: int = 1) -> xr.DataArray:
-    """Spectra (run, angular frequency) of full seconds: the last sample belongs to the next period."""
+    """Return spectra of full seconds, (run, angular frequency); the last sample belongs to the next period."""
     each = [
         amplitude_spectrum(run.arrays.time[:-1], signal(run), window=WINDOW, padding=padding).sel(frequency=shown)
         for run in runs
@@ -63,7 +63,7 @@ def _spectra(runs: Sequence[Run], signal: Callable[[Run], np.ndarray], shown: sl
 
 
 def data() -> xr.Dataset:
-    """Compute the spectra of single runs and ensembles, and how often the ball rattles between its walls."""
+    """Compute the spectra of single runs and ensembles, and the impact rates of the ball."""
     out: dict[str, list[np.ndarray]] = {}
     for model in MODELS:
         single = simulate(_case(model))
@@ -128,7 +128,7 @@ def data() -> xr.Dataset:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw a column for each model: ball, structure, and the structure about its resonance."""
+    """Draw one column per model: ball, structure, and the structure near its resonance."""
     with figure_style("page"):
         figure = StyledFigure("page", 1.0)
         grid = figure.subplots(3, len(data.model), sharey="row")
@@ -181,9 +181,9 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _hump(data: xr.Dataset, model: str) -> tuple[float, float, float]:
-    """Highest amplitude of the ball's median above twice the resonance, as a multiple of the dip before it.
+    """Return the ratio of the highest amplitude of the ball's median above twice the resonance to the minimum below it.
 
-    Also the angular frequencies [rad/s] between which it keeps at least half of its height.
+    Return as well the angular frequencies [rad/s] between which the amplitude is at least half of that maximum.
     """
     spectrum = data.ball_median.sel(model=model, frequency=slice(float(data.bare), None))
     above = spectrum.sel(frequency=slice(2 * float(data.riding), None))
@@ -194,7 +194,7 @@ def _hump(data: xr.Dataset, model: str) -> tuple[float, float, float]:
 
 
 def _wide(spectrum: xr.DataArray) -> tuple[float, float]:
-    """Angular frequencies [rad/s] between which a spectrum stays above a tenth of its highest value."""
+    """Return the angular frequencies [rad/s] between which a spectrum exceeds a tenth of its maximum."""
     below = spectrum.frequency.values[spectrum.values < 0.1 * float(spectrum.max())]
     top = float(spectrum.frequency[int(spectrum.argmax("frequency"))])
     first, last = float(spectrum.frequency[0]), float(spectrum.frequency[-1])
@@ -202,13 +202,13 @@ def _wide(spectrum: xr.DataArray) -> tuple[float, float]:
 
 
 def _lower(data: xr.Dataset, name: str, model: str) -> float:
-    """Share of all bins in which a model's median is below constant restitution's."""
+    """Return the share of bins in which the median of a model is below that of constant restitution."""
     median = data[f"{name}_median"]
     return float((median.sel(model=model) < median.sel(model=CONSTANT_E)).mean())
 
 
 def _lifted(data: xr.Dataset, model: str) -> float:
-    """Greatest ratio of the structure's median to its amplitude without damper, above twice the resonance."""
+    """Return the largest ratio of the structure's median to its amplitude without damper above twice the resonance."""
     ratio = data.structure_median.sel(model=model) / data.without
     return float(ratio.sel(frequency=slice(2 * float(data.riding), None)).max())
 
@@ -218,7 +218,7 @@ def _bare_peak(data: xr.Dataset) -> float:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what the spectra show."""
+    """Return the caption."""
     peak = data.peak.sel(quantile=0.5)
     rise, low, high = _hump(data, STEEL)
     trips = data.trips.sel(model=STEEL).values
@@ -234,7 +234,7 @@ def caption(data: xr.Dataset) -> str:
         f"single run leaves it at {100 * float(out.mean()):.0f} % of the frequencies. "
         "The ball rides along: with it the structure resonates "
         f"at {float(peak.min()):.2f} to {float(peak.max()):.2f} rad/s, close to sqrt(K/(M+m)) = {float(data.riding):.2f}; "
-        f"without it at {_bare_peak(data):.2f} rad/s, as sqrt(K/M) = {float(data.bare):.2f} tells. With the elasto-plastic "
+        f"without it at {_bare_peak(data):.2f} rad/s, close to sqrt(K/M) = {float(data.bare):.2f}. With the elasto-plastic "
         f"model and a steel wall no contact loses energy after {float(data.last_loss.sel(model=STEEL)):.2f} s, and the "
         f"ball rattles on from wall to wall at {trips[0]:.0f} to {trips[2]:.0f} rad/s: a band from {low:.0f} to "
         f"{high:.0f} rad/s, {rise:.0f} times above the dip before it, that lifts the structure to up to "
@@ -244,7 +244,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge the resonance, the second peak, the wide band, and the reduction at all frequencies."""
+    """Return the verdicts on resonance, second peak, wide band, and reduction at all frequencies."""
     peak = data.peak.sel(quantile=0.5)
     listed = by_model({model: f"{float(peak.sel(model=model)):.2f} rad/s" for model in peak.model.values})
     bin_width = 2 * np.pi / data.attrs["duration"]
@@ -278,7 +278,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             "dip before it: the rattle of the ball from wall to wall, not a resonance; with the others the rise is "
             + " and ".join(f"{rise:.1f}fold" for model, (rise, _, _) in humps.items() if model != best),
             f"{best}; case 1 at 5000 N",
-            "reproduced in kind" if humps[best][0] > 10 else "not reproducible",
+            "reproduced qualitatively" if humps[best][0] > 10 else "not reproducible",
         ),
         Claim(
             "The ball's amplitude is significant over a range of frequencies.",
@@ -298,7 +298,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
                 for model, wall in ((STEEL, "steel"), (RIGID, "rigid"))
             ),
             f"steel or rigid wall against α = 0.006313, {len(data.frequency)} bins to {float(data.frequency[-1]):.0f} rad/s",
-            "reproduced" if least > 0.99 else "reproduced in kind" if least > 0.9 else "not reproducible",
+            "reproduced" if least > 0.99 else "reproduced qualitatively" if least > 0.9 else "not reproducible",
         ),
     )
 

@@ -43,18 +43,18 @@ def _case(model: str, start: float = START[3]) -> Case:
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the runs of case 3 with both models of restitution, and the one without damper."""
+    """Return case 3 with both models of restitution, and without damper."""
     return {model: _case(model) for model in (*_MODELS, _WITHOUT)}
 
 
 def _amplitude(run: Run) -> np.ndarray:
-    """Amplitude of the oscillation that goes on from each instant."""
+    """Return the amplitude of the free oscillation that follows each instant."""
     arrays = run.arrays
     return np.asarray(np.hypot(arrays.displacement[:, 0], arrays.velocity[:, 0] * np.sqrt(MASS / STIFFNESS)))
 
 
 def data() -> xr.Dataset:
-    """Compute the responses, when they fall below each level for good, and how far peak and RMS are reduced."""
+    """Compute the responses, their settling times for each level, and the reduction of peak and RMS."""
     bare = simulate(_case(_WITHOUT)).arrays
     time, without = bare.time, bare.displacement[:, 0]
     peak = float(np.abs(without).max())
@@ -64,7 +64,7 @@ def data() -> xr.Dataset:
         return [settling_time(time, values, band=level, reference=peak) for level in levels]
 
     def reduced(values: np.ndarray) -> list[float]:
-        """Of the peak, then of the RMS of each interval."""
+        """Return the reduction of the peak, then of the RMS in each interval."""
         parts = [time < until for until in UNTIL]
         return [peak_reduction(without, values), *(rms_reduction(without[part], values[part]) for part in parts)]
 
@@ -144,7 +144,7 @@ def data() -> xr.Dataset:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw the responses on the left, and when they have fallen for good on the right."""
+    """Draw the responses on the left, and their settling times on the right."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.58)
         grid = figure.subplot_mosaic([["constant", "level"], ["elasto-plastic", "level"]], width_ratios=(1.7, 1))
@@ -201,8 +201,8 @@ def _rms(data: xr.Dataset, until: float) -> str:
     return " and ".join(f"{float(median.sel(model=model)):.1f} % ({model})" for model in data.model.values)
 
 
-def _parted(data: xr.Dataset) -> str:
-    """Say until when the bands have no width."""
+def _divergence(data: xr.Dataset) -> str:
+    """Return a sentence on the time until which the bands have no width."""
     low, _, high = data.amplitude.transpose("quantile", ...)
     width = (high - low).max("model").coarsen(time=25, boundary="trim").mean()
     parted = width.time.values[width > 0.02 * data.peak]
@@ -213,7 +213,7 @@ def _parted(data: xr.Dataset) -> str:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what the responses show."""
+    """Return the caption."""
     last = float(data.until[-1])
     bare = float(data.settled_without.sel(level=SETTLED))
     flown, lost = 100 * data.ball_share, 100 * data.impact_share
@@ -221,7 +221,7 @@ def caption(data: xr.Dataset) -> str:
         f"Response to a pulse of {AMPLITUDE:g} N, the ball of case 3 touching the leading wall (left: single runs, with the "
         f"medians and bands of displacement and amplitude of {MEMBERS} starts within 1 µm, and the bare structure in grey; "
         f"right: time after which the response stays below a share of the bare structure's peak, "
-        f"{1e6 * float(data.peak):.1f} µm). {_parted(data)}The first peak comes before "
+        f"{1e6 * float(data.peak):.1f} µm). {_divergence(data)}The first peak comes before "
         f"the first contact, {1e3 * float(data.contact.min()):.0f} ms after the pulse. Then the ball takes energy from "
         f"the structure, at times {float(flown.min()):.0f} to {float(flown.max()):.0f} % of all that is left, and the RMS "
         f"of the first {data.until[0]:g} s falls by {_rms(data, float(data.until[0]))}. But it gives the energy back: "
@@ -233,7 +233,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge whether the damper attenuates earlier."""
+    """Return the verdict on earlier attenuation with the damper."""
     at = data.sel(level=SETTLED)
     bare = float(at.settled_without)
     sooner = bool((at.settled_high < bare).all())
@@ -248,7 +248,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             f"{100 * SETTLED:g} % after {' and '.join(f'{float(time):.1f} s' for time in at.settled_median)}, "
             f"{bare:.1f} s without damper",
             f"case 3 touching the leading wall, {AMPLITUDE:g} N; both models, steel or rigid wall",
-            "reproduced" if sooner else "reproduced in kind" if weaker else "not reproducible",
+            "reproduced" if sooner else "reproduced qualitatively" if weaker else "not reproducible",
         ),
     )
 

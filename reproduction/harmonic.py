@@ -1,4 +1,4 @@
-"""The paper's system under a harmonic load, which the paper leaves for later."""
+"""The paper's system under a harmonic load, which is not in the paper."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ BALL = Sphere(radius=RADIUS, material="steel").weight
 
 
 class State(NamedTuple):
-    """Where everything is when the sine begins."""
+    """State of structure and ball when the sine begins."""
 
     displacement: float = 0.0
     """Of the structure [m]."""
@@ -40,32 +40,32 @@ def harmonic_case(
     ball: bool = True,
     name: str = "",
 ) -> Case:
-    """Return the paper's system while a sine, begun at zero, pulls at the structure.
+    """Return the paper's system under a sinusoidal force that starts at zero.
 
     Parameters
     ----------
     contact
         Contact law: CONSTANT, PLASTIC, PLASTIC_RIGID, or any other.
     amplitude, frequency
-        Of the load [N], [Hz].
+        Amplitude [N] and frequency [Hz] of the load.
     state
-        At the start; default everything at rest, the ball centred.
+        Initial state; default at rest, with the ball centred.
     duration
-        Of the run [s].
+        Duration of the run [s].
     times, rate
-        Output times [s], or samples a second [Hz]; default those that suit pictures of the motion.
+        Output times [s], or sampling rate [Hz]; default those for figures of the motion.
     method
-        Default event-driven.
+        Method; default event-driven.
     ball
-        False leaves the damper out.
+        Whether the case has the damper.
     name
-        Of the case.
+        Name of the case.
     """
     z, v, y, w = state or State()
     damper = ImpactDamper(
         balls=(Sphere(radius=RADIUS, material="steel"),),
         gap=GAP,
-        start=(z + y) / GAP,  # counts from the cavity's place at rest
+        start=(z + y) / GAP,  # relative to the position of the cavity at rest
         velocity=(w,),
         contact=contact,
     )
@@ -81,14 +81,14 @@ def harmonic_case(
 
 
 def riding(amplitude: float, frequency: float, place: float = 0.0) -> State:
-    """Return where a steady motion begins in which the ball rides along as a part of the structure.
+    """Return the initial state of the steady motion in which the ball moves with the structure.
 
     Parameters
     ----------
     amplitude, frequency
-        Of the load [N], [Hz].
+        Amplitude [N] and frequency [Hz] of the load.
     place
-        Of the ball in its cavity, from the centre [m].
+        Position of the ball relative to the centre of its cavity [m].
     """
     omega = 2 * pi * frequency
     response = amplitude / (STIFFNESS - (MASS + BALL) * omega**2 + 1j * DAMPING * omega)
@@ -97,5 +97,5 @@ def riding(amplitude: float, frequency: float, place: float = 0.0) -> State:
 
 
 def resonance() -> float:
-    """Return the natural frequency with the ball riding along [Hz]."""
+    """Return the natural frequency of the structure with the ball attached [Hz]."""
     return sqrt(STIFFNESS / (MASS + BALL)) / (2 * pi)

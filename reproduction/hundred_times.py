@@ -1,4 +1,4 @@
-"""Figure A1: how much faster the elasto-plastic model dissipates, over its yield stress."""
+"""Figure A1: ratio of the dissipation of the elasto-plastic model to constant restitution, over the yield stress."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from .reference import ALPHA, CONSTANT, START, paper_case
 PRINTED = 1030e6
 """Yield stress of the paper [Pa]."""
 YIELD_STRESSES = (80e6, 100e6, 120e6, 150e6, 200e6, 300e6, 400e6, 500e6, 700e6, 850e6, PRINTED, 1.2e9, 1.5e9)
-"""From what the restitution law still covers to where hardly anything yields [Pa]."""
+"""Range from the validity limit of the restitution law to almost elastic impacts [Pa]."""
 CLAIMED = 100.0
 MEASURES: Mapping[str, str] = {
     "first": "loss in the first contact",
@@ -46,7 +46,7 @@ _MEMBERS, _SPAN = 16, 10.0
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the constant model and the two interpretations of the elasto-plastic one, with the printed yield stress."""
+    """Return the constant model and both interpretations of the elasto-plastic model with the printed yield stress."""
     return {model: _case(contact) for model, contact in MODELS.items()}
 
 
@@ -63,13 +63,13 @@ def _runs(contact: Tsuji) -> list[Run]:
 
 
 def _time_to(run: Run, loss: float) -> float:
-    """Time of the contact that brings the loss to a value; inf when none does."""
+    """Return the time of the contact at which the loss reaches a value, inf if it does not."""
     lost = np.cumsum(run.arrays.impacts.energy_lost)
     return float(np.append(run.arrays.impacts.time, np.inf)[np.searchsorted(lost, loss)])
 
 
 def _measured(run: Run, losses: Sequence[float]) -> list[float]:
-    """First loss, total loss, and the times at which given losses are reached."""
+    """Return first loss, total loss, and the times at which given losses are reached."""
     return [
         run.arrays.impacts.energy_lost[0],
         run.ledger.channels["normal"][-1],
@@ -78,7 +78,7 @@ def _measured(run: Run, losses: Sequence[float]) -> list[float]:
 
 
 def data() -> xr.Dataset:
-    """Compare losses and times of both models, over the yield stress of the elasto-plastic one."""
+    """Compute losses and times of both models over the yield stress of the elasto-plastic one."""
     constant = _runs(MODELS[CONSTANT_E])
     total = float(np.median([run.ledger.channels["normal"][-1] for run in constant]))
     losses = [part * total for part in _PARTS.values()]
@@ -105,7 +105,7 @@ def data() -> xr.Dataset:
             "bound": described("measure", bounds, "", "largest ratio of any restitution law"),
         },
         {
-            "model": described("model", list(_WALLS), "", "reading"),
+            "model": described("model", list(_WALLS), "", "interpretation"),
             "yield_stress": described("yield_stress", YIELD_STRESSES, "Pa", "yield stress"),
             "measure": described("measure", list(MEASURES), "", "what is compared"),
             "quantile": described("quantile", [0.1, 0.5, 0.9], "", "quantile of the ensemble"),
@@ -114,7 +114,7 @@ def data() -> xr.Dataset:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw each reading in a panel: four ways to read "faster" over the yield stress."""
+    """Draw one panel per interpretation: four meanings of "faster" over the yield stress."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.52)
         panels = figure.subplots(1, data.model.size, sharey=True)
@@ -159,18 +159,18 @@ def _wall(model: str) -> str:
 
 
 def _up_to(reached: xr.DataArray) -> list[str]:
-    """Each model with the yield stress up to which it reaches something."""
+    """Return each model with the yield stress up to which it reaches a value, as text."""
     highest = reached.yield_stress.where(reached).max("yield_stress").dropna("model")
     return [f"{_wall(model)} up to {float(highest.sel(model=model)) / 1e6:.0f} MPa" for model in highest.model.values]
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what each way of reading gives, and what no law can exceed."""
+    """Return a caption with the result of each meaning of "faster", and the bound for all laws."""
     median = data.ratio.sel(quantile=0.5, yield_stress=PRINTED)
     low, middle, high = data.ratio.sel(measure="total").transpose("quantile", ...)
     wide = 100 * float(((high - low) / middle).where(middle > 0).max())
 
-    def told(model: str) -> str:
+    def loss_text(model: str) -> str:
         first, total, half, most = (float(median.sel(model=model, measure=measure)) for measure in MEASURES)
         arrives = f"reaches half and 90 % of the constant model's loss {half:.3g} and {most:.3g} times as fast"
         return f"{first:.2g} times as much in the first contact and {total:.2g} times as much in 10 s, and " + (
@@ -181,15 +181,15 @@ def caption(data: xr.Dataset) -> str:
         "What the elasto-plastic model dissipates in comparison with constant restitution, centred ball, 5000 N, over the "
         f"yield stress, median and 10 to 90 % of {_MEMBERS} starts within 1 µm (bands of the loss in 10 s are up to "
         f"{wide:.0f} % wide); the curves end where an impact would leave the restitution law. With the printed "
-        f"{PRINTED / 1e6:.0f} MPa and a steel wall it loses {told(STEEL)}; with a rigid wall it loses {told(RIGID)}. No "
-        "restitution law at all could exceed "
+        f"{PRINTED / 1e6:.0f} MPa and a steel wall, it loses {loss_text(STEEL)}; with a rigid wall, "
+        f"{loss_text(RIGID)}. No restitution law could exceed "
         + ", ".join(f"{float(data.bound.sel(measure=measure)):.0f} ({name})" for measure, name in MEASURES.items())
         + "."
     )
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge the factor of about a hundred, with the printed yield stress and any other."""
+    """Return the verdict on the factor of about a hundred for all yield stresses."""
     median = data.ratio.sel(quantile=0.5)
     printed = median.sel(yield_stress=PRINTED)
     interpretations = [
@@ -216,7 +216,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
             + (f"only in {' and '.join(softer)}" if softer else "with no yield stress"),
             interpretation=" or ".join(interpretations)
             if interpretations
-            else "every reading of faster, steel and rigid wall",
+            else "every meaning of faster, steel and rigid wall",
             verdict="reproduced" if interpretations else "not reproducible",
         ),
     )

@@ -1,4 +1,4 @@
-"""Figure R1: results of the possible interpretations of the printed text, side by side."""
+"""Figure R1: results of the possible interpretations of the printed text."""
 
 from __future__ import annotations
 
@@ -67,31 +67,31 @@ _REDUCED, _BALL = float(PAIR.mass), float(PAIR.above.mass)
 
 
 def _as_if_fixed(law: JacksonGreen) -> Tsuji:
-    """Let the law yield where it does with m* = m: V_c goes as the yield stress to 5/2 and the mass to -1/2."""
+    """Return a law with the yield speed for m* = m; V_c scales with the yield stress to 5/2 and the mass to -1/2."""
     assert _STEEL.yield_stress is not None
     strength = _STEEL.yield_stress * (_REDUCED / _BALL) ** 0.2
     return Tsuji(restitution=law.model_copy(update={"yield_stress": strength}), ending="zero_overlap")
 
 
 def _recorded(contact: Contact = CONSTANT, **options: Any) -> Case:
-    """The paper's case, of which only the end is recorded."""
+    """Return the paper's case with output at its end only."""
     return paper_case(contact, times=[10.0], **options)
 
 
 def _with(case: Case, **parts: Any) -> Case:
-    """Change parts of the damper."""
+    """Replace fields of the damper."""
     return case.model_copy(update={"dampers": (case.dampers[0].model_copy(update=parts),)})
 
 
 def _sized(radius: float, start: float) -> Case:
-    """Let the printed size be another one in the printed cavity; the start is within a micrometre of START."""
+    """Use another ball radius in the printed cavity; the start is within a micrometre of START."""
     gap = _CAVITY / 2 - radius
     case = _recorded(start=round(start) + (start - round(start)) * GAP / gap)
     return _with(case, balls=(Sphere(radius=radius, material="steel"),), gap=gap)
 
 
 def _soft(start: float) -> Case:
-    """Take A = (4/3) E* R* as it is printed, in SI units."""
+    """Use A = (4/3) E* R* as printed, in SI units."""
     steel = _STEEL.model_copy(update={"young": _STEEL.young * sqrt(RADIUS)})
     return _with(_recorded(start=start), balls=(Sphere(radius=RADIUS, material=steel, mass=_BALL),))
 
@@ -112,7 +112,7 @@ INTERPRETATIONS: Mapping[str, Callable[[float], Case]] = {
     "elasto-plastic, rigid wall, m* = m": _contact(_as_if_fixed(JacksonGreen(wall="rigid"))),
     "elasto-plastic, wall rigid in A too": _contact(PLASTIC_RIGID, "rigid"),
 }
-"""The paper's case under each reading, from a reduced start position."""
+"""Function of the reduced start position that returns the paper's case, by interpretation."""
 
 
 _NAMED = dict(
@@ -121,12 +121,12 @@ _NAMED = dict(
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the case of each reading, from the middle of the cavity."""
+    """Return the case of each interpretation with the ball at the centre of the cavity."""
     return {reading: make(0.0) for reading, make in INTERPRETATIONS.items()}
 
 
 def data() -> xr.Dataset:
-    """Compute what each reading gives."""
+    """Compute the results of each interpretation."""
     radii = np.array(list(_RADII.values()))
     shares = [[_shares(make, start) for start in START.values()] for make in INTERPRETATIONS.values()]
     met = [[_impacts(partial(_sized, radius), start) for start in START.values()] for radius in _RADII.values()]
@@ -151,7 +151,7 @@ def data() -> xr.Dataset:
     ratios = [np.asarray(values) / number for values, number in zip((*given, resonance), printed, strict=True)]
     return xr.Dataset(
         {
-            "ratio": described("row", np.concatenate(ratios), "", "reading over printed number"),
+            "ratio": described("row", np.concatenate(ratios), "", "interpreted over printed number"),
             "share": described(_EACH, shares, "", "share of the work lost in impacts in 10 s after 5 kN"),
             "mass_share": described("size", given[0], "", "mass ratio m/M"),
             "clearance": described("size", given[1], "m", "total clearance"),
@@ -183,8 +183,8 @@ def data() -> xr.Dataset:
             "printed": described("quantity", printed, "", "printed number, in SI units"),
         },
         {
-            "row": described("row", list(_ROWS), "", "reading of a printed number"),
-            "reading": described("reading", list(INTERPRETATIONS), "", "reading of the paper"),
+            "row": described("row", list(_ROWS), "", "interpretation of a printed number"),
+            "reading": described("reading", list(INTERPRETATIONS), "", "interpretation of the paper"),
             "start": described("start", list(START), "", "the paper's case"),
             "level": described("level", [0.1, 0.5, 0.9], "", "quantile of an ensemble within a micrometre"),
             "size": described("size", list(_RADII), "", "what the printed 33.17 mm is"),
@@ -210,13 +210,13 @@ def _impacts(make: Callable[[float], Case], start: float) -> Band:
 
 
 def _force(overlap: float, square_root: bool, unit: float) -> float:
-    """A d^1.5 [N] of numbers in newtons and a unit of length [m]."""
+    """Return A d^1.5 [N] for numbers in newtons and a unit of length [m]."""
     modulus, radius, depth = PAIR.modulus * unit**2, PAIR.radius / unit, overlap / unit
     return float(4 / 3 * modulus * (sqrt(radius) if square_root else radius) * depth**1.5)
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw the loss under each reading, and the printed numbers beside what readings make of them."""
+    """Draw the loss for each interpretation, and the printed numbers with their interpreted values."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.82)
         upper, lower = np.asarray(figure.subfigures(2, 1, height_ratios=(1.55, 1)))
@@ -228,7 +228,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def _rows(axes: Axes, names: Sequence[str]) -> None:
-    """Name the rows from the top, with a faint line each."""
+    """Label the rows from the top, with a faint line each."""
     axes.set_yticks(range(len(names)), names)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.grid(axis="y", color=FAINT, lw=pen(0.4))
@@ -237,7 +237,7 @@ def _rows(axes: Axes, names: Sequence[str]) -> None:
 
 
 def _values(axes: Axes, values: Sequence[float], text: str) -> None:
-    """Mark a value in each row, with its number beside."""
+    """Mark a value in each row and write its number."""
     axes.plot(values, range(len(values)), "o", color=SERIES_COLOURS[0], ms=4)
     for row, value in enumerate(values):
         axes.annotate(
@@ -252,7 +252,7 @@ def _values(axes: Axes, values: Sequence[float], text: str) -> None:
 
 
 def _draw_shares(axes: Axes, data: xr.Dataset) -> None:
-    """Draw median and band of every reading."""
+    """Draw median and band of every interpretation."""
     for k, start in enumerate(data.start.values):
         low, median, high = (100 * data.share.sel(start=start, level=level) for level in data.level.values)
         axes.errorbar(
@@ -272,7 +272,7 @@ def _draw_shares(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _draw_printed(axes: Axes, data: xr.Dataset) -> None:
-    """Draw what readings give over what is printed."""
+    """Draw the ratio of interpreted to printed values."""
     axes.axvline(1, color=INK, lw=pen(0.6), zorder=0)
     _values(axes, data.ratio.values.tolist(), ".4g")
     _rows(axes, data.row.values.tolist())
@@ -280,7 +280,7 @@ def _draw_printed(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _draw_limits(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the elastic limit, and a speed that matters."""
+    """Draw the elastic limit and a typical speed."""
     speed = float(data.first_speed)
     axes.axvline(speed, color=SERIES_COLOURS[1], linestyle=(0, (4, 1.5)), label="first impact in case 1, 5 kN")
     _values(axes, data.critical_speed.values.ravel().tolist(), ".4f")
@@ -295,15 +295,15 @@ def _range(counts: xr.DataArray) -> str:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what one sees."""
+    """Return the caption."""
     share = 100 * data.share.sel(level=0.5)
     centred = {name: float(share.sel(reading=reading, start=1)) for name, reading in _NAMED.items()}
     steel, rigid = (data.critical_speed.sel(wall=wall) for wall in ("steel", "rigid"))
     ratios = {size: float(data.mass_share.sel(size=size)) for size in _RADII}
     weak = ", ".join(_range(data.weak_impacts.sel(start=start)) for start in data.start.values)
     return (
-        "Top: the share of the pulse's work that impacts take, under each reading of the paper. Where a contact ends "
-        f"hardly matters ({centred['overlap']:.1f} and {centred['force']:.1f} % in case 1); whether the wall counts as "
+        "Top: the share of the pulse's work that impacts take, for each interpretation of the paper. Where a contact ends "
+        f"has little effect ({centred['overlap']:.1f} and {centred['force']:.1f} % in case 1); whether the wall counts as "
         f"elastic or rigid in the elastic limit matters most ({centred['steel']:.2f} or {centred['rigid']:.1f} %). "
         f"With 33.17 mm as the diameter the ball of case 1 meets a wall "
         f"{_range(data.impacts.sel(size='diameter', start=1))} times in 10 s; after 100 N the balls of cases 1, 2 and 3, "
@@ -317,7 +317,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge what is printed in more than one way."""
+    """Return the verdicts on ambiguous statements."""
     mass, clearance = data.mass_share, data.clearance
     printed = data.printed
     fits = {
@@ -376,7 +376,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
 
 FIGURE = Reproduction(
     number="R1",
-    title="The paper's readings side by side",
+    title="Interpretations of the paper",
     data=data,
     draw=draw,
     caption=caption,

@@ -1,4 +1,4 @@
-"""Figure A5: how fast neighbouring motions part, and whether that is chaos."""
+"""Figure A5: growth rates of the separation of neighbouring motions, and the presence of chaos."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ KINDS = f"irregular, {IRREGULAR:g} Hz", f"two contacts a cycle, {REGULAR:g} Hz",
 _FIT: Mapping[str, Any] = {"color": INK, "lw": 2.0, "alpha": 0.4}
 
 
-class Parting(NamedTuple):
-    """How the pairs of an ensemble part."""
+class Separation(NamedTuple):
+    """Separation of the pairs of an ensemble."""
 
     separation: Array
     """Geometric mean [m]."""
@@ -76,7 +76,7 @@ def _pulse(model: str, case: int, amplitude: float, offset: float) -> Case:
 
 
 def cases() -> Mapping[str, Case]:
-    """Return the paper's cases, and under harmonic loads the runs that settle and the first of the pairs after them."""
+    """Return the paper's cases, and for harmonic loads the settling runs and the first runs of the pairs."""
     pulses = {
         f"{load:g} N, {model}, case {case}": _pulse(model, case, load, 0.0)
         for load in PULSES
@@ -84,12 +84,12 @@ def cases() -> Mapping[str, Case]:
         for case in START
     }
     settling = {f"{f:g} Hz, to settle": _settling(f) for f in (IRREGULAR, REGULAR)}
-    steady = {f"{f:g} Hz, settled": _watched(f, State()) for f in (IRREGULAR, REGULAR)}
-    return pulses | settling | steady | {KINDS[2]: _watched(REGULAR, State(), ball=False)}
+    steady = {f"{f:g} Hz, settled": _sampled_case(f, State()) for f in (IRREGULAR, REGULAR)}
+    return pulses | settling | steady | {KINDS[2]: _sampled_case(REGULAR, State(), ball=False)}
 
 
 def _settling(frequency: float) -> Case:
-    """Long enough that a state can be taken in every few cycles after settling."""
+    """Return a duration in which enough states after settling can be selected, one in every few cycles."""
     cycles = SETTLED + np.arange(3 * PAIRS) * 17
     return harmonic_case(
         amplitude=AMPLITUDE,
@@ -101,7 +101,7 @@ def _settling(frequency: float) -> Case:
 
 
 def _states(frequency: float) -> list[State]:
-    """States at the beginning of cycles, far from each other, the ball in flight."""
+    """Return distant states at the beginning of cycles with the ball in flight."""
     a = simulate(_settling(frequency)).arrays
     rows = zip(
         a.displacement[:, 0], a.velocity[:, 0], a.relative_position[:, 0], a.ball_velocity[:, 0], a.time, strict=True
@@ -110,7 +110,7 @@ def _states(frequency: float) -> list[State]:
     return states[:PAIRS]
 
 
-def _watched(frequency: float, state: State, ball: bool = True) -> Case:
+def _sampled_case(frequency: float, state: State, ball: bool = True) -> Case:
     times = tuple(np.arange(1, STROBES + 1) / frequency)
     return harmonic_case(
         amplitude=AMPLITUDE, frequency=frequency, state=state, duration=times[-1], times=times, ball=ball
@@ -118,7 +118,7 @@ def _watched(frequency: float, state: State, ball: bool = True) -> Case:
 
 
 def _separations(neighbours: Callable[[float], Sequence[Case]]) -> tuple[Array, Array]:
-    """Times (T,), and the distances (P, T) of the runs of cases from those of their neighbours."""
+    """Return times (T,) and distances (P, T) of the runs of cases from those of their neighbours."""
     first, second = neighbours(0.0), neighbours(DISTANCE)
     runs = simulate_many([*first, *second])
     pairs = zip(runs[: len(first)], runs[len(first) :], strict=True)
@@ -126,7 +126,7 @@ def _separations(neighbours: Callable[[float], Sequence[Case]]) -> tuple[Array, 
 
 
 def _distance(one: Run, other: Run) -> Array:
-    """Distance in the space of states, (T,) [m]; velocities count over the structure's natural frequency."""
+    """Return the distance in state space [m], (T,), with velocities divided by the natural frequency."""
     omega = sqrt(STIFFNESS / MASS)
     a, b = one.arrays, other.arrays
     parts = (
@@ -138,8 +138,8 @@ def _distance(one: Run, other: Run) -> Array:
     return np.asarray(np.linalg.norm(np.hstack(parts), axis=1))
 
 
-def _parting(time: Array, separations: Array) -> Parting:
-    """Fit growth from where it has begun to saturation, or everything where there is none."""
+def _separation(time: Array, separations: Array) -> Separation:
+    """Fit the growth from its beginning to its saturation, or over the whole time if there is none."""
     mean = np.exp(np.log(separations).mean(axis=0))
     begun = mean > 100 * DISTANCE
     begin = int(np.flatnonzero(~begun)[-1]) + 1 if begun[-1] and not begun.all() else 0
@@ -150,13 +150,13 @@ def _parting(time: Array, separations: Array) -> Parting:
     logs = np.log(mean[kept])
     explained = 1 - np.var(logs - np.log(fit[kept])) / max(np.var(logs), 1e-30)
     spread = np.array(band(separations))
-    return Parting(
+    return Separation(
         mean, spread, fit, float(found.exponent), float(found.standard_error), float(time[begin]), float(explained)
     )
 
 
-def _after_pulse(model: str, case: int, amplitude: float) -> tuple[Array, Parting]:
-    """Watch pairs near a case of the paper."""
+def _after_pulse(model: str, case: int, amplitude: float) -> tuple[Array, Separation]:
+    """Simulate pairs near a case of the paper."""
     offsets = REACH * (2 * (np.arange(PAIRS) + 0.25) / PAIRS - 1)
     time, all_separations = _separations(
         lambda shift: [_pulse(model, case, amplitude, float(offset) + shift) for offset in offsets]
@@ -164,11 +164,11 @@ def _after_pulse(model: str, case: int, amplitude: float) -> tuple[Array, Partin
     # One that has hit a wall and one that is about to are far apart for an instant only; the median leaves that out.
     windows = np.median(all_separations.reshape(PAIRS, WINDOWS, SAMPLES), axis=2)
     middle = time.reshape(WINDOWS, SAMPLES)[:, SAMPLES // 2]
-    return middle, _parting(middle, windows)
+    return middle, _separation(middle, windows)
 
 
-def _steady(frequency: float, ball: bool = True) -> tuple[Array, Parting]:
-    """Watch pairs in steady motion, once a cycle; without the ball the structure is displaced."""
+def _steady(frequency: float, ball: bool = True) -> tuple[Array, Separation]:
+    """Simulate pairs in steady motion, with one sample per cycle; without the ball, the structure is displaced."""
     states = _states(frequency)
 
     def shifted(state: State, shift: float) -> State:
@@ -176,12 +176,12 @@ def _steady(frequency: float, ball: bool = True) -> tuple[Array, Parting]:
             return state._replace(ball_position=state.ball_position + shift)
         return state._replace(displacement=state.displacement + shift)
 
-    time, separations = _separations(lambda shift: [_watched(frequency, shifted(s, shift), ball) for s in states])
-    return time, _parting(time, separations)
+    time, separations = _separations(lambda shift: [_sampled_case(frequency, shifted(s, shift), ball) for s in states])
+    return time, _separation(time, separations)
 
 
 def data() -> xr.Dataset:
-    """Part pairs after pulses, in steady motion, and without the ball."""
+    """Compute separations of pairs after pulses, in steady motion, and without the ball."""
     grid = [(load, model, case) for load in PULSES for model in MODELS for case in START]
     after = [_after_pulse(model, case, load) for load, model, case in grid]
     steady = [_steady(IRREGULAR), _steady(REGULAR), _steady(REGULAR, ball=False)]
@@ -192,11 +192,13 @@ def data() -> xr.Dataset:
     return xr.Dataset(
         {
             "time": described(("pulse", "window"), times, "s", "time"),
-            **_described(over, "window", [part for _, part in after], shape),
+            **_ensemble_variables(over, "window", [part for _, part in after], shape),
             "steady_time": described(("kind", "strobe"), [time for time, _ in steady], "s", "time"),
             **{
                 f"steady_{name}": variable
-                for name, variable in _described(("kind",), "strobe", [part for _, part in steady], (3,)).items()
+                for name, variable in _ensemble_variables(
+                    ("kind",), "strobe", [part for _, part in steady], (3,)
+                ).items()
             },
             "expected": described("kind", expected, "1/s", "exponent of theory"),
             "expected_separation": described(
@@ -221,8 +223,10 @@ def data() -> xr.Dataset:
     )
 
 
-def _described(over: tuple[str, ...], last: str, parts: list[Parting], shape: tuple[int, ...]) -> dict[str, Any]:
-    """Variables of an ensemble of partings."""
+def _ensemble_variables(
+    over: tuple[str, ...], last: str, parts: list[Separation], shape: tuple[int, ...]
+) -> dict[str, Any]:
+    """Return the variables of an ensemble of separations."""
 
     def stacked(name: str) -> Array:
         values = np.array([getattr(part, name) for part in parts])
@@ -245,7 +249,7 @@ def _described(over: tuple[str, ...], last: str, parts: list[Parting], shape: tu
 
 
 def _expected() -> tuple[float, float]:
-    """Exponents of the motion with two hard impacts a cycle, and of the structure alone [1/s]."""
+    """Return exponents of the motion with two hard impacts per cycle, and of the structure alone [1/s]."""
     exact = two_impacts(
         mass=MASS,
         stiffness=STIFFNESS,
@@ -260,7 +264,7 @@ def _expected() -> tuple[float, float]:
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Draw separations after pulses, one panel a model, in steady motion, and all exponents."""
+    """Draw separations after pulses, one panel per model, in steady motion, and all exponents."""
     with figure_style("page"):
         figure = StyledFigure("page", 0.95)
         grid = figure.add_gridspec(3, 6)
@@ -269,7 +273,7 @@ def draw(data: xr.Dataset) -> Figure:
             for k, model in enumerate(data.model.values):
                 axes = figure.add_subplot(grid[row, 2 * k : 2 * k + 2], sharey=first)
                 first = first or axes
-                _draw_partings(axes, data.sel(pulse=load, model=model))
+                _draw_separations(axes, data.sel(pulse=load, model=model))
                 axes.set_title(f"{model}, {load:g} N" if row == 0 else f"{load:g} N")
                 if k:
                     axes.tick_params(labelleft=False)
@@ -290,7 +294,7 @@ def draw(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _draw_partings(axes: Axes, one: xr.Dataset) -> None:
+def _draw_separations(axes: Axes, one: xr.Dataset) -> None:
     for k, case in enumerate(one.case.values):
         part = one.sel(case=case)
         low, _, high = part.spread.values
@@ -350,7 +354,7 @@ def _draw_exponents(axes: Axes, data: xr.Dataset) -> None:
 
 
 def caption(data: xr.Dataset) -> str:
-    """Say what one sees."""
+    """Return the caption."""
     strong = data.sel(pulse=data.pulse.max())
     grown = strong.exponent.where(strong.chaotic)
     orderly = [
@@ -386,7 +390,7 @@ def caption(data: xr.Dataset) -> str:
 
 
 def claims(data: xr.Dataset) -> Sequence[Claim]:
-    """Judge the chaos after a strong and after a weak pulse."""
+    """Return the verdicts on chaos after a strong and after a weak pulse."""
     strong, weak = data.sel(pulse=data.pulse.max()), data.sel(pulse=data.pulse.min())
     hit = weak.sel(case=[2, 3])
     return (
@@ -408,7 +412,7 @@ def claims(data: xr.Dataset) -> Sequence[Claim]:
 
 
 def _judged(part: xr.Dataset) -> str:
-    """Range of the exponents with chaos, and where there is none."""
+    """Return the range of the exponents with chaos, and the cases without, as text."""
     grown = part.exponent.where(part.chaotic)
     text = (
         f"{float(grown.min()):.2g} to {float(grown.max()):.2g} per second" if part.chaotic.any() else "no rate above 0"
@@ -424,7 +428,7 @@ def _judged(part: xr.Dataset) -> str:
 def _verdict(part: xr.Dataset) -> Verdict:
     if part.chaotic.all():
         return "reproduced"
-    return "reproduced in kind" if part.chaotic.any() else "not reproducible"
+    return "reproduced qualitatively" if part.chaotic.any() else "not reproducible"
 
 
 FIGURE = Reproduction(

@@ -1,4 +1,4 @@
-"""The paper's two contact models, the second in its two interpretations, and how figures show them."""
+"""Contact models of the paper, the second in two interpretations, with their colours in figures."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ STYLES: Mapping[str, Any] = dict(zip(MODELS, SERIES_STYLES, strict=False))
 
 
 def by_model(texts: Mapping[str, str]) -> str:
-    """Say what each model gives.
+    """Return a text with the results of each model.
 
     Parameters
     ----------
     texts
-        By model, such as "5 %".
+        Result by model, such as "5 %".
     """
     return (
         f"{texts[CONSTANT_E]} with constant restitution; with the elasto-plastic model {texts[STEEL]} (steel wall) or "
@@ -43,8 +43,8 @@ def described(dims: Any, values: Any, units: str, long_name: str) -> tuple[Any, 
     dims
         Name or names of the dimensions; () for a single number.
     values
-        Numbers or text.
+        Values of the variable.
     units, long_name
-        Attributes.
+        Attributes of the variable.
     """
     return dims, np.asarray(values), {"units": units, "long_name": long_name}

@@ -1,4 +1,4 @@
-"""The page of the report, made of figures that are computed and drawn."""
+"""Page of the report, rendered from the computed figures."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from .figure import Claim, Verdict
 from .runs import Files
 
 GENERATOR = '<meta name="generator" content="Rattlebox">'
-"""Marks a page as ours."""
+"""Mark by which pages of this program are recognised."""
 PAPER = "Energy Dissipation in Particle-based Impact Damper Systems: Investigation based on Elasto-plastic impact model"
 
 
 class Column(NamedTuple):
-    """A column of a table: its name, unit and meaning."""
+    """Name, unit and description of a column of a table."""
 
     name: str
     units: str
@@ -32,7 +32,7 @@ class Column(NamedTuple):
 
 @dataclass(frozen=True)
 class Table:
-    """A CSV file; its path is relative to the page."""
+    """CSV file; its path is relative to the page."""
 
     path: str
     rows: int
@@ -40,21 +40,21 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Made:
-    """A figure that is computed, drawn and written; paths are relative to the page.
+class FigureFiles:
+    """Figure that was computed, drawn and written; paths are relative to the page.
 
     Attributes
     ----------
     number, title, name, caption, claims
-        As in `Reproduction`, for the data computed.
+        Fields of `Reproduction`, evaluated for the data.
     picture
-        Address of the drawing that holds all of it, for the page.
+        Data URL of the drawing.
     svg, png, tables
-        Files.
+        Paths of the files.
     cases
-        Case files by name, and the studies of the runs that differ from them.
+        Case files by name, and study files of the runs that differ from them.
     computing, drawing
-        Time taken [s].
+        Wall-clock time [s].
     """
 
     number: str
@@ -72,7 +72,7 @@ class Made:
 
     @property
     def label(self) -> str:
-        """How the page calls the figure."""
+        """Name of the figure on the page."""
         return f"{'Figures' if ',' in self.number else 'Figure'} {self.number}"
 
     @property
@@ -81,19 +81,21 @@ class Made:
         return sum(files.runs for files in self.cases.values())
 
 
-def render(figures: Sequence[Made], *, missing: Sequence[str] = (), cores: int, workers: int, seconds: float) -> str:
-    """Return the page as HTML that needs nothing from elsewhere.
+def render(
+    figures: Sequence[FigureFiles], *, missing: Sequence[str] = (), cores: int, workers: int, seconds: float
+) -> str:
+    """Return the page as self-contained HTML.
 
     Parameters
     ----------
     figures
-        In the order of the page.
+        Figures in the order of the page.
     missing
         Numbers of the figures that were not computed.
     cores, workers
-        Of the machine, and processes that were used.
+        Number of processor cores of the machine, and number of processes used.
     seconds
-        Time that the whole took.
+        Total wall-clock time [s].
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -117,8 +119,8 @@ def render(figures: Sequence[Made], *, missing: Sequence[str] = (), cores: int, 
         missing=missing,
         groups=(
             ("Figures of the paper", [figure for figure in figures if figure.number[0].isdigit()]),
-            ("Where the paper can be read in more than one way", [f for f in figures if f.number.startswith("R")]),
-            ("What the paper left for later", [figure for figure in figures if figure.number.startswith("A")]),
+            ("Interpretations of the paper", [f for f in figures if f.number.startswith("R")]),
+            ("Additional studies", [figure for figure in figures if figure.number.startswith("A")]),
         ),
         claims=claims,
         counts=[(verdict, counts[verdict]) for verdict in get_args(Verdict)],
@@ -134,7 +136,7 @@ def render(figures: Sequence[Made], *, missing: Sequence[str] = (), cores: int, 
 
 
 def _power(found: re.Match[str]) -> str:
-    """Write 4e+02 as 400 and 4e-09 as a power of ten."""
+    """Return 4e+02 as 400 and 4e-09 as a power of ten."""
     exponent = int(found[2])
     return f"{float(found[0]):g}" if 0 <= exponent <= 3 else f"{found[1]} × 10<sup>{exponent}</sup>"
 
@@ -150,12 +152,12 @@ _TYPESET: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
 
 
 def typeset(text: str) -> Markup:
-    """Return text as HTML with powers of ten, subscripts, exponents and minus signs as they are printed.
+    """Return text as HTML with typeset powers of ten, subscripts, exponents and minus signs.
 
     Parameters
     ----------
     text
-        Such as "V_c is 4e-09 m/s", "N/m^1.5".
+        Text such as "V_c is 4e-09 m/s" or "N/m^1.5".
     """
     html = str(escape(text))
     for pattern, printed in _TYPESET:
@@ -169,16 +171,16 @@ _SECTION_OF = {
     "table": {1: 4.25},
     "conclusion": {1: 6.0},
 }
-"""Where the paper's numbered things stand; those between stand with the one before."""
+"""Section of the paper's numbered items; items between two entries belong to the section of the first."""
 
 
 def place(where: str) -> tuple[float, ...]:
-    """Return a key that sorts what `Claim.where` says as in the paper: by section, then by figure.
+    """Return a key that sorts the locations of claims by section, then by figure.
 
     Parameters
     ----------
     where
-        Such as "section 5.1, figure 7c", "equation (5)", "table 1" or "conclusion 3".
+        Text of `Claim.where`, such as "section 5.1, figure 7c", "equation (5)", "table 1" or "conclusion 3".
     """
     where = where.lower()
     section = re.search(r"sections? (\d+(?:\.\d+)?)", where)
@@ -192,7 +194,7 @@ def place(where: str) -> tuple[float, ...]:
 
 
 class Quantity(NamedTuple):
-    """A line of the table of numbers."""
+    """Row of the table of parameters."""
 
     name: str
     symbol: str
@@ -201,7 +203,7 @@ class Quantity(NamedTuple):
 
 
 def system() -> tuple[Quantity, ...]:
-    """Return the numbers of the paper's system."""
+    """Return the parameters of the paper's system."""
     from rattlebox import HalfSine, JacksonGreen, contact_pairs, restitution_of_alpha
 
     from .reference import ALPHA, DAMPING, GAP, MASS, PULSE, RADIUS, STIFFNESS, paper_case

@@ -1,4 +1,4 @@
-"""The report: every figure of the paper computed, drawn and judged, on one page."""
+"""Report: every figure of the paper computed, drawn and judged, on one page."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .figure import Reproduction
-from .page import GENERATOR, Column, Made, Table, render
+from .page import GENERATOR, Column, FigureFiles, Table, render
 from .runs import record_cases, write_runs
 from .tables import write_tables
 
@@ -48,7 +48,7 @@ FIGURES = (
 _FIGURE_FOLDER, _CASE_FOLDER = "figures", "cases"
 
 Progress = Callable[[int, int, str], None]
-"""Told how many figures are done, of how many, and what was done last."""
+"""Function of the number of finished figures, their total and the name of the last one."""
 
 
 def write_report(
@@ -58,37 +58,37 @@ def write_report(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> Path:
-    """Compute the paper and write it as a page, with each figure as SVG, PNG and CSV and its runs as case and study files.
+    """Compute all figures and write the report, with each figure as SVG, PNG and CSV and its runs as case and study files.
 
     Parameters
     ----------
     folder
-        Where to write: a new or empty folder, or that of an earlier report, which is replaced.
+        New or empty folder, or the folder of an earlier report, which is replaced.
     only
-        Numbers of the figures wanted, such as "4", "7c" or "A1"; "7" are all its parts, and "paper" is everything but the
+        Numbers of figures, such as "4", "7c" or "A1"; "7" means all its parts, and "paper" all figures except the
         extensions A1 to A5, which take two thirds of the time. Default all.
     workers
-        Processes that compute figures. In a script more than one needs the usual `if __name__ == "__main__":`.
+        Number of processes. More than one needs `if __name__ == "__main__":` in a script.
     progress
-        Called after each figure.
+        Function that is called after each figure.
 
     Returns
     -------
     Path
-        The page, index.html.
+        Path of the page, index.html.
 
     Raises
     ------
     ValueError
-        When there is no such figure.
+        If there is no such figure.
     OSError
-        When the folder holds other files, or cannot be written.
+        If the folder contains other files, or cannot be written.
     """
     began = time.perf_counter()
     modules = choose(only)
-    folder = _prepared(Path(folder))
-    made: dict[str, Made] = {}
-    for module, figure in _all_made(modules, folder, workers):
+    folder = _prepare_folder(Path(folder))
+    made: dict[str, FigureFiles] = {}
+    for module, figure in _compute_all(modules, folder, workers):
         made[module] = figure
         if progress is not None:
             progress(len(made), len(modules), f"figure {figure.number}")
@@ -104,37 +104,39 @@ def cores() -> int:
     """Return the number of processor cores that this process may use."""
     try:
         return len(os.sched_getaffinity(0))
-    except AttributeError:  # not on every system
+    except AttributeError:  # not available on every system
         return os.cpu_count() or 1
 
 
 def choose(only: Sequence[str]) -> tuple[str, ...]:
-    """Return the modules of the figures with these numbers, in the order of the page; all when none is given.
+    """Return the modules of the figures with the given numbers, in the order of the page; default all.
 
     Raises
     ------
     ValueError
-        When there is no such figure.
+        If there is no such figure.
     """
     numbers = {module: load_figure(module).number for module in FIGURES}
     wanted: set[str] = set()
     for text in only:
         found = {module for module, number in numbers.items() if _covers(number, text.strip())}
         if not found:
-            raise ValueError(f"there is no figure {text!r}; there are {', '.join(numbers.values())}, and 'paper'")
+            raise ValueError(
+                f"--only {text}: unknown figure; the figures are {', '.join(numbers.values())}, and 'paper'"
+            )
         wanted |= found
     return tuple(module for module in FIGURES if module in wanted or not only)
 
 
 def load_figure(module: str) -> Reproduction:
-    """Return the figure that a module of this package holds."""
+    """Return the figure of a module of this package."""
     figure = import_module(f"{__package__}.{module}").FIGURE
     assert isinstance(figure, Reproduction)
     return figure
 
 
 def _covers(number: str, wanted: str) -> bool:
-    """Return whether a figure, such as "7d, e" or "10", shows what is wanted, such as "7", "7e", "10a" or "paper"."""
+    """Return whether a figure, such as "7d, e" or "10", includes a requested one, such as "7", "7e", "10a" or "paper"."""
     if wanted == "paper":
         return not number.startswith("A")
     whole, parts = _parts(number)
@@ -149,8 +151,8 @@ def _parts(number: str) -> tuple[str, set[str]]:
     return whole[0].upper(), set(re.findall(r"[a-z]", number[whole.end() :].lower()))
 
 
-def _prepared(folder: Path) -> Path:
-    """Make the folder, empty it of an earlier report, and mark it as ours until the page is written."""
+def _prepare_folder(folder: Path) -> Path:
+    """Create the folder, remove the files of an earlier report, and write a preliminary page with the mark."""
     page = folder / "index.html"
     if folder.exists() and not folder.is_dir():
         raise NotADirectoryError(errno.ENOTDIR, "is a file; a report needs a folder", str(folder))
@@ -158,7 +160,7 @@ def _prepared(folder: Path) -> Path:
         earlier = page.read_text(encoding="utf-8", errors="replace") if page.is_file() else ""
         if GENERATOR not in earlier:
             raise FileExistsError(
-                errno.EEXIST, "holds other files; choose a new folder, or that of an earlier report", str(folder)
+                errno.EEXIST, "contains other files; choose a new folder, or that of an earlier report", str(folder)
             )
         # Only files that the earlier page links to are removed; others belong to the user.
         for name in re.findall(rf'href="((?:{_FIGURE_FOLDER}|{_CASE_FOLDER})/figure_[\w.]+)"', earlier):
@@ -170,7 +172,7 @@ def _prepared(folder: Path) -> Path:
 
 
 def _write(page: Path, text: str) -> None:
-    """Write a page that is complete or as it was before."""
+    """Write a page atomically."""
     temporary = page.with_name(f".{page.name}.partial")
     try:
         temporary.write_text(text, encoding="utf-8")
@@ -180,16 +182,18 @@ def _write(page: Path, text: str) -> None:
         raise
 
 
-def _all_made(modules: Sequence[str], folder: Path, workers: int) -> Iterator[tuple[str, Made]]:
-    """Make the figures, in the order in which they are done."""
+def _compute_all(modules: Sequence[str], folder: Path, workers: int) -> Iterator[tuple[str, FigureFiles]]:
+    """Compute the figures; yield each when it is done."""
     if workers <= 1 or len(modules) <= 1:
-        yield from ((module, _made(module, folder)) for module in modules)
+        yield from ((module, _compute(module, folder)) for module in modules)
         return
     # Processes, since matplotlib draws one figure at a time; spawned, since forking a process with threads is unsafe.
-    # Ctrl-C ends them at once and without a word.
+    # Ctrl-C ends them at once and without messages.
     on_ctrl_c = (signal.SIGINT, signal.SIG_DFL)
     with ProcessPoolExecutor(min(workers, len(modules)), get_context("spawn"), signal.signal, on_ctrl_c) as pool:
-        running = {pool.submit(_made, module, folder): module for module in reversed(modules)}  # the last take longest
+        running = {
+            pool.submit(_compute, module, folder): module for module in reversed(modules)
+        }  # the last take longest
         try:
             for done in as_completed(running):
                 yield running[done], done.result()
@@ -198,7 +202,7 @@ def _all_made(modules: Sequence[str], folder: Path, workers: int) -> Iterator[tu
             raise
 
 
-def _made(module: str, folder: Path) -> Made:
+def _compute(module: str, folder: Path) -> FigureFiles:
     """Compute, draw and write one figure."""
     figure = load_figure(module)
     try:
@@ -206,10 +210,10 @@ def _made(module: str, folder: Path) -> Made:
         with record_cases() as runs:
             data = figure.data()
         computed = time.perf_counter()
-        png, svg = _drawn(figure, data, folder / _FIGURE_FOLDER)
+        png, svg = _draw(figure, data, folder / _FIGURE_FOLDER)
         drawn = time.perf_counter()
         tables = write_tables(data, folder / _FIGURE_FOLDER, figure.name)
-        return Made(
+        return FigureFiles(
             number=figure.number,
             title=figure.title,
             name=figure.name,
@@ -218,7 +222,7 @@ def _made(module: str, folder: Path) -> Made:
             picture="data:image/svg+xml;base64," + base64.b64encode(svg.read_bytes()).decode(),
             svg=svg.relative_to(folder).as_posix(),
             png=png.relative_to(folder).as_posix(),
-            tables=tuple(_described(path.relative_to(folder), table) for path, table in tables.items()),
+            tables=tuple(_table(path.relative_to(folder), table) for path, table in tables.items()),
             cases=write_runs(figure.cases(), runs, folder, _CASE_FOLDER, figure.name),
             computing=computed - began,
             drawing=drawn - computed,
@@ -228,8 +232,8 @@ def _made(module: str, folder: Path) -> Made:
         raise
 
 
-def _drawn(figure: Reproduction, data: xr.Dataset, folder: Path) -> tuple[Path, Path]:
-    """Draw a figure as PNG and SVG."""
+def _draw(figure: Reproduction, data: xr.Dataset, folder: Path) -> tuple[Path, Path]:
+    """Draw a figure and write it as PNG and SVG."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
@@ -244,8 +248,8 @@ def _drawn(figure: Reproduction, data: xr.Dataset, folder: Path) -> tuple[Path, 
     return png, svg
 
 
-def _described(path: Path, table: xr.Dataset) -> Table:
-    """Say what stands in a CSV file."""
+def _table(path: Path, table: xr.Dataset) -> Table:
+    """Return the description of a CSV file."""
     return Table(
         path=path.as_posix(),
         rows=max(variable.size for variable in table.variables.values()),

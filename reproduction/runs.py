@@ -1,4 +1,4 @@
-"""Cases behind a figure: recorded while they run, and written as case files and study files."""
+"""Cases of a figure: recorded while they run, and written as case files and study files."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ _recorded_cases: ContextVar[list[Case] | None] = ContextVar("recorded_cases", de
 
 
 def simulate(case: Case) -> Run:
-    """Run a case as `rattlebox.simulate` does, and record it."""
+    """Simulate a case with `rattlebox.simulate`, and record it."""
     return simulate_many([case])[0]
 
 
 def simulate_many(cases: Sequence[Case]) -> list[Run]:
-    """Run cases as `rattlebox.simulate_many` does, and record them."""
+    """Simulate cases with `rattlebox.simulate_many`, and record them."""
     noted = _recorded_cases.get()
     if noted is not None:
         noted.extend(cases)
@@ -43,7 +43,7 @@ def simulate_many(cases: Sequence[Case]) -> list[Run]:
 
 @contextmanager
 def record_cases() -> Iterator[list[Case]]:
-    """Record every case that is run while the context lasts."""
+    """Record every case that is simulated inside a `with` block."""
     cases: list[Case] = []
     token = _recorded_cases.set(cases)
     try:
@@ -53,19 +53,19 @@ def record_cases() -> Iterator[list[Case]]:
 
 
 def grouped(named: Mapping[str, Case], runs: Sequence[Case]) -> dict[str, Columns]:
-    """Say how runs differ from cases that have a name.
+    """Group runs by the named case from which they differ in the fewest numbers.
 
     Parameters
     ----------
     named
         Cases by name.
     runs
-        Each differs from one of them in numbers only, such as the start of the ball; not in the output.
+        Cases, each of which differs from a named one in numbers only, such as the start of the ball.
 
     Returns
     -------
     dict of str to dict of str to list of float
-        By the name of the nearest case: by path, the values of the runs that differ from it, in their order.
+        By the name of the nearest case: for each path, the values of the runs that differ from it, in order.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def grouped(named: Mapping[str, Case], runs: Sequence[Case]) -> dict[str, Column
 
 
 class _Leaves:
-    """A case taken apart: numbers by place, and everything else."""
+    """Case split into its numbers by path and its other fields."""
 
     def __init__(self, case: Case) -> None:
         whole = case.model_dump(exclude={"name"})
@@ -98,13 +98,13 @@ class _Leaves:
         self.key = (tuple(leaves.items()), str(output))
 
     def change_from(self, base: _Leaves) -> dict[Place, float] | None:
-        """The numbers that make the base this case; None when it takes more."""
+        """Return the numbers that turn the base into this case, None if other fields differ."""
         if self.key[1] != base.key[1] or self.rest != base.rest or base.numbers.keys() - self.numbers.keys():
             return None
         return {place: value for place, value in self.numbers.items() if base.numbers.get(place) != value}
 
     def distance(self, change: Mapping[Place, float]) -> float:
-        """How far a change leads away."""
+        """Return the size of a change."""
         return sum(abs(value - self.numbers.get(place, 0.0)) for place, value in change.items())
 
 
@@ -123,7 +123,7 @@ _ONE_OF = {"dampers": "damper", "balls": "ball", "loads": "load"}
 
 
 def _path(place: Place) -> str:
-    """Return the path to a place as study files write it, for cases with one damper, ball and load at most."""
+    """Return a path in the form of study files, for cases with at most one damper, ball and load."""
     path = ""
     for above, step in zip(("", *place), place, strict=False):
         if isinstance(step, str):
@@ -142,7 +142,7 @@ def _columns(base: _Leaves, changes: Sequence[Mapping[Place, float]]) -> Columns
 
 
 class Files(NamedTuple):
-    """Where a case is written, and the study of the runs that differ from it; paths are relative to the report."""
+    """Files of a case and of the study of the runs that differ from it; paths are relative to the report."""
 
     case: str
     study: str
@@ -154,19 +154,19 @@ class Files(NamedTuple):
 def write_runs(
     named: Mapping[str, Case], runs: Sequence[Case], folder: Path, subfolder: str, stem: str
 ) -> dict[str, Files]:
-    """Write each named case, and as a study the runs that differ from it.
+    """Write a case file for each named case, and a study file for the runs that differ from it.
 
     Parameters
     ----------
     named, runs
-        As for `grouped`.
+        Arguments of `grouped`.
     folder, subfolder, stem
-        The report, the folder in it, and how the files' names begin.
+        Folder of the report, name of the subfolder, and prefix of the file names.
 
     Returns
     -------
     dict of str to Files
-        By name; without a study where no run differs.
+        Files by name; the study is empty if no run differs.
     """
     studies = grouped(named, runs)
     written = {}

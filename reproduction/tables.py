@@ -1,4 +1,4 @@
-"""Datasets as CSV files, one for each group of dimensions."""
+"""Export of datasets as CSV files, one per group of dimensions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def write_tables(data: xr.Dataset, folder: Path, stem: str) -> dict[Path, xr.Dataset]:
-    """Write a dataset as plain tables.
+    """Write a dataset as CSV tables.
 
     Variables that share their dimensions share a file, in which every row is one combination of the coordinates, the
     last dimension running fastest. The header names each column and its unit. Numbers have the up to 17 digits that
@@ -21,7 +21,7 @@ def write_tables(data: xr.Dataset, folder: Path, stem: str) -> dict[Path, xr.Dat
     data
         Numbers, truth values and text, of any dimensions, with the attribute `units`.
     folder
-        Where to write; it exists.
+        Existing folder.
     stem
         How the files' names begin; the dimensions follow, or "numbers" for what has none.
 
@@ -41,7 +41,7 @@ def write_tables(data: xr.Dataset, folder: Path, stem: str) -> dict[Path, xr.Dat
 
 
 def _groups(data: xr.Dataset) -> dict[tuple[str, ...], xr.Dataset]:
-    """Split into datasets by their variables' dimensions; a coordinate that no variable uses has its own."""
+    """Split a dataset by the dimensions of its variables; an unused coordinate becomes a dataset of its own."""
     data = data.reset_coords()
     dims = [tuple(map(str, variable.dims)) for variable in data.data_vars.values()]
     used = {name for group in dims for name in group}

@@ -1,4 +1,9 @@
-"""The exact motion with two impacts a cycle: S. F. Masri and T. K. Caughey, J. Appl. Mech. 33 (1966) 586."""
+"""Exact motion with two impacts per cycle.
+
+References
+----------
+S. F. Masri and T. K. Caughey, "On the stability of the impact damper", Journal of Applied Mechanics 33 (1966) 586-592.
+"""
 
 from __future__ import annotations
 
@@ -12,14 +17,14 @@ Array = NDArray[np.float64]
 
 
 class TwoImpacts(NamedTuple):
-    """A steady motion in which hard impacts alternate between the walls, half a cycle apart."""
+    """Steady motion in which hard impacts alternate between the walls, half a cycle apart."""
 
     approach_speed: float
-    """Of every impact [m/s]."""
+    """Approach speed of every impact [m/s]."""
     ball_speed: float
-    """Over ground, between impacts [m/s]."""
+    """Absolute speed of the ball between impacts [m/s]."""
     multiplier: float
-    """Factor by which the most persistent disturbance grows in half a cycle; the motion is stable below 1."""
+    """Largest growth factor of a disturbance in half a cycle; the motion is stable below 1."""
 
 
 def two_impacts(
@@ -33,66 +38,66 @@ def two_impacts(
     amplitude: float,
     frequency: float,
 ) -> tuple[TwoImpacts, ...]:
-    """Return the motions with two impacts a cycle of a ball in a cavity on an oscillator that a sine pulls at.
+    """Return the motions with two impacts per cycle of a ball in a cavity on a harmonically forced oscillator.
 
     Parameters
     ----------
     mass, stiffness, damping
-        Of the oscillator [kg], [N/m], [N s/m].
+        Mass [kg], stiffness [N/m] and damping [N s/m] of the oscillator.
     ball
         Mass of the ball [kg].
     clearance
         Total clearance of the cavity [m].
     restitution
-        Of both walls.
+        Coefficient of restitution of both walls.
     amplitude, frequency
-        Of the sine [N], [Hz].
+        Amplitude [N] and frequency [Hz] of the force.
 
     Returns
     -------
     tuple of TwoImpacts
-        Those in which the ball stays inside the cavity, by falling speed; none, one or two.
+        Motions in which the ball stays inside the cavity, by decreasing speed; none, one or two.
     """
     omega, e, ratio = 2 * pi * frequency, restitution, ball / mass
     half = pi / omega
     flow = np.array([[0.0, 1.0], [-stiffness / mass, -damping / mass]])
-    # At the impact on the leading wall, over the ball's velocity w after it: the structure's before and after.
+    # Velocity of the structure before and after the impact on the leading wall, divided by the ball's velocity w after it.
     before, after = (1 - e + 2 * ratio) / (1 + e), (1 - e - 2 * ratio * e) / (1 + e)
-    # The free part of the motion repeats mirrored but for the jump at impact; so it is w times this.
+    # The free part of the motion repeats with the opposite sign, apart from the jump at impact; it is w times this.
     free = np.linalg.solve(_decay(flow, half) + np.eye(2), [0.0, after - before])
-    # The rest is the steady response, of known amplitude: at impact (-clearance/2 + shift w, slope w).
+    # The remainder is the steady response of known amplitude: at impact (-clearance/2 + shift w, slope w).
     shift, slope = -half / 2 - free[0], after - free[1]
     size = amplitude / abs(stiffness - mass * omega**2 + 1j * damping * omega)
     times = np.linspace(0.0, half, 200)[1:-1]
     decay = _decay(flow, times) @ free
-    found = []
+    motions = []
     for w in np.roots([shift**2 + (slope / omega) ** 2, -clearance * shift, clearance**2 / 4 - size**2]):
         place, speed = -clearance / 2 + shift * w, slope * w
         structure = decay[:, 0] * w + place * np.cos(omega * times) + speed / omega * np.sin(omega * times)
-        # The ball leaves the leading wall at the structure's -(half w + clearance)/2 and half a clearance beyond.
+        # The ball starts from the leading wall at -(half w + clearance)/2 of the structure plus half a clearance.
         inside = np.abs(w * (times - half / 2) - structure) < clearance / 2
         if np.isreal(w) and w < after * w and inside.all():
             pull = w * (flow @ free)[1] - omega**2 * place
             pulls = pull + damping / mass * w * (after - before), pull
-            jump = _jump(ratio, e, (before * w, -w), (after * w, w), pulls)
+            saltation = _saltation(ratio, e, (before * w, -w), (after * w, w), pulls)
             flight = np.eye(4)
             flight[:2, :2], flight[2, 3] = _decay(flow, half), half
-            multiplier = np.abs(np.linalg.eigvals(jump @ flight)).max()
-            found.append(TwoImpacts(float(-w * (1 + before)), float(-w), float(multiplier)))
-    return tuple(sorted(found, reverse=True))
+            multiplier = np.abs(np.linalg.eigvals(saltation @ flight)).max()
+            motions.append(TwoImpacts(float(-w * (1 + before)), float(-w), float(multiplier)))
+    return tuple(sorted(motions, reverse=True))
 
 
 def _decay(flow: Array, time: float | Array) -> Array:
-    """Matrix that carries free motion over a time, (..., 2, 2)."""
+    """Return the transition matrix of the free motion over a time, (..., 2, 2)."""
     rates, shapes = np.linalg.eig(flow)
     grown = np.exp(np.multiply.outer(time, rates))
     return np.asarray(((shapes * grown[..., None, :]) @ np.linalg.inv(shapes)).real)
 
 
-def _jump(
+def _saltation(
     ratio: float, e: float, before: tuple[float, float], after: tuple[float, float], pulls: tuple[float, float]
 ) -> Array:
-    """How an impact on the leading wall passes on a disturbance of (x, x', y, y'), also in its time."""
+    """Return the saltation matrix of an impact on the leading wall for a disturbance of (x, x', y, y')."""
     reset = np.eye(4)
     reset[1, 1::2] = (1 - ratio * e) / (1 + ratio), ratio * (1 + e) / (1 + ratio)
     reset[3, 1::2] = (1 + e) / (1 + ratio), (ratio - e) / (1 + ratio)

@@ -1,4 +1,4 @@
-"""What tests of the paper share."""
+"""Fixtures of the tests of the reproduction."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from reproduction.report import FIGURES, load_figure
 from reproduction.runs import record_cases
 
 HEAVY = {"contacts_per_cycle", "bifurcation", "chattering", "lyapunov"}
-"""Modules whose data take some seconds."""
+"""Modules whose data take several seconds."""
 
 
 class Computed(NamedTuple):
-    """A figure, its data, and the cases that were run for them."""
+    """Figure with its data and the cases that were simulated for it."""
 
     module: str
     figure: Reproduction

@@ -10,14 +10,14 @@ from reproduction.reference import GAP
 
 @pytest.fixture(scope="module")
 def data():
-    """Two of the loads."""
+    """Return the data for two of the loads."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(chattering, "LOADS", np.array([100.0, chattering.LOAD]))
         yield chattering.FIGURE.data()
 
 
 def test_restitution_is_jackson_and_greens(data):
-    """Each hit of the elasto-plastic model has the restitution of the law at its speed, 1 below 42.3652 mm/s."""
+    """Each impact of the elasto-plastic model has the restitution of the law at its speed, 1 below 42.3652 mm/s."""
     hits = data.sel(shown=RIGID).dropna("hit")
     assert float(data.critical_speed) == pytest.approx(0.0423652, abs=5e-8)
     ratio = hits.approach_speed / 0.0423652
@@ -31,7 +31,7 @@ def test_restitution_is_jackson_and_greens(data):
     assert (elastic.restitution == 1).all()
 
 
-def test_chatter_ends_in_a_contact_that_opens_as_it_closed(data):
+def test_chattering_ends_in_an_elastic_lasting_contact(data):
     """The lasting contact is elastic, and lies around the instant at which the wall's acceleration is largest."""
     one = data.sel(shown=RIGID)
     lasting = one.where(one.lasting, drop=True)
@@ -49,7 +49,7 @@ def test_constant_restitution_does_not_come_to_rest(data):
 
 
 def test_ball_alone_is_irregular(data):
-    """The load decides where the structure is, to a thousandth; with constant restitution the ball may be anywhere."""
+    """The load determines the structure's motion to 0.1 %; with constant restitution the ball's motion is irregular."""
     low, median, high = data.displacement_spread.transpose("quantile", ...)
     size = float(abs(data.displacement).max())
     assert float((high - low).max()) < 1e-3 * size
@@ -59,11 +59,11 @@ def test_ball_alone_is_irregular(data):
 
 
 def test_drawn_and_judged(data):
-    """The figure is drawn from the data; the verdict falls with the lasting contacts."""
+    """The figure can be drawn, and the verdict depends on the lasting contacts."""
     figure = chattering.FIGURE
     assert len(figure.draw(data).axes) == 8
     assert "complete chatter" in figure.caption(data)
     assert figure.claims(data)[0].verdict == "reproduced"
     without = data.assign(held=data.held & False, lasting=data.lasting & False)
-    assert figure.claims(without)[0].verdict == "reproduced in kind"
+    assert figure.claims(without)[0].verdict == "reproduced qualitatively"
     assert "no contact lasts" in figure.caption(without)

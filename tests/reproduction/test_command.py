@@ -1,4 +1,4 @@
-"""The command `python -m reproduction`, run as a user runs it."""
+"""Tests of the command `python -m reproduction`."""
 
 import os
 import signal
@@ -11,20 +11,20 @@ import pytest
 
 from reproduction.__main__ import main
 
-FOUND = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
-"""Environment in which the package is found from any folder."""
+ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
+"""Environment in which the package can be imported from any folder."""
 COMMAND = [sys.executable, "-m", "reproduction"]
 
 
 def reproduce(*arguments: object) -> subprocess.CompletedProcess[str]:
-    """Run the command in a process of its own."""
+    """Run the command in a subprocess."""
     return subprocess.run(
-        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120, check=False, env=FOUND
+        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120, check=False, env=ENVIRONMENT
     )
 
 
 def test_report_on_chosen_figures(tmp_path: Path) -> None:
-    """Chosen figures alone make a page in a folder that need not exist; away from a terminal no bar is drawn."""
+    """A report on selected figures creates its folder; without a terminal there is no progress bar."""
     done = reproduce("-o", tmp_path / "new" / "report", "--only", "2", "--only", "5", "--workers", 2)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
@@ -36,23 +36,23 @@ def test_report_on_chosen_figures(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
-        (("--only", "99"), "there is no figure '99'; there are 2, "),
+        (("--only", "99"), "--only 99: unknown figure; the figures are 2, "),
         (("--workers", "0"), "workers"),
-        (("-o", "full"), "holds other files; choose a new folder"),
+        (("-o", "full"), "contains other files; choose a new folder"),
         (("-o", "full/notes.txt"), "is a file; a report needs a folder"),
         (("-o", "full/notes.txt/report"), "notes.txt"),
     ],
 )
-def test_bad_input_is_told(
+def test_bad_input(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
     arguments: tuple[str],
-    said: str,
+    message: str,
 ) -> None:
-    """What cannot be done is told on one screen, before anything is computed, with exit code 2 and no traceback."""
+    """Bad input ends with exit code 2 and a message of one screen before anything is computed."""
     monkeypatch.chdir(tmp_path)
     Path("full").mkdir()
     Path("full/notes.txt").write_text("mine")
@@ -61,20 +61,20 @@ def test_bad_input_is_told(
         main()
     assert end.value.code == 2
     error = capsys.readouterr().err
-    assert said in " ".join(error.replace("│", " ").split())
+    assert message in " ".join(error.replace("│", " ").split())
     assert "Traceback" not in error
     assert len(error.splitlines()) < 24
     assert [path.name for path in tmp_path.rglob("*")] == ["full", "notes.txt"]
 
 
 def test_ctrl_c_stops_at_once(tmp_path: Path) -> None:
-    """Ctrl-C ends command and workers with one word, and the unfinished report can be written again."""
+    """Ctrl-C ends command and workers with one word; the unfinished report can be replaced."""
     process = subprocess.Popen(
         [*COMMAND, "-o", str(tmp_path), "--only", "2", "--only", "A5", "--workers", "2"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        env=FOUND,
+        env=ENVIRONMENT,
         start_new_session=True,
     )
     until = time.monotonic() + 60

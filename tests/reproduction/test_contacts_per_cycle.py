@@ -1,4 +1,4 @@
-"""Figure A2: contacts in a cycle."""
+"""Figure A2: contacts per cycle."""
 
 from math import pi
 
@@ -16,7 +16,7 @@ FEW = np.array([8.0, 21.0, 22.0, 23.0])
 
 @pytest.fixture(scope="module")
 def data():
-    """A few of the frequencies."""
+    """Return the data for a few of the frequencies."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(contacts_per_cycle, "FREQUENCIES", FEW)
         yield contacts_per_cycle.FIGURE.data()
@@ -54,7 +54,7 @@ def test_shares_are_those_of_all_counted_cycles(data):
 
 
 def test_marked_frequencies_are_those_of_the_system(data):
-    """The ball that rides along lowers the natural frequency to 61.4295 rad/s; alone the structure moves as told."""
+    """The attached ball lowers the natural frequency to 61.4295 rad/s; the bare amplitude is the analytical one."""
     assert 2 * pi * float(data.resonance) == pytest.approx(61.4295, abs=5e-5)
     bare = harmonic_case(amplitude=20.0, frequency=21.0, duration=20.0, rate=4200.0, ball=False)
     last = simulate(bare).motion.displacement.sel(time=slice(19.0, None))
@@ -62,7 +62,7 @@ def test_marked_frequencies_are_those_of_the_system(data):
 
 
 def test_drawn_and_judged(data):
-    """The figure is drawn from the data alone, and the claim follows them."""
+    """The figure can be drawn, and the claim depends on the data."""
     figure = contacts_per_cycle.FIGURE
     assert len(figure.draw(data).axes) == 4
     assert "contacts a cycle" in figure.caption(data)

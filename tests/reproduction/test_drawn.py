@@ -1,4 +1,4 @@
-"""Figures draw what their datasets hold, and nothing else."""
+"""Tests that figures show exactly the values of their datasets."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ from matplotlib.ticker import FixedLocator
 
 PREFIXES = {"": 1.0, "p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
 EQUAL = 1e-9
-"""Relative difference that a change of unit may leave."""
+"""Relative rounding error of a change of unit."""
 
 
 class Scale(NamedTuple):
-    """What an axis says: its SI unit, and what a number on it is worth in that."""
+    """SI unit of an axis, and factor from its numbers to that unit."""
 
     unit: str
     factor: float
 
 
 class Mark(NamedTuple):
-    """An artist: points (n, 2) in the numbers of the axes, NaN where it says nothing."""
+    """Artist with its points (n, 2) in the units of the axes, NaN for coordinates without data."""
 
     name: str
     points: np.ndarray
     area: bool = False
-    """Its edges may come from several columns."""
+    """Whether its edges may come from several columns."""
     values: np.ndarray | None = None
     """Numbers shown by colour."""
     map: bool = False
-    """Each colour belongs to its point."""
+    """Whether each colour belongs to one point."""
 
 
 def marks(axes: Axes) -> Iterator[Mark]:
-    """Return everything drawn in axes that stands for numbers."""
+    """Yield all artists of an axes that represent data."""
     for artist in axes.get_children():
         name = f"{type(artist).__name__} {artist.get_label()}"
         if isinstance(artist, Line2D):
@@ -67,34 +67,34 @@ def marks(axes: Axes) -> Iterator[Mark]:
 
 
 def _in_data(axes: Axes, artist: Any, points: np.ndarray) -> np.ndarray:
-    """Points with NaN for coordinates that count in the axes, as one of `axhline` does."""
+    """Return points with NaN for coordinates relative to the axes, such as one of `axhline`."""
     own = artist.get_transform().contains_branch_seperately(axes.transData)
     return np.where(own, points, np.nan)
 
 
 def _seen(axes: Axes, points: np.ndarray) -> np.ndarray:
-    """Points with NaN for edges beyond the axes."""
+    """Return points with NaN for edges outside the axes."""
     low, high = np.sort([axes.get_xlim(), axes.get_ylim()], axis=1).T
     return np.where((points > low) & (points < high), points, np.nan)
 
 
 def scale(axes: Axes, which: str, units: set[str]) -> Scale | None:
-    """Return what the label of an axis, or of one that shares it, says of its numbers; None for named rows."""
+    """Return the scale in the label of an axis, or of one that shares it; None for named rows."""
     own: Axis = getattr(axes, f"{which}axis")
     words = [text.get_text() for text in own.get_majorticklabels()]
     if isinstance(own.get_major_locator(), FixedLocator) and any(re.search("[a-z]", word) for word in words):
         return None
     shared = getattr(axes, f"get_shared_{which}_axes")().get_siblings(axes)
     labels = [getattr(one, f"{which}axis").get_label_text() for one in (axes, *shared)]
-    told = re.findall(r"\(([^()]*)\)", next(filter(None, labels), ""))
+    units_in_label = re.findall(r"\(([^()]*)\)", next(filter(None, labels), ""))
     for unit, (prefix, factor) in product(units - {""}, PREFIXES.items()):
-        if prefix + unit in told:
+        if prefix + unit in units_in_label:
             return Scale(unit, factor)
-    return Scale("", 0.01 if "%" in told else 1.0)
+    return Scale("", 0.01 if "%" in units_in_label else 1.0)
 
 
 def same(*groups: np.ndarray) -> list[np.ndarray]:
-    """Return numbers that stand for the values of arrays: the same for values that are equal but for rounding."""
+    """Return numbers for the values of arrays, equal for values that differ by rounding only."""
     every = np.concatenate([np.ravel(group) for group in groups])
     order = np.argsort(every, kind="stable")
     ranked = every[order]
@@ -105,18 +105,18 @@ def same(*groups: np.ndarray) -> list[np.ndarray]:
 
 
 def rows(first: xr.DataArray, second: xr.DataArray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return the values of two variables side by side, as in their table; None for two that have no table."""
+    """Return the values of two variables as columns of their table; None if they have no common table."""
     if first.size > 1 and second.size > 1 and not set(first.dims) & set(second.dims):
         return None
     one, other = xr.broadcast(first, second)
     return one.values.ravel(), other.transpose(*one.dims).values.ravel()
 
 
-def strangers(figure: Figure, data: xr.Dataset) -> list[str]:
-    """Return what is drawn in a figure and does not stand in its dataset, point by point in one row of its tables.
+def unknown_marks(figure: Figure, data: xr.Dataset) -> list[str]:
+    """Return the artists of a figure whose points are not rows of the tables of its dataset.
 
-    A change of unit must be told in the label of the axis, rows must have names; lines across the axes may also be at
-    zero or at one; areas may begin at zero.
+    The label of an axis must contain its unit, and rows must have names. Lines across the axes may also be at zero or one,
+    and areas may begin at zero.
     """
     numbers = [data[name] for name in data.variables if data[name].dtype.kind in "iuf"]
     units = {variable.units for variable in numbers}
@@ -133,16 +133,16 @@ def strangers(figure: Figure, data: xr.Dataset) -> list[str]:
 
 def _known(mark: Mark, scales: list[Scale | None], numbers: list[xr.DataArray]) -> bool:
     def column(which: int, points: np.ndarray) -> tuple[np.ndarray, list[xr.DataArray]] | None:
-        told = scales[which]
-        if told is None or not np.isfinite(points[:, which]).any():
+        axis = scales[which]
+        if axis is None or not np.isfinite(points[:, which]).any():
             return None
-        return points[:, which] * told.factor, [variable for variable in numbers if variable.units == told.unit]
+        return points[:, which] * axis.factor, [variable for variable in numbers if variable.units == axis.unit]
 
     if mark.values is not None and not any(_within(mark.values, variable) for variable in numbers):
         return False
-    whole = np.isfinite(mark.points).all(axis=1)
-    if whole.any():  # where a coordinate has no number, nothing is drawn
-        points = mark.points[whole]
+    complete = np.isfinite(mark.points).all(axis=1)
+    if complete.any():  # points with NaN are not drawn
+        points = mark.points[complete]
         x, y = column(0, points), column(1, points)
         if mark.map and x is not None and y is not None:
             return any(_mapped(x[0], y[0], mark.values, variable) for variable in numbers)
@@ -152,9 +152,9 @@ def _known(mark: Mark, scales: list[Scale | None], numbers: list[xr.DataArray]) 
         parts = only[0] if only is not None and mark.area else [only[0] if only is not None else ()]
         return only is None or all(any(_within(part, variable) for variable in only[1]) for part in parts)
     for which in range(2):
-        told = column(which, mark.points)
-        for value in np.unique(told[0][np.isfinite(told[0])]) if told else ():
-            if value not in (0.0, 1.0) and not any(_within(value, variable) for variable in told[1]):
+        data = column(which, mark.points)
+        for value in np.unique(data[0][np.isfinite(data[0])]) if data else ():
+            if value not in (0.0, 1.0) and not any(_within(value, variable) for variable in data[1]):
                 return False
     return True
 
@@ -165,7 +165,7 @@ def _within(values: Any, variable: xr.DataArray) -> bool:
 
 
 def _mapped(x: np.ndarray, y: np.ndarray, values: Any, variable: xr.DataArray) -> bool:
-    """Whether each point has the value that stands at it in the table of a variable."""
+    """Return whether each point has the value of the table of a variable at its coordinates."""
     found = []
     for first, second in permutations([variable[dim] for dim in variable.dims if variable[dim].dtype.kind in "if"], 2):
         table = xr.broadcast(first, second, variable)
@@ -176,7 +176,7 @@ def _mapped(x: np.ndarray, y: np.ndarray, values: Any, variable: xr.DataArray) -
 
 
 def _paired(mark: Mark, x: np.ndarray, first: list[xr.DataArray], y: np.ndarray, second: list[xr.DataArray]) -> bool:
-    """Whether each point is a row of a table: all of a line in one pair of columns, of an area each in any."""
+    """Return whether each point is a row of a table: all points of a line of one table, those of an area of any."""
     left = np.full(x.size, True)
     for one in first:
         if not np.isin(*same(x, one.values[np.isfinite(one.values)])).any():
@@ -199,24 +199,24 @@ def _paired(mark: Mark, x: np.ndarray, first: list[xr.DataArray], y: np.ndarray,
     return not left.any()
 
 
-def test_every_number_drawn_stands_in_the_dataset(every):
-    """Each point of each line, bar, area and map is a row of the figure's tables, but for the unit told at the axis."""
-    assert strangers(every.figure.draw(every.data), every.data) == []
+def test_all_drawn_numbers_are_in_the_dataset(every):
+    """Each point of each line, bar, area and map is a row of the figure's tables, apart from the unit of the axis."""
+    assert unknown_marks(every.figure.draw(every.data), every.data) == []
 
 
-def test_a_wrong_number_is_found(computed):
-    """Of a figure drawn from data that are off by a millionth, everything that stands for numbers is a stranger."""
+def test_wrong_number_is_detected(computed):
+    """All artists of a figure drawn from data with a relative error of 1e-6 are detected."""
     _, figure, data, _ = computed("figure_07c")
     off = data.map(lambda variable: variable * (1 + 1e-6), keep_attrs=True)
     drawn = figure.draw(off)
     telling = [mark for axes in drawn.axes for mark in marks(axes) if np.any(np.nan_to_num(mark.points) % 1)]
-    assert len(strangers(drawn, data)) == len(telling) > 10
+    assert len(unknown_marks(drawn, data)) == len(telling) > 10
 
 
-def test_a_wrong_unit_is_found(computed):
-    """Numbers in millijoules at an axis that says joules are strangers."""
+def test_wrong_unit_is_detected(computed):
+    """Numbers in millijoules on an axis in joules are detected."""
     _, figure, data, _ = computed("figure_07c")
     drawn = figure.draw(data)
     assert drawn.axes[0].get_ylabel().endswith("(mJ)")
     drawn.axes[0].set_ylabel("Energy lost in impacts (J)")
-    assert {place.partition(":")[0] for place in strangers(drawn, data)} == {"axes 0"}
+    assert {place.partition(":")[0] for place in unknown_marks(drawn, data)} == {"axes 0"}

@@ -45,6 +45,6 @@ def test_verdicts_follow_the_data(data):
     """A restitution below the constant one is found on the rigid wall only, and the verdict says so."""
     elastic, low = FIGURE.claims(data)
     assert elastic.verdict == "reproduced"
-    assert low.verdict == "reproduced in kind"
+    assert low.verdict == "reproduced qualitatively"
     assert FIGURE.claims(data.assign(constant=0.5))[1].verdict == "not reproducible"
     assert FIGURE.claims(data.assign(constant=1.0))[1].verdict == "reproduced"

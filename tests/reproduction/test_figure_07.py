@@ -58,7 +58,7 @@ def losses(computed):
     ],
 )
 def test_shares_of_the_centred_ball(losses, model, share, scatter):
-    """The damper takes the known part of the pulse's work, in each reading."""
+    """The damper takes the known part of the pulse's work, in each interpretation."""
     lost = losses.lost.sel(model=model, quantile=0.5).isel(time=-1) / losses.work.sel(model=model)
     assert float(lost) == pytest.approx(share, abs=scatter)
 
@@ -112,7 +112,7 @@ def test_shares_never_exceed_the_work(shares):
 def test_claims_of_the_start_positions(shares):
     """Each verdict follows the data: it turns when the data do."""
     half, sensitive, consistent = figure_07de.FIGURE.claims(shares)
-    assert half.verdict == "reproduced in kind"
+    assert half.verdict == "reproduced qualitatively"
     assert sensitive.interpretation == "elasto-plastic, steel wall"
     assert consistent.verdict == "not reproducible"
     like = shares.where(shares.start != 2, 0.5 * shares.sel(start=1, drop=True))

@@ -45,7 +45,7 @@ def test_weak_impacts_are_elastic(ball: xr.Dataset) -> None:
 
 
 def test_a_rigid_wall_changes_nothing(ball: xr.Dataset) -> None:
-    """With every impact elastic, the wall's reading in the critical speed does not matter."""
+    """With every impact elastic, the interpretation of the wall in the critical speed has no effect."""
     case = paper_case(PLASTIC_RIGID, start=1.0, amplitude=100.0, duration=4.0, rate=1000.0)
     position = rb.simulate(case).arrays.relative_position[:, 0]
     np.testing.assert_array_equal(position, ball.position.sel(model="elasto-plastic", case=3))
@@ -66,15 +66,19 @@ def test_band_has_a_width_where_there_are_contacts(ball: xr.Dataset, structure: 
         assert float(width.sel(case=[2, 3]).min()) > 0.5
 
 
-def test_single_runs_of_case_2_are_said_to_lie_outside(ball: xr.Dataset) -> None:
-    """The caption explains a run that its band does not hold, and keeps silent when there is none."""
+def test_caption_of_single_runs_outside_the_band(ball: xr.Dataset) -> None:
+    """The caption explains a run outside its band, and only such a run."""
     assert "single runs of case 2 lie outside" in figure_09a.caption(ball)
     assert "outside" not in figure_09a.caption(ball.assign(contacts=ball.contacts_spread.sel(quantile=0.5)))
 
 
 def test_verdicts_follow_the_data(ball: xr.Dataset, structure: xr.Dataset) -> None:
     """Case 1 is confirmed, and denied when a contact is put into the data."""
-    assert [claim.verdict for claim in figure_09a.claims(ball)] == ["reproduced", "misprint", "reproduced in kind"]
+    assert [claim.verdict for claim in figure_09a.claims(ball)] == [
+        "reproduced",
+        "misprint",
+        "reproduced qualitatively",
+    ]
     assert [claim.verdict for claim in figure_09b.claims(structure)] == ["reproduced", "reproduced"]
     touched = xr.where(ball.contacts.case == 1, 1, ball.contacts)
     assert figure_09a.claims(ball.assign(contacts=touched))[0].verdict == "not reproducible"

@@ -28,7 +28,7 @@ def test_ball_rides_along_at_resonance(data: xr.Dataset) -> None:
 
 
 def test_spectrum_without_damper_is_the_transfer_function(data: xr.Dataset) -> None:
-    """A pulse P(w) leaves the amplitude 2/T |P - (what goes on after T)| / |K - M w² + i C w|."""
+    """A pulse P(w) leaves the amplitude 2/T |P - (transform of the motion after T)| / |K - M w² + i C w|."""
     w, duration = data.frequency.values, 10.0
     pulse = 2 * 5000.0 * PULSE / np.pi * np.cos(w * PULSE / 2) / (1 - (w * PULSE / np.pi) ** 2)
     end = rb.simulate(figure_10.cases()["without damper"]).arrays
@@ -67,7 +67,7 @@ def test_verdicts_follow_the_data(data: xr.Dataset) -> None:
     assert [claim.verdict for claim in figure_10.claims(data)] == [
         "reproduced",
         "not reproducible",
-        "reproduced in kind",
+        "reproduced qualitatively",
         "reproduced",
         "not reproducible",
     ]

@@ -1,4 +1,4 @@
-"""The readings of the paper side by side."""
+"""Figure R1: interpretations of the paper."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def test_numbers_of_the_contact(data):
         ("elasto-plastic, rigid wall", (0.069, 0.027, 0.070)),
     ],
 )
-def test_losses_of_the_main_readings(data, reading, expected):
+def test_losses_of_the_main_interpretations(data, reading, expected):
     """The known shares, given to their last digit, lie in the band of each case."""
     low, _, high = data.share.sel(reading=reading).transpose("level", "start").values
     last_digit = 1e-3 if max(expected) > 0.01 else 1e-4

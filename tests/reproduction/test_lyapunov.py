@@ -11,20 +11,20 @@ from reproduction.reference import CONSTANT, paper_case
 
 @pytest.fixture(scope="module")
 def data():
-    """Few pairs of one model."""
+    """Return the data for a few pairs of one model."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(lyapunov, "MODELS", {CONSTANT_E: CONSTANT})
         patch.setattr(lyapunov, "PAIRS", 6)
         yield lyapunov.FIGURE.data()
 
 
-def test_without_the_ball_neighbours_meet_as_the_structure_decays(data):
+def test_exponent_without_the_ball(data):
     """The linear structure alone has the exponent -zeta omega = -25.3/40 per second."""
     assert float(data.steady_exponent[2]) == pytest.approx(-0.6325, rel=1e-3)
     assert float(data.expected[2]) == pytest.approx(-0.6325, rel=1e-12)
 
 
-def test_two_contacts_a_cycle_have_the_exponent_of_theory(data):
+def test_exponent_of_motion_with_two_contacts_per_cycle(data):
     """The periodic motion attracts as fast as the exact one with hard impacts, to 3 %: contacts take time."""
     assert float(data.steady_exponent[1]) == pytest.approx(float(data.expected[1]), rel=0.03)
     assert not data.steady_chaotic[1]
@@ -45,7 +45,7 @@ def test_without_contact_nothing_grows(data):
 
 
 def test_growth_is_measured_from_its_onset_to_saturation():
-    """Of growth at 7 per second that begins after a second and ends at a millimetre, onset and rate are found."""
+    """The fit recovers onset and rate of a growth at 7 per second from 1 s to a separation of 1 mm."""
     time = np.arange(1, 1501) * 4e-3
     grown = 1e-12 * np.exp(7 * np.clip(time - 1, 0, None))
     rows = np.minimum([grown, 2 * grown, 0.5 * grown], 1e-3)
@@ -57,18 +57,18 @@ def test_growth_is_measured_from_its_onset_to_saturation():
 
 
 def test_neighbours_are_as_far_apart_as_they_start():
-    """The distance of runs whose balls start 0.1 nm apart is that, before anything has moved."""
+    """The initial distance of runs whose balls start 0.1 nm apart is 0.1 nm."""
     one, other = (simulate(paper_case(start=start, duration=1e-3, times=(0.0,))) for start in (0.0, 2.5e-7))
     assert lyapunov._distance(one, other)[0] == pytest.approx(1e-10, rel=1e-9)
 
 
 def test_drawn_and_judged(data):
-    """The figure is drawn from the data, and the verdicts follow them."""
+    """The figure can be drawn, and the verdicts depend on the data."""
     figure = lyapunov.FIGURE
     assert figure.draw(data).axes
     assert "{" not in figure.caption(data)
     assert [claim.verdict for claim in figure.claims(data)] == ["reproduced", "reproduced"]
     calm = data.assign(chaotic=data.chaotic & (data.case == 2))
-    assert figure.claims(calm)[0].verdict == "reproduced in kind"
+    assert figure.claims(calm)[0].verdict == "reproduced qualitatively"
     assert figure.claims(calm.assign(chaotic=calm.chaotic & False))[0].verdict == "not reproducible"
     assert "neighbours are still within" in figure.caption(calm)

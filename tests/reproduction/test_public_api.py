@@ -1,4 +1,4 @@
-"""The reproduction uses the package as any user does."""
+"""Tests that the reproduction uses public names only."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def uses(source: str) -> Iterator[tuple[str, str]]:
 
 
 def is_public(module: str, name: str) -> bool:
-    """Return whether a user may rely on a name."""
+    """Return whether a name is public."""
     return module in PUBLIC and (name in ("", "__version__") or name in import_module(module).__all__)
 
 
@@ -50,7 +50,7 @@ def test_only_public_names_are_used(file: Path) -> None:
     assert [use for use in uses(file.read_text(encoding="utf-8")) if not is_public(*use)] == []
 
 
-def test_the_scan_sees_private_names() -> None:
+def test_scan_detects_private_names() -> None:
     """Private modules and names are found however they are imported."""
     source = """
 import rattlebox as rb
@@ -76,7 +76,7 @@ def test_there_are_public_subpackages() -> None:
     assert all(module.partition(".")[2] in ("", *rb.__all__) for module in PUBLIC)
 
 
-def test_the_package_does_not_know_the_reproduction() -> None:
+def test_package_does_not_import_the_reproduction() -> None:
     """No file of the package imports the reproduction or names its modules."""
     for file in (ROOT / "src").rglob("*.py"):
         assert not re.search(r"\breproduction[./]|(?:import|from) reproduction\b", file.read_text(encoding="utf-8")), (

@@ -1,4 +1,4 @@
-"""The report: its figures, its files and its page."""
+"""Tests of the report: figures, files and page."""
 
 import base64
 import csv
@@ -16,7 +16,7 @@ import xarray as xr
 
 from reproduction import write_report
 from reproduction.figure import Claim
-from reproduction.page import GENERATOR, Made, place, render, system, typeset
+from reproduction.page import GENERATOR, FigureFiles, place, render, system, typeset
 from reproduction.report import FIGURES, choose, load_figure
 from reproduction.tables import write_tables
 
@@ -24,7 +24,7 @@ FIGURE = "2"
 
 
 class Page(html.parser.HTMLParser):
-    """Collects ids, addresses and headings, and checks that tags close."""
+    """Parser that collects ids, addresses and headings, and checks that tags are closed."""
 
     VOID = frozenset({"meta", "img", "br", "link"})
 
@@ -41,23 +41,23 @@ class Page(html.parser.HTMLParser):
         assert self.tags == []
 
     def _open(self, tag, attrs):
-        told = dict(attrs)
+        attributes = dict(attrs)
         if tag not in self.VOID:
             self.tags.append(tag)
-        if "id" in told:
-            self.ids.append(told["id"])
-        self.addresses += [told[key] for key in ("href", "src") if key in told]
+        if "id" in attributes:
+            self.ids.append(attributes["id"])
+        self.addresses += [attributes[key] for key in ("href", "src") if key in attributes]
         if re.fullmatch(r"h\d", tag):
             self.headings.append(tag)
         if tag == "img":
-            self.pictures.append(told)
+            self.pictures.append(attributes)
 
     def _shut(self, tag):
         assert self.tags.pop() == tag
 
 
 def read_back(data, tables):
-    """Return the dataset with all values taken from its CSV files."""
+    """Return the dataset with all values from its CSV files."""
     found = {}
     for path in tables:
         with path.open(newline="", encoding="utf-8") as file:
@@ -79,15 +79,15 @@ def read_back(data, tables):
 
 
 def test_data_of_a_figure_reads_back_from_csv(every, tmp_path):
-    """All that a figure draws has unit and meaning, and stands in its CSV files without a digit lost."""
+    """All variables of a figure have unit and description, and their CSV files contain all digits."""
     for name, variable in every.data.variables.items():
         assert {"units", "long_name"} <= variable.attrs.keys(), name
     tables = write_tables(every.data, tmp_path, every.module)
     xr.testing.assert_identical(read_back(every.data, tables), every.data)
 
 
-def test_words_are_for_people(every):
-    """Captions and claims say no "nan", claims are short, and every claim says where it stands and how it is read."""
+def test_captions_and_claims_are_complete(every):
+    """Captions and claims contain no "nan"; claims are short and have a location and an interpretation."""
     claims = every.figure.claims(every.data)
     for text in (every.figure.caption(every.data), *(text for claim in claims for text in claim)):
         assert text.strip()
@@ -96,8 +96,8 @@ def test_words_are_for_people(every):
         assert len(claim.statement) < 130 and len(claim.ours) < 230 and len(claim.interpretation) < 130, claim
 
 
-def test_figures_have_numbers_and_files_of_their_own():
-    """No two figures share a number or the name of their files."""
+def test_numbers_and_file_names_are_unique():
+    """No two figures have the same number or file name."""
     figures = [load_figure(module) for module in FIGURES]
     assert len({figure.number for figure in figures}) == len(figures)
     assert len({figure.name for figure in figures}) == len(figures)
@@ -106,27 +106,27 @@ def test_figures_have_numbers_and_files_of_their_own():
 
 @pytest.fixture(scope="module", params=["one", pytest.param("all", marks=pytest.mark.slow)])
 def report(request, tmp_path_factory):
-    """Return the page of a report on one figure or on all, what was told on the way, and the processor time."""
-    told = []
+    """Return the page of a report on one figure or on all, the progress calls, and the processor time."""
+    calls = []
     before = sum(os.times()[:4])
     folder = tmp_path_factory.mktemp("reports") / "report"
     page = write_report(
         folder,
         only=[FIGURE] if request.param == "one" else [],
         workers=1 if request.param == "one" else 2,
-        progress=lambda *news: told.append(news),
+        progress=lambda *news: calls.append(news),
     )
-    return page, told, sum(os.times()[:4]) - before
+    return page, calls, sum(os.times()[:4]) - before
 
 
-def test_report_takes_two_minutes_on_two_cores(report):
-    """The work of all figures, however many processes share it, fits into two minutes of two cores."""
+def test_processor_time_of_the_report(report):
+    """All figures together take at most two minutes on two cores."""
     *_, seconds = report
     assert 0 < seconds < 2 * 120
 
 
-def test_page_holds_together(report):
-    """The page is sound HTML without repeated ids, its headings do not skip a level, its links lead somewhere."""
+def test_page_is_valid(report):
+    """The page is valid HTML without repeated ids, skipped heading levels or broken links."""
     page, *_ = report
     read = Page(page.read_text(encoding="utf-8"))
     assert len(set(read.ids)) == len(read.ids)
@@ -140,7 +140,7 @@ def test_page_holds_together(report):
             assert (page.parent / unquote(address)).stat().st_size > 0
 
 
-def test_page_needs_nothing_from_elsewhere(report):
+def test_page_is_self_contained(report):
     """Neither the page nor its pictures load anything from a network."""
     page, *_ = report
     text = page.read_text(encoding="utf-8")
@@ -156,8 +156,8 @@ def test_page_needs_nothing_from_elsewhere(report):
         assert picture["aria-describedby"] in text
 
 
-def test_every_file_is_written_and_offered(report):
-    """SVG, PNG, CSV and case files lie beside the page, and the page links each of them."""
+def test_every_file_is_written_and_linked(report):
+    """SVG, PNG, CSV and case files are in the folder of the page, and the page links to each of them."""
     page, *_ = report
     folder = page.parent
     written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()} - {"index.html"}
@@ -166,16 +166,16 @@ def test_every_file_is_written_and_offered(report):
     assert {Path(name).suffix for name in written} == {".svg", ".png", ".csv", ".toml"}
 
 
-def test_progress_is_told(report):
-    """After each figure the caller hears how many of how many are done."""
-    page, told, _ = report
+def test_progress(report):
+    """The progress function is called after each figure with the number of finished figures and the total."""
+    page, calls, _ = report
     count = len(list(page.parent.glob("figures/*.svg")))
-    assert [(done, total) for done, total, _ in told] == [(k + 1, count) for k in range(count)]
-    assert f"figure {FIGURE}" in {last for _, _, last in told}
+    assert [(done, total) for done, total, _ in calls] == [(k + 1, count) for k in range(count)]
+    assert f"figure {FIGURE}" in {last for _, _, last in calls}
 
 
 def test_figures_are_the_same_in_every_run(report, tmp_path):
-    """A second report has the same drawings, data and cases to the last bit, in worker processes too."""
+    """A second report has bit-identical drawings, data and cases, also with worker processes."""
     page, *_ = report
     again = write_report(tmp_path, only=[FIGURE, "5"], workers=2)
     for path in page.parent.glob("*/figure_02*"):
@@ -184,7 +184,7 @@ def test_figures_are_the_same_in_every_run(report, tmp_path):
 
 
 def test_earlier_report_is_replaced(tmp_path):
-    """A report removes the files that the page before it links to, and no others."""
+    """A report removes the files to which the earlier page links, and no others."""
     page = write_report(tmp_path, only=[FIGURE])
     stale, *own = (page.parent / name for name in ("figures/figure_99.svg", "figures/figure_mine.svg", "notes.txt"))
     page.write_text(page.read_text() + '<a href="figures/figure_99.svg" download>SVG</a>')
@@ -194,8 +194,8 @@ def test_earlier_report_is_replaced(tmp_path):
     assert all(file.exists() for file in own) and not stale.exists()
 
 
-def test_other_folders_are_refused(tmp_path):
-    """A folder that holds other files is left alone, and a file is no folder."""
+def test_other_folders_are_not_overwritten(tmp_path):
+    """A folder with other files, or a file instead of a folder, raises an error."""
     other = tmp_path / "index.html"
     other.write_text("mine")
     with pytest.raises(FileExistsError, match="holds other files"):
@@ -205,8 +205,8 @@ def test_other_folders_are_refused(tmp_path):
         write_report(other)
 
 
-def test_figures_are_chosen_by_number():
-    """A number chooses its figure, a number without letter all its parts; others are refused with those there are."""
+def test_selection_of_figures():
+    """A number selects its figure, a number without letter all its parts; an unknown one raises an error with the list."""
     assert choose([]) == FIGURES
     assert choose(["2"]) == ("figure_02",)
     assert choose(["paper"]) == tuple(m for m in FIGURES if not load_figure(m).number.startswith("A"))
@@ -235,22 +235,27 @@ def test_figures_are_chosen_by_number():
         ("section 6, conclusion 2", "section 6.1"),
     ],
 )
-def test_claims_stand_as_in_the_paper(earlier, later):
+def test_order_of_claims(earlier, later):
     """Claims are sorted by section and then by figure."""
     assert place(earlier) < place(later)
 
 
 def test_page_escapes_and_counts():
-    """Text from figures is not read as HTML, and the summary counts each verdict."""
-    verdicts = ["reproduced", "reproduced in kind", "misprint", "misprint"]
+    """Text from figures is escaped, and the summary counts each verdict."""
+    verdicts = ["reproduced", "reproduced qualitatively", "misprint", "misprint"]
     claims = tuple(Claim(f"x < {k} & y", "section 1", "z > 1", "<b>", verdict) for k, verdict in enumerate(verdicts))
-    made = Made("A9", "<i>", "figure_A9", "a < b", claims, "data:,", "a.svg", "a.png", (), {}, 1.0, 2.0)
+    made = FigureFiles("A9", "<i>", "figure_A9", "a < b", claims, "data:,", "a.svg", "a.png", (), {}, 1.0, 2.0)
     text = render([made], cores=3, workers=2, seconds=4.25)
     Page(text)
     assert GENERATOR in text
     assert "x &lt; 3 &amp; y" in text and "<i>" not in text and "<b>" not in re.sub(r"<b>\d+</b>", "", text)
     counts = re.findall(r"<b>(\d+)</b><span aria-hidden=\"true\">.</span> ([a-z ]+)<", text)
-    assert counts == [("1", "reproduced"), ("1", "reproduced in kind"), ("0", "not reproducible"), ("2", "misprint")]
+    assert counts == [
+        ("1", "reproduced"),
+        ("1", "reproduced qualitatively"),
+        ("0", "not reproducible"),
+        ("2", "misprint"),
+    ]
     assert "4.2 s" in text and "3 cores, 2 processes" in text
     assert "Not computed" not in text
     assert "Not computed for this page: 7d, 7e; A1." in render(
@@ -270,12 +275,12 @@ def test_page_escapes_and_counts():
     ],
 )
 def test_numbers_and_symbols_are_typeset(text, html):
-    """Powers of ten, subscripts, exponents and minus signs are printed as such, other text is left alone."""
+    """Powers of ten, subscripts, exponents and minus signs are typeset; other text is unchanged."""
     assert typeset(text) == html
 
 
-def test_system_has_the_known_numbers():
-    """The table of the system holds the mass, the frequencies and the speeds of first yield."""
+def test_parameters_of_the_system():
+    """The table of parameters contains the mass, the frequencies and the speeds of first yield."""
     values = {(line.name, line.symbol): float(line.value) for line in system()}
     assert values["Mass of the ball", "m"] == pytest.approx(1.200037, abs=1e-6)
     assert values["Natural frequency, ball riding along", "√(K/(M+m))"] == pytest.approx(61.4295, abs=1e-4)

@@ -10,12 +10,12 @@ from reproduction.runs import grouped, record_cases, simulate, write_runs
 
 
 def stated(case):
-    """Return all that a case holds but its name."""
+    """Return all fields of a case except its name."""
     return case.model_dump_json(exclude={"name"})
 
 
 def read(folder, files):
-    """Return every case that stands in files."""
+    """Return all cases of the files."""
     for each in files.values():
         yield rb.Case.from_file(folder / each.case)
         if each.study:
@@ -25,8 +25,8 @@ def read(folder, files):
             yield from (design.case_at(study.case, number) for number in range(design.size))
 
 
-def test_every_run_of_a_figure_stands_in_its_files(every, tmp_path):
-    """Case and study files hold each run that the data come from, to the last bit, and no other but named cases."""
+def test_files_contain_every_run_of_a_figure(every, tmp_path):
+    """Case and study files contain exactly the runs behind the data and the named cases."""
     (tmp_path / "cases").mkdir()
     named = every.figure.cases()
     written = [stated(case) for case in read(tmp_path, write_runs(named, every.runs, tmp_path, "cases", every.module))]
@@ -35,7 +35,7 @@ def test_every_run_of_a_figure_stands_in_its_files(every, tmp_path):
 
 
 def test_a_run_belongs_to_the_nearest_case():
-    """Fewest differences count first, then how far they lead away; a run twice is one run, a named one is none."""
+    """The nearest case has the fewest differences, then the smallest ones; repeated and named runs are not listed."""
     named = {"centred": paper_case(), "wall": paper_case(start=1.0), "plastic": paper_case(PLASTIC)}
     runs = [paper_case(start=0.9), paper_case(start=0.9), paper_case(start=0.1, amplitude=100.0), paper_case(PLASTIC)]
     assert grouped(named, runs) == {
@@ -44,16 +44,16 @@ def test_a_run_belongs_to_the_nearest_case():
     }
 
 
-def test_a_run_without_a_name_is_refused():
-    """A run with another law or other output times than any named case is no variant of one."""
+def test_run_that_is_no_variant():
+    """A run with another law or other output times than all named cases raises an error."""
     with pytest.raises(ValueError, match="in more than numbers"):
         grouped({"constant": paper_case()}, [paper_case(PLASTIC)])
     with pytest.raises(ValueError, match="in more than numbers"):
         grouped({"constant": paper_case()}, [paper_case(times=[0.0])])
 
 
-def test_runs_are_noted_while_asked():
-    """Only what runs inside the context is noted."""
+def test_recording_of_cases():
+    """Only cases that run inside the context are recorded."""
     case = paper_case(duration=1e-3)
     simulate(case)
     with record_cases() as runs:
@@ -63,7 +63,7 @@ def test_runs_are_noted_while_asked():
 
 
 def test_a_study_of_a_figure_runs_by_itself(tmp_path):
-    """The study file gives a sweep the numbers of the runs it stands for."""
+    """A sweep of the study file has the numbers of the recorded runs."""
     (tmp_path / "cases").mkdir()
     runs = [paper_case(start=start, duration=0.5) for start in (0.2, 0.4)]
     named = {"Centred, 5 kN": paper_case(duration=0.5)}

@@ -34,7 +34,7 @@ def data():
 
 
 def test_tables_read_back_equal(data, tmp_path):
-    """Every value of every variable and coordinate reads back as the same bits, in its own place."""
+    """Every value of every variable and coordinate is read back bit by bit at its position."""
     seen = set()
     for path, table in write_tables(data, tmp_path, "figure_01").items():
         with path.open(newline="", encoding="utf-8") as file:
@@ -57,14 +57,14 @@ def test_tables_read_back_equal(data, tmp_path):
 
 
 def test_tables_are_named_by_their_dimensions(data, tmp_path):
-    """A file's name tells what its rows run over."""
+    """The name of a file contains the dimensions of its rows."""
     names = {path.name for path in write_tables(data, tmp_path, "figure_01")}
     assert names == {f"figure_01_{tail}.csv" for tail in ("model_time", "time", "model", "numbers", "sample", "marks")}
     assert {path.name for path in tmp_path.iterdir()} == names
 
 
 def test_header_carries_units(data, tmp_path):
-    """A column says its unit, a pure number none."""
+    """The header of a column contains its unit, except for pure numbers."""
     write_tables(data, tmp_path, "x")
     assert (tmp_path / "x_model.csv").read_text().splitlines()[0] == "model,count,stable,colour"
     assert (tmp_path / "x_model_time.csv").read_text().splitlines()[0] == "model,time [s],energy [J]"

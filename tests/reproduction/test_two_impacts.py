@@ -1,4 +1,4 @@
-"""The exact motion with two impacts a cycle."""
+"""Exact motion with two impacts per cycle."""
 
 from math import pi
 
@@ -16,12 +16,12 @@ TABLE = {
     (0.10, 0.75, 30): (None, 1.526),
     (0.10, 0.25, 10): (None, 1.791),
 }
-"""Ball speed and multiplier by mass ratio, restitution and clearance, all else one, 1 % damping."""
+"""Ball speed and multiplier by mass ratio, restitution and clearance; other parameters 1, damping ratio 1 %."""
 
 
 @pytest.mark.parametrize("key", TABLE)
 def test_speed_and_stability_are_those_of_theory(key):
-    """Speeds and multipliers are the published ones, of stable and of unstable motions."""
+    """Speeds and multipliers of stable and unstable motions are the published ones."""
     ball, restitution, clearance = key
     speed, multiplier = TABLE[key]
     found = two_impacts(
@@ -50,7 +50,7 @@ def test_multiplier_of_the_lyapunov_example():
 
 
 def test_weak_load_has_no_such_motion():
-    """Where the structure moves too little, there is none."""
+    """There is no such motion if the structure moves too little."""
     assert not two_impacts(
         mass=1.0,
         stiffness=1.0,
