@@ -1,10 +1,11 @@
-"""Times the single-ball case (5 kN, 5 s) against ourselves and, where they are given, against other programs' scripts.
+"""Benchmark of the single-ball case (5 kN, 5 s), optionally in comparison with scripts of other programs.
 
     python benchmarks/bench.py [--peers FOLDER] [--repeat N]
 
-FOLDER holds the scripts that peers.py names; those that can run here do, the others are told. Times of ours are the best of
-N, in the core; of the peers, CPU time of one run. Accuracy is measured against a solution in 113-bit arithmetic. The program
-that calls ode45 at every step is timed step by step, and its 5 s are extrapolated from the number of steps.
+FOLDER contains the scripts listed in peers.py; scripts that cannot run here are listed with the reason. Our times are
+the best of N, in the core; those of the peers are CPU times of one run. Accuracy is measured against a solution in
+113-bit arithmetic. The program that calls ode45 at every step is timed step by step, and its 5 s are extrapolated from
+the number of steps.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ def errors(times: np.ndarray, z_at_1: float | None) -> tuple[float, float]:
 
 
 def single_ball(method: object) -> rb.Case:
-    """Return the case."""
+    """Return the single-ball case with a method."""
     return rb.Case(
         structure=rb.SDOF(mass=20.0, stiffness=8e4, damping=25.3),
         dampers=(
@@ -54,7 +55,7 @@ def single_ball(method: object) -> rb.Case:
 
 
 def ours(name: str, method: object, repeat: int) -> dict[str, object]:
-    """Time one method of ours inside the core."""
+    """Measure the time of one of our methods inside the core."""
     case = single_ball(method)
     packed = pack(case)
     seconds = min(_core.simulate([packed], 1)[0].seconds for _ in range(repeat))
@@ -64,7 +65,7 @@ def ours(name: str, method: object, repeat: int) -> dict[str, object]:
 
 
 def theirs(folder: Path) -> tuple[list[dict[str, object]], list[str]]:
-    """Measure what runs of the peers; return rows and, of the others, why they did not run."""
+    """Measure the peers; return rows, and the reasons why the others did not run."""
     rows, missing = [], []
     for name, found in peers.measure(folder):
         if isinstance(found, str):
@@ -83,18 +84,18 @@ def theirs(folder: Path) -> tuple[list[dict[str, object]], list[str]]:
 
 
 def duration(seconds: float) -> str:
-    """Write a time with a unit that suits it."""
+    """Return a time as text with a suitable unit."""
     scale, unit = next(((s, u) for s, u in ((3600.0, "h"), (1.0, "s")) if seconds >= s), (1e-3, "ms"))
     return f"{seconds / scale:.3g} {unit}"
 
 
 def times(ratio: float) -> str:
-    """Write a ratio with three digits and thousands apart."""
+    """Return a ratio as text with three digits and separated thousands."""
     return f"{float(f'{ratio:.3g}'):,.0f}".replace(",", " ") if ratio >= 100 else f"{ratio:.3g}"
 
 
-def shown(error: float, unit: str) -> str:
-    """Write an error; a dash where there is none."""
+def error_text(error: float, unit: str) -> str:
+    """Return an error as text, a dash if it is not finite."""
     return f"{error:.1e} {unit}" if np.isfinite(error) else "-"
 
 
@@ -111,8 +112,8 @@ def main() -> None:
         ours("Rattlebox Newton (hard impacts)", rb.Newton(restitution=0.99117), options.repeat),
         ours("Rattlebox TwoStep rk4", rb.TwoStep(), 1),
     ]
-    found, missing = theirs(options.peers) if options.peers else ([], [])
-    rows += found
+    peer_rows, missing = theirs(options.peers) if options.peers else ([], [])
+    rows += peer_rows
     base = float(rows[0]["seconds"])  # type: ignore[arg-type]
     print(f"core {choice()[0]}; {time.perf_counter() - start:.0f} s of measurement\n")
     print("| program | time | ratio | impacts | error of first 30 impacts | error of z(1 s) |")
@@ -121,7 +122,7 @@ def main() -> None:
         seconds = float(r["seconds"])  # type: ignore[arg-type]
         print(
             f"| {r['name']} | {duration(seconds)} | {times(seconds / base)} | {r['impacts']} "
-            f"| {shown(r['dt30'], 's')} | {shown(r['dz1'], 'm')} |"  # type: ignore[arg-type]
+            f"| {error_text(r['dt30'], 's')} | {error_text(r['dz1'], 'm')} |"  # type: ignore[arg-type]
         )
     for line in missing:
         print(f"\nnot run: {line}")

@@ -1,4 +1,4 @@
-"""Times what `import rattlebox` adds to NumPy's own import. `python benchmarks/imports.py` prints one JSON line."""
+"""Benchmark of the time that `import rattlebox` takes after NumPy: `python benchmarks/imports.py` prints one JSON line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ CODE = "from time import perf_counter as t; import numpy; a = t(); import rattle
 
 
 def main() -> None:
-    """Measure in fresh processes, after one that fills the caches, and print."""
+    """Measure in new processes, after one that fills the file cache, and print."""
     runs = [float(subprocess.check_output([sys.executable, "-c", CODE])) for _ in range(REPEAT + 1)][1:]
     print(json.dumps({"name": "import rattlebox after numpy", "seconds": min(runs), "median": median(runs)}))
 

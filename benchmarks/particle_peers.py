@@ -1,8 +1,9 @@
-"""Other programs on the box of particles.py: which are here, the beds that all start from, and how long they take.
+"""Other programs on the box of particles.py: availability, common initial beds, and run times.
 
-FOLDER holds their decks: make_initial.py and settle.py, in.lammps, in.lammps_legacy, in.liggghts and w2_yade.py. LAMMPS and
-LIGGGHTS run on two cores as two ranks that share the box along x, with the mpirun beside the program; YADE with two threads.
-LIGGGHTS and YADE shake in another phase than the rest, which the periods before the clock starts let pass.
+FOLDER contains their input scripts: make_initial.py and settle.py, in.lammps, in.lammps_legacy, in.liggghts and
+w2_yade.py. LAMMPS and LIGGGHTS run on two cores as two ranks that divide the box along x, with the mpirun in the folder
+of the program; YADE uses two threads. LIGGGHTS and YADE shake with another phase, which does not matter after the
+periods before the measurement.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ from typing import Any
 
 import numpy as np
 
-SKIN = 0.0006  # m: what LAMMPS and LIGGGHTS are fastest with; YADE's deck has its own
+SKIN = 0.0006  # m; fastest for LAMMPS and LIGGGHTS; the script of YADE sets its own
 _COPIED = ("make_initial.py", "settle.py", "in.lammps", "in.lammps_legacy", "in.liggghts", "w2_yade.py")
 
 
 @dataclass(frozen=True)
 class Program:
-    """One that runs a deck, by its name or its path."""
+    """Program that runs an input script, by its name or its path."""
 
     name: str
     binary: str
@@ -33,11 +34,11 @@ class Program:
 
     @property
     def here(self) -> bool:
-        """Whether it is installed."""
+        """Whether the program is installed."""
         return shutil.which(self.binary) is not None
 
     def seconds(self, where: Path, count: int, cores: int, warm: int, steps: int) -> float:
-        """Time some steps after others, from the bed in a folder."""
+        """Return the time of some steps after warm-up, from the bed in a folder [s]."""
         environment = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
         if self.deck.endswith(".py"):
             command = [self.binary, "-n", "-x", f"-j{cores}", self.deck]
@@ -48,8 +49,8 @@ class Program:
             variables = [word for key, value in values.items() for word in ("-var", key, str(value))]
             command = [self.binary, "-in", self.deck, *variables]
             if cores > 1:
-                beside = Path(self.binary).with_name("mpirun")
-                mpirun = str(beside) if beside.exists() else "mpirun"
+                neighbour = Path(self.binary).with_name("mpirun")
+                mpirun = str(neighbour) if neighbour.exists() else "mpirun"
                 command = [mpirun, "--bind-to", "none", "-np", str(cores), *command]
             environment["OMP_NUM_THREADS"] = "1"
             pattern, windows = r"Loop time of ([\d.eE+-]+)", 2
@@ -69,27 +70,27 @@ PROGRAMS = (
 )
 
 
-def another_lammps(given: str) -> Program:
-    """Read NAME=PATH: a second LAMMPS, that runs the first deck."""
-    name, _, path = given.partition("=")
+def another_lammps(text: str) -> Program:
+    """Parse NAME=PATH of a second LAMMPS, which runs the first input script."""
+    name, _, path = text.partition("=")
     if not (name and path):
-        raise ArgumentTypeError(f"{given!r} is not NAME=PATH, as in 'LAMMPS 2025=/opt/lammps/bin/lmp'")
+        raise ArgumentTypeError(f"{text!r} is not of the form NAME=PATH, such as 'LAMMPS 2025=/opt/lammps/bin/lmp'")
     return Program(name, path, "in.lammps")
 
 
-def set_out(folder: Path, where: Path, count: int, amplitude: float, bed: Path, edge: float) -> None:
-    """Lay the decks, and the bed that they read, into a folder; a bed that is not there yet is made and kept.
+def prepare_folder(folder: Path, where: Path, count: int, amplitude: float, bed: Path, edge: float) -> None:
+    """Copy the input scripts and their bed to a folder; create and store the bed if it does not exist.
 
     Parameters
     ----------
     folder, where
-        Of the decks, and to work in.
+        Folder of the scripts, and working folder.
     count, edge
-        Of the particles, and of the box [m].
+        Number of particles, and edge of the box [m].
     amplitude
-        Of the acceleration [m/s^2].
+        Amplitude of the acceleration [m/s^2].
     bed
-        CSV file: places counted from the centre of the box, velocities and spins after 25 periods in LAMMPS, (count, 9).
+        CSV file: positions relative to the centre of the box, velocities and spins after 25 periods in LAMMPS, (count, 9).
     """
     for name in _COPIED:
         text = (folder / name).read_text()
@@ -108,6 +109,6 @@ def set_out(folder: Path, where: Path, count: int, amplitude: float, bed: Path, 
     columns = np.loadtxt(bed, delimiter=",", ndmin=2) + middle
     head = data.read_text().split("Atoms")[0]
     rows = [[f"{value:.9g}" for value in row] for row in columns]
-    atoms_told = "".join(f"{i} 1 0.003 7850 {' '.join(row[:3])}\n" for i, row in enumerate(rows, 1))
-    velocities_told = "".join(f"{i} {' '.join(row[3:])}\n" for i, row in enumerate(rows, 1))
-    data.write_text(f"{head}Atoms\n\n{atoms_told}\nVelocities\n\n{velocities_told}")
+    atom_lines = "".join(f"{i} 1 0.003 7850 {' '.join(row[:3])}\n" for i, row in enumerate(rows, 1))
+    velocity_lines = "".join(f"{i} {' '.join(row[3:])}\n" for i, row in enumerate(rows, 1))
+    data.write_text(f"{head}Atoms\n\n{atom_lines}\nVelocities\n\n{velocity_lines}")

@@ -1,4 +1,4 @@
-"""Other programs' scripts of the single-ball case: which of them run here, and what they take.
+"""Scripts of the single-ball case for other programs: availability and run times.
 
 Each script prints one JSON line with cpu_s and impacts, and writes impacts (t0) and samples (time, position) to the JSON
 file that is its last argument.
@@ -22,7 +22,7 @@ LIMIT = 600  # s for one script
 
 @dataclass(frozen=True)
 class Peer:
-    """One setting of one script, 5 s unless it says otherwise."""
+    """One setting of one script, 5 s unless stated otherwise."""
 
     name: str
     script: str
@@ -51,38 +51,38 @@ PEERS = (
 
 
 def measure(folder: Path) -> Iterator[tuple[str, dict[str, Any] | str]]:
-    """Run what can run; yield each name with the script's line, impact times and samples, or why it did not run."""
+    """Run the scripts; yield each name with its results, or with the reason why it did not run."""
     for peer in PEERS:
         program = _program(folder / peer.script, peer.module)
         yield peer.name, program if isinstance(program, str) else _run(program, peer.arguments, peer.environment)
 
 
 def single_steps(folder: Path, contact_time: float, first_touch: float) -> dict[str, Any] | str:
-    """Return what the multi-time-step program of the reference study takes for 5 s, from the time of its single steps.
+    """Return the time that the multi-time-step program of the reference study takes for 5 s, from its time per step.
 
     Parameters
     ----------
     folder
-        Holds w1_octave_seed.m, which calls ode45 once every 5 microseconds of flight and 30 nanoseconds of contact.
+        Folder with w1_octave_seed.m, which calls ode45 once every 5 microseconds of flight and 30 nanoseconds of contact.
     contact_time
         Sum of the durations of all contacts in 5 s [s].
     first_touch
-        The program runs until a moment later [s].
+        Time of the first contact [s]; the program runs until shortly after it.
     """
     program = _program(folder / "w1_octave_seed.m", "")
     if isinstance(program, str):
         return program
-    found = _run(program, (repr(first_touch + 1.5e-5),), {})
-    if isinstance(found, str):
-        return found
-    flight, contact = found["ms_per_call_free"] / 1e3, found["ms_per_call_contact"] / 1e3
+    result = _run(program, (repr(first_touch + 1.5e-5),), {})
+    if isinstance(result, str):
+        return result
+    flight, contact = result["ms_per_call_free"] / 1e3, result["ms_per_call_contact"] / 1e3
     calls = (5 - contact_time) / 5e-6, contact_time / 3e-8
-    found["cpu_s"] = calls[0] * flight + calls[1] * contact
-    return found
+    result["cpu_s"] = calls[0] * flight + calls[1] * contact
+    return result
 
 
 def _program(script: Path, module: str) -> list[str] | str:
-    """The command that runs a script, or why there is none."""
+    """Return the command that runs a script, or the reason why it cannot run."""
     if not script.exists():
         return f"no {script.name} in the folder"
     if script.suffix == ".m":
@@ -94,7 +94,7 @@ def _program(script: Path, module: str) -> list[str] | str:
             and subprocess.run([python, "-c", f"import {module}"], capture_output=True, check=False).returncode == 0
         ):
             return [python, str(script)]
-    return f"no Python here imports {module}"
+    return f"no Python installation has the module {module}"
 
 
 def _run(program: list[str], arguments: tuple[str, ...], environment: dict[str, str]) -> dict[str, Any] | str:
@@ -114,7 +114,7 @@ def _run(program: list[str], arguments: tuple[str, ...], environment: dict[str, 
         except subprocess.TimeoutExpired:
             return f"took more than {LIMIT} s"
         if done.returncode != 0:
-            return f"failed: {(done.stderr.strip().splitlines() or ['no word why'])[-1]}"
+            return f"failed: {(done.stderr.strip().splitlines() or ['no message'])[-1]}"
         line = json.loads(done.stdout.strip().splitlines()[-1])
         written = json.loads(out.read_text(encoding="utf-8"))
         line["times"] = [impact["t0"] for impact in written["impacts"]]

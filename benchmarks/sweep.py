@@ -1,12 +1,12 @@
-"""Times what a study of the reference case costs: `python benchmarks/sweep.py [NAME ...]` prints a table.
+"""Benchmark of studies of the reference case: `python benchmarks/sweep.py [NAME ...]` prints a table.
 
 packing   a million variants packed by broadcasting, on a grid and in a random design
-rate      impacts a second and core in an ensemble of start positions, 5 s each; two cores against one, in pairs
+rate      impacts per second and core in an ensemble of start positions, 5 s each; two cores against one, in pairs
 memory    a million trajectories of 0.05 s: resident memory beyond the result
 dask      two workers of a Dask cluster against two threads, blocks of seconds
 scipy     the same ensemble by SciPy (LSODA, relative tolerance 1e-9), a few members extrapolated
 
-Everything is the best of three, or the median ratio of three pairs, each pair measured back to back.
+Numbers are the best of three, or the median ratio of three pairs, each pair measured back to back.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def packing(design: Callable[[], tuple[Case, Mapping[str, Any], tuple[int, ...]]
 
 
 def _peak() -> int:
-    """The most memory this process has had so far [bytes]."""
+    """Return the peak memory of this process [bytes]."""
     return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
@@ -72,14 +72,14 @@ def starts(count: int) -> dict[str, Any]:
 
 
 def timed(work: Callable[[], Any]) -> tuple[float, Any]:
-    """Return seconds and what came of it."""
+    """Return the time of a function call [s] and its result."""
     start = time.perf_counter()
     result = work()
     return time.perf_counter() - start, result
 
 
 def pairs(first: Callable[[], Any], second: Callable[[], Any]) -> float:
-    """Return the median ratio of the times of two jobs, each pair back to back, in turns."""
+    """Return the median ratio of the times of two jobs, each pair back to back, in alternating order."""
     ratios = []
     for turn in range(3):
         a, b = (timed(first)[0], timed(second)[0]) if turn % 2 else (timed(second)[0], timed(first)[0])[::-1]
@@ -88,7 +88,7 @@ def pairs(first: Callable[[], Any], second: Callable[[], Any]) -> float:
 
 
 def rate(count: int = 20_000) -> Iterator[tuple[str, str]]:
-    """Measure impacts a second on one core, and what a second core gives."""
+    """Measure impacts per second on one core, and the speed-up with a second core."""
     case = rb.reference_case(duration=5.0)
 
     def run(threads: int) -> Any:
@@ -151,7 +151,7 @@ def scipy(count: int = 100_000, members: int = 3) -> Iterator[tuple[str, str]]:
 
 
 def peer(start: float) -> float:
-    """Run the reference case with SciPy, stopping at each touch and release; returns the loss in the contacts."""
+    """Simulate the reference case with SciPy, with an event at each contact begin and end; return the loss in contacts."""
     from scipy.integrate import solve_ivp
 
     case = rb.reference_case()
@@ -161,7 +161,7 @@ def peer(start: float) -> float:
     hertz = 4 / 3 * 200e9 / (2 * (1 - 0.3**2)) * damper.balls[0].radius ** 0.5
     dashpot = damper.contact.alpha * (mass * ball / (mass + ball) * hertz) ** 0.5
 
-    def right(t: float, y: Any) -> list[float]:
+    def derivative(t: float, y: Any) -> list[float]:
         z, v, s, w, _ = y
         depth = abs(s - z) - gap
         side = 1.0 if s > z else -1.0
@@ -179,12 +179,14 @@ def peer(start: float) -> float:
     y = np.array([0.0, 0.0, start * gap, 0.0, 0.0])
     t, stops = 0.0, [pulse, 5.0]
     while t < 5.0:
-        part = solve_ivp(right, (t, stops[0]), y, method="LSODA", rtol=1e-9, atol=1e-12, events=touch, max_step=1e-2)
+        part = solve_ivp(
+            derivative, (t, stops[0]), y, method="LSODA", rtol=1e-9, atol=1e-12, events=touch, max_step=1e-2
+        )
         t, y = part.t[-1], part.y[:, -1]
         if t >= stops[0] and len(stops) > 1:
             stops.pop(0)
-        elif part.status == 1:  # a moment on, so that the same touch is not found again
-            part = solve_ivp(right, (t, t + 1e-9), y, method="LSODA", rtol=1e-9, atol=1e-12)
+        elif part.status == 1:  # step past the event, so that it is not detected again
+            part = solve_ivp(derivative, (t, t + 1e-9), y, method="LSODA", rtol=1e-9, atol=1e-12)
             t, y = part.t[-1], part.y[:, -1]
     return float(y[4])
 
@@ -192,19 +194,19 @@ def peer(start: float) -> float:
 def packings() -> Iterator[tuple[str, str]]:
     """Measure the packing of a million variants."""
     for design in (grid, random):
-        found = packing(design)
-        yield found["name"], f"{found['seconds']:.3f} s, {found['MiB']:.0f} MiB"
+        result = packing(design)
+        yield result["name"], f"{result['seconds']:.3f} s, {result['MiB']:.0f} MiB"
 
 
 PARTS = {"packing": packings, "rate": rate, "memory": memory, "dask": dask, "scipy": scipy}
 
 
 def main() -> None:
-    """Measure and print."""
-    print("| what | measured |\n|---|---|")
+    """Print a table of the selected measurements."""
+    print("| case | result |\n|---|---|")
     for name in sys.argv[1:] or PARTS:
-        for what, measured in PARTS[name]():
-            print(f"| {what} | {measured} |", flush=True)
+        for title, result in PARTS[name]():
+            print(f"| {title} | {result} |", flush=True)
 
 
 if __name__ == "__main__":

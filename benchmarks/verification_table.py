@@ -1,4 +1,4 @@
-"""Write docs/validation/verification_table.md: exact and computed values and their differences, one line a comparison.
+"""Write docs/validation/verification_table.md: exact and computed values and their differences, one line per comparison.
 
 python benchmarks/verification_table.py [target]
 """
@@ -10,32 +10,32 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
 from verification import maps, measures  # noqa: E402
-from verification.dem import measures as in_space  # noqa: E402
+from verification.dem import measures as dem_measures  # noqa: E402
 
 TITLES = {
     "1": "A ball against a fixed wall",
     "2": "Jackson and Green's restitution in a fixed cavity",
     "3": "Thornton's hysteretic contact",
-    "4": "Impact damper with two impacts a cycle",
+    "4": "Impact damper with two impacts per cycle",
     "5": "Ball in a shaken cavity",
     "6": "Sticky load in a shaken cavity",
     "7": "Ball on a vibrating table, and chatter",
     "8": "Inelastic ball on a shaker",
     "9": "Impact oscillator",
-    "dem": "Particles in space",
-    "maps": "What ready maps find",
+    "dem": "Particle dampers (3-D)",
+    "maps": "Maps of studies",
 }
 HEAD = """# Verification table
 
-Exact values, what rattlebox computes and the relative difference. Each line is also a test; this page is
-written by `python benchmarks/verification_table.py`. The exact values come from closed formulas in
+Exact values, values computed by Rattlebox and their relative difference. Each line is also a test;
+`python benchmarks/verification_table.py` writes this page. The exact values come from closed formulas in
 `tests/verification/exact`.
 """
 
 
 def table() -> str:
     """Return the page."""
-    lines = [line for function in (*measures.ALL, *in_space.ALL, *maps.ALL) for line in function()]
+    lines = [line for function in (*measures.ALL, *dem_measures.ALL, *maps.ALL) for line in function()]
     parts = [HEAD]
     for item, title in TITLES.items():
         parts.append(f"\n## {title}\n\n| case | exact | computed | difference |\n|---|---:|---:|---:|\n")
@@ -60,8 +60,8 @@ def table() -> str:
             )
         if item == "maps":
             parts.append(
-                "\nA threshold is said to lie halfway between two values: bifurcation diagrams step by 0.0005, frequency"
-                " responses by 0.0002 (lower limits) or 0.0005. The loss that tells the best clearance is flat at its top.\n"
+                "\nA threshold is taken as the middle between two values: bifurcation diagrams step by 0.0005, frequency"
+                " responses by 0.0002 (lower limits) or 0.0005. The maximum of the loss over the clearance is flat.\n"
             )
         if item == "4":
             orders = ", ".join(f"{measures.soft_order(law):.3f} ({law})" for law in measures.SOFT_DAMPERS)
