@@ -87,6 +87,7 @@ from rattlebox.results.snapshots import Snapshots as Snapshots
 from rattlebox.studies.check_softening import check_softening as check_softening
 from rattlebox.studies.compare import compare as compare
 from rattlebox.studies.damping_curve import damping_curve as damping_curve
+from rattlebox.studies.export import to_mat as to_mat
 from rattlebox.studies.kinds.basins import basins as basins
 from rattlebox.studies.kinds.bifurcation import bifurcation as bifurcation
 from rattlebox.studies.kinds.design import design as design

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from itertools import product
 from pathlib import Path
@@ -22,15 +22,28 @@ if TYPE_CHECKING:
 _DISK_HINT = "free disk space and write the file again"
 
 
-def _cells(names: tuple[str, ...]) -> Any:
-    """Return texts as a MATLAB column of cells."""
-    cells = np.empty((len(names), 1), dtype=object)
-    cells[:, 0] = names
+def as_cells(texts: Iterable[Any]) -> Any:
+    """Return texts as a column of cells of a MATLAB file.
+
+    Parameters
+    ----------
+    texts
+        Texts, or anything that is written as text.
+    """
+    values = [str(text) for text in texts]
+    cells = np.empty((len(values), 1), dtype=object)
+    cells[:, 0] = values
     return cells
 
 
-def _column(values: Any) -> Any:
-    """Return a vector as a column, also if it is empty; other arrays unchanged."""
+def as_column(values: Any) -> Any:
+    """Return a vector, also an empty one, as a column, and other arrays as they are.
+
+    Parameters
+    ----------
+    values
+        Array.
+    """
     return values[:, None] if values.ndim == 1 else values
 
 
@@ -76,9 +89,9 @@ def to_mat(run: Record, path: Path) -> Path:
                 if dim not in labels or dim in struct:
                     continue
                 label = labels[dim]
-                struct[dim] = _cells(label) if isinstance(label, tuple) else _column(label)
+                struct[dim] = as_cells(label) if isinstance(label, tuple) else as_column(label)
                 unit[dim] = dimensions(engine)[dim].units
-            struct[v.name] = _column(values[v.name])
+            struct[v.name] = as_column(values[v.name])
             unit[v.name] = v.units
         content[group] = struct
         units[group] = unit
