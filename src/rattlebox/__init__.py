@@ -1,7 +1,7 @@
 """Simulator and design tool for particle and impact dampers.
 
-The one import path: `import rattlebox as rb`. Everything public is a name of this module or of its subpackages
-`analysis` and `plots`, and loads when it is first used. `__init__.pyi` lists the names.
+Use `import rattlebox as rb`. All public names are in this module and its subpackages `analysis` and `plots`; modules load on
+first use. `__init__.pyi` lists the names.
 """
 
 import re
@@ -22,7 +22,7 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'rattlebox' has no attribute {name!r}")
     if _MODULES[name] == "rattlebox":
         return import_module(f"rattlebox.{name}")
-    import_module("rattlebox.model.case")  # before all else: messages list kinds in the order in which they load
+    import_module("rattlebox.model.case")  # messages list kinds in the order of import
     value = getattr(import_module(_MODULES[name]), name)
     globals()[name] = value
     return value

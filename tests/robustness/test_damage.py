@@ -146,7 +146,7 @@ def test_kinds_of_studies_that_are_no_texts(
     """A kind that is a list, a table or a number is refused as any other that is not known."""
     (tmp_path / "study.toml").write_text(f'kind = {kind}\n[case]\nfile = "case.toml"\n')
     assert command(monkeypatch, "sweep", str(tmp_path / "study.toml")) == 2
-    assert "there is no such kind of study" in capsys.readouterr().err
+    assert "is not a kind of study" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("mark", ["\0", "\n", "\x1b]0;title\x07", "\x1b[31m", "\x9b31m", "\u2028", "\x7f", "\t"])

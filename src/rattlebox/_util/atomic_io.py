@@ -1,7 +1,7 @@
-"""Atomic writes: an output file is complete, or it is what it was before.
+"""Atomic writes: an output file is either complete or unchanged.
 
-Every file that the package writes for a user goes through `atomic_write`. Files that grow in place (snapshots, stores, the
-journal of a design) have their own protection and use `disk_errors` for the messages.
+Every output file is written with `atomic_write`. Files that grow in place (snapshots, stores, the journal of a design) have
+their own protection and use `disk_errors` for the messages.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from pathlib import Path
 from .exceptions import DataError, RattleboxError, ResourceError
 
 HDF5_ERRORS = (OSError, AttributeError, LookupError, RuntimeError, TypeError, ValueError, OverflowError)
-"""Exceptions that HDF5 libraries raise for a damaged file, or for one with other content."""
+"""Exceptions of the HDF5 libraries for damaged files and files with other content."""
 
-WRITE_AGAIN = "make room and give the same command again"
+DISK_HINT = "free disk space and give the same command again"
 """Default advice for a full disk."""
 
 _WRITERS = {
     ".nc": "run.save",
     ".mat": "run.to_mat",
     ".csv": "run.to_csv",
-    ".vtkhdf": "rb.simulate(case, snapshots=...), of particles in space",
+    ".vtkhdf": "rb.simulate(case, snapshots=...), for particle dampers",
     ".toml": "case.to_file",
 }
 
@@ -39,12 +39,12 @@ def check_suffix(path: Path, own: str) -> None:
     path
         The file, or a folder.
     own
-        Suffix of the kind of file that is written; "" for a folder.
+        Suffix of the file to be written; "" for a folder.
 
     Raises
     ------
     DataError
-        If it does; the message names the function that writes the other kind.
+        If the suffix belongs to another kind; the message names the function that writes the other kind.
     """
     suffix = path.suffix.lower()
     if suffix != own and suffix in _WRITERS:
@@ -67,13 +67,11 @@ def require_folder(path: Path) -> None:
         If there is no such folder.
     """
     if not path.parent.is_dir():
-        raise DataError(
-            f"{path} cannot be written: there is no folder {path.parent}", "another folder, or make it first"
-        )
+        raise DataError(f"{path} cannot be written: there is no folder {path.parent}", "another folder, or create it")
 
 
 def require_readable(path: Path) -> None:
-    """Raise if a file cannot be read. HDF5 and other libraries do not say why.
+    """Raise if a file cannot be read, with the reason, which HDF5 does not report.
 
     Parameters
     ----------
@@ -95,37 +93,37 @@ def require_readable(path: Path) -> None:
         raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
 
 
-def check_format(path: Path, found: object, own: int) -> None:
-    """Raise if a file has another format than the one that is read.
+def check_format(path: Path, version: object, own: int) -> None:
+    """Raise if a file has a different version of its format.
 
     Parameters
     ----------
     path
         The file.
-    found
-        Number of the format in the file.
+    version
+        Version of the format in the file.
     own
-        Number of the format that this version of the package reads and writes.
+        Version of the format that the package reads and writes.
 
     Raises
     ------
     DataError
-        If the numbers differ; the message names both.
+        If the versions differ.
     """
-    if found != own:
+    if version != own:
         raise DataError(
-            f"{path} has format {found}, and this version of Rattlebox reads format {own}",
+            f"{path} has format {version}, and this version of Rattlebox reads format {own}",
             "the version of Rattlebox that wrote it, or run the case again",
         )
 
 
 @contextmanager
-def atomic_write(path: str | os.PathLike[str], advice: str = WRITE_AGAIN) -> Iterator[Path]:
+def atomic_write(path: str | os.PathLike[str], advice: str = DISK_HINT) -> Iterator[Path]:
     """Yield the name of a temporary file, which replaces the target once the block has ended.
 
-    The content is on the disk before the name changes, and the name before the function returns: after a crash of the
-    program or of the machine, the target is either the new file or the earlier one. Where the target is a symbolic link,
-    the file that it points to is replaced.
+    The content is flushed to the disk before the temporary file is renamed, and the new name before the context ends: after
+    a crash of the program or the machine, the target is either the new or the earlier file. If the target is a symbolic
+    link, the file to which it points is replaced.
 
     Parameters
     ----------
@@ -137,13 +135,13 @@ def atomic_write(path: str | os.PathLike[str], advice: str = WRITE_AGAIN) -> Ite
     Raises
     ------
     DataError
-        If the file cannot be written; an earlier file is then unchanged, and nothing else is left behind.
+        If the file cannot be written. An earlier file is then unchanged, and the temporary file is removed.
     ResourceError
-        If no space is left on the disk; likewise.
+        If no space is left on the disk, with the same state of the files.
     """
     path = Path(path)
     with disk_errors(path, advice):
-        if path.exists() and not path.is_file():  # a device or a pipe; a folder is refused by the writer
+        if path.exists() and not path.is_file():  # a device or a pipe; for a folder the caller raises
             yield path
             return
         target = path.resolve() if path.is_symlink() else path
@@ -165,7 +163,7 @@ def atomic_write(path: str | os.PathLike[str], advice: str = WRITE_AGAIN) -> Ite
 
 
 def temporaries(path: Path) -> list[Path]:
-    """Return the temporary files that processes left that were killed in `atomic_write`.
+    """Return the temporary files of processes that were killed in `atomic_write`.
 
     Parameters
     ----------
@@ -176,19 +174,19 @@ def temporaries(path: Path) -> list[Path]:
 
 
 def remove_temporaries(path: Path) -> None:
-    """Remove the temporary files of killed processes. Only for the sole writer of a file.
+    """Remove the temporary files of killed processes. The caller must be the only writer of the file.
 
     Parameters
     ----------
     path
-        Target of the write, which is not touched.
+        Target of the write, which is not changed.
     """
-    for left in temporaries(path):
-        left.unlink(missing_ok=True)
+    for temporary in temporaries(path):
+        temporary.unlink(missing_ok=True)
 
 
 def sync(path: Path) -> None:
-    """Wait until the content of a file, or the names in a folder, are on the disk.
+    """Flush the content of a file, or the names in a folder, to the disk.
 
     Parameters
     ----------
@@ -198,7 +196,7 @@ def sync(path: Path) -> None:
     Raises
     ------
     OSError
-        If the content of a file cannot be written. Folders are synchronised where the system can.
+        If the content of a file cannot be written. Systems that cannot flush folders raise no error.
     """
     folder = path.is_dir()
     with suppress(*(OSError,) if folder else ()):
@@ -210,13 +208,13 @@ def sync(path: Path) -> None:
 
 
 @contextmanager
-def disk_errors(path: Path, advice: str = WRITE_AGAIN) -> Iterator[None]:
-    """Turn the errors of a disk that is full or cannot be written into those of the package.
+def disk_errors(path: Path, advice: str = DISK_HINT) -> Iterator[None]:
+    """Convert errors of a full or read-only disk to errors of the package.
 
     Parameters
     ----------
     path
-        The file that is written.
+        File to be written.
     advice
         Advice in the message about a full disk.
 
@@ -241,10 +239,10 @@ def disk_errors(path: Path, advice: str = WRITE_AGAIN) -> Iterator[None]:
 
 
 def reserve_space(path: Path, size: int) -> None:
-    """Reserve disk space for the first bytes of a file, where the system can, and keep their content.
+    """Reserve disk space for the first bytes of a file, on systems that support it; the content is unchanged.
 
-    HDF5 keeps part of a file in memory and crashes if the disk is full when it writes that part. The files that it
-    changes in place therefore have their space reserved first.
+    HDF5 buffers part of a file and crashes if the disk is full when it writes that part. Space is therefore reserved for
+    files that it changes in place.
 
     Parameters
     ----------

@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 
 FEWEST_BATCHES = 10
-"""Batches from which an interval is given."""
+"""Smallest number of batches for an interval."""
 
 
 class Interval(NamedTuple):
     """Mean with its 95 % confidence interval: `mean`, its limits `lower` and `upper` (NaN if the samples are too few), and
-    the number of `batches` that were found to be independent (0 if there are too few).
+    the number of independent `batches` (0 if there are too few).
     """
 
     mean: float
@@ -31,7 +31,7 @@ class Interval(NamedTuple):
 
     @property
     def is_long_enough(self) -> bool:
-        """Whether the samples are enough for an interval."""
+        """Whether there are enough samples for an interval."""
         return self.batches > 0
 
 
@@ -41,23 +41,23 @@ def mean_interval(values: ArrayLike) -> Interval:
     Parameters
     ----------
     values : (N,) array_like
-        One number for each interval of equal length: evenly spaced samples of a signal, or the loss in each cycle. Cut
-        off the transient first.
+        One number per interval of equal length, such as evenly spaced samples of a signal or the loss in each cycle,
+        without the transient.
 
     Returns
     -------
     Interval
-        Mean, limits and number of batches. Limits are NaN if there are fewer than ten batches that are independent of
-        each other: run longer.
+        Mean, limits and number of batches. Limits are NaN if there are fewer than ten independent batches; the run is then
+        too short.
 
     Raises
     ------
     ValueError
-        If a sample is not finite, or the values are not one series.
+        If a value is not finite, or the array is not one-dimensional.
 
     Notes
     -----
-    Neighbours are joined in pairs until the means of the batches are no longer correlated (lag-one correlation r
+    Neighbouring batches are averaged in pairs until the means of the batches are no longer correlated (lag-one correlation r
     below 1.645 / sqrt(n), one-sided, for n batches) nor follow a trend (Mann-Kendall test of ten batches, 1 %). Then mean +-
     t s sqrt((1 + r) / (1 - r)) / sqrt(n), r >= 0, with Student's t of n - 1 degrees of freedom. If no batches are found
     and the means of ten batches differ by less than 0.1 % of the mean, as at the end of a transient to periodic motion,
@@ -76,9 +76,7 @@ def mean_interval(values: ArrayLike) -> Interval:
     """
     x = np.asarray(values, dtype=np.float64)
     if x.ndim != 1 or not x.size or not np.isfinite(x).all():
-        raise ValueError(
-            f"values must be one series of finite numbers, not an array of shape {x.shape} with gaps or more axes"
-        )
+        raise ValueError(f"values of shape {x.shape} must be a one-dimensional array of finite numbers")
     mean = float(np.mean(x))
     (half,), (batches,) = half_widths(x[None])
     return Interval(mean, mean - float(half), mean + float(half), int(batches))

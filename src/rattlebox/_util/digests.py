@@ -1,4 +1,4 @@
-"""Digests of what HDF5 files hold: a changed bit is detected, whichever layout the library chose for the bytes."""
+"""Digests of the content of HDF5 files, which detect a changed bit and do not depend on the layout of the file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SIZE = 16
 _SCALES = frozenset(
     ("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "DIMENSION_LABELS", "_Netcdf4Dimid", "_Netcdf4Coordinates")
 )
-"""Attributes that netCDF adds when it closes a file. They hold addresses in the file, and no reader of ours uses them."""
+"""Attributes that netCDF adds when it closes a file. They hold addresses in the file and are not part of the content."""
 
 
 def array_digest(arrays: Iterable[NDArray[Any]]) -> bytes:
@@ -40,10 +40,10 @@ def group_digest(group: Any, growing: Container[str] = (), *, nested: bool = Tru
     group
         Group of h5py. Its own attribute "digest" is not part of the digest.
     growing
-        Paths below the group of what changes later: datasets, whose type and shape alone count, and attributes as
-        "path@name", which do not count.
+        Paths below the group that change later: datasets, of which only type and shape are included, and attributes as
+        "path@name", which are excluded.
     nested
-        Whether to include what is in the groups below; else their names alone.
+        Whether to include the content of subgroups; otherwise only their names.
     """
     digest = hashlib.blake2b(digest_size=SIZE)
 
@@ -71,7 +71,7 @@ def group_digest(group: Any, growing: Container[str] = (), *, nested: bool = Tru
 
 
 def _add(digest: Any, array: NDArray[Any]) -> None:
-    if array.dtype.kind in "OU":  # texts, whose bytes in memory are addresses or padded
+    if array.dtype.kind in "OU":  # the bytes of texts in memory are addresses or padded
         texts = [text if isinstance(text, bytes) else str(text).encode() for text in array.ravel().tolist()]
         digest.update(f"text{array.shape}{[len(text) for text in texts]}".encode())
         for text in texts:

@@ -1,7 +1,7 @@
-"""Exceptions of the package: every error that a user can meet is a `RattleboxError`.
+"""Exceptions of the package: every error about a case, a file or the machine is a `RattleboxError`.
 
-Wrong arguments of a function (a type that does not fit, arrays of different lengths) raise TypeError, ValueError or
-IndexError, as in NumPy.
+Wrong arguments of a function (a wrong type, arrays of different lengths) raise TypeError, ValueError or IndexError, as in
+NumPy.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ class RattleboxError(Exception):
     Parameters
     ----------
     complaint
-        What is wrong with the value, and what is allowed.
+        Error, and what is allowed.
     suggestion
-        What to try; shown on a line of its own.
+        What to try; printed on a separate line.
     place
         Location of the value in the part that raises: names of fields, numbers in lists.
     """
@@ -34,7 +34,7 @@ class RattleboxError(Exception):
 
 
 class CaseError(RattleboxError, ValueError):
-    """The description of a case or a study, or what is asked of its result, is wrong."""
+    """A case or a study is not valid, or its result does not have the requested content."""
 
 
 class DataError(RattleboxError, OSError, ValueError):
@@ -46,7 +46,7 @@ class StoreError(RattleboxError, OSError):
 
 
 class ResourceError(RattleboxError, OSError, ValueError):
-    """The machine has too little of something: memory, disk space, threads, instructions, workers of a cluster."""
+    """A resource of the machine is missing: memory, disk space, threads, instructions, workers of a cluster."""
 
 
 class MissingDependency(RattleboxError, ImportError):
@@ -66,7 +66,7 @@ def message(head: str, *rest: str) -> str:
     head
         First line.
     rest
-        Further lines, indented; the last is what to try, or "".
+        Further lines, which are indented; the last is the suggestion, or "".
     """
     *complaint, suggestion = rest
     return "\n".join([head, *(f"  {line}" for line in complaint), *([f"  try: {suggestion}"] if suggestion else [])])

@@ -1,4 +1,4 @@
-"""Narrow the type of a value that an earlier check guarantees."""
+"""Narrowing of types that an earlier check guarantees."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ Value = TypeVar("Value")
 
 
 def present(value: Value | None) -> Value:
-    """Return an optional value that is there.
+    """Return an optional value; raise if it is None.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def present(value: Value | None) -> Value:
 
 
 def instance(value: object, kind: type[Value]) -> Value:
-    """Return a value of a known class.
+    """Return a value; raise if it is not of a class.
 
     Parameters
     ----------
@@ -41,5 +41,5 @@ def instance(value: object, kind: type[Value]) -> Value:
         If it is of another class, which an earlier check of the caller should have excluded.
     """
     if not isinstance(value, kind):
-        raise TypeError(f"{value!r:.60} is no {kind.__name__}, which an earlier check should have excluded")
+        raise TypeError(f"{value!r:.60} is not a {kind.__name__}, which an earlier check should have excluded")
     return value

@@ -18,7 +18,7 @@ def optional_import(module: str, extra: str, otherwise: str = "") -> Any:
     extra
         Extra of rattlebox that installs the library.
     otherwise
-        What can be done without the library.
+        Alternative without the library, for the message.
 
     Returns
     -------
@@ -28,7 +28,7 @@ def optional_import(module: str, extra: str, otherwise: str = "") -> Any:
     Raises
     ------
     MissingDependency
-        If the library is not installed; the message has the command that installs it.
+        If the library is not installed; the message contains the command to install it.
     """
     library = module.partition(".")[0]
     try:
@@ -37,5 +37,5 @@ def optional_import(module: str, extra: str, otherwise: str = "") -> Any:
         if error.name != library:
             raise
         advice = f"python -m pip install 'rattlebox[{extra}]'" + (f", or {otherwise}" if otherwise else "")
-        raise MissingDependency(f"this needs {library}, which is not installed", advice) from None
+        raise MissingDependency(f"{library} is required and not installed", advice) from None
     return import_module(module)

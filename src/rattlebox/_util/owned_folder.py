@@ -1,7 +1,7 @@
-"""Folders that Rattlebox owns: a marker lists what was written there, and nothing else is ever changed or removed.
+"""Output folders with a marker that lists the files of Rattlebox; other files are never changed or removed.
 
-The marker is a small JSON file in the folder. It holds the kind of the folder, the version that made it, an identifier, and
-the name and digest of each file of the fixed part. Files are removed by that list only; a file that is not in it is foreign.
+The marker is a small JSON file in the folder. It holds the kind of the folder, the version that created it, an identifier,
+and the name and digest of each file of the fixed part. A file that is not in this list is foreign.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ MARKER = "rattlebox.json"
 
 
 class DamagedError(DataError):
-    """An owned folder has lost a file, or a file in it has changed."""
+    """A file of an owned folder is missing or has changed."""
 
 
 class ForeignFile(DataError):
-    """A file that Rattlebox did not write is in the place of one to be written."""
+    """A file to be written exists and was not written by Rattlebox."""
 
 
 @dataclass(frozen=True)
@@ -40,13 +40,13 @@ class Marker:
     name
         Kind of the folder.
     version
-        Version of Rattlebox that made it.
+        Version of Rattlebox that created the folder.
     identifier
-        Text that no other folder has.
+        Unique text.
     complete
         Whether all files of the list were written.
     about
-        Further facts, JSON types only.
+        Further information, JSON types only.
     files
         Digests of the files of the fixed part by their paths in the folder; "" before the folder is complete.
     """
@@ -81,7 +81,7 @@ def read_marker(folder: Path) -> Marker | None:
         return None
     except UnicodeDecodeError:
         raise DamagedError(f"{MARKER} is not text") from None
-    if not text:  # its writer was killed, or the machine was
+    if not text:  # the process or the machine stopped during the write
         return Marker("", "")
     try:
         content = json.loads(text)
@@ -104,7 +104,7 @@ def write_marker(folder: Path, marker: Marker, *, new: bool = False) -> None:
     marker
         Content of the marker.
     new
-        Keep a marker that another process has written in the meantime.
+        Whether to retain a marker that another process has written in the meantime.
 
     Raises
     ------
@@ -122,26 +122,26 @@ def write_marker(folder: Path, marker: Marker, *, new: bool = False) -> None:
 
 
 def is_free(folder: Path, also: Iterable[str] = ()) -> bool:
-    """Return whether a folder holds nothing, except what a killed process may leave of a marker.
+    """Return whether a folder is empty, except for temporary files of the marker.
 
     Parameters
     ----------
     folder
         The folder, which exists.
     also
-        Names that may be there.
+        Further names that are allowed.
     """
-    left = {path.name for path in temporaries(folder / MARKER)}
-    return {path.name for path in folder.iterdir()} <= {*left, *also}
+    allowed = {path.name for path in temporaries(folder / MARKER)}
+    return {path.name for path in folder.iterdir()} <= {*allowed, *also}
 
 
 def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
-    """Write the fixed part of an owned folder, in place of an earlier one.
+    """Write the fixed part of an owned folder; it replaces an earlier one.
 
     Parameters
     ----------
     folder
-        The folder, made if needed.
+        The folder, created if missing.
     marker
         Its marker, without files.
     files
@@ -155,7 +155,7 @@ def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
     Raises
     ------
     ForeignFile
-        If one of the files exists and is foreign. Nothing is changed then.
+        If one of the files exists and is foreign; nothing is changed then.
     OSError
         If a file cannot be written.
     """
@@ -173,13 +173,13 @@ def fill(folder: Path, marker: Marker, files: Mapping[str, bytes]) -> Marker:
         path.parent.mkdir(parents=True, exist_ok=True)
         with atomic_write(path) as temporary:
             temporary.write_bytes(content)
-    whole = replace(marker, complete=True, files={name: _digest(content) for name, content in files.items()})
-    write_marker(folder, whole)
-    return whole
+    complete = replace(marker, complete=True, files={name: _digest(content) for name, content in files.items()})
+    write_marker(folder, complete)
+    return complete
 
 
 def damaged_files(folder: Path, marker: Marker) -> list[str]:
-    """Return the files of the fixed part that are lost or have changed.
+    """Return the files of the fixed part that are missing or have changed.
 
     Parameters
     ----------
@@ -192,12 +192,12 @@ def damaged_files(folder: Path, marker: Marker) -> list[str]:
 
 
 def remove(folder: Path, names: Iterable[str]) -> None:
-    """Remove files of an owned folder by their names, and the folders in it that are empty then.
+    """Remove files of an owned folder by name, and subfolders that are then empty.
 
     Parameters
     ----------
     folder
-        The folder, which stays.
+        The folder, which is not removed.
     names
         Paths in the folder, with slashes. They need not exist.
     """
@@ -213,7 +213,7 @@ def remove(folder: Path, names: Iterable[str]) -> None:
                 break
             try:
                 parent.rmdir()
-            except OSError:  # it holds something else, or is gone
+            except OSError:  # it holds other files, or does not exist
                 break
     sync(folder)
 

@@ -1,4 +1,4 @@
-"""Texts that come from files: control characters in them change a terminal, or break a line in two."""
+"""Control characters in texts from files, which could change the terminal or break lines."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def has_controls(name: str) -> bool:
 
 
 def printable(text: str) -> str:
-    """Return a text with question marks for all control characters but line breaks and tabs.
+    """Return a text in which control characters except line breaks and tabs are question marks.
 
     Parameters
     ----------

@@ -16,8 +16,8 @@ from rattlebox.cli.terminal import terminal
 from rattlebox.prepare.time_step import WARNINGS
 from rattlebox.results.quantities import MISSING, quantity
 from rattlebox.results.schema import OUTCOMES
-from rattlebox.studies.kinds.design import trials_in
 from rattlebox.studies.stored import Progress, has_map, open_study, progress_of, report_damage
+from rattlebox.studies.trial_store import count_trials
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +36,7 @@ def show_study(path: Path) -> None:
         Folder of the study.
     """
     console = terminal()
-    trials = trials_in(path)
+    trials = count_trials(path)
     if trials is None:
         progress = progress_of(path)
         far, some, whole = _how_far(progress), progress.done > 0, progress.done == progress.total

@@ -1,4 +1,4 @@
-"""The compiled core for this processor, under one name; _core.pyi describes it."""
+"""The compiled core for this processor; _core.pyi has its types."""
 
 import sys
 

@@ -56,7 +56,7 @@ def responses(
 
     References
     ----------
-    R. W. Clough and J. Penzien, Dynamics of Structures, 2nd ed., McGraw-Hill, 1993, chapters 12 and 26.
+    R. W. Clough and J. Penzien, Dynamics of Structures, 2nd ed., McGraw-Hill, 1993.
     """
     modes, three_d = case.modes, base.ndim == 2
     internal = 2 * modes.decay * p + modes.stiffness * q

@@ -1,4 +1,4 @@
-"""Reads axes, the user's description of what varies, into a grid of variants."""
+"""Convert axes, the description of what varies in a study, to a grid of variants."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ from .sampling import RandomDesign, Replicas
 
 Axes = Mapping[Any, Any] | RandomDesign | Replicas | Sequence[Mapping[Any, Any] | RandomDesign | Replicas]
 
-_TRIED = 8  # variants tried besides the extreme ones
+_SAMPLED = 8
+"""Number of variants that are checked in addition to the extreme ones."""
+
 _EXAMPLE = '{"damper.gap": rb.linspace("0.1 mm", "2 mm", 20)}'
 
 
@@ -31,19 +33,19 @@ def read_axes(case: Case, axes: Axes, *, source: str = "axes") -> Grid:
     Parameters
     ----------
     case
-        Case that varies.
+        Base case.
     axes
-        A mapping, a random design, replicas, or a list of such, whose dimensions follow each other. A mapping has one
+        A mapping, a random design, replicas, or a list of these, whose dimensions form the grid. A mapping has one
         dimension for each item: `path: values`; `(path, path, ...): (values, values, ...)` for parameters that vary
-        together; or `name: {path: values, ...}` for those too, with a name for the dimension. Values are a list or an
-        array of numbers in SI, text with units, names or parts; or linspace, geomspace.
+        together; or `name: {path: values, ...}` for the same with a name of the dimension. Values are a list or an
+        array of numbers in SI units, text with units, names or parts; or `linspace`, `geomspace`.
     source
         Name of the axes in messages.
 
     Raises
     ------
     CaseError
-        If a path, a value or a variant is not valid, with its name and what is allowed.
+        If a path, a value or a variant is not valid.
     """
     try:
         return _Reader(case, source).grid(axes)
@@ -75,7 +77,7 @@ class _Reader:
         self.materials = materials_in(case)
 
     def grid(self, axes: Any) -> Grid:
-        """Read axes, put them together and try some variants."""
+        """Return the grid of all axes, and check some variants."""
         directions: list[_Direction] = []
         for part in axes if isinstance(axes, (list, tuple)) else [axes]:
             if isinstance(part, RandomDesign):
@@ -85,7 +87,7 @@ class _Reader:
             elif isinstance(part, Mapping):
                 directions += [self.axis(key, values) for key, values in part.items()]
             else:
-                raise Hint(f"{part!r:.60} says of no path which values it takes", _EXAMPLE)
+                raise Hint(f"{part!r:.60} is not a mapping of paths to values", _EXAMPLE)
         if not directions:
             raise Hint("nothing varies", f"{_EXAMPLE}, or rb.simulate for one run")
         names = [direction.name for direction in directions]
@@ -96,21 +98,21 @@ class _Reader:
         for direction in directions:
             for values in direction.values:
                 if values.parameter.path in {*names} - {direction.name}:
-                    raise Hint(f"{values.parameter.path} varies, but another dimension is called so", "another name")
+                    raise Hint(f"{values.parameter.path} is the name of two dimensions", "another name")
         grid = Grid(
             tuple(names),
             tuple(direction.size for direction in directions),
             columns,
             {name: coord for direction in directions for name, coord in _coordinates(direction)},
         )
-        self.try_some(grid)
+        self.check_variants(grid)
         return grid
 
     def parameter(self, path: Any) -> Parameter:
         return Parameter(self.case, path, self.source, self.materials)
 
     def axis(self, key: Any, values: Any) -> _Direction:
-        """One item of a mapping."""
+        """Return the dimension of an item of a mapping."""
         if isinstance(values, Mapping):
             linked = dict(values)
         elif not isinstance(key, tuple):
@@ -119,20 +121,20 @@ class _Reader:
             linked = dict(zip(key, values, strict=True))
         else:
             raise Hint(
-                f"{key}: as many lists of values are needed, one for each path", "{(path, path): (values, values)}"
+                f"{key}: the number of lists differs from the number of paths", "{(path, path): (values, values)}"
             )
         name = key[0] if isinstance(key, tuple) and key else key
         if not isinstance(name, str) or not name or not linked:
-            raise Hint(f"{key!r} is no path", _EXAMPLE)
+            raise Hint(f"{key!r} is not a path", _EXAMPLE)
         read = [self.parameter(path).values(given) for path, given in linked.items()]
         sizes = {one.parameter.path: one.array.size for one in read}
         if len(set(sizes.values())) > 1:
-            told = ", ".join(f"{path} has {size}" for path, size in sizes.items())
-            raise Hint(f"parameters that vary together need as many values each, but {told}")
+            counts = ", ".join(f"{path} has {size}" for path, size in sizes.items())
+            raise Hint(f"parameters that vary together must have the same number of values, but {counts}")
         return _Direction(name, read[0].array.size, read)
 
     def sample(self, design: RandomDesign) -> _Direction:
-        """Points of a random design."""
+        """Return the dimension of a random design."""
         read = []
         for (path, given), points in zip(design.ranges.items(), design.points().T, strict=True):
             parameter = self.parameter(path)
@@ -162,7 +164,7 @@ class _Reader:
         return _Direction("sample", design.count, read)
 
     def replicas(self, replicas: Replicas) -> _Direction:
-        """Small offsets."""
+        """Return the dimension of replicas."""
         read: list[Values] = []
         for (path, reach), offsets in zip(replicas.reach.items(), replicas.offsets().T, strict=True):
             parameter = self.parameter(path)
@@ -174,27 +176,27 @@ class _Reader:
             read.append(Values(parameter, number[0] * offsets, number[1]))
         return _Direction("replica", replicas.count, [], read)
 
-    def try_some(self, grid: Grid) -> None:
-        """Build the extreme variants and a few more."""
+    def check_variants(self, grid: Grid) -> None:
+        """Raise if one of the extreme variants, or of a few others, is not valid."""
         corners = itertools.product(*({0, length - 1} for length in grid.shape))
-        tried = [int(np.ravel_multi_index(corner, grid.shape)) for corner in itertools.islice(corners, 4 * _TRIED)]
+        indices = [int(np.ravel_multi_index(corner, grid.shape)) for corner in itertools.islice(corners, 4 * _SAMPLED)]
         for values in grid.columns.values():
             flat = values.ravel()
             numbers = flat.dtype.kind == "f"
-            for which in (flat.argmin(), flat.argmax()) if numbers else range(min(flat.size, 8 * _TRIED)):
-                tried.append(int(np.ravel_multi_index(np.unravel_index(which, values.shape), grid.shape)))
-        tried += np.linspace(0, grid.size - 1, _TRIED).astype(int).tolist()
-        for index in dict.fromkeys(tried):
+            for which in (flat.argmin(), flat.argmax()) if numbers else range(min(flat.size, 8 * _SAMPLED)):
+                indices.append(int(np.ravel_multi_index(np.unravel_index(which, values.shape), grid.shape)))
+        indices += np.linspace(0, grid.size - 1, _SAMPLED).astype(int).tolist()
+        for index in dict.fromkeys(indices):
             try:
                 grid.case_at(self.case, index)
             except RattleboxError as error:
-                said = str(error).removeprefix("case: ").replace("\n", "\n  ")
-                told = grid.told(self.case, index)
-                raise CaseError(f"{self.source}: variant {index} does not fit: {told}\n  {said}") from None
+                reason = str(error).removeprefix("case: ").replace("\n", "\n  ")
+                variant = grid.describe_variant(self.case, index)
+                raise CaseError(f"{self.source}: variant {index} is not valid: {variant}\n  {reason}") from None
 
 
 class _Columns:
-    """Puts the dimensions together."""
+    """Values of all parameters over the grid, from its dimensions."""
 
     def __init__(self, case: Case, directions: list[_Direction]) -> None:
         self.case, self.directions = case, directions
@@ -202,7 +204,7 @@ class _Columns:
         self.found: dict[Place, Column] = {}
 
     def columns(self) -> dict[str, Column]:
-        """Values by path; start positions, which may need the gap, come last."""
+        """Return the values by path. Start positions come last because they may depend on the gap."""
         for starts in (False, True):
             for number, direction in enumerate(self.directions):
                 for values in direction.values:
@@ -215,44 +217,46 @@ class _Columns:
         return {self.parameters[place].path: column for place, column in self.found.items()}
 
     def add(self, new: Parameter, column: Column) -> None:
-        """Let a parameter vary, unless it does already."""
-        new.check_beside(self.parameters.values())
+        """Add a parameter; raise if it varies already."""
+        new.check_independent(self.parameters.values())
         self.parameters[new.place], self.found[new.place] = new, column
 
     def move(self, parameter: Parameter, offsets: Column) -> None:
-        """Add offsets to what an axis or the case gives."""
+        """Add offsets to the values of an axis or of the case."""
         if parameter.place not in self.found:
-            self.add(parameter, self.now(parameter))
+            self.add(parameter, self.case_value(parameter))
         base = self.found[parameter.place]
         if base.dtype.kind != "f":
-            raise parameter.wrong("its values are no numbers that could be moved a little")
+            raise parameter.wrong("its values are not numbers, so that offsets cannot be added")
         moved = base + offsets
         self.found[parameter.place] = self.mirrored(parameter, moved) if parameter.is_start else moved
 
-    def now(self, parameter: Parameter) -> Column:
-        """What the case gives."""
+    def case_value(self, parameter: Parameter) -> Column:
+        """Return the value of the case."""
         number = None if parameter.now is None else parameter.number(parameter.now)
         if number is None:
             each = f"{parameter.path}[0]" if isinstance(parameter.now, (list, tuple)) else ""
-            raise parameter.wrong("the case gives no one number that could be moved a little", each)
+            raise parameter.wrong("its value in the case is not one number, so that offsets cannot be added", each)
         return self.reduced(Values(parameter, np.array([number[0]]), number[1]), 0)
 
     def reduced(self, values: Values, number: int) -> Column:
-        """Values along one dimension; lengths of the start as fractions of the gap."""
+        """Return values along one dimension of the grid; start positions as fractions of the gap."""
         shape = [1] * len(self.directions)
         shape[number] = values.array.size
         column = values.array.reshape(shape)
         return column / self.gap(values.parameter) if values.parameter.is_start and values.unit == "m" else column
 
     def gap(self, start: Parameter) -> Column:
-        """Gap of the damper of a start position."""
+        """Return the gap of the damper of a start position [m]."""
         number = int(start.place[1])
         damper = self.case.impact_dampers[number]
         own = {place[2:]: column for place, column in self.found.items() if place[:2] == ("dampers", number)}
         length, gap = own.get(("cavity_length",)), own.get(("gap",), np.array(damper.clearance / 2))
         wholes: set[Place] = {("balls",), *(("balls", ball) for ball in range(len(damper.balls)))}
         if ("dampers",) in self.found or () in own or (length is not None and wholes & own.keys()):
-            raise start.wrong("what gives the gap varies as a whole", "fractions of the gap, -1 to 1")
+            raise start.wrong(
+                "a length needs the gap, but the damper or its ball varies as a whole", "fractions of the gap, -1 to 1"
+            )
         if length is not None:
             gap = length / 2
             for ball, sphere in enumerate(damper.balls):
@@ -265,28 +269,28 @@ class _Columns:
         return gap
 
     def mirrored(self, parameter: Parameter, start: Column) -> Column:
-        """Start positions inside the cavity, which may be displaced."""
+        """Return start positions mirrored at the walls of the cavity, which may be displaced."""
         damper = self.case.dampers[int(parameter.place[1])]
         modes = self.case.modes
         cavity = float(modes.shape(damper.point) @ modes.q0)
         centre = cavity / self.gap(parameter) if cavity else 0.0
-        beside = start - centre
-        return np.where(np.abs(beside) > 1, np.copysign(2.0, beside) - beside, beside) + centre
+        relative = start - centre
+        return np.where(np.abs(relative) > 1, np.copysign(2.0, relative) - relative, relative) + centre
 
 
 def _coordinates(direction: _Direction) -> Iterator[tuple[str, tuple[str, Column, dict[str, str]]]]:
-    """The coordinates along one dimension."""
+    """Yield the coordinates along one dimension."""
     name = direction.name
     if name not in [values.parameter.path for values in direction.values]:
         yield name, (name, np.arange(direction.size), {"units": "1", "long_name": f"number of {name}"})
     for values in direction.values:
         path = values.parameter.path
-        attrs = {"long_name": _spoken(path)} | ({} if values.unit is None else {"units": values.unit})
+        attrs = {"long_name": _words(path)} | ({} if values.unit is None else {"units": values.unit})
         yield path, (name, labels(values.array) if values.unit is None else values.array, attrs)
     for values in direction.offsets:
         path = f"{values.parameter.path}.offset"
-        yield path, (name, values.array, {"units": str(values.unit), "long_name": _spoken(path)})
+        yield path, (name, values.array, {"units": str(values.unit), "long_name": _words(path)})
 
 
-def _spoken(path: str) -> str:
+def _words(path: str) -> str:
     return path.replace(".", " ").replace("_", " ")

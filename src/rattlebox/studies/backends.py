@@ -32,22 +32,22 @@ _POLL = 0.05  # s, the longest wait in which Ctrl-C has no effect
 
 
 class Backend(Protocol):
-    """Anything that can run blocks."""
+    """Interface of the backends."""
 
     def run(self, work: Work, chains: Sequence[Chain]) -> Results:
-        """Run the blocks of chains: chains beside each other, the blocks of each in order.
+        """Run the blocks of several chains: chains in parallel, the blocks of each chain in order.
 
         Parameters
         ----------
         work
             The work to which the blocks belong.
         chains
-            The blocks.
+            The chains.
         """
 
 
 def make_backend(backend: Any = "threads", workers: int | None = None) -> Backend:
-    """Return the backend that the arguments of a study name.
+    """Return the backend for the arguments of a study.
 
     Parameters
     ----------
@@ -67,11 +67,14 @@ def make_backend(backend: Any = "threads", workers: int | None = None) -> Backen
         return Processes(workers or cores())
     if not hasattr(backend, "nthreads"):
         raise Hint(
-            f"backend = {backend!r} is neither the name of a backend nor the client of a Dask cluster",
+            f"backend = {backend!r} is not a backend",
             '"threads", "processes" or distributed.Client(...)',
         )
     if workers is not None:
-        raise Hint(f"workers = {workers}: a Dask cluster has its own workers", "leave it out, or scale the cluster")
+        raise Hint(
+            f"workers = {workers} cannot be set for a Dask cluster, which has its own",
+            "leave it out, or scale the cluster",
+        )
     return DaskCluster(backend)
 
 
@@ -95,7 +98,7 @@ def wait_for(future: Future[Any]) -> Any:
 
 @dataclass(frozen=True)
 class Threads:
-    """Threads of this process. The core releases the interpreter lock, so that they run at the same time.
+    """Threads of this process, which run in parallel because the core releases the interpreter lock.
 
     Attributes
     ----------
@@ -107,19 +110,19 @@ class Threads:
 
     def run(self, work: Work, chains: Sequence[Chain]) -> Results:
         """Run blocks; see `Backend.run`."""
-        beside = max(1, min(self.count, len(chains)))
+        parallel = max(1, min(self.count, len(chains)))
         stop = threading.Event()
 
         def submit(block: Block, before: Values | None) -> Future[Values | None]:
-            return pool.submit(run_block, work, block, before, threads=self.count // beside, cancelled=stop.is_set)
+            return pool.submit(run_block, work, block, before, threads=self.count // parallel, cancelled=stop.is_set)
 
-        with _abandoned(ThreadPoolExecutor(beside), stop.set) as pool:
-            yield from _run_chains(work, chains, beside, submit)
+        with _cancel_on_exit(ThreadPoolExecutor(parallel), stop.set) as pool:
+            yield from _run_chains(work, chains, parallel, submit)
 
 
 @dataclass(frozen=True)
 class Processes:
-    """Processes of this machine, for measures in Python, which the interpreter lock keeps from running in parallel threads.
+    """Processes of this machine, for measures in Python, which do not run in parallel threads.
 
     Attributes
     ----------
@@ -137,25 +140,25 @@ class Processes:
         ResourceError
             If a process ends before its block is computed.
         """
-        beside = max(1, min(self.count, len(chains)))
-        # A fork of a process with threads may deadlock, so processes start anew.
+        parallel = max(1, min(self.count, len(chains)))
+        # A fork of a process with threads may deadlock.
         context = get_context("spawn")
         running, stop = context.Pipe(duplex=False)
-        pool = ProcessPoolExecutor(beside, context, _start_process, (_pickled(work), running))
+        pool = ProcessPoolExecutor(parallel, context, _start_process, (_pickled(work), running))
         try:
-            with _abandoned(pool, stop.close):
+            with _cancel_on_exit(pool, stop.close):
                 yield from _run_chains(
-                    work, chains, beside, lambda block, before: pool.submit(_run_in_process, block, before)
+                    work, chains, parallel, lambda block, before: pool.submit(_run_in_process, block, before)
                 )
         except BrokenProcessPool:
             raise ResourceError(
-                "a worker process ended before its block was computed\n"
-                '  try: in a script the call below `if __name__ == "__main__":`; fewer workers if memory is short'
+                "a worker process ended before its block was computed",
+                'in a script, the call below `if __name__ == "__main__":`; if memory is short, fewer workers',
             ) from None
 
 
 def _pickled(work: Work) -> bytes:
-    """Return the pickled work; functions of a notebook or prompt need cloudpickle, which comes with Dask."""
+    """Return the pickled work; functions of a notebook require cloudpickle, which Dask installs."""
     with suppress(ImportError):
         content: bytes = import_module("cloudpickle").dumps(work)
         return content
@@ -163,8 +166,8 @@ def _pickled(work: Work) -> bytes:
         return pickle.dumps(work)
     except (pickle.PicklingError, AttributeError) as error:
         raise CaseError(
-            f"a function cannot be sent to other processes: {error}\n"
-            "  try: define it at the top level of a module, or pip install cloudpickle"
+            f"a function cannot be sent to other processes: {error}",
+            "define it at the top level of a module, or pip install cloudpickle",
         ) from None
 
 
@@ -174,13 +177,13 @@ _process_work: Work  # work of this worker process
 def _start_process(content: bytes, running: Connection) -> None:
     """Prepare a worker process."""
     global _process_work
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes; only the first one handles it
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all processes receive Ctrl-C; only the parent handles it
     threading.Thread(target=_exit_at_end_of, args=[running], daemon=True).start()
     _process_work = pickle.loads(content)
 
 
 def _exit_at_end_of(running: Connection) -> None:
-    """End this process when the other end of a pipe closes: the study stops, or its process ends, however that happens."""
+    """Exit this process when the other end of a pipe closes, because the study stopped or its process ended."""
     with suppress(EOFError, OSError):
         running.recv()
     os._exit(1)
@@ -192,8 +195,8 @@ def _run_in_process(block: Block, before: Values | None) -> Values | None:
 
 
 @contextmanager
-def _abandoned(pool: Pool, stop: Callable[[], None]) -> Iterator[Pool]:
-    """Tell the work of a pool to stop on leaving, without waiting for it."""
+def _cancel_on_exit(pool: Pool, stop: Callable[[], None]) -> Iterator[Pool]:
+    """Cancel the work of a pool on exit, without waiting for it."""
     try:
         yield pool
     finally:
@@ -204,10 +207,10 @@ def _abandoned(pool: Pool, stop: Callable[[], None]) -> Iterator[Pool]:
 def _run_chains(
     work: Work,
     chains: Sequence[Chain],
-    beside: int,
+    parallel: int,
     submit: Callable[[Block, Values | None], Future[Values | None]],
 ) -> Results:
-    """Run chains on a pool, `beside` of them at a time; each worker starts its next block before a result is yielded."""
+    """Run chains on a pool, `parallel` of them at a time; each worker starts its next block before a result is yielded."""
     waiting = deque(chains)
     running: dict[Future[Values | None], deque[Block]] = {}
 
@@ -219,7 +222,7 @@ def _run_chains(
             chain = waiting.popleft()
             start(deque(chain.blocks), chain.before)
 
-    for _ in range(beside):
+    for _ in range(parallel):
         start_chain()
     while running:
         for future in wait(running, timeout=_POLL, return_when=FIRST_COMPLETED).done:
@@ -243,7 +246,7 @@ def _complete(values: Values | None) -> Values:
 
 @dataclass(frozen=True)
 class DaskCluster:
-    """Workers of a Dask cluster, one thread for each block. Blocks of a worker that dies run again on others.
+    """Workers of a Dask cluster, one thread per block. If a worker ends, its blocks run again on others.
 
     Attributes
     ----------
@@ -259,7 +262,7 @@ class DaskCluster:
         Raises
         ------
         ResourceError
-            If the cluster is lost, a block kills its workers, or a worker computes with another core.
+            If the cluster is lost, a block ends several workers in turn, or a worker has another core or version.
         """
         client, dask, cloudpickle = self.client, import_module("distributed"), import_module("cloudpickle")
         disconnected = import_module("distributed.comm").CommClosedError
@@ -283,18 +286,18 @@ class DaskCluster:
                 yield blocks.pop(future), _complete(values)
         except dask.KilledWorker as error:
             raise ResourceError(
-                f"{error.allowed_failures + 1} workers in turn died of one block\n"
-                "  try: workers with more memory, or smaller blocks"
+                f"{error.allowed_failures + 1} workers in turn ended while they ran the same block",
+                "workers with more memory, or smaller blocks",
             ) from None
         except (dask.CancelledError, disconnected) as error:
-            raise ResourceError(f"the cluster is lost: {error}\n  try: check that its scheduler is running") from None
+            raise ResourceError(f"the cluster is lost: {error}", "check that its scheduler is running") from None
         finally:
             with suppress(disconnected):
                 client.cancel([shared, *blocks], force=True)
 
 
 def bits() -> str:
-    """Return what decides the last bits of results: version and instruction set."""
+    """Return version and instruction set, on which the last bits of results depend."""
     from rattlebox import __version__
     from rattlebox.core.choose import instructions
 
@@ -302,12 +305,12 @@ def bits() -> str:
 
 
 def _run_on_worker(work: Work, block: Block, before: Values | None, previous: Block | None, expected: str) -> Any:
-    """Run a block on a Dask worker; `before` holds the outputs of the previous block, or of the variant before all."""
+    """Run a block on a Dask worker; `before` holds the outputs of the previous block, or of the variant before the chain."""
     worker: Any = import_module("distributed").get_worker()
     if bits() != expected:
         raise ResourceError(
-            f"the worker {worker.address} computes with {bits()}, the study with {expected}: results would differ\n"
-            "  try: the same version, and the same RATTLEBOX_SIMD in the environment of all"
+            f"the worker {worker.address} has {bits()}, the study {expected}; the results would differ",
+            "the same version, and the same RATTLEBOX_SIMD in the environment of all workers",
         )
     tasks, key = worker.state.tasks, worker.get_current_task()
     if before is not None and previous is not None:

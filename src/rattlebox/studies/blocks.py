@@ -1,4 +1,4 @@
-"""A grid of variants, cut into blocks."""
+"""Partition of a grid of variants into blocks."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Blocks:
-    """Boxes of a grid that are unbroken ranges of its variants, counted in C order, too.
+    """Blocks of a grid, each of which is a rectangular region and a contiguous range of variants in C order.
 
-    A block is thus a range for the core, a region of the result, and one file of a store for each variable.
+    A block is a range for the core, a region of the result, and one file per variable in a store.
 
     Parameters
     ----------
     shape
         Shape of the grid.
     box
-        Shape of a block, ones before its first other number and whole rows after it; blocks at an end are smaller.
+        Shape of a block: ones, then any number, then full lengths. Blocks at an end are smaller.
     """
 
     shape: tuple[int, ...]
@@ -30,7 +30,7 @@ class Blocks:
 
     @classmethod
     def of(cls, shape: Sequence[int], size: int) -> Blocks:
-        """Cut into blocks of at most some size, as equal as they can be.
+        """Partition a grid into blocks of nearly equal size.
 
         Parameters
         ----------
@@ -55,7 +55,7 @@ class Blocks:
         return math.prod(self.counts)
 
     def region(self, block: int) -> tuple[slice, ...]:
-        """Return where a block lies in the grid."""
+        """Return the region of a block in the grid."""
         place = np.unravel_index(block, self.counts) if self.shape else ()
         return tuple(
             slice(int(i) * edge, min((int(i) + 1) * edge, length))
@@ -72,15 +72,15 @@ class Blocks:
         start = int(np.ravel_multi_index(corner, self.shape)) if self.shape else 0
         return start, start + math.prod(self.sides(block))
 
-    def variants(self, chosen: NDArray[np.bool_]) -> int:
-        """Return how many variants the chosen blocks hold.
+    def variants(self, mask: NDArray[np.bool_]) -> int:
+        """Return the number of variants in some blocks.
 
         Parameters
         ----------
-        chosen
-            Of each block, (len(self),).
+        mask : (len(self),) bool
+            Whether to count each block.
         """
-        return int(self._sizes[chosen].sum())
+        return int(self._sizes[mask].sum())
 
     @cached_property
     def _sizes(self) -> NDArray[np.int64]:

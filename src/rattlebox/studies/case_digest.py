@@ -1,4 +1,4 @@
-"""What a study is given besides its design: the case, and what the files hold that it names."""
+"""Description of the case of a study, with digests of the files that it names."""
 
 from __future__ import annotations
 
@@ -15,40 +15,40 @@ from rattlebox.model.paths import all_paths, get
 if TYPE_CHECKING:
     from rattlebox.model.case import Case
 
-_TOLD = 12
-"""Letters of a digest, enough to tell one file from another."""
+_LENGTH = 12
+"""Number of characters of a digest."""
 
 
 def describe_case(case: Case, columns: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a case in JSON's types, and digests of the files that it or its variants name, if there are any.
+    """Return a case in JSON types, with digests of the files that it or its variants name.
 
     Parameters
     ----------
     case
         The case.
     columns
-        What varies, by path.
+        Values that vary, by path.
     """
-    files = {path: _of_numbers(part) for path, part in _filed(case)}
+    files = {path: _digest_of_numbers(part) for path, part in _parts_from_files(case)}
     for path, values in columns.items():
         holder, _, name = path.rpartition(".")
         if name == "file":
-            files |= {f"{path} = {file}": _of_file(file) for file in sorted(set(np.ravel(values).tolist()))}
+            files |= {f"{path} = {file}": _digest_of_file(file) for file in sorted(set(np.ravel(values).tolist()))}
         elif name == "columns" and (file := getattr(get(case, holder), "file", None)):
-            files[f"{holder}.file"] = _of_file(file)
+            files[f"{holder}.file"] = _digest_of_file(file)
     return {"case": case.to_toml(), **({"files": files} if files else {})}
 
 
-def _filed(case: Case) -> Iterator[tuple[str, Part]]:
-    """Parts whose numbers come from files."""
+def _parts_from_files(case: Case) -> Iterator[tuple[str, Part]]:
+    """Yield the parts whose numbers come from files, with the path of the file."""
     for path in all_paths(case):
-        found = get(case, path)
-        for number, part in enumerate(found if isinstance(found, tuple) else (found,)):
+        value = get(case, path)
+        for number, part in enumerate(value if isinstance(value, tuple) else (value,)):
             if isinstance(part, Part) and part.file_fields and getattr(part, "file", None) is not None:
-                yield (f"{path}[{number}].file" if isinstance(found, tuple) else f"{path}.file"), part
+                yield (f"{path}[{number}].file" if isinstance(value, tuple) else f"{path}.file"), part
 
 
-def _of_numbers(part: Part) -> str:
+def _digest_of_numbers(part: Part) -> str:
     digest = sha256()
     for name in part.file_fields:
         value = getattr(part, name)
@@ -57,8 +57,8 @@ def _of_numbers(part: Part) -> str:
         if value is not None:
             numbers = np.ascontiguousarray(np.asarray(value, dtype=float))
             digest.update(f"{name} {numbers.shape}".encode() + numbers.tobytes())
-    return digest.hexdigest()[:_TOLD]
+    return digest.hexdigest()[:_LENGTH]
 
 
-def _of_file(file: str) -> str:
-    return sha256(Path(file).read_bytes()).hexdigest()[:_TOLD]
+def _digest_of_file(file: str) -> str:
+    return sha256(Path(file).read_bytes()).hexdigest()[:_LENGTH]

@@ -33,44 +33,44 @@ def check_softening(
     workers: int | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
-    """Run a case again with smaller softening, and return the change of measures with its statistical error.
+    """Compare measures of a case at smaller softening, with the statistical error of their change.
 
-    Motions of particles are chaotic, so that one run says little about a small change. Each softening is run from several
-    random packings: their mean is compared, and their scatter gives the error.
+    Motions of particles are chaotic, so that one run does not resolve a small change. Each softening runs from several
+    random packings; the function compares their means and estimates the error from their scatter.
 
     Parameters
     ----------
     case
-        The case, with one particle damper or several, whose packing has a random seed.
+        Case with one or more particle dampers whose packing has a random seed.
     measures
-        Names of measures of `rb.MEASURES`, as of `rb.sweep`; with a harmonic motion "reduced_loss", for example. Shares of
-        the energy show little on a shaker, which supplies whatever is lost.
+        Names of measures (`rb.MEASURES`), such as "reduced_loss" with a harmonic motion. On a shaker, which supplies all
+        energy lost, shares of the energy are not informative.
     softenings
-        Values to compare with each other, the last one being the reference; default the case's own, a quarter and a
-        sixteenth of it, but not below 1.
+        Values of the softening, of which the last is the reference; default that of the case, a quarter and a sixteenth
+        of it, but not below 1.
     packings
-        Number of random packings of each.
+        Number of random packings for each softening.
     tolerance
-        Relative change that is accepted.
+        Accepted relative change.
     skip, cycles, workers, progress
-        As of `rb.sweep`. With a harmonic motion a few dozen `cycles` do.
+        See `rb.sweep`. With a harmonic motion a few dozen `cycles` are enough.
 
     Returns
     -------
     xarray.Dataset
         Over `softening`, for each measure: its mean over the packings, `..._error` (standard error of the mean),
         `..._change` from the reference, `..._change_error`, and `..._changed`: whether the change exceeds the tolerance
-        and twice its error. All are NaN, and `..._changed` is False, where the measure of a packing is NaN.
+        and twice its error. If the measure of a packing is NaN, all are NaN and `..._changed` is False.
 
     Raises
     ------
     CaseError
-        When the softening is 1, the packing has no seed, or an argument does not fit.
+        If the softening is 1, the packing has no random seed, or an argument is not valid.
 
     Notes
     -----
-    A run at softening s takes s^0.4 times fewer steps than at 1 (Hertz contacts), so that the default takes about
-    (1 + 1.7 + 3) times `packings` times as long as the case.
+    With Hertz contacts a run at softening s has s^0.4 times fewer steps than one at 1. The default study therefore takes
+    about (1 + 1.7 + 3) times `packings` times as long as the case.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def check_softening(
     names = [measures] if isinstance(measures, str) else list(measures)
     count = whole_number(packings, "packings", 2)
     if not case.particle_dampers:
-        raise Hint("softening is of particle dampers, and the case has none", "a case with rb.ParticleDamper")
+        raise Hint("the case has no particle damper, and only these have softening", "a case with rb.ParticleDamper")
     case, _ = resolve_softening(case)
     own = max(damper.softening_factor for damper in case.particle_dampers)
     values = _values(own, softenings)
@@ -104,7 +104,7 @@ def check_softening(
     packing = case.particle_dampers[0].packing
     if not (isinstance(packing, Settled) or (isinstance(packing, Lattice) and packing.noise)):
         raise Hint(
-            "runs are repeated from several random packings, and this packing has no random seed",
+            "the packing has no random seed, so that all repeated runs would be equal",
             "packing = rb.Settled(seed=1), or rb.Lattice with noise",
             ["packing"],
         )
@@ -151,7 +151,7 @@ def _values(own: float, given: Sequence[float] | None) -> list[float]:
     """Return the softenings to compare, the largest first."""
     if given is None:
         if own == 1:
-            raise Hint("the softening is 1, and nothing is softened", "softenings = (10, 1)", ["softening"])
+            raise Hint("the softening is 1, so that no contact is softened", "softenings = (10, 1)", ["softening"])
         return list(dict.fromkeys(max(1.0, own / part) for part in (1, 4, 16)))
     values = [float(value) for value in given]
     if len(values) < 2 or not all(1 <= value <= 1e6 for value in values):

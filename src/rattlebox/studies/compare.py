@@ -1,4 +1,4 @@
-"""Several cases side by side: one table and one figure."""
+"""Comparison of several cases in one table."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ def compare(
     threads: int | None = None,
     progress: bool | Callable[[int, int], object] = True,
 ) -> Comparison:
-    """Simulate several cases and set their results side by side.
+    """Simulate several cases and compare their results in one table.
+
 
     Parameters
     ----------
     cases
-        Cases by the name that heads their column, such as "bare", "tuned mass" and "particles"; runs that were simulated
-        before may stand among them. The first one is the reference.
+        Cases, or runs of them, by the name of their column, such as "bare", "tuned mass" and "particles". The first one is
+        the reference.
     threads
         Number of threads; default all cores.
     progress
@@ -36,13 +37,13 @@ def compare(
     Returns
     -------
     Comparison
-        The table: `print(found)`, or `found.values` for the numbers in SI units, with the reduction of peak and RMS values
-        from the first case; `found.runs` are the runs, `rb.plot_comparison(found.runs)` is the figure.
+        Table with `values` in SI units, including the reduction of peak and RMS values against the first case, and with
+        `runs`, which `rb.plot_comparison` draws.
 
     Raises
     ------
     CaseError
-        If there is no case, or something else than cases and runs is given.
+        If `cases` is not a mapping of names to cases and runs, or is empty.
 
     Examples
     --------
@@ -59,7 +60,7 @@ def compare(
     True
     """
     if not isinstance(cases, Mapping) or not cases:
-        raise Hint("cases by name are needed", 'compare({"bare": case, "damped": other})')
+        raise Hint("cases is not a mapping of names to cases, or is empty", 'compare({"bare": case, "damped": other})')
     for name, each in cases.items():
         if not isinstance(each, (Case, Run)):
             raise Hint(f"{name!r} is {each!r:.60}, but a Case or a Run is needed", "rb.Case(...)")

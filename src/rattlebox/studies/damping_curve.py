@@ -33,16 +33,16 @@ Way = Literal["decay", "energy", "shaking"]
 WAYS: tuple[Way, ...] = ("decay", "energy", "shaking")
 
 _SAMPLES = 40
-"""Samples in a cycle."""
+"""Number of samples per cycle."""
 _OTHER_MOTION = 0.1
-"""Relative change of the frequency of a decay beyond which a warning is given."""
+"""Relative change of the frequency of a decay above which a warning is issued."""
 _MARGIN = 1.6
-"""Amplitude at the start of a decay over the highest edge of the bands, so that two cycles pass before it is reached."""
+"""Initial amplitude of a decay over the highest edge of the bands, so that the decay takes two cycles to reach the bands."""
 
 
 @dataclass(frozen=True)
 class _Mode:
-    """The mode that is looked at.
+    """The mode whose damping is computed.
 
     Attributes
     ----------
@@ -53,11 +53,11 @@ class _Mode:
     ratio
         Damping ratio of the structure alone.
     point
-        Name of the point whose amplitude is meant.
+        Name of the point to which the amplitudes refer.
     shape
-        Mode shape at the point, along its motion [kg^-1/2].
+        Mode shape at the point in the direction of its motion [kg^-1/2].
     axis : (3,) float or None
-        Direction of the motion where the point moves in space.
+        Direction of the motion of a point with three directions.
     """
 
     number: int
@@ -85,36 +85,35 @@ def damping_curve(
     backend: Any = "threads",
     progress: bool | Callable[[int, int], object] = True,
 ) -> xarray.Dataset:
-    """Compute the damping ratio of a mode, with its dampers, over the amplitude of vibration.
+    """Compute the damping ratio of a mode, with the dampers, over the amplitude of vibration.
 
-    Loads and base motion of the case are left out. Each run is repeated from several random starts (packings of particles,
-    places of balls), whose scatter gives the 95 % interval of the mean.
+    Loads and base motion of the case are ignored. Each run is repeated from several random initial states (packings of
+    particles, positions of balls), whose scatter determines the 95 % interval of the mean.
 
     Parameters
     ----------
     case
         Structure, dampers and tuned masses; `case.duration` is the length of a decay.
     amplitudes
-        At least two displacement amplitudes, rising: numbers in m or text ("0.1 mm").
+        Two or more rising displacement amplitudes: numbers [m], or text with a unit.
     way
-        "decay": the structure is set off with the velocity of the mode and left alone; the decay of the envelope. "energy":
-        the energy lost in the same decay over the energy of the mode. "shaking": each cavity is moved harmonically with the
-        amplitude and frequency of the mode at its point; the energy lost in a cycle in steady motion, with that of the
-        structure and of tuned masses in closed form.
+        "decay": decay of the envelope in free vibration, which starts with the velocity of the mode. "energy": energy lost
+        in the same decay over the energy of the mode. "shaking": energy lost per cycle in steady motion, where each
+        cavity moves harmonically with the amplitude and frequency of the mode at its point; structure and tuned masses in
+        closed form.
     mode
         Number of the mode of the structure, counted from 1.
     point
-        Point whose amplitude is meant; needed if there are several.
+        Point to which the amplitudes refer; required if there are several.
     packings
-        Number of random starts.
+        Number of random initial states.
     cycles
-        Cycles to be skipped and to be evaluated; for "shaking" only.
+        Numbers of cycles to skip and to evaluate; "shaking" only.
     workers, backend
-        Number of threads or processes (default as many as there are cores), and "threads", "processes" or the client of a
-        Dask cluster, as of `rb.sweep`.
+        See `rb.sweep`.
     progress
-        True for a progress bar after 2 s, False for none, or a function of the numbers of runs done and of all, which stops
-        by returning False.
+        True for a progress bar after 2 s, False for none, or a function of the number of finished runs and of all; the
+        study stops if it returns False.
 
     Returns
     -------
@@ -127,8 +126,8 @@ def damping_curve(
     Raises
     ------
     CaseError
-        If the case has no such mode or point, the mode does not move the point, the start has nothing random, amplitudes do
-        not rise, or a run fails.
+        If the case has no such mode or point, the mode does not move the point, the initial state has no random part,
+        the amplitudes do not rise, or a run fails.
 
     Notes
     -----
@@ -154,7 +153,7 @@ def damping_curve(
     True
     """
     if way not in WAYS:
-        raise Hint(f"way is {way!r}", nearest(str(way), WAYS))
+        raise Hint(f"way = {way!r} is not a method of this function", nearest(str(way), WAYS))
     levels = _levels(amplitudes)
     count = whole_number(packings, "packings", 1)
     about = _mode(case, mode, point)
@@ -162,15 +161,15 @@ def damping_curve(
     warnings: dict[str, None] = {}
     run = partial(evaluate_cases, backend=backend, workers=workers, progress=progress)
     if way == "shaking":
-        ratios = _shaken(cases, about, levels, cycles, run, warnings)
+        ratios = _from_shaking(cases, about, levels, cycles, run, warnings)
     else:
-        ratios = _decayed(cases, about, levels, way, run, warnings)
+        ratios = _from_decay(cases, about, levels, way, run, warnings)
     return _dataset(ratios, levels, about, way).assign_attrs(warnings=list(warnings))
 
 
 def _levels(amplitudes: Sequence[Any]) -> FloatArray:
     if isinstance(amplitudes, str) or not np.ndim(np.asarray(amplitudes, dtype=object)):
-        raise Hint("at least two amplitudes are needed", 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]')
+        raise Hint("at least two amplitudes are required", 'amplitudes = ["0.1 mm", "0.2 mm", "0.5 mm"]')
     levels = np.array([parse(amplitude, ("m",))[0] for amplitude in amplitudes])
     if levels.size < 2 or levels[0] <= 0 or np.any(np.diff(levels) <= 0):
         raise Hint(
@@ -186,7 +185,7 @@ def _mode(case: Case, number: int, point: str | None) -> _Mode:
     index = whole_number(number, "mode", 1) - 1
     if index >= modes.stiffness.size or modes.stiffness[index] <= 0:
         known = ", ".join(str(k + 1) for k in np.flatnonzero(modes.stiffness > 0))
-        raise Hint(f"mode is {number}, which is no mode with a frequency", f"one of these: {known or 'none'}")
+        raise Hint(f"mode = {number} is not a mode with a natural frequency", f"one of these: {known or 'none'}")
     name = modes.point(point)
     shape = np.atleast_1d(modes.shapes[name][index])
     size = float(np.linalg.norm(shape))
@@ -205,7 +204,7 @@ def _mode(case: Case, number: int, point: str | None) -> _Mode:
 
 
 def _starts(case: Case, count: int) -> list[Case]:
-    """Return the case with several random starts."""
+    """Return copies of the case with different random initial states."""
     rng = np.random.default_rng(case.seed)
     cases, random = [], not case.dampers
     for number in range(count):
@@ -213,7 +212,7 @@ def _starts(case: Case, count: int) -> list[Case]:
         for damper in case.dampers:
             if isinstance(damper, ImpactDamper):
                 random = True
-                # The row as a whole; its free travel is the gap on each side.
+                # `start` displaces the row as a whole, by a fraction of the gap.
                 start = float(rng.uniform(-1, 1)) if number else 0.0
                 dampers.append(damper.model_copy(update={"start": start}))
             elif isinstance(damper.packing, Settled) or (isinstance(damper.packing, Lattice) and damper.packing.noise):
@@ -225,7 +224,7 @@ def _starts(case: Case, count: int) -> list[Case]:
         cases.append(case.model_copy(update={"dampers": tuple(dampers), "loads": (), "base": ()}))
     if count > 1 and not random:
         raise Hint(
-            "the packing has no random seed, so that all starts are the same",
+            "the packing has no random seed, so that all initial states would be equal",
             "packing = rb.Settled(seed=1), rb.Lattice with noise, or packings=1",
             ["packing"],
         )
@@ -235,7 +234,7 @@ def _starts(case: Case, count: int) -> list[Case]:
 # ---- free decays
 
 
-def _decayed(
+def _from_decay(
     cases: list[Case],
     mode: _Mode,
     levels: FloatArray,
@@ -244,7 +243,7 @@ def _decayed(
     warnings: dict[str, None],
 ) -> FloatArray:
     highest = float(band_edges(levels)[-1]) * _MARGIN
-    variants = [_set_off(case, mode, highest) for case in cases]
+    variants = [_initial_velocity(case, mode, highest) for case in cases]
     rows = evaluate(variants, partial(_decay, mode=mode, levels=levels, way=way))
     for number, row in enumerate(rows):
         _check(row, number, warnings)
@@ -265,8 +264,8 @@ def _decay(run: Run, mode: _Mode, levels: FloatArray, way: Way) -> _Row:
     if row.failure:
         return row
     time = run.motion.time.values
-    bands = damping_over_amplitude(time, _along(run, mode), levels)
-    ratios = bands.damping_ratio.values if way == "decay" else _by_energy(run, time, bands, mode)
+    bands = damping_over_amplitude(time, _modal_part(run, mode), levels)
+    ratios = bands.damping_ratio.values if way == "decay" else _energy_ratios(run, time, bands, mode)
     return row._replace(values=ratios, warnings=row.warnings + _other_motion(bands.frequency.values, mode))
 
 
@@ -275,8 +274,8 @@ def _row(run: Run) -> _Row:
     return _Row("" if run.ok else run.message, notes, np.zeros(0))
 
 
-def _set_off(case: Case, mode: _Mode, amplitude: float) -> Case:
-    """Return the case with the structure at rest position and the velocity of the mode."""
+def _initial_velocity(case: Case, mode: _Mode, amplitude: float) -> Case:
+    """Return the case with zero displacement and the velocity of the mode."""
     modes = case.structure.modes()
     velocity = np.zeros(modes.stiffness.size)
     velocity[mode.number] = amplitude * mode.omega / abs(mode.shape)
@@ -285,8 +284,8 @@ def _set_off(case: Case, mode: _Mode, amplitude: float) -> Case:
     return case.model_copy(update={"structure": structure, "output": output})
 
 
-def _along(run: Run, mode: _Mode) -> FloatArray:
-    """Return the part of the point's motion that the mode has, (T,); with tuned masses, all of its motion."""
+def _modal_part(run: Run, mode: _Mode) -> FloatArray:
+    """Return the contribution of the mode to the motion of the point, (T,); with tuned masses the total motion."""
     if not run.case.tuned_masses:
         return np.asarray(mode.shape * run.motion.modal_displacement.values[:, mode.number])
     motion = run.motion.displacement
@@ -298,7 +297,7 @@ def _along(run: Run, mode: _Mode) -> FloatArray:
 
 
 def _other_motion(found: FloatArray, mode: _Mode) -> tuple[str, ...]:
-    """Return a warning if what decays is not the mode."""
+    """Return a warning if the frequency of the decay is not that of the mode."""
     change = np.abs(found / mode.frequency - 1)
     if not np.nanmax(change, initial=0.0) > _OTHER_MOTION:
         return ()
@@ -309,7 +308,7 @@ def _other_motion(found: FloatArray, mode: _Mode) -> tuple[str, ...]:
     )
 
 
-def _by_energy(run: Run, time: FloatArray, bands: xarray.Dataset, mode: _Mode) -> FloatArray:
+def _energy_ratios(run: Run, time: FloatArray, bands: xarray.Dataset, mode: _Mode) -> FloatArray:
     time, lost = mean_over_period(time, run.energy.losses.values, 1 / mode.frequency)
     ratios = np.full(bands.amplitude.size, np.nan)
     for k in range(ratios.size):
@@ -323,7 +322,7 @@ def _by_energy(run: Run, time: FloatArray, bands: xarray.Dataset, mode: _Mode) -
 # ---- steady shaking
 
 
-def _shaken(
+def _from_shaking(
     cases: list[Case],
     mode: _Mode,
     levels: FloatArray,
@@ -375,7 +374,7 @@ def _on_shaker(case: Case, damper: Any, mode: _Mode, moved: FloatArray, duration
 
 
 def _tuned(case: Case, mode: _Mode) -> float:
-    """Return the damping ratio that tuned masses add at the frequency of the mode, which they hardly shift."""
+    """Return the damping ratio that tuned masses add at the frequency of the mode, whose change is neglected."""
     total = 0.0
     modes = case.structure.modes()
     for part in case.tuned_masses:

@@ -1,4 +1,4 @@
-"""What tells a function from others of its name, so that a study goes on with the one that it was begun with."""
+"""Fingerprints of functions, so that a study resumes only with the functions with which it was started."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from rattlebox.model.base import full_text
 
 
 def fingerprint(function: Callable[..., Any]) -> str:
-    """Return what tells a function from others of its name: its text, and the values that it takes from elsewhere.
+    """Return a digest of the source of a function and of the values that it refers to.
 
     Parameters
     ----------
     function
-        Any function, method, partial or object that can be called. Of what it takes from other packages only names count.
+        Any callable: function, method, partial or object. Objects of other packages enter only with their names.
     """
     return _Digest(function).hexdigest()
 
@@ -30,75 +30,79 @@ _PLAIN = (str, bytes, bool, int, float, complex, type(None))
 
 
 class _Digest:
+    """Digest of a function, to which the values that it refers to are added recursively."""
+
     def __init__(self, function: Any) -> None:
-        self._sum = sha256()
-        self._told: list[Any] = []  # functions and types
-        self._within: list[Any] = []  # other things, of which a part is being told
-        of = function
-        while isinstance(of, partial):
-            of = of.func
-        self._package = _package(of)
-        self._tell(function)
+        self._hash = sha256()
+        self._added: list[Any] = []  # functions and types
+        self._parents: list[Any] = []  # other objects, parts of which are being added
+        innermost = function
+        while isinstance(innermost, partial):
+            innermost = innermost.func
+        self._package = _package(innermost)
+        self._add(function)
 
     def hexdigest(self) -> str:
-        return self._sum.hexdigest()[:12]
+        return self._hash.hexdigest()[:12]
 
-    def _say(self, *words: object) -> None:
-        for word in words:
-            text = word if isinstance(word, bytes) else re.sub(r" at 0x[0-9a-fA-F]+", "", str(word)).encode()
-            self._sum.update(b"%d " % len(text) + text)
+    def _update(self, *values: object) -> None:
+        """Add the text of values, without addresses in memory."""
+        for value in values:
+            text = value if isinstance(value, bytes) else re.sub(r" at 0x[0-9a-fA-F]+", "", str(value)).encode()
+            self._hash.update(b"%d " % len(text) + text)
 
-    def _tell(self, value: Any) -> None:
+    def _add(self, value: Any) -> None:
         if isinstance(value, _PLAIN):
-            return self._say(repr(value))
-        known = [number for number, told in enumerate([*self._told, *self._within]) if told is value]
+            return self._update(repr(value))
+        known = [number for number, each in enumerate([*self._added, *self._parents]) if each is value]
         if known:  # a function that calls itself, a list that holds itself
-            return self._say("as", known[0])
+            return self._update("as", known[0])
         if isinstance(value, (FunctionType, type)):
-            self._told.append(value)
-            return self._tell_inside(value)
-        self._within.append(value)
-        self._tell_inside(value)
-        self._within.pop()
+            self._added.append(value)
+            return self._add_content(value)
+        self._parents.append(value)
+        self._add_content(value)
+        self._parents.pop()
         return None
 
-    def _tell_inside(self, value: Any) -> None:
+    def _add_content(self, value: Any) -> None:
         if isinstance(value, (FunctionType, type)) and _package(value) != self._package:
-            self._say(value.__module__, value.__qualname__)
+            self._update(value.__module__, value.__qualname__)
         elif isinstance(value, FunctionType):
-            self._tell_text(value, value.__code__)
-            taken = getclosurevars(value)
-            for given in (value.__defaults__, value.__kwdefaults__, taken.nonlocals, taken.globals):
-                self._tell(given)
+            self._add_source(value, value.__code__)
+            outer = getclosurevars(value)
+            for part in (value.__defaults__, value.__kwdefaults__, outer.nonlocals, outer.globals):
+                self._add(part)
         elif isinstance(value, type):
-            self._tell_text(value, value.__qualname__)
+            self._add_source(value, value.__qualname__)
         elif isinstance(value, CodeType):
-            self._say(value.co_code, value.co_names)
-            self._tell(value.co_consts)
+            self._update(value.co_code, value.co_names)
+            self._add(value.co_consts)
         elif isinstance(value, partial):
-            self._tell((value.func, value.args, value.keywords))
+            self._add((value.func, value.args, value.keywords))
         elif isinstance(value, MethodType):
-            self._tell((value.__func__, value.__self__))
+            self._add((value.__func__, value.__self__))
         elif isinstance(value, np.ndarray) and value.dtype != object:
-            self._say(value.dtype, value.shape, value.tobytes())
+            self._update(value.dtype, value.shape, value.tobytes())
         elif isinstance(value, Mapping):
-            self._tell([*value, *value.values()])
+            self._add([*value, *value.values()])
         elif isinstance(value, (list, tuple)):
-            self._say(type(value).__name__, len(value))
+            self._update(type(value).__name__, len(value))
             for item in value:
-                self._tell(item)
+                self._add(item)
         elif isinstance(value, (set, frozenset)):
-            self._say(*sorted(map(repr, value)))
+            self._update(*sorted(map(repr, value)))
         else:
-            self._say(full_text(value))
+            self._update(full_text(value))
             if _package(type(value)) == self._package:
-                self._tell((type(value), getattr(value, "__dict__", None)))
+                self._add((type(value), getattr(value, "__dict__", None)))
 
-    def _tell_text(self, value: Any, instead: Any) -> None:
+    def _add_source(self, value: Any, otherwise: Any) -> None:
+        """Add the source of a function or type, or something else if it is not available."""
         try:
-            self._say(getsource(value))
+            self._update(getsource(value))
         except (OSError, TypeError):
-            self._tell(instead)
+            self._add(otherwise)
 
 
 def _package(value: Any) -> str:

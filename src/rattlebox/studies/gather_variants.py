@@ -1,4 +1,4 @@
-"""Some variants of a packed grid, in any order."""
+"""Selection of variants of a batch, in any order."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Packed = TypeVar("Packed", bound=_core.Node)
 
 
 def gather_variants(node: Packed, shape: Sequence[int], members: NDArray[np.intp], further: int = 0) -> Packed:
-    """Return the same part of a batch for some variants.
+    """Return a batch, or a part of it, for some of its variants.
 
     Parameters
     ----------
@@ -23,14 +23,14 @@ def gather_variants(node: Packed, shape: Sequence[int], members: NDArray[np.intp
     shape
         Shape of the grid.
     members
-        Variants, counted along the grid with its last axis fastest.
+        Numbers of the variants in C order of the grid.
     further
-        Axes of length one, behind that of the variants.
+        Number of axes of length one to append after that of the variants.
 
     Returns
     -------
     Node
-        The same with one axis for the variants, and the further ones, in place of the grid's.
+        Node with one axis for the variants, and the further ones, in place of the axes of the grid.
     """
     changes: dict[str, object] = {}
     for name, varies in node.fields().items():
@@ -47,23 +47,28 @@ def gather_variants(node: Packed, shape: Sequence[int], members: NDArray[np.intp
 def gather_values(
     values: ArrayLike, shape: Sequence[int], members: NDArray[np.intp], further: int = 0
 ) -> NDArray[np.float64]:
-    """Return some variants of a number, or of a vector with the axes of the grid after its own.
+    """Return a number, or a vector with the axes of the grid after its own, for some variants.
 
     Parameters
     ----------
     values
         A number, or an array over the grid.
     shape, members, further
-        As of `gather_variants`.
+        See `gather_variants`.
+
+    Returns
+    -------
+    (..., n, 1, ...) float
+        Values with one axis for the variants, or a number if they do not vary.
     """
-    found = np.asarray(values, dtype=float)
-    if found.ndim == 0:
-        return found
+    array = np.asarray(values, dtype=float)
+    if array.ndim == 0:
+        return array
     places = np.unravel_index(members, tuple(shape)) if shape else ()
-    own = found.ndim - len(places)  # axes of a vector
+    own = array.ndim - len(places)  # axes of a vector
     ones = (1,) * further
-    if all(n == 1 for n in found.shape[own:]):
-        return found.reshape(*found.shape[:own], 1, *ones)
-    there = tuple(place if n > 1 else 0 * place for place, n in zip(places, found.shape[own:], strict=True))
-    chosen = found[(slice(None),) * own + there]
-    return np.ascontiguousarray(chosen).reshape(*chosen.shape, *ones)
+    if all(n == 1 for n in array.shape[own:]):
+        return array.reshape(*array.shape[:own], 1, *ones)
+    index = tuple(place if n > 1 else 0 * place for place, n in zip(places, array.shape[own:], strict=True))
+    selected = array[(slice(None),) * own + index]
+    return np.ascontiguousarray(selected).reshape(*selected.shape, *ones)

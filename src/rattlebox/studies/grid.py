@@ -1,4 +1,4 @@
-"""Variants of a case: a grid along whose dimensions parameters vary."""
+"""Grid of the variants of a case, along whose dimensions parameters vary."""
 
 from __future__ import annotations
 
@@ -20,22 +20,23 @@ from rattlebox.model.restitutions import Constant
 Column = NDArray[Any]
 """Values of a parameter: float64, or objects."""
 
-_LISTED = 16  # values that a description lists in full
+_LISTED = 16
+"""Largest number of values that a description lists."""
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """The variants of a case: a grid of some dimensions, along each of which one parameter varies, or several linked ones.
+    """The variants of a case: a grid, along each dimension of which one or several parameters vary.
 
     Attributes
     ----------
     dims : tuple of str
         Names of the dimensions; the last one varies fastest.
     shape : tuple of int
-        Their lengths.
+        Lengths of the dimensions.
     columns : dict of str to array
-        By path: the values, broadcastable to `shape`. Numbers in SI, float64; else an array of objects as they stand in a
-        Case. Start positions are fractions of the gap.
+        Values by path, broadcastable to `shape`: float64 in SI units, or objects as in a Case. Start positions are
+        fractions of the gap.
     """
 
     dims: tuple[str, ...]
@@ -53,15 +54,15 @@ class Grid:
         return dict(self._coords)
 
     def values_at(self, index: int) -> dict[str, Any]:
-        """Return what is different in one variant, by path.
+        """Return the values of one variant by path.
 
         Parameters
         ----------
         index
-            Number of the variant, from 0, the last dimension varying fastest.
+            Number of the variant in C order of the grid.
         """
         if not 0 <= index < self.size:
-            raise Hint(f"there is no variant {index}", f"0 to {self.size - 1}")
+            raise Hint(f"{index} is not the number of a variant", f"0 to {self.size - 1}")
         place = np.unravel_index(index, self.shape)
         members = {
             path: values[tuple(0 if length == 1 else at for at, length in zip(place, values.shape, strict=True))]
@@ -75,19 +76,19 @@ class Grid:
         Parameters
         ----------
         case
-            The case that varies.
+            Base case.
         index
-            Number of the variant, from 0, the last dimension varying fastest.
+            Number of the variant in C order of the grid.
 
         Raises
         ------
         CaseError
-            When there is no such variant, or its parts do not fit together.
+            If there is no such variant, or its parts are not valid together.
         """
         return replaced(case, self.values_at(index))
 
-    def told(self, case: Case, index: int) -> str:
-        """Return what is different in one variant in a line, with units; arguments as of `case_at`."""
+    def describe_variant(self, case: Case, index: int) -> str:
+        """Return the values of one variant with units in one line; for the parameters see `case_at`."""
         units = {path: unit_of(case, path) for path in self.columns}
         return ", ".join(
             f"{path} = {_label(value)}" + (f" {units[path]}" if units[path] not in (None, "1") else "")
@@ -95,7 +96,7 @@ class Grid:
         )
 
     def describe(self) -> dict[str, Any]:
-        """Return what JSON can hold of the design; equal designs have equal descriptions, however they were spelt."""
+        """Return a description in JSON types; equal grids have equal descriptions."""
         return {
             "dims": [[name, length] for name, length in zip(self.dims, self.shape, strict=True)],
             "columns": {
@@ -112,7 +113,7 @@ class Grid:
 
 
 def _summary(values: Column) -> dict[str, Any]:
-    """What tells an array from any other."""
+    """Return the values of an array, or a digest of many values."""
     flat = values.ravel()
     if flat.dtype.kind == "f":
         if flat.size <= _LISTED:
@@ -120,22 +121,28 @@ def _summary(values: Column) -> dict[str, Any]:
         ends = {"first": flat[0], "last": flat[-1], "smallest": flat.min(), "largest": flat.max()}
         digest = sha256(np.ascontiguousarray(flat, dtype="<f8").tobytes()).hexdigest()
         return {"count": flat.size, **{name: float(value) for name, value in ends.items()}, "sha256": digest}
-    told = {id(value): _plain(value) for value in {id(value): value for value in flat}.values()}
+    plain = {id(value): _plain(value) for value in {id(value): value for value in flat}.values()}
     if flat.size <= _LISTED:
-        return {"values": [told[id(value)] for value in flat]}
-    digests = {key: sha256(json.dumps(item, sort_keys=True).encode()).digest() for key, item in told.items()}
+        return {"values": [plain[id(value)] for value in flat]}
+    digests = {key: sha256(json.dumps(item, sort_keys=True).encode()).digest() for key, item in plain.items()}
     return {"count": flat.size, "sha256": sha256(b"".join(digests[id(value)] for value in flat)).hexdigest()}
 
 
 def _plain(value: Any) -> Any:
-    """What JSON can hold of an object."""
+    """Return an object in JSON types."""
     if isinstance(value, (list, tuple)):
         return [_plain(item) for item in value]
     return value.model_dump(mode="json", exclude_none=True) if isinstance(value, Part) else value
 
 
 def labels(items: Column) -> Column:
-    """Return texts that tell objects apart."""
+    """Return different labels for different objects.
+
+    Parameters
+    ----------
+    items
+        Objects of a column.
+    """
     different = {id(item): item for item in items}
     texts = {key: _label(item) for key, item in different.items()}
     first: dict[str, Any] = {}
@@ -145,7 +152,7 @@ def labels(items: Column) -> Column:
 
 
 def _label(value: Any) -> str:
-    """A short text for a value."""
+    """Return a short text for a value."""
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, (list, tuple)):
@@ -154,8 +161,8 @@ def _label(value: Any) -> str:
         return str(value)
     if getattr(value, "name", ""):
         return str(getattr(value, "name", ""))
-    given = {key: _label(getattr(value, key)) for key in sorted(value.model_fields_set - {"kind"})}
-    if isinstance(value, Constant) and given.keys() == {"e"}:
-        return given["e"]
+    fields = {key: _label(getattr(value, key)) for key in sorted(value.model_fields_set - {"kind"})}
+    if isinstance(value, Constant) and fields.keys() == {"e"}:
+        return fields["e"]
     kind = getattr(value, "kind", type(value).__name__)
-    return f"{kind}({', '.join(f'{key}={text}' for key, text in given.items())})" if given else str(kind)
+    return f"{kind}({', '.join(f'{key}={text}' for key, text in fields.items())})" if fields else str(kind)

@@ -1,13 +1,12 @@
-"""One study as work that can be cut into blocks and sent anywhere."""
+"""Variants of cases with impact dampers, run in the core without storing trajectories."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from threading import Lock
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,106 +16,46 @@ from rattlebox.core import _core
 from rattlebox.engines.batch import BlockOutput, run_block
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.errors import Hint
-from rattlebox.model.harmonics import Harmonic
-from rattlebox.model.random_vibration import Random
 from rattlebox.prepare.pack import Batch, pack_parts
 
-from .case_digest import describe_case
-from .fingerprint import fingerprint
-from .measures import INTERVAL, MEASURES, interval_of, name_of
+from .case_work import CaseWork, Extra
+from .measures import INTERVAL, MEASURES, interval_of
 from .work import Values
-
-if TYPE_CHECKING:
-    from rattlebox.model.case import Case
-    from rattlebox.results import Run
-
-    from .grid import Grid
-
-Extra = tuple[tuple[str, int], ...]
-UserMeasure = Callable[["Run"], float]
-_one_at_a_time = Lock()  # functions of users need not be safe to call from several threads
 
 
 @dataclass
-class ImpactWork:
-    """Variants of a case with impact dampers, run in the core without keeping trajectories.
+class ImpactWork(CaseWork):
+    """Variants of a case with impact dampers, run in the core without storing trajectories.
 
     Attributes
     ----------
-    case, grid
-        Base case and the grid of its variants.
-    measures
-        Names of measures, and functions of a Run.
-    skip
-        Time from which measures are evaluated [s].
-    cycles
-        Numbers of cycles of the harmonic load to skip and to evaluate, in place of `skip` and the duration of the case.
-    samples
-        Number of samples of the evaluated window; None for as many as the measures need.
-    point
-        Name of the observed point of the structure; default that of the first damper.
-    motion, last, state
-        Whether to keep the samples of the motion, number of the last impacts to keep, whether to keep the final state.
-    intervals
-        Whether measures of steady motion carry their 95 % interval.
+    case, grid, measures, skip, cycles, samples, point, intervals
+        See `CaseWork`.
+    motion
+        Whether to return the samples of the motion.
+    last
+        Number of impacts to return, counted from the end of the run.
+    state
+        Whether to return the state at the end.
     """
 
-    case: Case
-    grid: Grid
-    measures: Sequence[str | UserMeasure] = ()
-    skip: float = 0.0
-    cycles: tuple[int, int] | None = None
-    samples: int | None = None
-    point: str | None = None
     motion: bool = False
     last: int = 0
     state: bool = False
     intervals: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
-
-    @property
-    def size(self) -> int:
-        """Number of variants."""
-        return self.grid.size
+        return {name: value for name, value in self.__dict__.items() if name != "_parts"}
 
     @property
     def block(self) -> int:
-        """Preferred number of variants in a block: as many as there are blocks, or one run for functions of a Run."""
-        return 1 if self.own else math.isqrt(self.size)
-
-    @property
-    def named(self) -> list[str]:
-        """Measures that the core computes."""
-        return [measure for measure in self.measures if isinstance(measure, str)]
-
-    @property
-    def own(self) -> dict[str, UserMeasure]:
-        """Measures that are functions of a Run, by name."""
-        return {name_of(measure): measure for measure in self.measures if not isinstance(measure, str)}
-
-    @property
-    def steady(self) -> list[str]:
-        """Measures that carry an interval: averages over a motion that is driven for good."""
-        if not self.intervals or not _is_driven(self.case):
-            return []
-        return [name for name in self.named if MEASURES[name].average]
+        """Preferred number of variants in a block: the square root of all, or 1 with functions of a Run."""
+        return 1 if self.functions else math.isqrt(self.size)
 
     @cached_property
-    def outputs(self) -> dict[str, tuple[Extra, str, dict[str, str]]]:
+    def outputs(self) -> dict[str, tuple[Extra, str, dict[str, Any]]]:
         """Further dimensions, number type and attributes of each output."""
-        names = " ".join(status.name for status in _core.Status)
-        flags = {"long_name": "how the run ended", "flag_meanings": names}
-        found: dict[str, tuple[Extra, str, dict[str, str]]] = {"status": ((), "int8", flags)}
-        for name in self.named:
-            measure = MEASURES[name]
-            found[name] = ((), "float64", {"units": measure.units, "long_name": measure.long_name})
-        for name in self.steady:
-            half = f"half of the 95 % interval, {MEASURES[name].long_name}"
-            found[name + INTERVAL] = ((), "float64", {"units": MEASURES[name].units, "long_name": half})
-        for name in self.own:
-            found[name] = ((), "float64", {"units": "", "long_name": name.replace("_", " ")})
+        found = dict(super().outputs)
         balls = self._balls
         if self.motion:
             time: Extra = (("instant", self.output.samples),)
@@ -139,16 +78,16 @@ class ImpactWork:
     def coords(self) -> dict[str, Any]:
         """Return the coordinates of the further dimensions."""
         found: dict[str, tuple[NDArray[Any], str, str]] = {}
-        durations = np.unique(np.concatenate([np.ravel(p.packed.settings.duration) for p, *_ in self._prepared]))
+        durations = np.unique(np.concatenate([np.ravel(p.packed.settings.duration) for p, *_ in self._parts]))
         lengths = {name: length for extra, _, _ in self.outputs.values() for name, length in extra}
         if self.motion:
             found["ball"] = np.arange(1, lengths["ball"] + 1), "1", "number of the ball"
             if self.cycles is not None:
-                found["instant"] = self._window(0.0, self.cycles[1]), "1", "cycles looked at"
+                found["instant"] = self._window(0.0, self.cycles[1]), "1", "evaluated cycles"
             elif len(durations) == 1:
                 found["instant"] = self._window(self.skip, durations.item()), "s", "time"
             else:
-                found["instant"] = self._window(0.0, 1.0), "1", "part of the time looked at"
+                found["instant"] = self._window(0.0, 1.0), "1", "fraction of the evaluated time"
         if self.last:
             found["last"] = np.arange(-self.last, 0), "1", "number of the impact, from the end"
         if self.state:
@@ -161,14 +100,8 @@ class ImpactWork:
         return np.linspace(start, stop, self.output.samples)
 
     def describe(self) -> dict[str, Any]:
-        """What is computed besides the grid, in JSON's types."""
-        kept = {name: getattr(self, name) for name in ("skip", "samples", "point", "motion", "last", "state")}
-        return {
-            **describe_case(self.case, self.grid.columns),
-            "measures": [*self.named, *(f"{name} {fingerprint(own)}" for name, own in self.own.items())],
-            "cycles": None if self.cycles is None else list(self.cycles),
-            **kept,
-        }
+        """Return a description of everything except the grid, in JSON types."""
+        return {**super().describe(), **{name: getattr(self, name) for name in ("motion", "last", "state")}}
 
     def run(
         self,
@@ -178,121 +111,100 @@ class ImpactWork:
         threads: int = 1,
         cancelled: Callable[[], bool] | None = None,
     ) -> Values | None:
-        """Run variants start to stop.
+        """Run a range of variants.
 
         Parameters
         ----------
         start, stop
-            Variants, counted along the grid with its last axis fastest.
+            First variant and the one after the last, in C order of the grid.
         threads
-            How many work at once.
+            Number of threads.
         cancelled
-            Asked some fifty times a second; True stops.
+            Function called about fifty times a second; the work stops if it returns True.
 
         Returns
         -------
         dict of str to array, or None
-            Each output, (stop - start, ...); None when it was stopped.
+            Each output, (stop - start, ...); None if the work was cancelled.
         """
 
-        def go_on(*_: int) -> bool:
+        def proceed(*_: int) -> bool:
             return not (cancelled and cancelled())
 
-        result = self._measured(start, stop, threads, go_on)
-        if result is None or not self.own:
+        result = self._run_core(start, stop, threads, proceed)
+        if result is None or not self.functions:
             return result
-        columns = {name: np.full(stop - start, np.nan) for name in self.own}
+        columns = {name: np.full(stop - start, np.nan) for name in self.functions}
         for index in range(start, stop):
-            if not go_on():
+            if not proceed():
                 return None
             (run,) = simulate_many([self.grid.case_at(self.case, index)], threads=1)
             if run.status == "finished":
-                for name, number in self.own_of(run, index).items():
+                for name, number in self.call_functions(run, index).items():
                     columns[name][index - start] = number
         return {**result, **columns}
 
-    def own_of(self, run: Run, index: int) -> dict[str, float]:
-        """Return what functions of a Run give of a variant.
-
-        Raises
-        ------
-        CaseError
-            When one of them gives no number.
-        """
-        found = {}
-        for name, measure in self.own.items():
-            with _one_at_a_time:
-                value: Any = measure(run)
-            try:
-                if isinstance(value, str) or np.ndim(value):
-                    raise TypeError
-                found[name] = float(value)
-            except TypeError:
-                kind = type(value).__name__
-                raise Hint(f"measure {name}: of variant {index} it is {kind}, not one number", "float(...)") from None
-        return found
-
-    def _measured(self, start: int, stop: int, threads: int, go_on: Callable[[int], bool]) -> Values | None:
-        """What the core finds of variants start to stop."""
+    def _run_core(self, start: int, stop: int, threads: int, proceed: Callable[[int], bool]) -> Values | None:
+        """Return the outputs that the core computes; None if the work was cancelled."""
         found: dict[str, NDArray[Any]] = {}
-        for part, output, numbers in self._prepared:
+        for part, output, numbers in self._parts:
             first, last = (start, stop) if numbers is None else np.searchsorted(numbers, (start, stop)).tolist()
             if first == last:
                 continue
-            values = run_block(part.packed, part.shape, first, last, output, threads=threads, progress=go_on)
+            values = run_block(part.packed, part.shape, first, last, output, threads=threads, progress=proceed)
             if values is not None:
                 values = with_intervals(values, output)
             if values is None or numbers is None:
                 return values
             for name, array in values.items():
-                whole = found.setdefault(name, np.empty((stop - start, *array.shape[1:]), array.dtype))
-                whole[numbers[first:last] - start] = array
+                column = found.setdefault(name, np.empty((stop - start, *array.shape[1:]), array.dtype))
+                column[numbers[first:last] - start] = array
         return found
 
     def validate(self) -> None:
-        """Raise, before anything runs, if a variant does not fit.
+        """Raise if a variant is not valid, before anything runs.
 
         Raises
         ------
         CaseError
-            If one does not.
+            If a variant is not valid.
         """
-        _ = self._prepared
+        _ = self._parts
 
     def require_alike(self) -> None:
-        """Raise, before anything runs, if the variants differ in more than numbers.
+        """Raise if the variants differ in more than numbers, before anything runs.
 
         Raises
         ------
         CaseError
-            If they do, or if one does not fit.
+            If they do, or if a variant is not valid.
         """
         _ = self.packed
 
-    # ---- what the core needs
+    # ---- input of the core
 
     @property
     def packed(self) -> _core.Problem:
-        """All variants, packed.
+        """All variants as one batch.
 
         Raises
         ------
         CaseError
-            When they differ in more than numbers.
+            If they differ in more than numbers.
         """
-        part = self._prepared[0][0]
+        part = self._parts[0][0]
         if part.obstacle:
             raise part.obstacle
         return part.packed
 
     @property
     def output(self) -> BlockOutput:
-        """What is kept of each, for the core; of the first ones, where variants differ in more than numbers."""
-        return self._prepared[0][1]
+        """Quantities that the core returns; those of the first part if variants differ in more than numbers."""
+        return self._parts[0][1]
 
     @cached_property
-    def _prepared(self) -> list[tuple[Batch, BlockOutput, NDArray[np.intp] | None]]:
-        """Parts that differ in numbers only, with the numbers of their variants."""
+    def _parts(self) -> list[tuple[Batch, BlockOutput, NDArray[np.intp] | None]]:
+        """Batches whose variants differ only in numbers, their outputs, and the numbers of their variants."""
         parts = pack_parts(self.case, self.grid.columns, self.grid.shape)
         found = []
         for part in parts:
@@ -305,44 +217,44 @@ class ImpactWork:
             ):
                 raise part.obstacle
             numbers = part.flat_indices(self.grid.shape) if len(parts) > 1 else None
-            found.append((*self._seen(part), numbers))
+            found.append((*self._set_window(part), numbers))
         return found
 
-    def _seen(self, part: Batch) -> tuple[Batch, BlockOutput]:
-        """A part as it is run, and what is kept of it."""
+    def _set_window(self, part: Batch) -> tuple[Batch, BlockOutput]:
+        """Return a batch with its duration, and the quantities to return."""
         packed = part.packed
         settings = packed.settings
         period = _period(packed)
         if self.cycles is not None:
             if period is None:
-                raise Hint("cycles need a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
+                raise Hint("cycles require a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
             settings = settings.replace(duration=sum(self.cycles) * period)
-        for name in self.named:
+        for name in self.measure_names:
             if MEASURES[name].cyclic and period is None:
-                raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "kind harmonic")
+                raise Hint(f"{name} is defined per cycle and requires a harmonic load or motion", 'kind = "harmonic"')
         start = self.skip if self.cycles is None else self.cycles[0] * period
         if np.any(np.asarray(start) >= settings.duration):
             raise Hint(
                 f"skip = {np.max(start):.6g} s is not before the end of the run", "a smaller skip or a longer duration"
             )
-        dense = self.motion or any(MEASURES[name].samples for name in self.named)
+        dense = self.motion or any(MEASURES[name].samples for name in self.measure_names)
         usual = 2001 if self.cycles is None else 1 + int(np.ceil(64 * self.cycles[1]))
         ends = 2
-        if self.steady and not dense:  # energies at the ends of cycles, or of equal parts
-            seen = 64.0 if period is None else np.max((settings.duration - np.asarray(start)) / period)
-            ends = 1 + int(np.clip(np.ceil(seen - 1e-9), 1, 2000))
-        harmonic = [name for name in self.named if MEASURES[name].samples and MEASURES[name].cyclic]
+        if self.averages and not dense:  # energies at the ends of cycles, or of equal parts
+            cycles = 64.0 if period is None else float(np.max((settings.duration - np.asarray(start)) / period))
+            ends = 1 + int(np.clip(np.ceil(cycles - 1e-9), 1, 2000))
+        harmonic = [name for name in self.measure_names if MEASURES[name].samples and MEASURES[name].cyclic]
         if harmonic:
-            seen = (settings.duration - np.asarray(start)) / period
-            usual = max(usual, 1 + int(np.ceil(20 * np.max(seen))))
-            each = ((self.samples or usual) - 1) / float(np.max(seen))
-            if each < MIN_SAMPLES * (1 - 1e-6):
+            cycles = float(np.max((settings.duration - np.asarray(start)) / period))
+            usual = max(usual, 1 + int(np.ceil(20 * cycles)))
+            rate = ((self.samples or usual) - 1) / cycles
+            if rate < MIN_SAMPLES * (1 - 1e-6):
                 raise Hint(
-                    f"{harmonic[0]} needs {MIN_SAMPLES} samples in a cycle, and there are {each:.3g}",
-                    "more samples; without a number there are enough",
+                    f"{rate:.3g} samples per cycle are too few for {harmonic[0]}, which requires {MIN_SAMPLES}",
+                    "more samples, or leave out the number",
                 )
         output = BlockOutput(
-            measures=self.named,
+            measures=self.measure_names,
             shape=part.points[self._point],
             start=start,
             period=np.nan if period is None else period,
@@ -350,7 +262,7 @@ class ImpactWork:
             motion=self.motion,
             last=self.last,
             state=self.state,
-            batched=self.steady,
+            batched=self.averages,
         )
         return replace(part, packed=packed.replace(settings=settings)), output
 
@@ -366,7 +278,15 @@ class ImpactWork:
 
 
 def with_intervals(values: Values, output: BlockOutput) -> dict[str, NDArray[Any]]:
-    """Return the outputs of runs with the intervals of their measures in place of the batches."""
+    """Return outputs in which the intervals of measures replace the batches.
+
+    Parameters
+    ----------
+    values
+        Outputs of `run_block`.
+    output
+        Requested quantities.
+    """
     found = dict(values)
     if output.batched:
         batches, lengths = found.pop("batches"), found.pop("batch_length")
@@ -375,14 +295,8 @@ def with_intervals(values: Values, output: BlockOutput) -> dict[str, NDArray[Any
     return found
 
 
-def _is_driven(case: Case) -> bool:
-    """Return whether a harmonic or random vibration acts to the end of every run."""
-    signals = (*case.loads, *case.base, *case.shaker_motion)
-    return any(isinstance(s, Random) or (isinstance(s, Harmonic) and s.stop is None) for s in signals)
-
-
 def _period(packed: _core.Problem) -> Any:
-    """Of the first harmonic load or motion [s]; None when there is none."""
+    """Return the period of the first harmonic load or motion [s]; None if there is none."""
     for load in packed.loads:
         if isinstance(load.signal, _core.Harmonic):
             return 2 * np.pi / np.asarray(load.signal.frequency)

@@ -1,4 +1,4 @@
-"""Numbers that sum up a run, computed in the core (core/impact/measures.hpp) without keeping its trajectory."""
+"""Measures of a run, computed in the core (core/impact/measures.hpp) without storing its trajectory."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Measure(NamedTuple):
-    """What a measure is.
+    """Declaration of a measure.
 
     Attributes
     ----------
@@ -28,12 +28,12 @@ class Measure(NamedTuple):
     long_name
         Meaning in a few words, fit for an axis label.
     samples
-        It is found from samples of the motion, and is as good as they are dense.
+        Whether it is computed from samples of the motion, whose spacing limits its accuracy.
     cyclic
-        It needs a cycle: a harmonic load or motion.
+        Whether it is defined per cycle and requires a harmonic load or motion.
     average
-        How the measure of a steady motion follows from those of parts of the window: their mean, the root of their mean
-        square, or their total; empty for peaks, shares and times, which carry no interval.
+        Relation between the measure of a steady motion and its values in parts of the window: "mean", "root mean square"
+        or "total"; "" for peaks, shares and times, which have no interval.
     """
 
     units: str
@@ -50,7 +50,7 @@ class Measures(Catalogue[Measure]):
     columns = ("name", "unit", "meaning", "needs")
 
     def row(self, name: str, entry: Measure) -> tuple[str, ...]:
-        """Return name, unit, meaning and what the measure needs."""
+        """Return name, unit, meaning and requirements of a measure."""
         needs = ["samples of the motion"] * entry.samples + ["a harmonic load or motion"] * entry.cyclic
         return name, "" if entry.units == "1" else entry.units, entry.long_name, " and ".join(needs)
 
@@ -89,9 +89,9 @@ MEASURES = Measures(_MEASURES)
 
 
 MOST_BATCHES = 64
-"""Largest number of parts of a window of which the interval of a measure is computed, as in the core."""
+"""Largest number of parts of a window for the interval of a measure; the same as in the core."""
 INTERVAL = "_interval"
-"""End of the name of the half width of the interval of a measure."""
+"""Suffix of the name of the half width of an interval."""
 
 
 def interval_of(name: str, value: Any, batches: NDArray[np.float64], lengths: NDArray[np.float64]) -> Any:
@@ -102,21 +102,21 @@ def interval_of(name: str, value: Any, batches: NDArray[np.float64], lengths: ND
     name
         Name of the measure.
     value : (K,) float
-        The measure over the whole window, of each of some runs.
+        Measure over the whole window, for each run.
     batches : (K, N) float
-        The measure over consecutive parts of the window; NaN of those that there are not.
+        Measure over consecutive parts of the window, padded with NaN.
     lengths : (K, N) float
         Lengths of the parts [s].
 
     Returns
     -------
     (K,) float
-        In the unit of the measure; NaN if the window is too short or the motion is not steady.
+        Half width in the unit of the measure; NaN if the window is too short or the motion is not steady.
 
     Notes
     -----
-    Batch means of the measure, of its square ("root mean square", the half width of which is divided by twice the value) or
-    of its rate ("total"); see `rattlebox.analysis.mean_interval`.
+    The method is batch means (see `rattlebox.analysis.mean_interval`) of the measure, of its square for "root mean square",
+    with the half width divided by twice the value, or of its rate for "total".
     """
     average = MEASURES[name].average
     value = np.asarray(value, dtype=float)
@@ -138,7 +138,13 @@ def interval_of(name: str, value: Any, batches: NDArray[np.float64], lengths: ND
 
 
 def interval_warning(found: xr.Dataset) -> dict[str, str]:
-    """Return the attribute `too_short` of a study in which measures of finished runs lack an interval; else nothing."""
+    """Return the attribute `too_short` if measures of finished runs lack an interval; otherwise an empty dictionary.
+
+    Parameters
+    ----------
+    found
+        Result of a study.
+    """
     lacking = {}
     for name in map(str, found.data_vars):
         if name + INTERVAL in found:
@@ -154,41 +160,60 @@ def interval_warning(found: xr.Dataset) -> dict[str, str]:
     }
 
 
-_OF_VARIANTS = {*OUTCOMES, "state", "displacement", "velocity", "ball_place", "ball_speed"}
-_OF_IMPACTS = {"last_time", "last_approach_speed", "last_contact"}
-_OF_DESIGNS = {"trial", "front", "case", "missing", "feasible", "added_mass"}
-TAKEN = _OF_VARIANTS | _OF_IMPACTS | _OF_DESIGNS
-"""Names in studies that are no measure's."""
+_VARIANT_NAMES = {*OUTCOMES, "state", "displacement", "velocity", "ball_place", "ball_speed"}
+_IMPACT_NAMES = {"last_time", "last_approach_speed", "last_contact"}
+_DESIGN_NAMES = {"trial", "front", "case", "missing", "feasible", "added_mass"}
+RESERVED_NAMES = _VARIANT_NAMES | _IMPACT_NAMES | _DESIGN_NAMES
+"""Names of variables of studies that a function of a Run must not have."""
 
 
 def name_of(measure: Any) -> str:
-    """Return what a measure is called, which may be a function of a Run."""
+    """Return the name of a measure, or of a function of a Run.
+
+    Parameters
+    ----------
+    measure
+        Name, function, partial or callable object.
+    """
     if isinstance(measure, partial):
         measure = measure.func
     return measure if isinstance(measure, str) else getattr(measure, "__name__", type(measure).__name__)
 
 
 def check_names(measures: Iterable[Any]) -> None:
-    """Refuse measures of which two have one name, and functions that are called like another part of a study.
+    """Raise if two measures have the same name, or a function has a reserved name.
+
+    Parameters
+    ----------
+    measures
+        Names and functions.
 
     Raises
     ------
-    Hint
-        With the name.
+    CaseError
+        If a name is not allowed.
     """
     measures = list(measures)
     for measure in measures:
-        if not isinstance(measure, str) and name_of(measure) in TAKEN:
+        if not isinstance(measure, str) and name_of(measure) in RESERVED_NAMES:
             raise Hint(
-                f"a function cannot be called {name_of(measure)}: studies hold something else by that name",
+                f"{name_of(measure)} is the name of another variable of studies and cannot name a function",
                 "another name",
             )
     names = [name_of(measure) for measure in measures]
     for name in names:
         if names.count(name) > 1:
-            raise Hint(f"two measures are called {name}", "each once, functions with names of their own")
+            raise Hint(f"two measures have the name {name}", "each measure once, and functions with different names")
 
 
 def with_required(required: Sequence[str], measures: Any) -> list[Any]:
-    """Return the measures that a study needs, and those that are asked for besides."""
+    """Return the measures that a study requires, and the further requested ones.
+
+    Parameters
+    ----------
+    required
+        Names of the required measures.
+    measures
+        Requested measures.
+    """
     return [*required, *(name for name in measures if name not in required)]

@@ -1,4 +1,10 @@
-"""Pairs of neighbouring motions, brought back to a small distance again and again while their separation is summed up."""
+"""Growth of the distance between pairs of neighbouring motions, which is rescaled repeatedly (Benettin's method).
+
+References
+----------
+G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn (1980), Lyapunov characteristic exponents for smooth dynamical systems
+and for Hamiltonian systems, Meccanica 15, 9-20 and 21-30, doi:10.1007/BF02128236 and doi:10.1007/BF02128237.
+"""
 
 from __future__ import annotations
 
@@ -19,35 +25,39 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_ALIGNING = 20  # legs in which a neighbour turns into the direction that grows most
-_TURN = 0.6180339887498949  # of a leg, on: contacts that are closed at one moment are open at another
-_PATIENCE = 8
-_SATURATED = 1e-3  # over the scale of distances
-_MERGED = 2e-15
-_CLOSED = 1e-12  # over the clearance
+_ALIGNMENT_STEPS = 20  # steps in which a neighbour turns into the direction of the largest growth
+_GOLDEN_RATIO = 0.6180339887498949  # of a step, added to find a time at which all contacts are open
+_MAX_ATTEMPTS = 8
+_SATURATED = 1e-3  # distance over the scale of distances
+_MERGED = 2e-15  # distance over the size of the state
+_CLOSED = 1e-12  # gap over the clearance
 
 
 class _Stopped(Exception):
-    """Someone asked to stop."""
+    """The work was cancelled."""
 
 
 class Pairs:
-    """Pairs of some variants of a study; arrays run over (variant, pair, member of the pair, component of the state).
+    """Pairs of neighbouring motions for a range of variants.
+
+    Arrays have the axes (variant, pair, member of the pair, component of the state).
 
     Parameters
     ----------
     task
-        What is watched.
+        Work to which the variants belong.
     start, stop
-        Variants.
-    threads, cancelled
-        As for any task.
+        First variant and the one after the last.
+    threads
+        Number of threads.
+    cancelled
+        Function that returns True when the work must stop.
     """
 
     def __init__(
         self, task: LyapunovWork, start: int, stop: int, threads: int, cancelled: Callable[[], bool] | None
     ) -> None:
-        self._task, self._threads, self._asked = task, threads, cancelled
+        self._task, self._threads, self._cancelled = task, threads, cancelled
         self._count = stop - start
         shape = task.grid.shape
         members = np.arange(start, stop)
@@ -66,15 +76,15 @@ class Pairs:
         self._rng = np.random.default_rng(task.seed)
         self._begin(rate)
 
-    def _cancelled(self) -> bool:
-        return self._asked is not None and self._asked()
+    def _is_cancelled(self) -> bool:
+        return self._cancelled is not None and self._cancelled()
 
     def _each(self, number: Any) -> Array:
-        """A packed number of each variant, (variants, 1)."""
+        """Return a packed number of each variant, (variants, 1)."""
         return np.array(np.broadcast_to(np.reshape(number, (-1, 1)), (self._count, 1)))
 
     def _begin(self, rate: Array) -> None:
-        """Set the states at the start, what a component weighs in a distance, and the scale of distances."""
+        """Set the initial states, the weights of components in a distance, and the scale of distances."""
         packed, pairs = self._packed, self._task.pairs
 
         def rows(parts: Sequence[Array]) -> Array:
@@ -101,58 +111,60 @@ class Pairs:
         self._scale = np.broadcast_to(balls, norm.shape)
 
     def growth(self) -> Array | None:
-        """Logarithmic growth in each step of what is looked at, (variants, pairs, steps).
+        """Return the logarithmic growth in each evaluated step, (variants, pairs, steps).
 
-        NaN where a run did not finish; None when it was stopped.
+        It is NaN where a run did not finish. Return None if the work was cancelled.
         """
         try:
-            return self._curves(*self._sums())
+            return self._per_step(*self._rescale())
         except _Stopped:
             return None
 
     @property
-    def _whole(self) -> NDArray[np.bool_]:
-        """Pairs of which no run has failed."""
+    def _intact(self) -> NDArray[np.bool_]:
+        """Pairs without a failed run."""
         return np.isin(self.status, (Status.finished, Status.energy_error))
 
-    def _sums(self) -> tuple[Array, Array]:
-        """Times at which neighbours were brought back, and growth until then, (times, variants, pairs)."""
-        state, time = self._settle(self._skip - np.minimum(0.5 * self._skip, _ALIGNING * self.leg))
-        state = self._parted(state)
+    def _rescale(self) -> tuple[Array, Array]:
+        """Return the times of rescaling, and the growth until then, (times, variants, pairs)."""
+        state, time = self._settle(self._skip - np.minimum(0.5 * self._skip, _ALIGNMENT_STEPS * self.leg))
+        state = self._add_neighbours(state)
         grown = np.zeros(time.shape)
         closed, halved = np.zeros(time.shape, int), np.zeros(time.shape, int)
-        alive = self._whole
+        alive = self._intact
         times, sums = [time], [grown]
         distance = self._task.distance * self._scale
         while (going := alive & (self._end - time > 1e-9 * self.leg)).any():
             to_next = (np.floor(time / self.leg + 1e-6) + 1) * self.leg - time
-            length = (to_next + self.leg * (2.0**closed - 1 + closed * _TURN % 1)) * 0.5**halved
+            length = (to_next + self.leg * (2.0**closed - 1 + closed * _GOLDEN_RATIO % 1)) * 0.5**halved
             length = np.where(going, np.minimum(length, self._end - time), 1e-3 * self.leg)
             ended, alive = self._run(state, time, length, alive, going)
-            apart = (ended[:, :, 1] - ended[:, :, 0]) * self._weights[:, :, 0]
-            size = np.linalg.norm(apart, axis=-1)
+            difference = (ended[:, :, 1] - ended[:, :, 0]) * self._weights[:, :, 0]
+            size = np.linalg.norm(difference, axis=-1)
             largest = np.maximum(np.linalg.norm(ended[:, :, 0] * self._weights[:, :, 0], axis=-1), self._scale)
             merged = going & alive & (size < _MERGED * largest)
             size = np.where(size > 0, size, 1.0)
-            ended[:, :, 1] = ended[:, :, 0] + apart * (distance / size)[..., None] / self._weights[:, :, 0]
+            ended[:, :, 1] = ended[:, :, 0] + difference * (distance / size)[..., None] / self._weights[:, :, 0]
             last = time + length >= self._end - 1e-9 * self.leg
-            fit = last | (self._room(ended) > _CLOSED).all(axis=-1)
-            far = (size > _SATURATED * self._scale) & (halved < _PATIENCE)
-            taken = going & alive & fit & ~far
-            closed = np.where(taken, 0, closed + (going & ~fit & ~far))
-            halved = np.where(taken, 0, halved + (going & far))
-            time = np.where(taken, time + length, time)
-            grown = np.where(merged, -np.inf, np.where(taken, grown + np.log(size / distance), grown))
-            state = np.where(taken[..., None, None], ended, state)
+            # Rescale only when all contacts are open and the distance is still small; else try another step length.
+            opened = last | (self._smallest_gap(ended) > _CLOSED).all(axis=-1)
+            far = (size > _SATURATED * self._scale) & (halved < _MAX_ATTEMPTS)
+            accepted = going & alive & opened & ~far
+            closed = np.where(accepted, 0, closed + (going & ~opened & ~far))
+            halved = np.where(accepted, 0, halved + (going & far))
+            time = np.where(accepted, time + length, time)
+            grown = np.where(merged, -np.inf, np.where(accepted, grown + np.log(size / distance), grown))
+            state = np.where(accepted[..., None, None], ended, state)
             alive &= ~merged
             times.append(time)
             sums.append(grown)
         return np.array(times), np.array(sums)
 
-    def _curves(self, times: Array, sums: Array) -> Array:
+    def _per_step(self, times: Array, sums: Array) -> Array:
+        """Return the growth in each step, interpolated between the times of rescaling."""
         steps = np.arange(self._task.count + 1)
         curves = np.full((*self.status.shape, steps.size - 1), np.nan)
-        for variant, pair in np.argwhere(self._whole):
+        for variant, pair in np.argwhere(self._intact):
             at = self._skip[variant, 0] + steps * self.leg[variant, 0]
             if np.isinf(sums[-1, variant, pair]):
                 curves[variant, pair] = -np.inf
@@ -163,17 +175,17 @@ class Pairs:
     # ---- runs
 
     def _settle(self, until: Array) -> tuple[Array, Array]:
-        """States at some time or soon after it, with all contacts open, and when that is."""
+        """Return states with all contacts open at a time or soon after it, and their times."""
         state, time = self._start, np.zeros(self.status.shape)
         if not until.any():
             return state, time
         found, waiting = state.copy(), np.ones(time.shape, bool)
-        for attempt in range(_PATIENCE):
-            length = np.where(waiting, until + self.leg * (attempt * _TURN % 1), 1e-3 * self.leg)
+        for attempt in range(_MAX_ATTEMPTS):
+            length = np.where(waiting, until + self.leg * (attempt * _GOLDEN_RATIO % 1), 1e-3 * self.leg)
             ended, alive = self._run(state, np.zeros(time.shape), length, waiting, waiting)
-            taken = waiting & alive
-            time, found = np.where(taken, length, time), np.where(taken[..., None, None], ended, found)
-            waiting = taken & ~(self._room(ended) > _CLOSED).all(axis=-1)
+            accepted = waiting & alive
+            time, found = np.where(accepted, length, time), np.where(accepted[..., None, None], ended, found)
+            waiting = accepted & ~(self._smallest_gap(ended) > _CLOSED).all(axis=-1)
             if not waiting.any():
                 break
         return found, time
@@ -181,7 +193,7 @@ class Pairs:
     def _run(
         self, state: Array, time: Array, length: Array, alive: NDArray[np.bool_], going: NDArray[np.bool_]
     ) -> tuple[Array, NDArray[np.bool_]]:
-        """Run everything from a state at a time on; what fails is noted and is alive no longer."""
+        """Run all motions from states at given times; set the status of those that fail, and mark them in `alive`."""
         rows = np.moveaxis(state, -1, 0)
         first, dampers, wait = 2 * self._modes, [], time[..., None]
         balls = (len(rows) - first) // 2
@@ -193,7 +205,7 @@ class Pairs:
             mode_displacement=rows[0 : 2 * self._modes : 2],
             mode_velocity=rows[1 : 2 * self._modes : 2],
             dampers=dampers,
-            loads=[_later(load, wait) for load in self._packed.loads],
+            loads=[_start_later(load, wait) for load in self._packed.loads],
             settings=self._packed.settings.replace(duration=length[..., None]),
         )
         shape = state.shape[:-1]
@@ -205,9 +217,9 @@ class Pairs:
             size,
             output,
             threads=self._threads,
-            progress=lambda _: not self._cancelled(),
+            progress=lambda _: not self._is_cancelled(),
         )
-        if result is None or self._cancelled():
+        if result is None or self._is_cancelled():
             raise _Stopped
         status = result["status"].reshape(shape).max(axis=-1)
         self.status = np.where(going & (status != Status.finished), status, self.status)
@@ -216,21 +228,21 @@ class Pairs:
 
     # ---- states
 
-    def _parted(self, state: Array) -> Array:
-        """States and neighbours of them in some direction that leads into no wall."""
+    def _add_neighbours(self, state: Array) -> Array:
+        """Return states with a neighbour of each, in a random direction that does not lead into a wall."""
         pairs, size = self._task.pairs, state.shape[-1]
         direction = self._rng.normal(size=(1, pairs, 1, size))
         direction /= np.linalg.norm(direction, axis=-1, keepdims=True)
         toward = (self._task.distance * self._scale)[..., None, None] * direction / self._weights
-        inside = [self._room(state + sign * toward).min(axis=-1, keepdims=True) >= 0 for sign in (1, -1)]
+        inside = [self._smallest_gap(state + sign * toward).min(axis=-1, keepdims=True) >= 0 for sign in (1, -1)]
         still = toward.copy()
         still[..., 0 : 2 * self._modes : 2] = 0
         still[..., 2 * self._modes : self._modes + size // 2] = 0
         step = np.where(inside[0][..., None], toward, np.where(inside[1][..., None], -toward, still))
         return np.concatenate([state, state + step], axis=2)
 
-    def _room(self, state: Array) -> Array:
-        """Narrowest gap of each state over its clearance."""
+    def _smallest_gap(self, state: Array) -> Array:
+        """Return the smallest gap of each state over the clearance."""
         found = np.full(state.shape[:-1], np.inf)
         first = 2 * self._modes
         for damper in self._packed.dampers:
@@ -244,11 +256,11 @@ class Pairs:
         return found
 
 
-def _later(load: _core.Load, wait: Array) -> _core.Load:
-    """A load as it is seen when time begins later."""
+def _start_later(load: _core.Load, wait: Array) -> _core.Load:
+    """Return a load in a time that starts later [s]."""
     signal = load.signal
     if isinstance(signal, _core.Record):
-        raise TypeError("a record does not begin later")
+        raise TypeError("a record cannot start later")
     if isinstance(signal, _core.Harmonic):
         signal = signal.replace(phase=signal.phase + np.asarray(signal.frequency) * wait)
     return load.replace(signal=signal.replace(start=signal.start - wait, stop=signal.stop - wait))

@@ -1,4 +1,4 @@
-"""Motions under a periodic load, told apart by their strobes: the state once a cycle."""
+"""Classification of motions under a periodic load by their stroboscopic states, one state per cycle."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 Vector = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-_MOST = 256
+_MAX_ATTRACTORS = 256
 
 
 def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) -> Vector:
-    """Put strobes in numbers of order one.
+    """Return stroboscopic states in dimensionless numbers of order one.
 
-    Lengths are divided by the gap of the damper (of the first one for the structure), speeds by gap times angular
-    frequency. Where nothing was hit, balls count as still: they drift freely, wherever they are.
+    Lengths are divided by the gap of the damper (of the first one for the structure), velocities by gap times angular
+    frequency. In motions without impacts, in which balls drift freely, positions and velocities of balls are zero.
 
     Parameters
     ----------
@@ -36,8 +36,8 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) ->
 
     Returns
     -------
-    array
-        (..., sample, 2 + 2 balls)
+    (..., sample, 2 + 2 balls) float
+        Dimensionless states.
     """
     shape = maps.status.shape
     gaps = [np.broadcast_to(0.5 * np.asarray(d.clearance), shape) for d in packed.dampers for _ in d.mass]
@@ -51,60 +51,61 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) ->
 
 
 def period_of(strobes: Vector, tolerance: float) -> tuple[Whole, Vector]:
-    """Find after how many cycles motions repeat.
+    """Determine the period of motions in cycles.
 
     Parameters
     ----------
-    strobes
-        (..., sample, component)
+    strobes : (..., sample, component) float
+        Dimensionless states.
     tolerance
-        Largest difference between strobes of a motion that repeats.
+        Largest difference between states one period apart.
 
     Returns
     -------
     tuple of array
-        Number of cycles, up to half the samples, 0 where there is none such; and the largest difference after so
-        many cycles, or the least one of all.
+        Period, up to half the number of samples, and 0 if there is none; largest difference between states one period
+        apart, or the smallest such difference of all numbers of cycles if there is no period.
     """
     count = strobes.shape[-2]
-    apart = np.stack(
+    difference = np.stack(
         [
             np.abs(strobes[..., n:, :] - strobes[..., : count - n, :]).max(axis=(-2, -1))
             for n in range(1, max(count // 2, 1) + 1)
         ]
     )
-    close = apart <= tolerance
-    found = np.where(close.any(axis=0), close.argmax(axis=0) + 1, 0)
+    close = difference <= tolerance
+    period = np.where(close.any(axis=0), close.argmax(axis=0) + 1, 0)
     residual = np.where(
-        found > 0, np.take_along_axis(apart, np.maximum(found - 1, 0)[None], axis=0)[0], apart.min(axis=0)
+        period > 0,
+        np.take_along_axis(difference, np.maximum(period - 1, 0)[None], axis=0)[0],
+        difference.min(axis=0),
     )
-    return found, residual
+    return period, residual
 
 
 def attractors(strobes: Vector, period: Whole, residual: Vector, apart: float) -> tuple[Whole, Whole]:
-    """Tell motions apart that repeat, wherever in their period they are.
+    """Group periodic motions by attractor, independent of their phase.
 
     Parameters
     ----------
-    strobes
-        (n, sample, component)
-    period, residual
-        From `period_of`, (n,).
+    strobes : (n, sample, component) float
+        Dimensionless states.
+    period, residual : (n,)
+        Results of `period_of`.
     apart
-        Largest difference between strobes of one motion.
+        Largest difference between states of one attractor.
 
     Returns
     -------
     tuple of array
-        Number of its attractor for each motion, (n,), counted from 1 for that with the most members, 0 for motions
-        that do not repeat and for all beyond 256 attractors; and for each attractor the member that has
-        settled best.
+        Number of the attractor of each motion, (n,): 1 for the one with the most members, 0 for motions without a period
+        and beyond 256 attractors; and for each attractor the member with the smallest residual.
     """
     label = np.zeros(len(strobes), dtype=np.int64)
     best: list[int] = []
     left = np.flatnonzero(period > 0)
     left = left[np.argsort(residual[left], kind="stable")]
-    while left.size and len(best) < _MOST:
+    while left.size and len(best) < _MAX_ATTRACTORS:
         first = left[0]
         best.append(int(first))
         n = int(period[first])

@@ -1,4 +1,4 @@
-"""One parameter of a case, and how values for it are read."""
+"""A parameter of a case that varies in a study, and validation of its values."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from .sampling import Spaced
 
 @dataclass(frozen=True, eq=False)
 class Values:
-    """What a parameter takes along one dimension: numbers in SI with their unit, or objects and None."""
+    """Values of a parameter along one dimension: numbers in SI units with their unit, or objects with unit None."""
 
     parameter: Parameter
     array: Column
@@ -37,28 +37,28 @@ class Values:
 
 
 class Parameter:
-    """A place in a case that a path leads to.
+    """A parameter of a case, addressed by its path.
 
     Parameters
     ----------
     case
         The case.
     path
-        Names of fields and numbers in lists.
+        Path such as "damper.gap": names of fields, and numbers in lists.
     source
-        What messages call the place that the values come from.
+        Origin of the values, for messages.
     materials
-        Known by name besides the library.
+        Materials by name, in addition to the library.
 
     Raises
     ------
     CaseError
-        When the path leads nowhere.
+        If the case has no such parameter.
     """
 
     def __init__(self, case: Case, path: Any, source: str, materials: dict[str, Material]) -> None:
         if not isinstance(path, str):
-            raise Hint(f"{path!r} is no path", '"damper.gap"')
+            raise Hint(f"{path!r} is not a path", '"damper.gap"')
         self.path, self.source, self.materials = path, source, materials
         self.place: Place = place_of(case, path)
         node: Any = case
@@ -70,13 +70,18 @@ class Parameter:
         self.is_start = isinstance(self.part, ImpactDamper) and self.name == "start"
         self.unit = "1" if self.is_start else unit_of(case, path)
 
-    def check_beside(self, others: Iterable[Parameter]) -> None:
-        """Refuse to vary what varies already, or what excludes it.
+    def check_independent(self, others: Iterable[Parameter]) -> None:
+        """Raise if other parameters are the same as this one, or exclude it.
+
+        Parameters
+        ----------
+        others
+            Parameters that vary with this one.
 
         Raises
         ------
-        Hint
-            When it does.
+        CaseError
+            If one of them is the same parameter, or an alternative to it.
         """
         for other in others:
             if other.place == self.place:
@@ -86,34 +91,48 @@ class Parameter:
                 raise Hint(f"{other.path} and {self.path} exclude each other", "one of them")
 
     def read(self, value: Any, which: int | str | None = None) -> Any:
-        """Read a value as the case would; `which` tells messages which one it is.
+        """Return a value as the case stores it.
+
+        Parameters
+        ----------
+        value
+            The value.
+        which
+            Index or name of the value, for messages.
 
         Raises
         ------
         CaseError
-            When the case would not take it.
+            If the value is not valid.
         """
-        given = {self.name: _put(get_field(self.part, self.name), self.inner, value)}
+        content = {self.name: _put(get_field(self.part, self.name), self.inner, value)}
         try:
             result = getattr(
-                _field(type(self.part), self.name).model_validate(given, context=self.materials), self.name
+                _field(type(self.part), self.name).model_validate(content, context=self.materials), self.name
             )
         except ValidationError as error:
-            told = str(translate(error, "\0", vocabulary(), given))
+            message = str(translate(error, "\0", vocabulary(), content))
             inside = self.name + "".join(f"[{s}]" if isinstance(s, int) else f".{s}" for s in self.inner)
-            said = self.said(which)
-            raise CaseError(told.replace(f"\0: {inside}", said).replace("\0:", f"{said}:")) from None
+            name = self.label(which)
+            raise CaseError(message.replace(f"\0: {inside}", name).replace("\0:", f"{name}:")) from None
         for step in self.inner:
             result = result[step]
         return result
 
     def number(self, value: Any, which: int | str | None = None) -> tuple[float, str] | None:
-        """Read a value as a number in SI with its unit; None when it is none.
+        """Return a value in SI units with its unit; None if it is not a number.
+
+        Parameters
+        ----------
+        value
+            The value.
+        which
+            Index or name of the value, for messages.
 
         Raises
         ------
         CaseError
-            When the case would not take it.
+            If the value is not valid.
         """
         if isinstance(self.part, Signal) and self.name == "amplitude":
             try:
@@ -121,13 +140,13 @@ class Parameter:
             except Hint as hint:
                 raise self.wrong(hint.complaint, hint.suggestion, which, value) from None
         result = self.read(value, which)
-        if isinstance(result, tuple) and len(result) == 1:  # one stands for a list of one
+        if isinstance(result, tuple) and len(result) == 1:  # a list of one load, ball or start position
             (result,) = result
         if isinstance(result, Constant) and result.maximum == 1:
             result = result.e
-        bare = None if isinstance(value, bool) else plain(value)
-        if isinstance(result, Part) and isinstance(bare, Real):  # which stands for the part
-            result = bare
+        number = None if isinstance(value, bool) else plain(value)
+        if isinstance(result, Part) and isinstance(number, Real):  # the case accepts a number in place of the part
+            result = number
         if isinstance(result, str) and self.is_start:
             return parse(result, ("m",))[0], "m"
         if isinstance(result, bool) or not isinstance(result, Real):
@@ -135,29 +154,42 @@ class Parameter:
         return float(result), self.unit or "1"
 
     def ends(self, low: Any, high: Any, names: Sequence[str | int] = (0, 1)) -> tuple[float, float, str]:
-        """Read the ends of a range, in one unit; `names` are what messages call them."""
+        """Return the ends of a range in SI units with their unit.
+
+        Parameters
+        ----------
+        low, high
+            The ends.
+        names
+            Indices or names of the ends, for messages.
+
+        Raises
+        ------
+        CaseError
+            If an end is not a valid number, or the units differ.
+        """
         if self.unit is None:
-            raise self.wrong("its values are no numbers", "a list of values")
+            raise self.wrong("its values are not numbers", "a list of values")
         start, stop = self.number(low, names[0]), self.number(high, names[1])
         if start is None or stop is None:
-            raise self.wrong("its values are no numbers", "a list of values")
+            raise self.wrong("its values are not numbers", "a list of values")
         if start[1] != stop[1]:
             raise self.mixed()
         return start[0], stop[0], start[1]
 
     def values(self, given: Any) -> Values:
-        """Read a list of values.
+        """Validate a list of values.
 
         Parameters
         ----------
         given
-            Spaced values, or a list or an array of whatever the case takes. Of many plain numbers only the smallest and the
-            largest are shown to the case.
+            Spaced values, or a list or an array of values of the parameter. Of plain numbers only the smallest and the
+            largest are validated.
 
         Raises
         ------
         CaseError
-            When there are none, or the case would not take one of them.
+            If the list is empty, or a value is not valid.
         """
         if isinstance(given, Spaced):
             start, stop, unit = self.ends(given.start, given.stop, given.names)
@@ -189,29 +221,29 @@ class Parameter:
             raise self.mixed()
         return Values(self, np.array([number for number, _ in quantities]), quantities[0][1])
 
-    def said(self, which: int | str | None = None) -> str:
-        """Return what messages call the parameter, or one of its values."""
-        shown = "" if which is None else f"[{which}]" if isinstance(which, int) else f", {which}"
-        return f"{self.source}: {self.path}{shown}"
+    def label(self, which: int | str | None = None) -> str:
+        """Return the name of the parameter, or of one of its values, for messages."""
+        item = "" if which is None else f"[{which}]" if isinstance(which, int) else f", {which}"
+        return f"{self.source}: {self.path}{item}"
 
     def wrong(self, complaint: str, suggestion: str = "", which: int | str | None = None, *value: Any) -> CaseError:
-        """Return a complaint about the parameter, or about one of its values."""
-        shown = "".join(f" = {item!r:.60}" for item in value)
-        return CaseError(f"{self.said(which)}{shown}\n  {Hint(complaint, suggestion)}")
+        """Return an error about the parameter, or about one of its values."""
+        content = "".join(f" = {item!r:.60}" for item in value)
+        return CaseError(f"{self.label(which)}{content}\n  {Hint(complaint, suggestion)}")
 
     def mixed(self) -> CaseError:
-        """Return a complaint about start positions of both kinds."""
-        return self.wrong("fractions of the gap and lengths do not mix", "all of one kind")
+        """Return an error about start positions of both kinds."""
+        return self.wrong("some values are fractions of the gap and some are lengths", "all of one kind")
 
     def not_a_list(self, given: Any) -> CaseError:
-        """Return a complaint about one value."""
+        """Return an error about a single value in place of a list."""
         suggestion = f"[{given!r}]" if isinstance(given, (str, int, float)) else ""
         return self.wrong("a list of values is needed", suggestion, None, given)
 
 
 @cache
 def _field(part: type[Part], name: str) -> type[BaseModel]:
-    """A model of one field of a part."""
+    """Return a pydantic model with one field of a part."""
     info = part.model_fields[name]
     config = ConfigDict(arbitrary_types_allowed=True, allow_inf_nan=False)
     fields: dict[str, Any] = {name: (info.annotation, info)}
@@ -219,7 +251,7 @@ def _field(part: type[Part], name: str) -> type[BaseModel]:
 
 
 def _put(node: Any, inner: Place, value: Any) -> Any:
-    """The same with another value inside."""
+    """Return a copy of nested lists and dictionaries with another value at a place."""
     if not inner:
         return value
     copy: Any = dict(node) if isinstance(node, dict) else list(node)
@@ -228,7 +260,7 @@ def _put(node: Any, inner: Place, value: Any) -> Any:
 
 
 def _as_numbers(given: Any) -> NDArray[np.float64] | None:
-    """The values as one row, if all are plain numbers."""
+    """Return values as a vector if all are plain numbers; else None."""
     if isinstance(given, (list, tuple, range)):
         if not all(isinstance(item, (int, float, np.number)) and not isinstance(item, bool) for item in given):
             return None
@@ -242,7 +274,7 @@ def _as_numbers(given: Any) -> NDArray[np.float64] | None:
 
 
 def objects(items: Sequence[Any]) -> Column:
-    """Return an array of objects, each left as it is."""
+    """Return an array of objects, without conversion of the items."""
     array = np.empty(len(items), dtype=object)
     for number, item in enumerate(items):
         array[number] = item

@@ -1,4 +1,4 @@
-"""Variants of cases with particles in space: whole runs, each on a thread of its own, summed up by measures."""
+"""Variants of cases with particle dampers: complete 3-D runs, reduced to measures."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from rattlebox.prepare.time_step import WARNINGS, exceeded_limits
 from rattlebox.results import Run
 from rattlebox.results.schema import variables
 
-from .impact_work import Extra, ImpactWork
+from .case_work import CaseWork, Extra
 from .measures import INTERVAL, MEASURES, MOST_BATCHES, interval_of
 from .work import Values
 
@@ -39,128 +39,130 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What measures look at.
+class Window:
+    """Part of a run over which measures are evaluated.
 
     Attributes
     ----------
     run
-        From the begin of the window on; work and losses count from there.
-    whole, start
-        The whole run, and the begin of the window [s].
-    motion, speed, base_speed : (T,) float
-        Displacement and velocity of the point that is watched, and velocity of the base along it [m], [m/s].
+        Part of the run in the window; work and losses count from its start.
+    full_run
+        The complete run.
+    start
+        Start of the window [s].
+    displacement, velocity, base_velocity : (T,) float
+        Displacement [m] and velocity [m/s] of the observed point, and velocity of the base in its direction [m/s].
     frequency
-        Of the first harmonic load or motion [Hz], NaN without one that acts.
+        Frequency of the first harmonic load or motion [Hz]; NaN if there is none or its amplitude is zero.
     """
 
     run: Run
-    whole: Run
+    full_run: Run
     start: float
-    motion: NDArray[np.float64]
-    speed: NDArray[np.float64]
-    base_speed: NDArray[np.float64]
+    displacement: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    base_velocity: NDArray[np.float64]
     frequency: float
 
     def value(self, name: str) -> float:
-        """Return a measure; NaN of one that refers to cycles where there is no whole one, or the cavity stands still."""
+        """Return a measure; NaN if it requires a cycle or a moving cavity and there is none."""
         if MEASURES[name].cyclic and not self.length * self.frequency >= 1 - 1e-9:
             return math.nan
         try:
-            return _FOUND[name](self)
+            return _FORMULAS[name](self)
         except StillCavity:
             return math.nan
 
     @property
     def length(self) -> float:
-        """Of the window [s]."""
+        """Length of the window [s]."""
         times = self.run.arrays.time
         return float(times[-1] - times[0])
 
     @property
     def loss(self) -> float:
-        """In all contacts [J]."""
+        """Energy dissipated in all contacts [J]."""
         return float(self.run.ledger.contact_loss[-1])
 
     def rms(self, values: NDArray[np.float64]) -> float:
-        """Return the root of the mean square over the window."""
+        """Return the root mean square over the window."""
         return math.sqrt(float(trapezoid(values**2, self.run.arrays.time)) / self.length)
 
     @property
     def acceleration(self) -> NDArray[np.float64]:
-        """Absolute acceleration of the point, mean over each step between samples [m/s^2]."""
-        return np.diff(self.speed + self.base_speed) / np.diff(self.run.arrays.time)
+        """Absolute acceleration of the point, averaged between samples [m/s^2]."""
+        return np.diff(self.velocity + self.base_velocity) / np.diff(self.run.arrays.time)
 
     @property
-    def settled(self) -> float:
-        """Time after which the point stays within a twentieth of its peak [s]."""
+    def settling_time(self) -> float:
+        """Time after which the displacement stays within 5 % of its peak [s]."""
         times = self.run.arrays.time
-        return settling_time(times, self.motion) if self.motion.any() else float(times[0])
+        return settling_time(times, self.displacement) if self.displacement.any() else float(times[0])
 
-    def shaken(self, damper: str) -> xarray.Dataset:
-        """Return loss and mass of a damper in the first harmonic, from the samples of the run alone."""
-        after = self.start - 1e-9 / self.frequency  # so that rounding takes no cycle away
-        return shaken_cavity(self.whole, frequency=self.frequency, damper=damper, after=after)
+    def first_harmonic(self, damper: str) -> xarray.Dataset:
+        """Return loss and effective mass of a damper at the frequency of the load."""
+        after = self.start - 1e-9 / self.frequency  # rounding must not remove a cycle
+        return shaken_cavity(self.full_run, frequency=self.frequency, damper=damper, after=after)
 
     @property
-    def speed_of_cavity(self) -> float:
+    def cavity_velocity(self) -> float:
         """Amplitude of the velocity of the first cavity [m/s]."""
-        return float(self.shaken(self.run.arrays.dampers[0]).attrs["velocity_amplitude"])
+        return float(self.first_harmonic(self.run.arrays.dampers[0]).attrs["velocity_amplitude"])
 
     @cached_property
     def apparent_mass(self) -> complex:
-        """Force of all cavities on their particles over the acceleration of the first one, m' - i m'' [kg]."""
+        """Force of all cavities on their particles over the acceleration of the first cavity, m' - i m'' [kg]."""
         total = 0j
         for name in self.run.arrays.dampers:
-            one = self.shaken(name).sel(way="complex power")
-            lost = float(one.active_power) / (math.pi * self.frequency)
-            total += float(one.effective_mass) * one.attrs["velocity_amplitude"] ** 2 - 1j * lost
-        return total / self.speed_of_cavity**2
+            harmonic = self.first_harmonic(name).sel(way="complex power")
+            damping = float(harmonic.active_power) / (math.pi * self.frequency)
+            total += float(harmonic.effective_mass) * harmonic.attrs["velocity_amplitude"] ** 2 - 1j * damping
+        return total / self.cavity_velocity**2
 
 
-_FOUND: dict[str, Callable[[Seen], float]] = {
-    "work": lambda s: s.run.ledger.work[-1],
-    "viscous_loss": lambda s: s.run.arrays.viscous_loss[-1],
-    "impact_loss": lambda s: s.loss,
-    "viscous_share": lambda s: s.run.ledger.shares["viscous"],
-    "impact_share": lambda s: s.run.ledger.contact_share,
-    "motion_share": lambda s: s.run.ledger.shares["motion"],
-    "energy_residual": lambda s: s.run.energy_residual,
-    "peak": lambda s: np.abs(s.motion).max(),
-    "rms": lambda s: s.rms(s.motion),
-    "peak_velocity": lambda s: np.abs(s.speed).max(),
-    "rms_velocity": lambda s: s.rms(s.speed),
-    "peak_acceleration": lambda s: np.abs(s.acceleration).max(),
-    "rms_acceleration": lambda s: math.sqrt(np.mean(s.acceleration**2)),
-    "settling_time": lambda s: s.settled,
-    "loss_per_cycle": lambda s: s.loss / (s.length * s.frequency),
-    "reduced_loss": lambda s: (
-        s.loss / (s.length * s.frequency * s.run.arrays.particle_mass.sum() * s.speed_of_cavity**2)
+_FORMULAS: dict[str, Callable[[Window], float]] = {
+    "work": lambda w: w.run.ledger.work[-1],
+    "viscous_loss": lambda w: w.run.arrays.viscous_loss[-1],
+    "impact_loss": lambda w: w.loss,
+    "viscous_share": lambda w: w.run.ledger.shares["viscous"],
+    "impact_share": lambda w: w.run.ledger.contact_share,
+    "motion_share": lambda w: w.run.ledger.shares["motion"],
+    "energy_residual": lambda w: w.run.energy_residual,
+    "peak": lambda w: np.abs(w.displacement).max(),
+    "rms": lambda w: w.rms(w.displacement),
+    "peak_velocity": lambda w: np.abs(w.velocity).max(),
+    "rms_velocity": lambda w: w.rms(w.velocity),
+    "peak_acceleration": lambda w: np.abs(w.acceleration).max(),
+    "rms_acceleration": lambda w: math.sqrt(np.mean(w.acceleration**2)),
+    "settling_time": lambda w: w.settling_time,
+    "loss_per_cycle": lambda w: w.loss / (w.length * w.frequency),
+    "reduced_loss": lambda w: (
+        w.loss / (w.length * w.frequency * w.run.arrays.particle_mass.sum() * w.cavity_velocity**2)
     ),
-    "effective_mass": lambda s: s.apparent_mass.real,
-    "damping_mass": lambda s: -s.apparent_mass.imag,
-    "loss_factor": lambda s: -s.apparent_mass.imag / abs(s.apparent_mass.real),
+    "effective_mass": lambda w: w.apparent_mass.real,
+    "damping_mass": lambda w: -w.apparent_mass.imag,
+    "loss_factor": lambda w: -w.apparent_mass.imag / abs(w.apparent_mass.real),
 }
-"""Those of rattlebox.MEASURES that do not look at single impacts; they mean the same."""
+"""Measures of particle runs: those of `rattlebox.MEASURES` that do not refer to single impacts."""
 
-_OF_THE_FIRST_HARMONIC = ("reduced_loss", "effective_mass", "damping_mass", "loss_factor")
+_HARMONIC_MEASURES = ("reduced_loss", "effective_mass", "damping_mass", "loss_factor")
 
 
 @dataclass
-class ParticleWork(ImpactWork):
-    """A case with particles in space, its variants, and what is kept of each; attributes as those of ImpactWork.
+class ParticleWork(CaseWork):
+    """Variants of a case with particle dampers; see `CaseWork` for the attributes.
 
-    Functions of a run are given the run that the measures are found from, whose samples are those of the case's output, or
-    what `samples` or `cycles` ask for. Motions, impacts and states are not kept.
+    Functions of a Run get the run from which the measures are evaluated. Its samples are those of the output of the case,
+    unless `samples` or `cycles` is given.
     """
 
     @cached_property
     def outputs(self) -> dict[str, tuple[Extra, str, dict[str, Any]]]:
-        """Those of a ImpactWork, and in what each run left its bounds."""
-        found = dict(super().outputs)
+        """Further dimensions, number type and attributes of each output, with the exceeded validity limits."""
+        outputs = dict(super().outputs)
         masks, names = [2**bit for bit in range(len(WARNINGS))], " ".join(WARNINGS)
-        about = {"long_name": "in what the run left its bounds", "flag_masks": masks, "flag_meanings": names}
-        return {"status": found.pop("status"), "warnings": ((), "int8", about), **found}
+        attributes = {"long_name": "exceeded validity limits", "flag_masks": masks, "flag_meanings": names}
+        return {"status": outputs.pop("status"), "warnings": ((), "int8", attributes), **outputs}
 
     def validate(self) -> None:
         """Raise if the arguments do not fit the case or each other.
@@ -168,34 +170,33 @@ class ParticleWork(ImpactWork):
         Raises
         ------
         CaseError
-            With what to try.
+            If they do not.
         """
-        for name in self.named:
-            if name not in _FOUND:
-                raise Hint(f"{name} looks at single impacts, of which particles in space keep none", ", ".join(_FOUND))
+        for name in self.measure_names:
+            if name not in _FORMULAS:
+                raise Hint(f"{name} refers to single impacts, which particle runs do not store", ", ".join(_FORMULAS))
             if MEASURES[name].cyclic and math.isnan(_frequency(self.case)):
-                raise Hint(f"{name} needs a harmonic load or motion, whose cycle it refers to", "kind harmonic")
-        if self.motion or self.last or self.state:
-            raise Hint(
-                "of particles in space neither motion nor last impacts are kept", "a function of a Run as measure"
-            )
+                raise Hint(f"{name} is defined per cycle and requires a harmonic load or motion", 'kind = "harmonic"')
         if self.cycles is not None and math.isnan(_frequency(self.case)):
-            raise Hint("cycles need a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
+            raise Hint("cycles require a harmonic load or motion", 'duration and skip in seconds: skip = "2 s"')
         self._check_ends()
         if self.cycles is None and self.skip >= self.case.duration:
-            raise Hint(f"skip = {self.skip:.6g} s leaves nothing of the run to look at", "a longer duration")
+            raise Hint(
+                f"skip = {self.skip:.6g} s is not before the end of the run", "a smaller skip or a longer duration"
+            )
         window = self.case.duration - self.skip
-        cyclic = [name for name in self.named if MEASURES[name].cyclic]
+        cyclic = [name for name in self.measure_names if MEASURES[name].cyclic]
         if self.cycles is None and cyclic and window * _frequency(self.case) < 1 - 1e-9:
             raise Hint(
-                f"skip = {self.skip:.6g} s leaves no whole cycle for {cyclic[0]} to look at", "a longer duration"
+                f"skip = {self.skip:.6g} s leaves less than the one cycle that {cyclic[0]} requires",
+                "a longer duration",
             )
         points = self.case.modes.lines()
         if self.point is not None and self.point not in points:
             raise Hint(f"there is no point {self.point!r}", " or ".join(points) or "leave it out", ["point"])
 
     def coords(self) -> dict[str, Any]:
-        """Return the coordinates of the dimensions beyond the grid, of which there are none."""
+        """Return the coordinates of the dimensions beyond the grid: none."""
         return {}
 
     @property
@@ -211,32 +212,32 @@ class ParticleWork(ImpactWork):
         threads: int = 1,
         cancelled: Callable[[], bool] | None = None,
     ) -> Values | None:
-        """Run variants start to stop.
+        """Run a range of variants.
 
         Parameters
         ----------
         start, stop
-            Variants, counted along the grid with its last axis fastest.
+            First variant and the one after the last, in C order of the grid.
         threads
-            Of each run.
+            Number of threads of each run.
         cancelled
-            Asked some fifty times a second; True stops.
+            Function called about fifty times a second; the work stops if it returns True.
 
         Returns
         -------
         dict of str to array, or None
-            Each output, (stop - start,); None when it was stopped.
+            Each output, (stop - start,); None if the work was cancelled.
         """
 
-        def go_on(*_: int) -> bool:
+        def proceed(*_: int) -> bool:
             return not (cancelled and cancelled())
 
         rows = {}
         for index in range(start, stop):
             try:
                 case = self.variant(index)
-                run = simulate_dem(case, threads=threads, progress=go_on) if settle_all(case, go_on) else None
-            except RattleboxError:  # one corner of many; run alone it says why
+                run = simulate_dem(case, threads=threads, progress=proceed) if settle_all(case, proceed) else None
+            except RattleboxError:  # the variant gets the status "refused"; see `refusal_reason`
                 continue
             if run is None or run.status == "interrupted":
                 return None
@@ -244,53 +245,53 @@ class ParticleWork(ImpactWork):
         return self.columns(rows, start, stop)
 
     def row(self, case: Case, run: Run, index: int) -> dict[str, float]:
-        """Return what is kept of a run, and of what was run, by name."""
-        warned = exceeded_limits(run.diagnostics)
+        """Return the outputs of one variant by name."""
+        exceeded = exceeded_limits(run.diagnostics)
         row: dict[str, float] = {
             "status": Status[run.status],
-            "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in warned),
+            "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in exceeded),
         }
-        if run.status == "energy_error" and "energy_residual" in self.named:
-            row["energy_residual"] = self._seen_in(run, case).value("energy_residual")
+        if run.status == "energy_error" and "energy_residual" in self.measure_names:
+            row["energy_residual"] = self._window(run, case).value("energy_residual")
         if run.ok:
-            seen = self._seen_in(run, case)
-            row |= {name: seen.value(name) for name in self.named}
+            window = self._window(run, case)
+            row |= {name: window.value(name) for name in self.measure_names}
             row |= self._intervals(run, case, row)
-            row |= self.own_of(run, index)
+            row |= self.call_functions(run, index)
         return row
 
     def columns(self, rows: Mapping[int, Mapping[str, float]], start: int, stop: int) -> Values:
-        """Return each output of variants start to stop, of which those without a row were refused."""
+        """Return each output of a range of variants; those without a row have the status "refused"."""
 
         def column(name: str, missing: float, kind: str) -> NDArray[Any]:
             return np.array([rows.get(index, {}).get(name, missing) for index in range(start, stop)], kind)
 
-        names = (*self.named, *(name + INTERVAL for name in self.steady), *self.own)
+        names = (*self.measure_names, *(name + INTERVAL for name in self.averages), *self.functions)
         values = {name: column(name, np.nan, "float64") for name in names}
         return {"status": column("status", Status.refused, "int8"), "warnings": column("warnings", 0, "int8"), **values}
 
-    def why_refused(self, index: int) -> str:
-        """Return why a variant is refused; nothing where it is not."""
+    def refusal_reason(self, index: int) -> str:
+        """Return the reason why a variant cannot run; "" if it can."""
         try:
             return refusal_reason(self.variant(index))
         except RattleboxError as error:
             return str(error)
 
     def variant(self, index: int) -> Case:
-        """Return a variant as it is run.
+        """Return the case of a variant, with the duration and samples of its run.
 
         Raises
         ------
         CaseError
-            When it cannot be.
+            If the variant is not valid.
         """
         case = self.grid.case_at(self.case, index)
         if not case.particle_dampers:
-            raise Hint("a variant without particles in space", "one sweep for each kind of damper")
-        return self._windowed(case)
+            raise Hint("a variant has no particle damper", "one sweep for each kind of damper")
+        return self._set_window(case)
 
     def _check_ends(self) -> None:
-        """Refuse what fits neither the first variant nor the last one."""
+        """Raise if neither the first nor the last variant is valid."""
         for index in (0, self.size - 1):
             try:
                 self.variant(index)
@@ -299,50 +300,52 @@ class ParticleWork(ImpactWork):
                 refused = error
         raise refused
 
-    def _windowed(self, case: Case) -> Case:
-        """A case with the duration and the samples that are asked for."""
+    def _set_window(self, case: Case) -> Case:
+        """Return a case with the duration and the samples of the study."""
         duration, skip, samples = case.duration, self.skip, self.samples
         if self.cycles is not None:
             period = 1 / _frequency(case)
             duration, skip = sum(self.cycles) * period, self.cycles[0] * period
-            _check_begun(case, skip)
+            _check_start(case, skip)
             each = 64 if samples is None else max(1, math.ceil((samples - 1) / self.cycles[1]))
-            samples = 1 + each * self.cycles[1]  # of which one is where they begin
+            samples = 1 + each * self.cycles[1]
         if samples is not None and duration > skip:
             output = Output(rate=(samples - 1) / (duration - skip))
             case = case.model_copy(update={"duration": duration, "output": output})
-        for name in self.named:
-            if name in _OF_THE_FIRST_HARMONIC:
-                _check_dense(case, name)
+        for name in self.measure_names:
+            if name in _HARMONIC_MEASURES:
+                _check_samples(case, name)
         return case
 
     def _intervals(self, run: Run, case: Case, row: Mapping[str, float]) -> dict[str, float]:
-        """Return half of the 95 % intervals of the measures of steady motion."""
-        limits = _batch_limits(self._begin(case), float(run.arrays.time[-1]), _frequency(case), run.arrays.time)
+        """Return half of the width of the 95 % intervals of the measures of steady motion."""
+        if not self.averages:
+            return {}
+        limits = _batch_limits(self._start(case), float(run.arrays.time[-1]), _frequency(case), run.arrays.time)
         lengths = np.diff(limits)[None]
-        parts = [self._seen_in(until(run, end), case, begin) for begin, end in pairwise(limits)] if self.steady else []
+        parts = [self._window(cut_after(run, end), case, start) for start, end in pairwise(limits)]
         return {
             name + INTERVAL: float(
-                interval_of(name, [row[name]], np.array([[p.value(name) for p in parts]]), lengths)[0]
+                interval_of(name, [row[name]], np.array([[part.value(name) for part in parts]]), lengths)[0]
             )
-            for name in self.steady
+            for name in self.averages
         }
 
-    def _begin(self, case: Case) -> float:
-        """Begin of the window [s]."""
+    def _start(self, case: Case) -> float:
+        """Return the start of the window [s]."""
         return self.skip if self.cycles is None else self.cycles[0] / _frequency(case)
 
-    def _seen_in(self, run: Run, case: Case, start: float | None = None) -> Seen:
+    def _window(self, run: Run, case: Case, start: float | None = None) -> Window:
         frequency = _frequency(case)
-        start = self._begin(case) if start is None else start
-        window = since(run, start)
+        start = self._start(case) if start is None else start
+        part = cut_before(run, start)
         if (driver := _driver(case)) and driver.amplitude == 0:
-            frequency = math.nan  # nothing has cycles
-        arrays = window.arrays
+            frequency = math.nan
+        arrays = part.arrays
         if self.point is None:
             along = unit_vector(case.particle_dampers[0].direction)
-            return Seen(
-                window,
+            return Window(
+                part,
                 run,
                 start,
                 arrays.cavity_displacement[:, 0] @ along,
@@ -352,11 +355,21 @@ class ParticleWork(ImpactWork):
             )
         column = arrays.points.index(self.point)
         base = base_at_points(case, arrays.base_velocity)[:, column]
-        return Seen(window, run, start, arrays.displacement[:, column], arrays.velocity[:, column], base, frequency)
+        return Window(part, run, start, arrays.displacement[:, column], arrays.velocity[:, column], base, frequency)
 
 
-def since(run: Run, start: float) -> Run:
-    """Return a run from a time on [s], between two samples on the line; work and losses count from there."""
+def cut_before(run: Run, start: float) -> Run:
+    """Return a run without the samples before a time.
+
+    Work and losses of the result count from its start.
+
+    Parameters
+    ----------
+    run
+        The run.
+    start
+        First time of the result [s]; interpolated linearly between samples.
+    """
     arrays = run.arrays
     times = arrays.time
     first = int(np.searchsorted(times, start * (1 - 1e-9)))
@@ -375,8 +388,16 @@ def since(run: Run, start: float) -> Run:
     return replace(run, arrays=arrays.replaced(**cut)) if first else run
 
 
-def until(run: Run, end: float) -> Run:
-    """Return a run up to the first sample at or after a time [s]."""
+def cut_after(run: Run, end: float) -> Run:
+    """Return a run without the samples after the first one at or after a time.
+
+    Parameters
+    ----------
+    run
+        The run.
+    end
+        The time [s].
+    """
     arrays = run.arrays
     count = min(int(np.searchsorted(arrays.time, end * (1 - 1e-9))) + 1, arrays.time.size)
     names = (v.name for v in variables(arrays.engine) if v.dims[0] == "time" and not v.derived)
@@ -385,7 +406,7 @@ def until(run: Run, end: float) -> Run:
 
 
 def _batch_limits(start: float, end: float, frequency: float, times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return limits of up to 64 equal parts of a window, of whole cycles up to its end; none if samples are too few."""
+    """Return the limits of up to 64 equal parts of a window, each of whole cycles; one number if samples are too few."""
     if math.isnan(frequency):
         limits = np.linspace(start, end, MOST_BATCHES + 1)
     else:
@@ -398,32 +419,32 @@ def _batch_limits(start: float, end: float, frequency: float, times: NDArray[np.
 
 
 def _driver(case: Case) -> Harmonic | None:
-    """The first harmonic load or motion, whose cycles are counted."""
+    """Return the first harmonic load or motion, which defines the cycle."""
     signals = (*case.loads, *case.base, *case.shaker_motion)
     return next((signal for signal in signals if isinstance(signal, Harmonic)), None)
 
 
 def _frequency(case: Case) -> float:
-    """Of the first harmonic load or motion [Hz], NaN without one."""
+    """Return the frequency of the first harmonic load or motion [Hz]; NaN if there is none."""
     driver = _driver(case)
     return driver.frequency if driver else math.nan
 
 
-def _check_begun(case: Case, skip: float) -> None:
-    """Refuse cycles to look at of what has not begun when they do."""
+def _check_start(case: Case, skip: float) -> None:
+    """Raise if the harmonic starts after the evaluated cycles."""
     driver = _driver(case)
     if driver and driver.start > skip * (1 + 1e-9):
         raise Hint(
-            f"the cycles that are looked at begin at {skip:.4g} s, and what shakes at {driver.start:.4g} s",
+            f"the evaluated cycles start at {skip:.4g} s, before the harmonic at {driver.start:.4g} s",
             "start = 0, or more cycles to skip",
         )
 
 
-def _check_dense(case: Case, name: str) -> None:
-    """Refuse a measure of the first harmonic where samples are too few to know it."""
-    each = (case.sample_times().size - 1) / (case.duration * _frequency(case))
-    if each < MIN_SAMPLES * (1 - 1e-6):
+def _check_samples(case: Case, name: str) -> None:
+    """Raise if a cycle has too few samples for a measure of the first harmonic."""
+    rate = (case.sample_times().size - 1) / (case.duration * _frequency(case))
+    if rate < MIN_SAMPLES * (1 - 1e-6):
         raise Hint(
-            f"{name} needs {MIN_SAMPLES} samples in a cycle, and there are {each:.3g}",
-            "more samples; without a number there are enough",
+            f"{rate:.3g} samples per cycle are too few for {name}, which requires {MIN_SAMPLES}",
+            "more samples, or leave out the number",
         )

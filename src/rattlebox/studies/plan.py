@@ -121,7 +121,7 @@ class MemoryResult:
         pass
 
     def write(self, block: int, values: Mapping[str, NDArray[Any]]) -> None:
-        """Keep the outputs of a block."""
+        """Store the outputs of a block."""
         region, sides = self.blocks.region(block), self.blocks.sides(block)
         for name, array in self._arrays.items():
             array[region] = values[name].reshape((*sides, *values[name].shape[1:]))

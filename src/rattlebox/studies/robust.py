@@ -1,4 +1,4 @@
-"""The runs that judge one design together: load levels and start positions."""
+"""Axes of load levels and start positions over which designs and sensitivities are evaluated."""
 
 from __future__ import annotations
 
@@ -15,26 +15,31 @@ if TYPE_CHECKING:
 
 
 def robust_axes(case: Case, levels: Any = None, starts: int | Sequence[Any] | None = None) -> list[Any]:
-    """Return the axes of the runs that judge one design together; none where it is judged by one run.
+    """Return the axes of load levels and start positions; an empty list for one run.
 
     Parameters
     ----------
     case
-        The case.
+        Base case.
     levels
-        Any axes, as for `rb.sweep`.
+        Axes as for `rb.sweep`.
     starts
-        Start positions of the only ball; a number spreads so many evenly from wall to wall.
+        Start positions of the single ball, or the number of evenly spaced ones from wall to wall.
+
+    Returns
+    -------
+    list
+        Axes for `read_axes`.
 
     Raises
     ------
     CaseError
-        When there are several balls, or less than two start positions are to be spread.
+        If the case has not exactly one ball, or `starts` is a number below 2.
     """
     axes = list(levels) if isinstance(levels, (list, tuple)) else [] if levels is None else [levels]
     if starts is not None:
         if [len(damper.balls) for damper in case.impact_dampers] != [1]:
-            raise Hint("starts are of one ball, and the case has not exactly one", 'levels={"dampers[0].start": [...]}')
-        one_by_one = hasattr(starts, "__len__")
-        axes.append({"damper.start": starts if one_by_one else np.linspace(-1, 1, whole_number(starts, "starts", 2))})
+            raise Hint("starts requires a case with exactly one ball", 'levels={"dampers[0].start": [...]}')
+        is_list = hasattr(starts, "__len__")
+        axes.append({"damper.start": starts if is_list else np.linspace(-1, 1, whole_number(starts, "starts", 2))})
     return axes

@@ -1,4 +1,4 @@
-"""Runs the work of a study: cuts it into blocks, hands them to a backend, and keeps their results."""
+"""Run the work of a study: partition it into blocks, run these on a backend, and store their results."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _BLOCK_BYTES = 2**27
 
 
 class Stopped(KeyboardInterrupt):
-    """A study that Ctrl-C stopped; the message says how to resume it."""
+    """A study was stopped by Ctrl-C; the message explains how to resume it."""
 
 
 def run_work(
@@ -42,28 +42,28 @@ def run_work(
     progress: bool | Callable[[int, int], object] = True,
     block: int | None = None,
 ) -> xr.Dataset:
-    """Run all variants of some work.
+    """Run all variants of a work.
 
     Parameters
     ----------
     work
         The work.
     backend, workers
-        Backend that runs the blocks, see `make_backend`.
+        Backend for the blocks; see `make_backend`.
     store
-        Folder on disk for the result, which need not exist. Finished blocks are in it at all times, and the same call
-        resumes from it.
+        Folder for the result, which need not exist. It holds the finished blocks at all times, and the same call resumes
+        from it.
     progress
         True for a progress bar after 2 s, False for none, or a function of the numbers of variants done and of all,
         which stops the study by returning False.
     block
-        Largest number of variants in a block; default the one that the work prefers.
+        Largest number of variants in a block; default that of the work.
 
     Returns
     -------
     xarray.Dataset
-        Each output over the grid and its own dimensions, in memory or, with `store`, opened on disk. The bits
-        depend neither on blocks, backends, workers nor on stops.
+        Outputs over the grid and their own dimensions, in memory or, with `store`, opened on disk. The result is bitwise
+        independent of blocks, backend, workers and stops.
 
     Raises
     ------
@@ -78,12 +78,11 @@ def run_work(
 
     Notes
     -----
-    The size of a block follows from the work alone, so that the layout of a store depends neither on the machine nor on
-    its load.
+    The size of a block depends only on the work, so that the layout of a store is the same on all machines.
     """
     from rattlebox import __version__
 
-    chosen = make_backend(backend, workers)
+    executor = make_backend(backend, workers)
     plan = Plan(
         dims=tuple(work.grid.dims),
         shape=tuple(work.grid.shape),
@@ -92,7 +91,7 @@ def run_work(
         about={**work.describe(), "design": dict(work.grid.describe()), "version": __version__, "core": _core()},
     )
     _check_names(plan)
-    blocks = _cut(work, plan, block)
+    blocks = _partition(work, plan, block)
     opened: list[MemoryResult | Store] = []
     try:
         with ExitStack() as stack:
@@ -100,25 +99,25 @@ def run_work(
             opened.append(result)
             stack.enter_context(result)
             report = stack.enter_context(progress_bar(progress, "variants"))
-            # A thread of its own finishes the block that it writes when Ctrl-C interrupts this one.
+            # A separate thread completes its write when Ctrl-C interrupts this thread.
             writer = stack.enter_context(ThreadPoolExecutor(1))
             report.advance(result.done, work.size)
             chains = [
                 Chain(left, None if variant is None else _values_of(result, plan, variant))
                 for left, variant in make_chains(work, result.blocks, result.finished)
             ]
-            finished = chosen.run(work, chains)
+            finished = executor.run(work, chains)
             stack.callback(finished.close)
             for done, values in finished:
                 wait_for(writer.submit(result.write, done.number, values))
                 report.advance(result.done, work.size)
             return result.result()
     except KeyboardInterrupt:
-        raise Stopped(_how_to_resume(sum(each.done for each in opened), work.size, store)) from None
+        raise Stopped(_stop_message(sum(each.done for each in opened), work.size, store)) from None
 
 
-def _cut(work: Work, plan: Plan, block: int | None) -> Blocks:
-    """Cut the grid into blocks."""
+def _partition(work: Work, plan: Plan, block: int | None) -> Blocks:
+    """Partition the grid into blocks."""
     fitting = math.ceil(_BLOCK_BYTES / max(1, plan.bytes_each))
     size = block or max(work.block, math.ceil(work.size / MOST_BLOCKS))
     size = max(1, min(size, fitting))
@@ -144,13 +143,13 @@ def _check_names(plan: Plan) -> None:
     inner = {name for extra, _, _ in plan.outputs.values() for name, _ in extra} | {*RESERVED}
     for name in plan.dims:
         if name in inner or name in plan.outputs:
-            raise Hint(f"an axis cannot be called {name}: studies hold something else by that name", "another name")
+            raise Hint(f"{name} is the name of another variable of studies and cannot name an axis", "another name")
     for name in plan.outputs:
         if name in inner:
-            raise Hint(f"a function cannot be called {name}: studies hold something else by that name", "another name")
+            raise Hint(f"{name} is the name of another variable of studies and cannot name a function", "another name")
 
 
-def _how_to_resume(done: int, total: int, store: str | os.PathLike[str] | None) -> str:
+def _stop_message(done: int, total: int, store: str | os.PathLike[str] | None) -> str:
     if store is None:
-        return f"stopped after {done:,} of {total:,} variants, which are lost; a store would have kept them"
+        return f"stopped after {done:,} of {total:,} variants, which are lost; use a store to resume"
     return f"stopped; {done:,} of {total:,} variants are in {os.fspath(store)}, and the same command resumes from there"

@@ -1,4 +1,4 @@
-"""How values are chosen, told without a case: evenly spaced, at random, nearly the same."""
+"""Choices of values that do not depend on a case: evenly spaced, random designs, replicas."""
 
 from __future__ import annotations
 
@@ -19,43 +19,48 @@ _SOBOL_DIMENSIONS = 21201
 
 @dataclass(frozen=True)
 class Spaced:
-    """Values from one quantity to another; see linspace and geomspace."""
+    """Values between two quantities; see `linspace` and `geomspace`."""
 
     start: Any
     stop: Any
     count: int
     log: bool = False
-    names: tuple[str, str] = ("start", "stop")  # of the ends, for messages
+    names: tuple[str, str] = ("start", "stop")  # names of the ends in messages
 
     def values(self, start: float, stop: float) -> Vector:
-        """Return the values between the ends in SI, (count,).
+        """Return the values between two ends in SI units, (count,).
 
         Raises
         ------
-        Hint
-            When they grow by a factor, but an end is zero or the signs differ.
+        CaseError
+            If `log` is set and an end is zero or the signs differ.
         """
         if not self.log:
             return np.linspace(start, stop, self.count)
         if not start * stop > 0:
-            raise Hint("values that grow by a factor need two ends other than zero, of one sign", "equal steps")
+            raise Hint("the ends of geometric spacing must not be zero and must have the same sign", "linear spacing")
         return np.geomspace(start, stop, self.count)
 
 
 def linspace(start: Any, stop: Any, count: int) -> Spaced:
-    """Evenly spaced values of a parameter, ends included.
+    """Return evenly spaced values of a parameter, ends included.
 
     Parameters
     ----------
     start, stop
-        Ends: numbers in SI or text with a unit.
+        Ends: numbers in SI units, or text with a unit.
     count
-        How many.
+        Number of values.
+
+    Returns
+    -------
+    Spaced
+        Values for an axis of a study.
 
     Raises
     ------
     CaseError
-        When count is no whole number of at least 1, or the ends are not of one dimension.
+        If `count` is not a whole number >= 1, or the dimensions of the ends differ.
 
     Examples
     --------
@@ -65,19 +70,24 @@ def linspace(start: Any, stop: Any, count: int) -> Spaced:
 
 
 def geomspace(start: Any, stop: Any, count: int) -> Spaced:
-    """Values of a parameter that grow by the same factor from each to the next, ends included.
+    """Return geometrically spaced values of a parameter, ends included.
 
     Parameters
     ----------
     start, stop
-        Ends, other than zero and of one sign: numbers in SI or text with a unit.
+        Ends, not zero and of the same sign: numbers in SI units, or text with a unit.
     count
-        How many.
+        Number of values.
+
+    Returns
+    -------
+    Spaced
+        Values for an axis of a study.
 
     Raises
     ------
     CaseError
-        When count is no whole number of at least 1, or the ends are not of one dimension, of one sign and other than zero.
+        If `count` is not a whole number >= 1, or the ends differ in dimension or sign, or are zero.
 
     Examples
     --------
@@ -87,21 +97,23 @@ def geomspace(start: Any, stop: Any, count: int) -> Spaced:
 
 
 def _spaced(start: Any, stop: Any, count: Any, *, log: bool = False) -> Spaced:
-    """Values of which all is told that can be known without a parameter."""
+    """Return spaced values, after the checks that do not need the parameter."""
     low, high = as_written(start), as_written(stop)
     if low and high:
         (first, unit), (last, other) = low, high
-        told = f"start = {start!r}, stop = {stop!r}"
+        ends = f"start = {start!r}, stop = {stop!r}"
         if unit and other and not are_alike(unit, other):
-            raise Hint(f"{told}: ends of one dimension are needed")
+            raise Hint(f"{ends}: the dimensions of the ends differ")
         if log and not np.sign(first) * np.sign(last) > 0:
-            raise Hint(f"{told}: values that grow by a factor need ends other than zero, of one sign", "equal steps")
+            raise Hint(
+                f"{ends}: the ends of geometric spacing must not be zero and must have the same sign", "linear spacing"
+            )
     return Spaced(start, stop, whole_number(count, "count", 1), log)
 
 
 @dataclass(frozen=True)
 class RandomDesign:
-    """Points spread over ranges of several parameters; see random_design."""
+    """Points in the ranges of several parameters; see `random_design`."""
 
     ranges: Mapping[str, Any]
     count: int
@@ -114,7 +126,7 @@ class RandomDesign:
         from scipy.stats import qmc
 
         width = len(self.ranges)
-        if self.method == "sobol":  # a power of two keeps them balanced, and leaves the first ones as they are
+        if self.method == "sobol":  # Sobol points are balanced for powers of two only
             return qmc.Sobol(width, rng=self.seed).random_base2((self.count - 1).bit_length())[: self.count]
         if self.method == "halton":
             return qmc.Halton(width, rng=self.seed).random(self.count)
@@ -131,26 +143,38 @@ def random_design(
     seed: int = 0,
     log: Sequence[str] = (),
 ) -> RandomDesign:
-    """Spread points over ranges of parameters that vary together, along one dimension "sample".
+    """Return points in the ranges of parameters that vary together, along the dimension "sample".
 
     Parameters
     ----------
     ranges
-        By path: a pair (smallest, largest) of numbers in SI or text with units; a list to choose from where the
-        parameter is no number, such as materials.
+        By path: a pair (smallest, largest) of numbers in SI units or text with units; or a list to choose from if the
+        parameter is not a number, such as a material.
     count
-        Number of points; with "sobol" best a power of two.
+        Number of points; for "sobol" preferably a power of two.
     method
         "sobol" or "halton" (scrambled quasi-random points), "lhs" (Latin hypercube), "random" (independent points).
     seed
-        The same seed gives the same points.
+        Random seed.
     log
-        Paths whose values are spread evenly in their logarithm.
+        Paths whose values are distributed uniformly in the logarithm.
+
+    Returns
+    -------
+    RandomDesign
+        Axis of a study.
 
     Raises
     ------
     CaseError
-        When an argument does not fit. Ranges are read when the case is known.
+        If an argument is not valid. The study validates the ranges.
+
+    References
+    ----------
+    I. M. Sobol' (1967), USSR Computational Mathematics and Mathematical Physics 7(4), 86-112,
+    doi:10.1016/0041-5553(67)90144-9.
+    J. H. Halton (1960), Numerische Mathematik 2, 84-90, doi:10.1007/BF01386213.
+    M. D. McKay, R. J. Beckman, W. J. Conover (1979), Technometrics 21(2), 239-245, doi:10.2307/1268522.
 
     Examples
     --------
@@ -158,48 +182,55 @@ def random_design(
     """
     _by_path(ranges, "ranges", '{"damper.gap": ("0.1 mm", "2 mm")}')
     if method not in get_args(Method):
-        raise Hint(f"method = {method!r}: there is no such method", nearest(str(method), get_args(Method)))
+        raise Hint(f"method = {method!r} is not a method", nearest(str(method), get_args(Method)))
     if method == "sobol" and len(ranges) > _SOBOL_DIMENSIONS:
-        raise Hint(f"Sobol points vary at most {_SOBOL_DIMENSIONS} parameters, not {len(ranges)}", 'method = "lhs"')
+        raise Hint(
+            f"{len(ranges)} parameters are too many for Sobol points, at most {_SOBOL_DIMENSIONS}", 'method = "lhs"'
+        )
     paths = (log,) if isinstance(log, str) else tuple(log)
     for path in paths:
         if path not in ranges:
-            raise Hint(f"log = {path!r}: there is no range of that name", nearest(path, ranges))
+            raise Hint(f"log = {path!r} is not one of the ranges", nearest(path, ranges))
     return RandomDesign(dict(ranges), whole_number(count, "count", 1), method, whole_number(seed, "seed", 0), paths)
 
 
 @dataclass(frozen=True)
 class Replicas:
-    """Members that differ a little; see replicas."""
+    """Repeated variants with small offsets; see `replicas`."""
 
     reach: Mapping[str, Any]
     count: int
     seed: int
 
     def offsets(self) -> Vector:
-        """Return offsets as parts of the reach, (count, parameters), each in [-1, 1)."""
+        """Return offsets over the reach, (count, parameters), each in [-1, 1)."""
         return 2 * _stratified(len(self.reach), self.count, self.seed) - 1
 
 
 def replicas(reach: Mapping[str, Any], count: int, *, seed: int = 0) -> Replicas:
-    """Repeat each variant with small offsets, along a dimension "replica": the band of a chaotic result.
+    """Repeat each variant with small offsets, along the dimension "replica", to estimate the scatter of chaotic results.
 
-    Offsets are spread evenly over the reach to both sides, the same for every variant. They are added to the value that the
-    case or another axis gives. Start positions beyond a wall of the cavity are mirrored at it.
+    The offsets are a Latin hypercube sample between -reach and +reach, the same for every variant. They are added to the
+    value of the case or of another axis. Start positions beyond a wall of the cavity are mirrored at the wall.
 
     Parameters
     ----------
     reach
-        By path: the largest offset, a number in SI or text with a unit.
+        Largest offset by path: a number in SI units, or text with a unit.
     count
         Number of replicas.
     seed
-        The same seed gives the same offsets.
+        Random seed.
+
+    Returns
+    -------
+    Replicas
+        Axis of a study.
 
     Raises
     ------
     CaseError
-        When an argument does not fit. Offsets are read when the case is known.
+        If an argument is not valid. The study validates the offsets.
 
     Examples
     --------
@@ -217,4 +248,4 @@ def _stratified(width: int, count: int, seed: int) -> Vector:
 
 def _by_path(values: Any, name: str, example: str) -> None:
     if not isinstance(values, Mapping) or not values:
-        raise Hint(f"{name}: paths with values are needed", example)
+        raise Hint(f"{name} is not a mapping of paths to values, or is empty", example)

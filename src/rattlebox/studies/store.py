@@ -1,4 +1,4 @@
-"""Writes studies to disk: a Zarr folder that grows block by block, from which a stopped study resumes."""
+"""Store of a study: a Zarr folder that grows block by block, from which a stopped study resumes."""
 
 from __future__ import annotations
 
@@ -37,23 +37,22 @@ if TYPE_CHECKING:
     import xarray as xr
 
 JOURNAL = "trials.journal"
-"""File in which a design search, which has no grid of runs, keeps its trials."""
+"""File with the trials of a design search, which has no grid of runs."""
 
 _PROGRESS = "progress"
 _MAP_KIND = "Rattlebox map"
 
 RESERVED = _PROGRESS, MAP, MARKER
-"""Names in a store beside the outputs."""
+"""Names in a store that are not outputs."""
 
-_PARTIAL = re.compile(r"(\d+|c|zarr)\.[0-9a-f]{32}\.partial")  # names that Zarr gives to files while it writes them
+_PARTIAL = re.compile(r"(\d+|c|zarr)\.[0-9a-f]{32}\.partial")  # temporary files of Zarr
 
 
 class Store:
     """A study on disk, open for writing by this process alone.
 
-    Each variable is cut into chunks along the blocks of the study, so that a block is one file of each variable. Every chunk
-    ends with a checksum. A block is finished if all its chunks exist and have their checksums; any other block is computed
-    again.
+    The chunks of each variable are the blocks of the study, so that a block is one file per variable. Every chunk ends with
+    a checksum. A block is finished if all its chunks exist with correct checksums; other blocks are computed again.
 
     Parameters
     ----------
@@ -62,13 +61,13 @@ class Store:
     plan
         Layout of the result.
     blocks
-        Blocks of a new study; an existing one keeps its own.
+        Blocks of a new study; an existing study retains its own.
 
     Raises
     ------
     StoreError
-        If the folder holds another study, with the differences, or something else; if another process writes to it; or if it
-        cannot be written.
+        If the folder holds another study (the message lists the differences) or anything else, if another process writes
+        to it, or if it cannot be written.
     ResourceError
         If the disk is full.
 
@@ -85,13 +84,13 @@ class Store:
             stack.enter_context(exclusive_writer(self.path))
             with _explain_disk_errors(self.path), report_damage(self.path):
                 self._open(blocks)
-            self._held = stack.pop_all()
+            self._lock = stack.pop_all()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._held.close()
+        self._lock.close()
 
     def write(self, block: int, values: Mapping[str, NDArray[Any]]) -> None:
         """Write the outputs of a block to the disk.
@@ -108,7 +107,7 @@ class Store:
             if not (self.path / MARKER).is_file():
                 raise StoreError(f"{self.path} was removed while the study ran", "the same command again")
             for name, array in self._arrays.items():
-                # Zarr must not read a chunk that may be damaged.
+                # Without this, Zarr would read a chunk that may be damaged.
                 (self.path / self._chunks.key(name, block)).unlink(missing_ok=True)
                 array[region] = values[name].reshape((*sides, *values[name].shape[1:]))
         self.finished[block] = True
@@ -124,20 +123,20 @@ class Store:
 
     def _open(self, blocks: Blocks) -> None:
         if (self.path / _PROGRESS / JOURNAL).exists():
-            raise StoreError(f"{self.path} holds a design\n  try: another folder, or remove this one")
+            raise StoreError(f"{self.path} holds a design", "another folder, or remove this one")
         marker = read_marker(self.path)
         if marker and marker.complete:
             self._compare(marker)
             if damaged_files(self.path, marker):
-                marker = self._lay_out(Chunks(self.path, marker).blocks)
+                marker = self._create(Chunks(self.path, marker).blocks)
             self._remove_partial()
         else:
-            marker = self._lay_out(blocks)
+            marker = self._create(blocks)
         has_map(self.path)  # raises if it is damaged beyond repair
         import zarr
 
         group = zarr.open_group(self.path, mode="r+", use_consolidated=False)
-        # A block of nothing but missing values is written, too, so that each finished block has its files.
+        # Blocks with only missing values are also written, so that each finished block has its files.
         self._arrays: dict[str, Any] = {
             name: group[name].with_config({"write_empty_chunks": True})  # type: ignore[union-attr]
             for name in self._plan.outputs
@@ -146,23 +145,23 @@ class Store:
         self.blocks = self._chunks.blocks
         self.finished: NDArray[np.bool_] = self._chunks.finished()
 
-    def _lay_out(self, blocks: Blocks) -> Marker:
-        """Write everything but the blocks. The marker is complete once the rest is on disk."""
+    def _create(self, blocks: Blocks) -> Marker:
+        """Write everything except the blocks. The marker is complete when the other files are on disk."""
         from rattlebox import __version__
 
         earlier = read_marker(self.path) or Marker(KIND, __version__)
         about = {"format": FORMAT, "shape": blocks.shape, "box": blocks.box, "manifest": self._plan.manifest}
         for name in self._plan.outputs:
             if os.path.lexists(self.path / name) and not any(file.startswith(f"{name}/") for file in earlier.files):
-                raise StoreError(f"{self.path / name} was not written by Rattlebox\n  try: move it out of this folder")
-        begun = Marker(KIND, __version__, earlier.identifier, about=about)
+                raise StoreError(f"{self.path / name} was not written by Rattlebox", "move it out of this folder")
+        incomplete = Marker(KIND, __version__, earlier.identifier, about=about)
         try:
-            return fill(self.path, begun, self._files(blocks))
+            return fill(self.path, incomplete, self._files(blocks))
         except ForeignFile as error:
             raise StoreError(str(error)) from None
 
     def _files(self, blocks: Blocks) -> dict[str, bytes]:
-        """Return the files of a study before its first block."""
+        """Return the files of a study without blocks."""
         import zarr
         from zarr.codecs import Crc32cCodec, ZstdCodec
 
@@ -183,7 +182,7 @@ class Store:
         return files.content()
 
     def _remove_partial(self) -> None:
-        """Remove the files that Zarr was writing when its process was killed."""
+        """Remove temporary files of Zarr, left by a killed process."""
         for name in self._plan.outputs:
             for left in (self.path / name).rglob("*.partial"):
                 if _PARTIAL.fullmatch(left.name):
@@ -222,7 +221,7 @@ class _MemoryFiles:
 
 @contextmanager
 def exclusive_writer(path: Path) -> Iterator[Path]:
-    """Lock a study for writing; yield the folder of its progress. The lock ends with its process, however that ends.
+    """Lock a study for writing until the process ends, and yield the folder of its progress.
 
     Parameters
     ----------
@@ -242,14 +241,14 @@ def exclusive_writer(path: Path) -> Iterator[Path]:
 
     progress = path / _PROGRESS
     if path.exists() and not path.is_dir():
-        raise StoreError(f"{path} is a file; a study needs a folder\n  try: another name, as study.zarr")
+        raise StoreError(f"{path} is a file; a study must be a folder", "another name, such as study.zarr")
     with _explain_disk_errors(path), report_damage(path):
         path.mkdir(parents=True, exist_ok=True)
         if read_marker(path) is None:
             if not is_free(path):
                 raise StoreError(
-                    f"{path} holds other files, or a study of an earlier version\n"
-                    "  try: a folder that does not exist yet, as study.zarr"
+                    f"{path} holds other files, or a study of an earlier version",
+                    "a folder that does not exist yet, such as study.zarr",
                 )
             write_marker(path, Marker(KIND, __version__), new=True)
         check_marker(path)
@@ -260,8 +259,8 @@ def exclusive_writer(path: Path) -> Iterator[Path]:
         except Timeout:
             writer = name.read_text() if name.exists() else "another process"
             raise StoreError(
-                f"{path} is being written by {writer}\n"
-                "  try: another folder, or wait; 'rattlebox show' prints its progress"
+                f"{path} is being written by {writer}",
+                "another folder, or wait; 'rattlebox show' prints its progress",
             ) from None
     try:
         with _explain_disk_errors(path):
@@ -273,14 +272,14 @@ def exclusive_writer(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def _explain_disk_errors(path: Path) -> Iterator[None]:
-    """Add to the error of a full or read-only disk what it means for the study."""
+    """Convert errors of a full or read-only disk to errors about the study."""
     try:
         yield
     except StoreError:
         raise
     except OSError as error:
         if isinstance(error, ResourceError) or error.errno in (errno.ENOSPC, errno.EDQUOT):
-            advice = "make room and give the same command again, which resumes"
+            advice = "free disk space and give the same command again, which resumes"
             raised: ResourceError | StoreError = ResourceError(f"{path}: no space is left on the disk", advice)
         else:
             why = error.complaint if isinstance(error, DataError) else error.strerror or error
@@ -289,17 +288,17 @@ def _explain_disk_errors(path: Path) -> Iterator[None]:
         raise raised from error
 
 
-def keep_map(found: xr.Dataset, kind: str, path: str | os.PathLike[str] | None) -> xr.Dataset:
-    """Name the kind of study in a dataset made of runs, and write it beside the runs.
+def save_result(result: xr.Dataset, kind: str, path: str | os.PathLike[str] | None) -> xr.Dataset:
+    """Add the kind of the study to its result, and write the result to the store next to the runs.
 
     Parameters
     ----------
-    found
-        The dataset.
+    result
+        Dataset computed from the runs.
     kind
         Kind of the study.
     path
-        Folder of the study, if it has one. `open_study` then returns the dataset.
+        Folder of the study; None for a study in memory. `open_study` returns the dataset from the folder.
 
     Returns
     -------
@@ -315,17 +314,17 @@ def keep_map(found: xr.Dataset, kind: str, path: str | os.PathLike[str] | None) 
     """
     from rattlebox import __version__
 
-    found = found.assign_attrs(study=kind)
+    result = result.assign_attrs(study=kind)
     if path is not None:
         files = _MemoryFiles()
-        kept = with_texts(found).drop_encoding().assign_attrs(variables=list(found.data_vars))
-        kept.to_zarr(files.store, zarr_format=3, consolidated=False)
+        stored = with_texts(result).drop_encoding().assign_attrs(variables=list(result.data_vars))
+        stored.to_zarr(files.store, zarr_format=3, consolidated=False)
         with exclusive_writer(Path(path)), _explain_disk_errors(Path(path)):
             try:
                 fill(Path(path) / MAP, Marker(_MAP_KIND, __version__), files.content())
             except ForeignFile as error:
                 raise StoreError(str(error)) from None
-    return found
+    return result
 
 
 def add_attributes(path: str | os.PathLike[str], attributes: Mapping[str, str]) -> None:
@@ -336,7 +335,7 @@ def add_attributes(path: str | os.PathLike[str], attributes: Mapping[str, str]) 
     path
         Folder of the study.
     attributes
-        Attributes that are known once the study has run.
+        Attributes that are known after the study has run.
 
     Raises
     ------

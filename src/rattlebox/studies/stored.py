@@ -1,4 +1,4 @@
-"""Reads studies on disk, finished or not, and finds the blocks that are missing or damaged."""
+"""Reading of studies on disk, finished or not, and detection of missing or damaged blocks."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FORMAT = 2
-"""Number of the layout; stores with a higher one are refused."""
+"""Version of the layout; stores with a higher version are rejected."""
 
 KIND = "Rattlebox study"
 """Kind of folder in the marker of a study."""
 
 MAP = "map"
-"""Subfolder of a store for the dataset that the study returns, where it differs from the runs."""
+"""Subfolder of a store for the result of the study, if it differs from the runs."""
 
-_REPAIR = "a copy of it, or remove it and give its command again"
+_DAMAGE_HINT = "a copy of it, or remove it and give its command again"
 
 
 def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
@@ -41,13 +41,13 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
     Parameters
     ----------
     path
-        Folder that `store=` or `rattlebox sweep -o` named.
+        Folder given with `store=` or `rattlebox sweep -o`.
 
     Returns
     -------
     xarray.Dataset
-        The dataset that the study returned, read from disk when its values are used. Before the study has finished: its
-        runs, with NaN, or the smallest number of an integer variable, where a variant is not computed yet.
+        Result of the study, read from disk when values are accessed. Before the study has finished: its runs, in which
+        missing variants are NaN, or the smallest number of an integer variable.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def open_study(path: str | os.PathLike[str]) -> xr.Dataset:
 
 
 def has_map(path: str | os.PathLike[str]) -> bool:
-    """Return whether a store holds the dataset that its study returned beside the runs.
+    """Return whether a store holds a result of its study in addition to the runs.
 
     Parameters
     ----------
@@ -72,13 +72,13 @@ def has_map(path: str | os.PathLike[str]) -> bool:
     Raises
     ------
     StoreError
-        If the list of the files of that dataset is damaged.
+        If the list of files of the result is damaged.
     """
     folder = Path(path) / MAP
     try:
         marker = read_marker(folder)
     except DamagedError as error:
-        raise StoreError(f"{folder} is damaged: {error}\n  try: remove {folder}, and give its command again") from None
+        raise StoreError(f"{folder} is damaged: {error}", f"remove {folder}, and give its command again") from None
     return marker is not None and marker.complete
 
 
@@ -93,7 +93,7 @@ class Progress:
     finished : (len(blocks),) bool
         Whether each block is finished.
     last
-        Time at which a block was last written [s since 1970].
+        Time of the last write of a block [s since 1970].
     """
 
     blocks: Blocks
@@ -138,7 +138,7 @@ def progress_of(path: str | os.PathLike[str]) -> Progress:
 
 
 def check_marker(path: str | os.PathLike[str]) -> Marker | None:
-    """Return the marker of a study, which may not be complete; None without one.
+    """Return the marker of a study, complete or not; None if there is none.
 
     Raises
     ------
@@ -147,9 +147,9 @@ def check_marker(path: str | os.PathLike[str]) -> Marker | None:
     """
     marker = read_marker(Path(path))
     if marker and marker.name not in (KIND, ""):
-        raise StoreError(f"{path} is no study, but a {marker.name}\n  try: another folder")
+        raise StoreError(f"{path} is not a study, but a {marker.name}", "another folder")
     if marker and marker.about.get("format", 0) > FORMAT:
-        raise StoreError(f"{path} was written by a later Rattlebox\n  try: update Rattlebox")
+        raise StoreError(f"{path} was written by a later version of Rattlebox", "update Rattlebox")
     return marker
 
 
@@ -164,13 +164,13 @@ def study_marker(path: str | os.PathLike[str]) -> Marker:
     marker = check_marker(path)
     if marker and marker.complete:
         return marker
-    what = "is not a study" if Path(path).exists() else "is not there"
-    raise StoreError(f"{path} {what}\n  try: the folder that 'rattlebox sweep -o' wrote")
+    what = "is not a study" if Path(path).exists() else "does not exist"
+    raise StoreError(f"{path} {what}", "the folder that 'rattlebox sweep -o' wrote")
 
 
 @contextmanager
 def report_damage(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Turn errors of reading a store into a message that it is damaged.
+    """Convert errors of reading a store to errors about damage.
 
     Parameters
     ----------
@@ -186,20 +186,20 @@ def report_damage(path: str | os.PathLike[str]) -> Iterator[None]:
         yield
     except RattleboxError as error:
         if isinstance(error, DamagedError):
-            raise StoreError(f"{path} is damaged: {error}", _REPAIR) from error
+            raise StoreError(f"{path} is damaged: {error}", _DAMAGE_HINT) from error
         raise
     except PermissionError as error:
         raise StoreError(f"{path} cannot be opened: {error.strerror}", "another folder") from error
     except (ValueError, KeyError, RuntimeError, FileNotFoundError) as error:
         what = str(error).partition("\n")[0] or type(error).__name__
-        raise StoreError(f"{path} is damaged: {what}", _REPAIR) from error
+        raise StoreError(f"{path} is damaged: {what}", _DAMAGE_HINT) from error
 
 
 # ---- blocks
 
 
 class Chunks:
-    """Files of the blocks of a study: each block is one file of every variable, which ends with its CRC-32C.
+    """Files of the blocks of a study: one file per block and variable, which ends with its CRC-32C.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ class Chunks:
     def __init__(self, path: Path, marker: Marker) -> None:
         self.blocks = Blocks(tuple(marker.about["shape"]), tuple(marker.about["box"]))
         self._path = path
-        # "float64 step=3 mode=2" has one word for the number type and one for each dimension beyond the grid.
+        # "float64 step=3 mode=2" is the number type, and a word for each dimension beyond the grid.
         self._further = {name: len(text.split()) - 1 for name, text in marker.about["manifest"]["outputs"].items()}
 
     def key(self, name: str, block: int) -> str:
@@ -251,7 +251,7 @@ def _has_checksum(chunk: Path) -> bool:
 
 
 def open_runs(path: Path, marker: Marker) -> xr.Dataset:
-    """Open the outputs of all variants; blocks that are missing or damaged read as missing values.
+    """Open the outputs of all variants; missing or damaged blocks are returned as missing values.
 
     Parameters
     ----------
@@ -263,15 +263,15 @@ def open_runs(path: Path, marker: Marker) -> xr.Dataset:
     Raises
     ------
     StoreError
-        If a file besides the blocks is damaged.
+        If a file other than a block is damaged.
     """
     import xarray as xr
     from zarr.storage import LocalStore
 
     if damaged := damaged_files(path, marker):
         raise StoreError(
-            f"{path} is damaged: {damaged[0]} is lost or has changed\n"
-            "  try: the command that began it, which repairs it and computes only what is missing"
+            f"{path} is damaged: {damaged[0]} is missing or has changed",
+            "the command that started the study, which repairs it and computes only the missing blocks",
         )
     with report_damage(path):
         store = _intact_only()(LocalStore(path, read_only=True), Chunks(path, marker))
@@ -286,12 +286,12 @@ def _open_map(folder: Path) -> xr.Dataset:
         marker = read_marker(folder)
         if marker and (damaged := damaged_files(folder, marker)):
             raise StoreError(
-                f"{folder} is damaged: {damaged[0]} is lost or has changed\n"
-                "  try: its command again, which makes the map anew from the runs"
+                f"{folder} is damaged: {damaged[0]} is missing or has changed",
+                "its command again, which computes the result again from the runs",
             )
         data = xr.open_zarr(folder, chunks=None)
-        found: xr.Dataset = data[data.attrs.pop("variables")]
-        return found
+        result: xr.Dataset = data[data.attrs.pop("variables")]
+        return result
 
 
 @cache

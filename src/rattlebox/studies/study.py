@@ -1,7 +1,7 @@
 """Base class of the kinds of studies, and the types of their fields.
 
 A kind of study is one dataclass in `rattlebox.studies.kinds`. Its fields are the arguments of the function of its name, the
-keys of its study file, and the parameters that its docstring describes.
+keys of its study file, and the parameters in its docstring.
 """
 
 from __future__ import annotations
@@ -57,17 +57,18 @@ class Study:
     Parameters
     ----------
     case
-        The case that varies.
+        Base case.
     workers
-        Number of threads or processes; default as many as there are cores. Results do not depend on it, to the last bit.
+        Number of threads or processes; default one per core. Results are bitwise independent of it.
     backend
-        "threads" of this process; "processes", for measures in Python, which run one at a time in threads; or the client of
-        a Dask cluster (`dask.distributed.Client`).
+        "threads" of this process; "processes", for measures in Python, which do not run in parallel in threads; or the
+        client of a Dask cluster (`dask.distributed.Client`).
     store
-        Folder of a Zarr store for the results. Finished work is in it at all times, and the same call resumes after a stop.
+        Folder of a Zarr store for the results. It holds the finished work at all times, and the same call resumes after a
+        stop.
     progress
-        True for a progress bar after 2 s, False for none, or a function of the numbers of variants done and of all,
-        which stops the study by returning False.
+        True for a progress bar after 2 s, False for none, or a function of the number of finished variants and of all; the
+        study stops if it returns False.
     """
 
     kind: ClassVar[str]
@@ -95,22 +96,22 @@ class Study:
         Raises
         ------
         CaseError
-            If a field does not fit the case, before anything runs.
+            If a field is not valid for the case (raised before anything runs).
         """
         checked = dataclasses.replace(self, **where)
-        study = copy.copy(self)  # keeps the grid and the work that are already computed
+        study = copy.copy(self)  # retains the grid and the work that are already computed
         for name in where:
             study.__dict__[name] = getattr(checked, name)
         study.validate()
         return study.compute()
 
     def validate(self) -> None:
-        """Raise if the fields do not fit the case or each other.
+        """Raise if the fields are not valid for the case or exclude each other.
 
         Raises
         ------
         CaseError
-            With what to try.
+            If they are not valid.
         """
         raise NotImplementedError
 
@@ -120,11 +121,11 @@ class Study:
 
     @property
     def where(self) -> dict[str, Any]:
-        """Fields that say where the study runs, as arguments of `run`."""
+        """Fields of execution and storage, as arguments of `run`."""
         return {"workers": self.workers, "backend": self.backend, "store": self.store, "progress": self.progress}
 
     def run_work(self, work: Work) -> xr.Dataset:
-        """Run work where the study runs."""
+        """Run work with the backend and store of the study."""
         return run_work(work, **self.where)
 
 
@@ -184,7 +185,7 @@ def make_study(cls: type[Study], values: Mapping[str, Any], source: str = "", vo
     cls
         Kind of the study.
     values
-        Values by the name of the field, as a call or a study file gives them.
+        Values by the name of the field, from a call or a study file.
     source
         Name of the file in messages.
     vocabulary
@@ -193,7 +194,7 @@ def make_study(cls: type[Study], values: Mapping[str, Any], source: str = "", vo
     Raises
     ------
     CaseError
-        If a value is not allowed, with its name and what is allowed.
+        If a value is not allowed.
     """
     names = [field.name for field in dataclasses.fields(cls)]
     for name in values:
@@ -207,7 +208,7 @@ def make_study(cls: type[Study], values: Mapping[str, Any], source: str = "", vo
         raise CaseError(re.sub("(?m)^: ", "", str(translate(error, source, vocabulary or {}, dict(values))))) from None
     skip = getattr(study, "skip", 0.0)
     if skip and getattr(study, "cycles", None) is not None:
-        raise Hint(f"skip = {skip:g} s: with cycles, the first number of them is what is skipped", "one of both")
+        raise Hint(f"skip = {skip:g} s and cycles exclude each other; the first of cycles is skipped", "one of them")
     return study
 
 
@@ -229,7 +230,7 @@ class Range(Table):
 
 
 class SpacedTable(Range):
-    """Values from one to another."""
+    """Spaced values of a parameter."""
 
     count: Annotated[Whole, Field(ge=1, examples=[20])]
 
@@ -240,7 +241,7 @@ class SpacedTable(Range):
 
 
 def table_shape(value: Any) -> str:
-    """Return "spaced" for a table of spaced values, "linked" for a table of several, "value" for text and single numbers."""
+    """Return "spaced" for a table of spaced values, "linked" for other tables, "value" for text and numbers, or "other"."""
     if isinstance(value, Mapping):
         return "linked" if value and not value.keys() & {"from", "to", "count", "spacing"} else "spaced"
     return "value" if isinstance(value, (str, int, float)) or value is None else "other"
@@ -252,7 +253,7 @@ def _spaced_or_other(value: Any) -> str:
 
 
 def _if_table(value: Any, handler: Callable[[Any], Any]) -> Any:
-    """Read a table; pass on other forms, which only calls in Python have."""
+    """Validate a table; return other forms, which only Python calls have, unchanged."""
     if isinstance(value, Mapping) and all(isinstance(name, str) for name in value):
         return handler(value)
     if value is None or (isinstance(value, (Sequence, RandomDesign, Replicas)) and not isinstance(value, str)):
@@ -264,47 +265,47 @@ def _as_measures(value: Any) -> Any:
     if isinstance(value, str) or callable(value):
         return [value]
     if not isinstance(value, Iterable):
-        raise Hint(f"{value!r} is neither the name of a measure nor a function of a Run", '"impact_share"')
+        raise Hint(f"{value!r} is not the name of a measure or a function of a Run", '"impact_share"')
     return list(value)
 
 
 def known_measures(measures: Any) -> list[Any]:
-    """Return measures; raise if one is not known or two have one name."""
+    """Return measures as a list; raise if one is unknown or two have the same name."""
     for index, name in enumerate(measures):
         if isinstance(name, str) and name not in MEASURES:
-            raise Hint("there is no such measure", nearest(name, MEASURES), [index])
+            raise Hint("it is not the name of a measure", nearest(name, MEASURES), [index])
         if not isinstance(name, str) and not callable(name):
-            raise Hint(f"{name!r} is neither the name of a measure nor a function of a Run", '"impact_share"', [index])
+            raise Hint(f"{name!r} is not the name of a measure or a function of a Run", '"impact_share"', [index])
     check_names(measures)
     return list(measures)
 
 
 def _whole_cycles(cycles: Any, least: int) -> tuple[int, int]:
     try:
-        skip, look = (int(number) for number in cycles)
-        whole = (skip, look) == tuple(cycles)
+        skip, count = (int(number) for number in cycles)
+        whole = (skip, count) == tuple(cycles)
     except (TypeError, ValueError, OverflowError):
         whole = False
-    if not whole or skip < 0 or look < least:
-        raise Hint(f"whole numbers of cycles are needed: some to skip, at least {least} to look at", "[200, 50]")
-    return skip, look
+    if not whole or skip < 0 or count < least:
+        raise Hint(f"cycles must be two whole numbers: to skip, >= 0, and to evaluate, >= {least}", "[200, 50]")
+    return skip, count
 
 
 def _check_bounds(bounds: Any) -> Any:
     if not isinstance(bounds, Mapping) or not bounds:
-        raise Hint("paths with bounds or choices are needed", '{"damper.gap": ("0.1 mm", "2 mm")}')
+        raise Hint("a mapping of paths to bounds or choices is required", '{"damper.gap": ("0.1 mm", "2 mm")}')
     return bounds
 
 
 def split_bounds(bounds: Mapping[str, Any], log: Any) -> tuple[dict[str, Any], list[str]]:
-    """Return pairs and choices by path, and the paths whose values are spread in the logarithm.
+    """Return pairs and choices by path, and the paths with a logarithmic distribution.
 
     Parameters
     ----------
     bounds
-        By path: pairs, choices, or tables of a study file.
+        Pairs, choices, or tables of a study file, by path.
     log
-        Paths besides those of tables with `spacing = "log"`.
+        Paths in addition to those of tables with `spacing = "log"`.
     """
     logarithmic = [path for path, given in bounds.items() if isinstance(given, Range) and given.spacing == "log"]
     pairs = {path: (given.start, given.to) if isinstance(given, Range) else given for path, given in bounds.items()}

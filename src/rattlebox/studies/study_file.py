@@ -1,4 +1,4 @@
-"""Study files: a case, its axes and what to measure, in TOML."""
+"""Study files: a case, axes and options of a study in TOML."""
 
 from __future__ import annotations
 
@@ -34,22 +34,22 @@ def read_study(path: str | os.PathLike[str]) -> Study:
     Parameters
     ----------
     path
-        A TOML file with these tables; files named in it are relative to its folder:
+        TOML file with the following tables; paths in it are relative to its folder:
 
         case
-            `file = "case.toml"`, or all that a case file holds.
+            `file = "case.toml"`, or the content of a case file.
         axes, or starts of basins
-            One dimension a line, `"damper.gap" = values`: a list, or `{ from = "0.1 mm", to = "2 mm", count = 20 }`, with
-            `spacing = "log"` if they grow by a factor. A table of such lines, `[axes.level]`, is one dimension along
-            which they vary together. The quotes around a path keep the lines in their order.
+            One dimension per line, `"damper.gap" = values`: a list, or `{ from = "0.1 mm", to = "2 mm", count = 20 }`, with
+            `spacing = "log"` for geometric spacing. A table of such lines, `[axes.level]`, is one dimension along which
+            they vary together. Quotes around the paths preserve the order of the lines.
         design
             `count` random points in the ranges of the table `ranges` (pairs by path); `method`, `seed` and `log` as for
             `rb.random_design`.
         replicas
-            `count` replicas of each variant, moved by at most what the table `reach` says by path; `seed`.
+            `count` replicas of each variant with the largest offsets in the table `reach`, by path; `seed`.
 
-        Above them the other fields of the kind of study, `kind = "sweep"` without that line, under the names that the
-        arguments of its function have. Values of a field (`values`, `frequencies`, `amplitudes`, `levels`) are lists or
+        Before them, the kind of study (default `kind = "sweep"`) and its other fields, with the names of the arguments of
+        its function. Values of a field (`values`, `frequencies`, `amplitudes`, `levels`) are lists or
         tables as above; `parameters` of a design and `bounds` of a sensitivity are tables of
         `"damper.gap" = { from = "0.1 mm", to = "2 mm" }`, with `spacing = "log"` for a search in the logarithm, or of lists
         to choose from.
@@ -62,7 +62,7 @@ def read_study(path: str | os.PathLike[str]) -> Study:
     Raises
     ------
     CaseError
-        When the file cannot be read or something in it does not fit, naming the field, its value and what is allowed.
+        If the file cannot be read, or a field is not valid; the message names the field, its value and what is allowed.
     """
     file = Path(path)
     return study_from_toml(_text(file), source=str(file), folder=file.parent)
@@ -74,28 +74,34 @@ def study_from_toml(content: str, *, source: str = "study", folder: Path | None 
     Parameters
     ----------
     content
-        TOML, as read_study takes it.
+        TOML text; see `read_study`.
     source
-        What messages call it.
+        Name of the file, for messages.
     folder
-        Where files named in it are looked for; default the current folder.
+        Folder to which paths in the text are relative; default the current folder.
+
+    Returns
+    -------
+    Study
+        The study.
 
     Raises
     ------
     CaseError
-        When something in it does not fit.
+        If a field is not valid.
     """
     given = _read(content, source)
     try:
         if "structure" in given and "case" not in given:
             raise Hint(
-                "this is a case, not a study of one", f'rattlebox run {source}, or a study with case.file = "{source}"'
+                "the file is a case file, not a study file",
+                f'rattlebox run {source}, or case.file = "{source}" in a study',
             )
         kind = given.pop("kind", "sweep")
         if not isinstance(kind, str) or kind not in KINDS:
-            raise Hint(f"kind = {kind!r}: there is no such kind of study", nearest(str(kind), KINDS))
+            raise Hint(f"kind = {kind!r} is not a kind of study", nearest(str(kind), KINDS))
         cls = kind_of(kind)
-        given = {name: _NESTED.get(name, _as_it_is)(value) for name, value in given.items()}
+        given = {name: _NESTED[name](value) if name in _NESTED else value for name, value in given.items()}
         if "case" in given:
             given["case"], own = _case(given["case"], source, folder or Path())
             given = {name: _with_materials(value, own) if name in _NESTED else value for name, value in given.items()}
@@ -168,10 +174,6 @@ def _flat_inside(field: str) -> Any:
     return flatten
 
 
-def _as_it_is(value: Any) -> Any:
-    return value
-
-
 _NESTED = {
     "axes": _flat_axes,
     "levels": _flat_axes,
@@ -183,16 +185,16 @@ _NESTED = {
 }
 
 
-# ---- what is in it
+# ---- content
 
 
 def _case(given: Any, source: str, folder: Path) -> tuple[Case, dict[str, Material]]:
-    """The case, and the materials that it brings along."""
+    """Return the case and the materials that its file defines."""
     content: dict[str, Any] = given if isinstance(given, dict) else {"file": given}
     if "file" in content:
         name = content["file"]
         if len(content) > 1 or not isinstance(name, str):
-            hint = Hint("the name of a file is needed, or the case itself, not both", 'file = "case.toml"')
+            hint = Hint("the table must have either the name of a file or a case, not both", 'file = "case.toml"')
             raise CaseError(f"{source}: case\n  {hint}")
         try:
             file = existing(folder / name)
@@ -214,11 +216,11 @@ def _text(file: Path) -> str:
     except OSError as error:
         raise CaseError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise CaseError(f"{file}: not text in UTF-8\n  try: a TOML file, saved as UTF-8") from None
+        raise CaseError(f"{file}: not text in UTF-8", "a TOML file, saved as UTF-8") from None
 
 
 def _with_materials(table: Any, own: Mapping[str, Material]) -> Any:
-    """Return a table of values by path in which names of materials of the case are these materials."""
+    """Return a table of values by path, with the names of materials of the case replaced by the materials."""
     if not isinstance(table, dict):
         return table
 

@@ -221,7 +221,7 @@ def test_a_block_that_kills_its_worker(tmp_path: Path) -> None:
         Client(scheduler_file=str(file)) as client,
     ):
         client.wait_for_workers(2, timeout=30)
-        with pytest.raises(rb.ResourceError, match="2 workers in turn died of one block"):
+        with pytest.raises(rb.ResourceError, match="2 workers in turn ended"):
             run_work(Logistic(deadly=True), backend=client, block=60)
 
 

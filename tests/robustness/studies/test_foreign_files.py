@@ -164,7 +164,9 @@ def test_a_map_beside_files_of_a_user(tmp_path: Path, mine: Any) -> None:
     first = made()
     mine(store / "map", ("notes.txt", "c/notes.txt"))
     (store / "map" / "zarr.json").write_text("{")
-    with pytest.raises(rb.StoreError, match=r"is damaged: zarr\.json is lost or has changed\n  try: its command again"):
+    with pytest.raises(
+        rb.StoreError, match=r"is damaged: zarr\.json is missing or has changed\n  try: its command again"
+    ):
         open_study(store)
     made()
     assert open_study(store).load().equals(first)

@@ -87,7 +87,7 @@ WORK: dict[str, Callable[[Path], object]] = {
     "one block": one_block,
     "sweep": lambda store: rb.sweep(rb.Case.from_file(EXAMPLE), STARTS, ["impacts"], store=store, progress=False),
     "own measure": lambda store: rb.sweep(rb.Case.from_file(EXAMPLE), STARTS, [own], store=store, progress=False),
-    "followed": lambda store: rb.bifurcation(
+    "bifurcation": lambda store: rb.bifurcation(
         ball(), "damper.gap", [1e-3, 2e-3], cycles=(10**8, 4), store=store, progress=False
     ),
     "lyapunov": lambda store: rb.lyapunov(ball(), STARTS, cycles=(10**4, 10**4), store=store, progress=False),

@@ -87,5 +87,5 @@ def test_ctrl_c_stops_processes() -> None:
 def test_backends_are_named() -> None:
     """Backends that do not exist are refused with those that do."""
     for wrong in ("thread", 3, None):
-        with pytest.raises(rb.CaseError, match="neither the name of a backend"):
+        with pytest.raises(rb.CaseError, match="is not a backend"):
             run_work(Logistic(), backend=wrong)

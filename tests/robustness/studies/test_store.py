@@ -127,7 +127,7 @@ def test_many_differences_fit_one_screen(tmp_path: Path) -> None:
 def test_folders_of_other_things_are_refused(tmp_path: Path) -> None:
     """A file, or a folder that holds something else, is left alone."""
     (tmp_path / "notes.txt").write_text("mine")
-    with pytest.raises(rb.StoreError, match="is a file; a study needs a folder"):
+    with pytest.raises(rb.StoreError, match="is a file; "):
         study(tmp_path / "notes.txt")
     with pytest.raises(rb.StoreError, match="holds other files"):
         study(tmp_path)
@@ -135,7 +135,7 @@ def test_folders_of_other_things_are_refused(tmp_path: Path) -> None:
     for reader in (open_study, progress_of):
         with pytest.raises(rb.StoreError, match="is not a study"):
             reader(tmp_path)
-        with pytest.raises(rb.StoreError, match="is not there"):
+        with pytest.raises(rb.StoreError, match="does not exist"):
             reader(tmp_path / "nowhere")
 
 
@@ -147,7 +147,7 @@ def test_a_later_format_is_refused(tmp_path: Path) -> None:
     assert marker
     write_marker(store, replace(marker, about={**marker.about, "format": 3}))
     for use in (study, open_study, progress_of):
-        with pytest.raises(rb.StoreError, match="later Rattlebox"):
+        with pytest.raises(rb.StoreError, match="later version of Rattlebox"):
             use(store)
 
 
@@ -218,7 +218,7 @@ def test_damage_of_the_fixed_part_is_reported_and_repaired(name: str, how: str, 
     before = bits(study(store))
     damage(store / name, how)
     for use in (open_study, show_study):
-        with pytest.raises(rb.StoreError, match=f"{name} is lost or has changed\n  try: the command that began it"):
+        with pytest.raises(rb.StoreError, match=f"{name} is missing or has changed\n  try: the command that started"):
             use(store)
     again = run_work(Logistic(broken=True), store=store, progress=False)  # which computes nothing
     assert bits(again) == before

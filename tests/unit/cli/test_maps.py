@@ -233,7 +233,7 @@ def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer)
         (study("bifurcation").replace("show", "shown"), "did you mean 'show'"),
         (study("bifurcation") + '[axes]\n"damper.gap" = ["1 mm"]', "there is no such field"),
         (study("bifurcation").split("path")[0], "path"),
-        (study("bifurcation").replace("[40, 16]", "[40.5, 16]"), "whole numbers of cycles are needed"),
+        (study("bifurcation").replace("[40, 16]", "[40.5, 16]"), "two whole numbers"),
         (study("bifurcation").replace('"0.5 mm"', '"0.5 kg"'), "not a mass"),
         (study("frequency_response").replace("frequencies", "frequency"), "did you mean 'frequencies'"),
         (study("frequency_response").replace('"29 Hz"', '"29 m"'), "not a length"),

@@ -347,7 +347,7 @@ def test_films_without_the_extra_are_told(
     code, _, told = answer(monkeypatch, capsys, run[1], "-o", tmp_path / "a.mp4")
     assert (code, told) == (
         2,
-        "error: this needs imageio_ffmpeg, which is not installed\n"
+        "error: imageio_ffmpeg is required and not installed\n"
         "  try: python -m pip install 'rattlebox[3d]', or a name that ends in .gif\n",
     )
 

@@ -396,7 +396,7 @@ def test_a_million_variants_are_light(case: rb.Case) -> None:
 @pytest.mark.parametrize("index", [-1, 2])
 def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> None:
     """Variants count from 0."""
-    with pytest.raises(rb.CaseError, match="there is no variant"):
+    with pytest.raises(rb.CaseError, match="is not the number of a variant"):
         read_axes(case, {"duration": [1, 2]}).case_at(case, index)
 
 
@@ -407,10 +407,10 @@ def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> No
     ("axes", "said"),
     [
         ({}, ["nothing varies", "damper.gap"]),
-        (5, ["5 says of no path"]),
+        (5, ["5 is not a mapping"]),
         ({"damper.gapp": [1]}, ["damper.gapp", "did you mean 'gap'?"]),
-        ({3: [1]}, ["3 is no path"]),
-        ({"": [1]}, ["'' is no path"]),
+        ({3: [1]}, ["3 is not a path"]),
+        ({"": [1]}, ["'' is not a path"]),
         ({"damper.gap": []}, ["damper.gap", "there are no values"]),
         ({"damper.gap": "1 mm"}, ["damper.gap = '1 mm'", "a list of values is needed", "['1 mm']"]),
         ({"damper.gap": 1e-3}, ["damper.gap = 0.001", "a list of values is needed"]),
@@ -429,7 +429,7 @@ def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> No
         ({"structure.mass": [1, 0]}, ["structure.mass[1] = 0", "greater than zero"]),
         ({"damper.gap": rb.linspace("1 mm", -2, 3)}, ["damper.gap, stop = -2", "must not be negative"]),
         ({"damper.gap": rb.geomspace("1 N", "1 kN", 3)}, ["damper.gap, start = '1 N'", "not a force"]),
-        ({"damper.ball.material": rb.linspace(0, 1, 3)}, ["damper.ball.material", "no numbers"]),
+        ({"damper.ball.material": rb.linspace(0, 1, 3)}, ["damper.ball.material", "not numbers"]),
         ({"damper.gap": [1e-3], "dampers[0].gap": [1e-3]}, ["dampers[0].gap varies twice, also as damper.gap"]),
         (
             [{"damper.gap": [1e-3]}, rb.random_design({"damper.gap": (1e-4, 1e-3)}, 2)],
@@ -439,26 +439,26 @@ def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> No
         ([{"damper.cavity_length": [0.07]}, rb.replicas({"damper.gap": 1e-6}, 2)], ["exclude each other"]),
         (
             {("damper.gap", "load.amplitude"): [("1 mm", "1 kN"), ("2 mm", "2 kN"), ("3 mm", "3 kN")]},
-            ["as many lists of values are needed, one for each path"],
+            ["number of lists"],
         ),
         (
             {("damper.gap", "load.amplitude"): (["1 mm"], [1, 2])},
-            ["as many values each", "damper.gap has 1, load.amplitude has 2"],
+            ["same number of values", "damper.gap has 1, load.amplitude has 2"],
         ),
         ([{"duration": [1]}, {"duration": [2]}], ["two dimensions are called 'duration'"]),
-        ({"duration": {"damper.gap": [1e-3]}, "x": {"duration": [1]}}, ["another dimension is called so"]),
-        ({"damper.start": [0, "0.1 mm"]}, ["damper.start", "fractions of the gap and lengths do not mix"]),
-        ({"damper.start": [0, 2]}, ["variant 1 does not fit: damper.start = 2", "inside a wall", "between -1 and 1"]),
+        ({"duration": {"damper.gap": [1e-3]}, "x": {"duration": [1]}}, ["the name of two dimensions"]),
+        ({"damper.start": [0, "0.1 mm"]}, ["damper.start", "some are lengths"]),
+        ({"damper.start": [0, 2]}, ["variant 1 is not valid: damper.start = 2", "inside a wall", "between -1 and 1"]),
         ({"damper.gap": ["0.1 mm", "1 mm"], "damper.start": ["0.2 mm"]}, ["variant 0", "inside a wall"]),
         ({"damper.gap": [0.0], "damper.start": ["1 um"]}, ["damper.start", "a gap greater than zero"]),
         (
             {"damper.cavity_length": [0.07], "damper.ball": [rb.Sphere(radius="1 mm", material="steel")]}
             | {"damper.start": ["1 um"]},
-            ["damper.start", "what gives the gap varies as a whole"],
+            ["damper.start", "varies as a whole"],
         ),
         (
             {"structure.stiffness": [0, 1], "structure.damping_ratio": [0.1]},
-            ["variant 0 does not fit: structure.stiffness = 0 N/m", "no meaning without stiffness"],
+            ["variant 0 is not valid: structure.stiffness = 0 N/m", "no meaning without stiffness"],
         ),
         (rb.random_design({"damper.gap": ("2 mm", "1 mm")}, 4), ["damper.gap", "the first value must be the smaller"]),
         (rb.random_design({"damper.gap": "2 mm"}, 4), ["damper.gap", "a pair", '("0.1 mm", "2 mm")']),
@@ -467,7 +467,7 @@ def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> No
         (rb.replicas({"damper.start": "-1 um"}, 4), ["damper.start, reach = '-1 um'", "greater than zero"]),
         (rb.replicas({"damper.start": 0.1, "dampers[0].start": 0.1}, 4), ["dampers[0].start varies twice"]),
         (rb.replicas({"damper.ball.material": "steel"}, 4), ["damper.ball.material", "reach"]),
-        (rb.replicas({"damper.ball.mass": "1 g"}, 4), ["damper.ball.mass", "no one number"]),
+        (rb.replicas({"damper.ball.mass": "1 g"}, 4), ["damper.ball.mass", "not one number"]),
         ([rb.replicas({"duration": 1}, 2), rb.replicas({"damper.start": 0.1}, 2)], ["two dimensions", "'replica'"]),
     ],
 )
@@ -517,11 +517,11 @@ def test_ends_may_be_written_differently(ends: tuple[Any, Any]) -> None:
         (lambda: rb.geomspace(1, 2, 2.5), "count = 2.5"),  # type: ignore[arg-type]
         (
             lambda: rb.geomspace("0 mm", "1 mm", 3),
-            "start = '0 mm', stop = '1 mm': .* other than zero.*\n  try: equal steps",
+            "start = '0 mm', stop = '1 mm': .* must not be zero",
         ),
-        (lambda: rb.geomspace(-1, 2.0, 3), "start = -1, stop = 2.0: .* of one sign"),
-        (lambda: rb.linspace("1 mm", "1 kN", 3), "start = '1 mm', stop = '1 kN': ends of one dimension"),
-        (lambda: rb.linspace((1, "inch"), "1 kg", 3), "ends of one dimension"),
+        (lambda: rb.geomspace(-1, 2.0, 3), "start = -1, stop = 2.0: .* the same sign"),
+        (lambda: rb.linspace("1 mm", "1 kN", 3), "start = '1 mm', stop = '1 kN': the dimensions of the ends differ"),
+        (lambda: rb.linspace((1, "inch"), "1 kg", 3), "the dimensions of the ends differ"),
         (lambda: rb.linspace("1 mm", "2 mn", 3), "unknown unit 'mn'"),
         (lambda: rb.random_design({}, 3), "ranges"),
         (lambda: rb.random_design({"a": (0, 1)}, 3, method="sobl"), "did you mean 'sobol'"),  # type: ignore[arg-type]

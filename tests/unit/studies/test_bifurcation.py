@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.continuation import follow
+from rattlebox.studies.axes import read_axes
+from rattlebox.studies.continuation import ContinuationWork
+from rattlebox.studies.runner import run_work
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "bifurcation.py"
 AMPLITUDE = "structure.motion.amplitude"
@@ -43,8 +45,10 @@ def test_both_goes_up_and_then_back_down():
     for name in up.data_vars:
         np.testing.assert_array_equal(up[name][0], both[name][0])
     there_and_back = np.concatenate([values, values[::-1]])
-    walked = follow(shaken(), AMPLITUDE, there_and_back, cycles=(20, 8), samples=9, motion=True, **QUIET)
-    np.testing.assert_array_equal(both.ball_place[1], walked.ball_place.values[0, :4:-1, 1:])
+    grid = read_axes(shaken(), {AMPLITUDE: there_and_back})
+    work = ContinuationWork.along(shaken(), grid, directions=["up"], cycles=(20, 8), samples=9, motion=True)
+    chain = run_work(work, **QUIET)
+    np.testing.assert_array_equal(both.ball_place[1], chain.ball_place.values[0, :4:-1, 1:])
 
 
 def test_directions_differ_where_motions_coexist():
@@ -88,12 +92,12 @@ def test_names_can_be_compared_fresh():
 @pytest.mark.parametrize(
     ("path", "values", "options", "said"),
     [
-        (AMPLITUDE, [1e-3, 1e-3], {}, "must rise"),
-        (AMPLITUDE, [2e-3, 1e-3], {}, "must rise"),
-        ("damper.ball.material", ["steel", "brass"], {}, "no numbers that rise or fall"),
+        (AMPLITUDE, [1e-3, 1e-3], {}, "strictly rising"),
+        (AMPLITUDE, [2e-3, 1e-3], {}, "strictly rising"),
+        ("damper.ball.material", ["steel", "brass"], {}, "are not numbers and have no order"),
         (AMPLITUDE, [1e-3], {"show": "strobes"}, "show = 'strobes'"),
         (AMPLITUDE, [1e-3], {"direction": "left"}, "direction = 'left'"),
-        (AMPLITUDE, [1e-3], {"cycles": (5, 1)}, "at least 2 to look at"),
+        (AMPLITUDE, [1e-3], {"cycles": (5, 1)}, "to evaluate, >= 2"),
         (AMPLITUDE, [1e-3], {"workers": 0}, "workers = 0"),
         (AMPLITUDE, [1e-3], {"tolerance": 0}, "tolerance = 0"),
     ],
@@ -108,13 +112,13 @@ def test_nothing_bifurcates_without_damper_or_cycle():
     """A case without a damper or without a harmonic load is refused."""
     structure = rb.SDOF(mass="1 kg", stiffness="4 kN/m", damping_ratio=0.01)
     bare = rb.Case(structure=structure, load=rb.Harmonic(amplitude="1 N", frequency="10 Hz"), duration="1 s")
-    with pytest.raises(rb.CaseError, match="without a damper"):
+    with pytest.raises(rb.CaseError, match="the case has no damper"):
         rb.bifurcation(bare, "load.amplitude", [1.0, 2.0])
     damper = rb.ImpactDamper(
         ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
     )
     free = rb.Case(structure=structure, damper=damper, duration="1 s")
-    with pytest.raises(rb.CaseError, match="cycles need a harmonic load"):
+    with pytest.raises(rb.CaseError, match="cycles require a harmonic load"):
         rb.bifurcation(free, "damper.gap", [1e-3, 2e-3])
 
 

@@ -71,7 +71,7 @@ def test_several_dampers_are_softened_together() -> None:
 @pytest.mark.parametrize(
     ("changes", "options", "said"),
     [
-        ({"softening": 1}, {}, "nothing is softened"),
+        ({"softening": 1}, {}, "the softening is 1"),
         ({}, {"softenings": (10,)}, "two softenings"),
         ({}, {"softenings": (10, 0.5)}, "two softenings"),
         ({}, {"packings": 1}, "packings"),

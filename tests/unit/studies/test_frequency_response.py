@@ -106,13 +106,13 @@ def test_a_run_that_fails_is_told():
     [
         ({}, {"direction": "left"}, "must be 'up', 'down', 'both' or 'fresh'"),
         ({}, {"samples": 3}, "at least 8"),
-        ({}, {"cycles": (10.5, 8)}, "whole numbers of cycles"),
-        ({}, {"frequencies": [31, 30]}, "must rise"),
+        ({}, {"cycles": (10.5, 8)}, "two whole numbers"),
+        ({}, {"frequencies": [31, 30]}, "strictly rising"),
         ({}, {"frequencies": ["30 m"]}, "frequency"),
         ({}, {"levels": ["1 m"]}, "amplitude"),
-        ({"load": rb.HalfSine(amplitude=1.0, duration=0.1)}, {}, "one harmonic load"),
+        ({"load": rb.HalfSine(amplitude=1.0, duration=0.1)}, {}, "0 harmonic loads or base motions"),
         ({"load": [rb.Harmonic(amplitude=1.0, frequency=f) for f in (1, 2)]}, {}, "loads[0], loads[1]"),
-        ({"structure": rb.Fixed(), "load": []}, {}, "does not respond"),
+        ({"structure": rb.Fixed(), "load": []}, {}, "has no modes"),
         ({}, {"measure": ["impact"]}, "impacts"),
     ],
 )

@@ -153,7 +153,7 @@ def test_chaos_agrees_with_pairs_left_to_themselves():
         ({"steps": 1}, "steps = 1"),
         ({"distance": 1.0}, "distance = 1.0\n  must be at most 0.0001"),
         ({"reach": -1.0}, "reach"),
-        ({"cycles": (10, 0)}, "at least 1 to look at"),
+        ({"cycles": (10, 0)}, "to evaluate, >= 1"),
         ({"axes": {"load.frequenzy": [30.0]}}, "frequency"),
         ({"axes": {"duration": [1.0, 2.0]}, "cycles": None}, "duration"),
     ],

@@ -96,7 +96,7 @@ def test_points_without_a_value_are_left_out() -> None:
     found = _indices(runs(values, status), ["a", "b"], 32, 0.95, 0)
     assert int(found.left_out[0]) == 2
     assert np.isfinite(found.total).all()
-    with pytest.raises(rb.CaseError, match="of 32 base points, 32 have a run without a value"):
+    with pytest.raises(rb.CaseError, match="32 of 32 base points have a run without a value"):
         _indices(runs(values, 1), ["a", "b"], 32, 0.95, 0)
 
 
@@ -109,10 +109,10 @@ def test_points_without_a_value_are_left_out() -> None:
         (BOUNDS, {"n": 4}, "at least 8"),
         (BOUNDS, {"measure": "shares"}, "measure = 'shares'"),
         (BOUNDS, {"confidence": 95}, "must be less than 1"),
-        (BOUNDS, {"log": ["gap"]}, "there is no range of that name"),
+        (BOUNDS, {"log": ["gap"]}, "is not one of the ranges"),
         (BOUNDS, {"measure": "settling_time"}, "have a run without a value"),
-        ({"damper.gap": ("50 mm", "60 mm")}, {}, "nothing depends on anything"),
-        ({}, {}, "paths with bounds or choices are needed"),
+        ({"damper.gap": ("50 mm", "60 mm")}, {}, "has no variance"),
+        ({}, {}, "paths to bounds or choices"),
     ],
 )
 def test_clear_refusals(bounds: Any, options: dict[str, Any], said: str) -> None:
@@ -127,7 +127,9 @@ def test_without_salib(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [name for name in sys.modules if name.startswith("SALib")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "SALib", None)
-    with pytest.raises(rb.MissingDependency, match=r"needs SALib.*\n.*pip install 'rattlebox\[design\]'"):
+    with pytest.raises(
+        rb.MissingDependency, match=r"SALib is required and not installed.*\n.*pip install 'rattlebox\[design\]'"
+    ):
         rb.sensitivity(struck(), BOUNDS, n=8)
 
 

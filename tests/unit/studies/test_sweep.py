@@ -106,7 +106,7 @@ def test_the_first_harmonic_has_the_samples_that_it_needs() -> None:
         asked = rb.sweep(case, axes, ["effective_mass", "loss_factor"], samples=least, **options)
         assert np.isfinite(usual.loss_factor).all()
         assert (usual.effective_mass == asked.effective_mass).all() and (usual.loss_factor == asked.loss_factor).all()
-        with pytest.raises(rb.CaseError, match=r"effective_mass needs 8 samples in a cycle, and there are \d"):
+        with pytest.raises(rb.CaseError, match=r"\d samples per cycle are too few for effective_mass"):
             rb.sweep(case, axes, ["impacts", "effective_mass"], samples=500, **options)
 
 
@@ -186,14 +186,14 @@ def test_a_member_that_fails_carries_its_status() -> None:
         ({"measure": ["impact_shares"]}, "impact_share"),
         ({"measure": [3]}, "function"),
         ({"measure": ["loss_factor"]}, "harmonic"),
-        ({"measure": []}, "there is no measure\n  try: impacts"),
-        ({"measure": ["impacts", "peak", "impacts"]}, "two measures are called impacts"),
-        ({"measure": [lambda run: 1, lambda run: 2]}, "two measures are called <lambda>"),
-        ({"skip": "9 s"}, "nothing of the run"),
+        ({"measure": []}, "no measure is given\n  try: impacts"),
+        ({"measure": ["impacts", "peak", "impacts"]}, "two measures have the name impacts"),
+        ({"measure": [lambda run: 1, lambda run: 2]}, "two measures have the name <lambda>"),
+        ({"skip": "9 s"}, "skip = 9 s"),
         ({"cycles": (10, 5)}, "harmonic"),
         ({"skip": "9 kg"}, "s"),
         ({"point": "tip"}, "mass"),
-        ({"backend": "gpu"}, "neither the name of a backend nor the client of a Dask cluster"),
+        ({"backend": "gpu"}, "is not a backend"),
     ],
 )
 def test_what_does_not_fit_is_told_before_anything_runs(options: dict[str, Any], told: str) -> None:
@@ -209,7 +209,7 @@ def test_function_that_gives_no_number_is_told(value: Any) -> None:
     def loudness(run: Any) -> Any:
         return value if run.ledger.work[-1] > 1e-3 else 0.0
 
-    said = f"measure loudness: of variant 1 it is {type(value).__name__}, not one number"
+    said = f"measure loudness: the function returned {type(value).__name__} for variant 1"
     with pytest.raises(rb.CaseError, match=said):
         rb.sweep(rb.reference_case(duration=0.1), {"load.amplitude": [0.1, 5e3]}, loudness)
 

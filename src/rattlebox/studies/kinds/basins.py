@@ -1,4 +1,4 @@
-"""Which motion each start leads to, where several steady motions exist side by side."""
+"""Basins of attraction: the steady motion to which each initial state leads."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rattlebox.studies.axes import read_axes
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.measures import with_required
 from rattlebox.studies.orbits import attractors, period_of, reduced_strobes
-from rattlebox.studies.store import keep_map
+from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
     Axes,
@@ -34,48 +34,48 @@ NO_PERIOD, NOT_FINISHED = 0, -1
 
 @dataclass(frozen=True, config=CONFIG)
 class Basins(Study):
-    """Find the steady motion under a harmonic load that each start leads to.
+    """Compute basins of attraction under a harmonic load: the steady motion of each initial state.
 
-    Motions are told apart by their strobes, the state once a cycle: two are one attractor when one repeats after as many
-    cycles as the other and passes through the same states. Motions without an impact are one attractor wherever the
-    ball is, as long as the structure moves alike.
+    Motions are compared by their stroboscopic states, one per cycle. Two motions belong to the same attractor if they have
+    the same period and pass through the same states. Motions without impacts belong to the same attractor, wherever the
+    ball is, if the structure moves alike.
 
     Parameters
     ----------
     case
-        The case, with dampers, under a harmonic load or motion.
+        Case with impact dampers and a harmonic load or motion.
     starts
-        Axes as of `rb.sweep`: {"damper.start": rb.linspace(-1, 1, 200), "damper.velocity": rb.linspace(-1, 1, 200)}, or
-        "structure.displacement", "load.phase", whatever may decide.
+        Axes of initial values as for `rb.sweep`: {"damper.start": rb.linspace(-1, 1, 200), "damper.velocity":
+        rb.linspace(-1, 1, 200)}, "structure.displacement" or "load.phase".
     cycles
         Numbers of cycles to skip until motions are steady, and to evaluate. Periods up to half of the
         latter are detected.
     measure
-        Names of further measures (rb.MEASURES).
+        Names of further measures (`rb.MEASURES`).
     tolerance
-        A motion is held to repeat when its strobes differ by less than this part of the gap, and of gap times
-        angular frequency.
+        Largest difference between states one period apart, over the gap (positions) and over gap times angular frequency
+        (velocities).
     apart
-        Motions whose strobes differ by less than this, in the same measure, are one attractor.
+        Largest difference between states of one attractor, in the same units.
     point
-        Of the structure, that is watched; default the first damper's.
+        Observed point of the structure; default that of the first damper.
     workers, backend, store, progress
-        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
     xarray.Dataset
-        Over the starts: `status`; `attractor`, counted from 1 for that with the most starts, 0 where no period was found
-        (chaos, a longer period, a motion not yet steady, or one beyond 256 attractors), -1 where the run did not finish;
-        `period` in cycles, 0 where none was found; `impacts_per_cycle` and the measures asked for. Over `orbit`, the
-        attractors: `share` of all starts, `orbit_period`, `orbit_impacts_per_cycle`; over `strobe`, NaN beyond its period,
-        `orbit_displacement`, `orbit_velocity`, and over `ball` `orbit_ball_place`, `orbit_ball_speed` of the member that has
-        settled best.
+        Over the initial values: `status`; `attractor`, 1 for the one with the most initial states, 0 if no period was
+        detected (chaos, a longer period, a motion not yet steady, or more than 256 attractors), -1 if the run did not
+        finish; `period` in cycles, 0 if none was detected; `impacts_per_cycle` and the requested measures. Over `orbit`,
+        the attractors: `share` of all initial states, `orbit_period`, `orbit_impacts_per_cycle`; over `strobe` also
+        `orbit_displacement`, `orbit_velocity`, and over `ball` `orbit_ball_place`, `orbit_ball_speed` of the member with
+        the smallest residual, NaN beyond its period.
 
     Raises
     ------
     CaseError
-        When an argument does not fit the case.
+        If an argument is not valid for the case.
 
     Examples
     --------
@@ -104,7 +104,7 @@ class Basins(Study):
 
     @cached_property
     def work(self) -> ImpactWork:
-        """Runs of all starts, with the state of each once a cycle."""
+        """Runs of all initial states, with one state per cycle."""
         return ImpactWork(
             self.case,
             read_axes(self.case, self.starts, source="basins"),
@@ -116,13 +116,15 @@ class Basins(Study):
         )
 
     def validate(self) -> None:
-        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        """Raise if the fields are not valid; see `Study.validate`."""
         if not self.case.dampers:
-            raise CaseError("without a damper the motion is linear, and all starts lead to the same one")
+            raise CaseError(
+                "the case has no damper; its motion is linear, with one attractor", "a case with an impact damper"
+            )
         self.work.require_alike()
 
     def compute(self) -> xarray.Dataset:
-        """Run all starts and find their attractors; see `Study.compute`."""
+        """Run all initial states and determine their attractors; see `Study.compute`."""
         work, grid = self.work, self.work.grid
         runs = self.run_work(work).load().isel(instant=slice(1, None)).rename(instant="strobe")
         strobes = reduced_strobes(runs, work.packed, work.output.period)
@@ -137,7 +139,7 @@ class Basins(Study):
             "tolerance": self.tolerance,
         }
         found = _with_orbits(runs, label.reshape(grid.shape), period, best).assign_attrs(about, **_plane(self.case))
-        return keep_map(found, self.kind, self.store)
+        return save_result(found, self.kind, self.store)
 
 
 basins = study_function(Basins)
@@ -145,13 +147,13 @@ basins = study_function(Basins)
 
 
 def _plane(case: Case) -> dict[str, float]:
-    """The gap [m] of a lone ball in a cavity whose motion is given: place and velocity are all its state."""
+    """Return the gap [m] of a single ball in a cavity with prescribed motion, whose state is position and velocity."""
     alone = not case.modes.decay.size and len(case.impact_dampers) == 1 and len(case.impact_dampers[0].balls) == 1
     return {"gap": 0.5 * case.impact_dampers[0].clearance} if alone else {}
 
 
 def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xarray.Dataset:
-    """Say which attractor each start has, and what each attractor is."""
+    """Add attractors and periods to the runs, and the orbit of each attractor."""
     over = maps.status.dims
     strobes = ("displacement", "velocity", "ball_place", "ball_speed")
     found = (
@@ -176,9 +178,9 @@ def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xa
     within = np.arange(longest) < lasts[:, None]
     for name in strobes:
         values = maps[name].values.reshape(label.size, *maps[name].shape[label.ndim :])[best, :longest]
-        kept = np.where(within.reshape(*within.shape, *(1,) * (values.ndim - 2)), values, np.nan)
+        padded = np.where(within.reshape(*within.shape, *(1,) * (values.ndim - 2)), values, np.nan)
         dims = ("orbit", "strobe", "ball")[: values.ndim]
-        found[f"orbit_{name}"] = dims, kept, maps[name].attrs
+        found[f"orbit_{name}"] = dims, padded, maps[name].attrs
     numbers = {"orbit": (len(best), "attractor"), "strobe": (longest, "strobe of the period")}
     return found.assign_coords(
         {name: (name, np.arange(1, n + 1), {"units": "1", "long_name": text}) for name, (n, text) in numbers.items()}

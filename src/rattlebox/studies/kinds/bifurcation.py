@@ -1,4 +1,4 @@
-"""How a motion under a harmonic load changes with a parameter, and where its period doubles, breaks or jumps."""
+"""Bifurcation diagrams: steady motion under a harmonic load over a parameter."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.measures import with_required
 from rattlebox.studies.orbits import period_of, reduced_strobes
-from rattlebox.studies.store import keep_map
+from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
     CyclesToCompare,
@@ -40,51 +40,52 @@ else:
     ]
 
 
-_IMPACTS = 8  # kept, for each cycle looked at
+_IMPACTS = 8
+"""Largest number of impacts per evaluated cycle."""
 
 
 @dataclass(frozen=True, config=CONFIG)
 class Bifurcation(Study):
-    """Follow the motion under a harmonic load over a parameter, and output at it once a cycle or at each impact.
+    """Compute a bifurcation diagram: the state once per cycle, or each impact, over a parameter.
 
     Parameters
     ----------
     case
-        The case, with dampers, under a harmonic load or motion. The cycle is that of the first one.
+        Case with impact dampers and a harmonic load or motion, the first of which defines the cycle.
     path
-        What varies, or a tuple of paths that vary together.
+        Path of the parameter, or a tuple of paths that vary together.
     values
-        Rising: a list, an array, linspace or geomspace; with several paths, one such for each.
+        Rising values: a list, an array, `linspace` or `geomspace`; for several paths a tuple of these.
     cycles
-        How many cycles of each value to skip until the motion is steady, and how many to output at.
+        Numbers of cycles of each value to skip until the motion is steady, and to evaluate.
     show
-        "strobe" for the state once a cycle, "impacts" for phase and speed of each impact, too.
+        "strobe" for the state once per cycle, "impacts" also for phase and speed of each impact.
     direction
-        "up" or "down", each value from the state in which the one before ended; "both", first up and then back down;
-        or "fresh", each value from the start that the case says.
+        "up" or "down", where each value starts from the final state of the one before; "both" for up and then back
+        down; "fresh", where each value starts from the initial state of the case.
     measure
-        Names of further measures (rb.MEASURES).
+        Names of further measures (`rb.MEASURES`).
     tolerance
-        A motion is held to repeat when its strobes differ by less than this part of the gap, and of gap times
-        angular frequency.
+        Largest difference between states one period apart, over the gap (positions) and over gap times angular frequency
+        (velocities).
     point
-        Of the structure, that is watched; default the first damper's.
+        Observed point of the structure; default that of the first damper.
     workers, backend, store, progress
-        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
     xarray.Dataset
-        Over `direction` and the parameter: `status`; `period`, the number of cycles after which the motion repeats, 0
-        where it does not within half the cycles looked at; `impacts_per_cycle` and the measures asked for. Further over
-        `cycle`: `displacement` and `velocity` of the point, and over `ball`: `ball_place` and
-        `ball_speed` in the cavity. With show="impacts", over `impact`, at most 8 a cycle looked at, NaN before the first:
-        `impact_phase` of the load [rad], `approach_speed` and `contact`.
+        Over `direction` and the parameter: `status`; `period` in cycles, 0 if it exceeds half of the evaluated cycles or
+        does not exist; `impacts_per_cycle` and the requested measures. Also over `cycle`: `displacement` and `velocity`
+        of the point, and over `ball`: `ball_place` and `ball_speed` in the cavity. With show="impacts" over `impact`, the
+        last 8 per evaluated cycle, NaN if there are fewer: `impact_phase` of the load [rad], `approach_speed` and
+        `contact`.
 
     Raises
     ------
     CaseError
-        When an argument does not fit the case.
+        If an argument is not valid for the case.
 
     Examples
     --------
@@ -115,43 +116,45 @@ class Bifurcation(Study):
 
     @cached_property
     def grid(self) -> Grid:
-        """Values of the parameter."""
+        """Grid of the values of the parameter."""
         return read_axes(self.case, {self.path: self.values}, source="bifurcation")
 
     @cached_property
     def work(self) -> ImpactWork:
         """Runs of all values."""
-        output = self.cycles[1]
+        count = self.cycles[1]
         options: dict[str, Any] = {
             "measures": with_required(("impacts", "impacts_per_cycle"), self.measure),
             "cycles": self.cycles,
-            "samples": output + 1,
+            "samples": count + 1,
             "motion": True,
-            "last": _IMPACTS * output if self.show == "impacts" else 0,
+            "last": _IMPACTS * count if self.show == "impacts" else 0,
             "point": self.point,
         }
         if self.direction == "fresh":
             return ImpactWork(self.case, self.grid, **options)
         both = self.direction == "both"
         return ContinuationWork.along(
-            self.case, self.grid, ways=("up", "down") if both else (self.direction,), turning=both, **options
+            self.case, self.grid, directions=("up", "down") if both else (self.direction,), turn_back=both, **options
         )
 
     def validate(self) -> None:
-        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        """Raise if the fields are not valid; see `Study.validate`."""
         if not self.case.dampers:
-            raise CaseError("without a damper the motion is linear, and nothing bifurcates")
+            raise CaseError(
+                "the case has no damper; its motion is linear and has no bifurcation", "a case with an impact damper"
+            )
         self._values.require_alike()
         _check_order(self.grid, self.direction)
         self.work.validate()
 
     @property
     def _values(self) -> ImpactWork:
-        """The values, packed once, for the evaluation."""
+        """Work with the values in their order, for the evaluation."""
         return ImpactWork(self.case, self.grid, cycles=self.cycles, point=self.point)
 
     def compute(self) -> xarray.Dataset:
-        """Run all values and find the periods; see `Study.compute`."""
+        """Run all values and determine the periods; see `Study.compute`."""
         runs = self.run_work(self.work)
         runs = runs.expand_dims(direction=["fresh"]) if self.direction == "fresh" else without_states(runs)
         about = {
@@ -160,8 +163,8 @@ class Bifurcation(Study):
             "cycles": list(self.cycles),
             "tolerance": self.tolerance,
         }
-        found = _looked_at(runs.load(), self._values, self.tolerance).assign_attrs(about)
-        return keep_map(found, self.kind, self.store)
+        found = _evaluate(runs.load(), self._values, self.tolerance).assign_attrs(about)
+        return save_result(found, self.kind, self.store)
 
 
 bifurcation = study_function(Bifurcation)
@@ -169,17 +172,17 @@ bifurcation = study_function(Bifurcation)
 
 
 def _check_order(design: Grid, direction: str) -> None:
-    """Refuse values that do not rise."""
+    """Raise if the values do not rise."""
     path, values = next(iter(design.columns.items()))
     if values.dtype.kind == "f":
         if np.any(np.diff(values) <= 0):
-            raise Hint(f"{path}: values must rise from each to the next", "numpy.unique")
+            raise Hint(f"{path}: the values must be strictly rising", "numpy.unique")
     elif direction != "fresh":
-        raise Hint(f"{path}: its values are no numbers that rise or fall", 'direction = "fresh"')
+        raise Hint(f"{path}: its values are not numbers and have no order", 'direction = "fresh"')
 
 
-def _looked_at(maps: xarray.Dataset, task: ImpactWork, tolerance: float) -> xarray.Dataset:
-    """Take the strobes and the impacts of the cycles looked at, and find the periods."""
+def _evaluate(maps: xarray.Dataset, task: ImpactWork, tolerance: float) -> xarray.Dataset:
+    """Return the states and impacts of the evaluated cycles with the periods of the motions."""
     over, period = maps.status.dims, np.asarray(task.output.period)
     maps = maps.isel(instant=slice(1, None)).rename(instant="cycle")
     repeats, _ = period_of(reduced_strobes(maps, task.packed, period), tolerance)

@@ -1,4 +1,4 @@
-"""Steady motion under a harmonic load over its frequency: levels, up and down, jumps and coexisting states."""
+"""Frequency responses: steady motion under a harmonic load over its frequency and level."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rattlebox.studies.grid import Grid
 from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.measures import interval_warning, with_required
 from rattlebox.studies.orbits import period_of
-from rattlebox.studies.store import keep_map
+from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
     Cycles,
@@ -41,49 +41,49 @@ _MEASURES = "peak", "rms", "impacts_per_cycle"
 
 @dataclass(frozen=True, config=CONFIG)
 class FrequencyResponse(Study):
-    """Measure the steady motion under a harmonic load at each frequency, at one or several levels of the load.
+    """Compute the steady motion under a harmonic load over frequency, at one or several levels of the load.
 
-    Where two steady motions exist at one frequency, a sweep upwards and one downwards often find both: each begins as the
-    case says at its end of the band, and each further frequency goes on from the state in which the one before ended,
-    so that a motion is kept until it is lost, and the sweep jumps.
+    If two steady motions coexist at a frequency, an upward and a downward sweep often reach both: each sweep starts from the
+    initial state of the case, and each further frequency from the final state of the one before. A sweep stays on its
+    motion until this disappears, and then jumps to the other one.
 
     Parameters
     ----------
     case
-        The case, with one harmonic load or base motion.
+        Case with one harmonic load or base motion.
     frequencies
-        Rising: numbers [Hz], text with units, or linspace, geomspace.
+        Rising frequencies: numbers [Hz], text with units, `linspace` or `geomspace`.
     levels
-        Amplitudes of the load or motion, as frequencies; default the case's own.
+        Amplitudes of the load or motion in the same forms; default that of the case.
     direction
-        "up", "down", "both"; or "fresh", each frequency from the start that the case says.
+        "up", "down" or "both"; "fresh" starts each frequency from the initial state of the case.
     cycles
-        How many cycles of each frequency to skip until the motion is steady, and how many to output at.
+        Numbers of cycles of each frequency to skip until the motion is steady, and to evaluate.
     measure
-        Names of further measures (rb.MEASURES).
+        Names of further measures (`rb.MEASURES`).
     point
-        Of the structure, that is watched; default the first damper's.
+        Observed point of the structure; default that of the first damper.
     samples
-        In each cycle: `peak` is found to (pi/samples)^2/2, 0.12 % for 64.
+        Number of samples per cycle. The relative error of `peak` is (pi/samples)^2/2, 0.12 % for 64.
     tolerance
-        A motion is held to repeat when positions of structure and balls a number of cycles apart differ by less than
-        this part of their range.
+        Largest difference between positions of structure and balls one period apart, over their range.
     workers, backend, store, progress
-        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
     xarray.Dataset
         Over `direction`, `level` and `frequency` [Hz]: `status`; `peak` and `rms` [m]; `amplitude` [m] and `phase` [rad] of
         the first harmonic, amplitude sin(2 pi f t + phase of the load + phase); `impacts_per_cycle`; `spread`, the largest
-        difference of positions one cycle apart, over their range; `period`, the number of cycles after which the motion
-        repeats, 0 when it does not within half the cycles looked at; the measures asked for. Over level and frequency:
-        `bare_amplitude` [m], of the structure without dampers.
+        difference of positions one cycle apart, over their range; `period` in cycles, 0 if it exceeds half of the
+        evaluated cycles or does not exist; the requested measures. Over level and frequency: `bare_amplitude` [m] of the
+        structure without dampers.
 
     Raises
     ------
     CaseError
-        When the case has no harmonic load or several, no structure that responds, or when an argument does not fit it.
+        If the case has not exactly one harmonic load or base motion, its structure has no modes, or an argument is not
+        valid for it.
 
     Examples
     --------
@@ -120,7 +120,7 @@ class FrequencyResponse(Study):
 
     @cached_property
     def grid(self) -> Grid:
-        """Levels by frequencies."""
+        """Grid of levels and frequencies."""
         place, driver = self._driver
         levels = [f"{driver.amplitude!r} {driver.unit}"] if self.levels is None else self.levels
         axes = [{f"{place}.amplitude": levels}, {f"{place}.frequency": self.frequencies}]
@@ -139,14 +139,14 @@ class FrequencyResponse(Study):
         }
         if self.direction == "fresh":
             return ImpactWork(self.case, self.grid, **options)
-        ways = ("up", "down") if self.direction == "both" else (self.direction,)
-        return ContinuationWork.along(self.case, self.grid, ways=ways, **options)
+        directions = ("up", "down") if self.direction == "both" else (self.direction,)
+        return ContinuationWork.along(self.case, self.grid, directions=directions, **options)
 
     def validate(self) -> None:
-        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        """Raise if the fields are not valid; see `Study.validate`."""
         hertz = self.grid.coords()[f"{self._driver[0]}.frequency"][1]
         if np.any(np.diff(hertz) <= 0):
-            raise Hint("frequencies must rise from each to the next", "each once, in order")
+            raise Hint("the frequencies must be strictly rising", "each frequency once, in order")
         self.work.validate()
 
     def compute(self) -> xarray.Dataset:
@@ -163,7 +163,7 @@ class FrequencyResponse(Study):
         found.level.attrs["long_name"] = f"amplitude of the {load}"
         about = {"title": "Frequency response", "case": self.case.to_toml(), "cycles": list(self.cycles)}
         found.attrs = about | interval_warning(found)
-        return keep_map(found, self.kind, self.store)
+        return save_result(found, self.kind, self.store)
 
 
 frequency_response = study_function(FrequencyResponse)
@@ -171,21 +171,22 @@ frequency_response = study_function(FrequencyResponse)
 
 
 def _driver(case: Case) -> tuple[str, Harmonic]:
-    """Path and signal of the one harmonic."""
+    """Return path and signal of the harmonic load or base motion."""
     if not case.modes.decay.size:
-        raise Hint(f"a {case.structure.kind} structure does not respond", "one of kind sdof, modal or matrices")
+        raise Hint(f"a {case.structure.kind} structure has no modes", "a structure of kind sdof, modal or matrices")
     signals = [(f"{name}[{i}]", s) for name in ("loads", "base") for i, s in enumerate(getattr(case, name))]
     harmonics = [(place, signal) for place, signal in signals if isinstance(signal, Harmonic)]
     if len(harmonics) != 1:
-        given = f"there are {len(harmonics)}: {', '.join(place for place, _ in harmonics)}" if harmonics else "none"
+        names = f" ({', '.join(place for place, _ in harmonics)})" if harmonics else ""
         raise Hint(
-            f"a frequency response needs one harmonic load or base motion, but {given} is given", "kind harmonic"
+            f"the case has {len(harmonics)} harmonic loads or base motions{names}; a frequency response requires one",
+            'kind = "harmonic"',
         )
     return harmonics[0]
 
 
 def _bare(task: ImpactWork) -> NDArray[np.float64]:
-    """Amplitude of the structure without dampers, (levels, frequencies)."""
+    """Return the amplitude of the structure without dampers, (levels, frequencies) [m]."""
     packed = task.packed
     load, signal = next((load, load.signal) for load in packed.loads if isinstance(load.signal, _core.Harmonic))
     omega = signal.frequency
@@ -204,11 +205,11 @@ def _bare(task: ImpactWork) -> NDArray[np.float64]:
 
 
 def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float) -> xarray.Dataset:
-    """Reduce samples of the motion to its first harmonic and to whether it repeats."""
+    """Return the first harmonic and the period of sampled motions."""
     z, place = maps.displacement.values, maps.ball_place.values
     turns = np.exp(-2j * np.pi * np.arange(z.shape[-1] - 1) / samples)
     harmonic = 2j / turns.size * (z[..., :-1] @ turns) * np.exp(-1j * phase)
-    place = np.where(maps.impacts_per_cycle.values[..., None, None] > 0, place, 0.0)  # a ball that hits nothing drifts
+    place = np.where(maps.impacts_per_cycle.values[..., None, None] > 0, place, 0.0)  # without impacts a ball drifts
     parts = np.concatenate([z[..., None], place], axis=-1)
     with np.errstate(invalid="ignore"):  # of runs that failed
         strobes = parts[..., ::samples, :] / np.ptp(parts, axis=-2).max(axis=-1)[..., None, None]

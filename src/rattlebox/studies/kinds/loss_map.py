@@ -1,4 +1,4 @@
-"""A damper on a shaker: what it takes up, and how heavy it seems, over amplitude and frequency."""
+"""Loss maps: loss and effective mass of a damper on a shaker over amplitude and frequency."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.structures import Shaker
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.kinds.sweep import Sweep
-from rattlebox.studies.store import keep_map
+from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
     Cycles,
@@ -30,43 +30,44 @@ if TYPE_CHECKING:
     import xarray
 
 MEASURES = ("loss_factor", "effective_mass", "damping_mass", "reduced_loss", "loss_per_cycle", "impacts_per_cycle")
-"""What a loss map holds of each amplitude and frequency."""
+"""Measures of a loss map."""
 
 
 @dataclass(frozen=True, config=CONFIG)
 class LossMap(Study):
-    """Shake a damper at every amplitude and frequency, and find what it takes up and how heavy it seems.
+    """Compute loss and effective mass of a damper on a shaker over amplitude and frequency.
 
-    The force that drives the damper is its apparent mass m' - i m'' times the acceleration of the cavity, in the first
-    harmonic. The structure that carries the damper feels m' as added mass and pi m'' V^2 as loss in each cycle, V being the
-    amplitude of its velocity. A light ball hardly changes how a heavy structure moves, so one map serves for any of them.
+    In the first harmonic, the force that drives the damper is its apparent mass m' - i m'' times the acceleration of the
+    cavity. For the structure, m' is an added mass, and pi m'' V^2 is the loss per cycle at the velocity amplitude V. A light
+    damper hardly changes the motion of a heavy structure, so that one map applies to all such structures.
 
     Parameters
     ----------
     case
-        On a Shaker with one Harmonic motion, which is replaced.
+        Case on a `Shaker` with one `Harmonic` motion, whose amplitude and frequency are replaced.
     amplitudes
-        Of the motion, a list or `rb.geomspace`: displacements [m], or accelerations [m/s^2] where the case's motion is one.
+        Amplitudes of the motion, a list or `rb.geomspace`: displacements [m], or accelerations [m/s^2] if the motion of
+        the case is an acceleration.
     frequencies
-        Of the motion [Hz].
+        Frequencies of the motion [Hz].
     cycles
-        How many to skip, until the motion is steady, and to average over.
+        Numbers of cycles to skip until the motion is steady, and to average over.
     samples
-        Equally spaced in those averaged over, from which the masses are found; default 64 a cycle. The loss needs none.
+        Number of equally spaced samples in the averaged cycles, for the masses; default 64 per cycle.
     workers, backend, store, progress
-        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
     xarray.Dataset
-        Over amplitude and frequency: loss_factor (m'' over the size of m'), effective_mass m' [kg], damping_mass m'' [kg],
-        reduced_loss (loss a cycle over m V^2), loss_per_cycle [J], impacts_per_cycle (but not in space), status; and
-        particle_mass m [kg].
+        Over amplitude and frequency: `loss_factor` m''/|m'|, `effective_mass` m' [kg], `damping_mass` m'' [kg],
+        `reduced_loss` (loss per cycle over m V^2), `loss_per_cycle` [J], `impacts_per_cycle` (impact dampers only) and
+        `status`; `particle_mass` m [kg].
 
     Raises
     ------
     CaseError
-        When the case has no shaker or another motion, or an argument does not fit.
+        If the case is not on a shaker with one harmonic motion, or an argument is not valid.
 
     Examples
     --------
@@ -114,12 +115,12 @@ class LossMap(Study):
         }
 
     def validate(self) -> None:
-        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        """Raise if the fields are not valid; see `Study.validate`."""
         motion = self.case.structure.motion if isinstance(self.case.structure, Shaker) else ()
         if len(motion) != 1 or not isinstance(motion[0], Harmonic):
-            raise Hint("a loss map needs a case on a shaker with one harmonic motion", "a structure of kind shaker")
+            raise Hint("a loss map requires a case on a shaker with one harmonic motion", "a structure of kind shaker")
         if not self.case.dampers:
-            raise Hint("a loss map needs a case with a damper", "a ball in a gap, or particles in a cavity")
+            raise Hint("a loss map requires a case with a damper", "a ball in a gap, or particles in a cavity")
         for source, (path, values) in self._axes.items():
             column = read_axes(self.case, {path: values}, source=source).columns[path]
             for number, value in enumerate(column):
@@ -133,7 +134,7 @@ class LossMap(Study):
         mass = sum(ball.weight for damper in self.case.impact_dampers for ball in damper.balls)
         mass += sum(float(damper.contents.mass.sum()) for damper in self.case.particle_dampers)
         found = found.assign(particle_mass=((), mass, {"units": "kg", "long_name": "mass of the particles"}))
-        return keep_map(found, self.kind, self.store)
+        return save_result(found, self.kind, self.store)
 
 
 loss_map = study_function(LossMap)

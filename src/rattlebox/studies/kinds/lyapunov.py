@@ -1,4 +1,4 @@
-"""How fast neighbouring motions part: the largest Lyapunov exponent, over any axes of a sweep."""
+"""The largest Lyapunov exponent over the axes of a sweep."""
 
 from __future__ import annotations
 
@@ -19,8 +19,9 @@ from rattlebox.model.case import Case
 from rattlebox.model.units import Number, Whole
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.case_digest import describe_case
+from rattlebox.studies.case_work import Extra
 from rattlebox.studies.grid import Grid
-from rattlebox.studies.impact_work import Extra, ImpactWork
+from rattlebox.studies.impact_work import ImpactWork
 from rattlebox.studies.neighbour_pairs import Pairs
 from rattlebox.studies.study import (
     CONFIG,
@@ -39,58 +40,64 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, config=CONFIG)
 class Lyapunov(Study):
-    """Find the largest finite-time Lyapunov exponent of a case, or of each variant along some axes.
+    """Compute the largest finite-time Lyapunov exponent of a case, or of each variant along some axes.
 
     Parameters
     ----------
     case
-        The case, with the values that do not vary. Its output is not used. Records cannot be restarted from, so it has none.
+        Case with the values that do not vary. Its output is not used. It must have no load from a record.
     axes
-        As of `rb.sweep`; none for the case alone.
+        Axes as for `rb.sweep`; none for the case alone.
     cycles
-        With a harmonic load: how many cycles to skip until the motion is steady, and how many to look at.
+        Numbers of cycles of the harmonic load to skip until the motion is steady, and to evaluate.
     skip
-        Without cycles: time to skip [s]; what is looked at ends with the case's duration.
+        Without `cycles`: time from which the motion is evaluated, until the duration of the case [s].
     steps
-        How often neighbours are brought back to their distance; default each cycle, or a hundred times.
+        Number of rescalings of the distance; default one per cycle, or 100.
     pairs
-        Motions with a neighbour each. They start with ball velocities that differ a little, so where the motion is chaotic
-        they are independent, and their spread tells the error.
+        Number of motions with a neighbour. Their initial ball velocities differ slightly, so that chaotic motions are
+        independent and their scatter estimates the error.
     distance
-        Between neighbours, over half the clearance.
+        Distance between neighbours over half the clearance.
     reach
-        Of the differences between the starts of the pairs, over half the clearance.
+        Largest difference between the initial states of the pairs, over half the clearance.
     seed
-        Of the directions in which neighbours lie at first, and of the differences of the starts.
+        Random seed of the directions of the neighbours and of the differences of the initial states.
     workers, backend, store, progress
-        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
     xarray.Dataset
         Over the axes: `status`; `exponent` [1/s], the mean over the pairs, and its `standard_error` [1/s]; with cycles
-        `growth_per_cycle`, the exponent times the cycle, for a periodic motion the logarithm of its largest multiplier.
-        Over the axes and `cycle` or `time`: `running_exponent` [1/s], over what has been looked at so far. -inf where
-        neighbours become one motion within rounding, as those of a ball that comes to rest on a shaker do.
+        `growth_per_cycle`, the exponent times the period; for a periodic motion this is the logarithm of its largest
+        Floquet multiplier. Over the axes and `cycle` or `time`: `running_exponent` [1/s], the exponent until then. It is
+        -inf if neighbours merge within rounding, such as those of a ball that comes to rest on a shaker.
 
     Raises
     ------
     CaseError
-        When an axis or argument does not fit the case, before anything runs.
+        If an axis or argument is not valid for the case (raised before anything runs).
 
     Notes
     -----
-    Impacts make a motion only piecewise smooth. A variational equation would need the jump of each impact, of every law, and
-    says nothing of grazing ones. So a second motion is run from a state at a small but finite distance, and brought back to
-    it along the line between both again and again: impacts, sticking and grazing count as they are. The distance is
-    compared between moments at which all contacts of both motions are open and no impact of one still awaits the other;
-    where this is not so at the end of a cycle, another moment is taken. Pairs that are never brought back, as
-    `rattlebox.analysis.lyapunov_exponent` reads them, see no more than the few decades between rounding and clearance;
-    they are right for one pass, such as the time after a pulse of a record.
+    With impacts a motion is only piecewise smooth. A variational equation would require the jump condition of each impact
+    for every contact law, and is not valid for grazing impacts. The method therefore runs a second motion at a small, finite
+    distance, and rescales the distance repeatedly along the line between both states, so that impacts, sticking and grazing
+    are included. The distance is measured at times at which all contacts of both motions are open and both have had the
+    same impacts; if this is not so at the end of a step, another time is used. Pairs without rescaling, which
+    `rattlebox.analysis.lyapunov_exponent` evaluates, cover only the few decades between rounding and clearance; they suit a
+    single transient, such as the time after a pulse of a record.
 
-    Distances are taken in positions times the root of the mass, and velocities over the angular frequency of the cycle or
-    of the fastest mode. The average over the steps gives those at both ends little weight, which makes it converge much
-    faster where the motion is regular: E. Sander, J. D. Meiss, arXiv:2409.08496.
+    The distance is the norm of positions times the square root of the mass, and of velocities times the same factor over
+    the angular frequency of the cycle or of the fastest mode. The exponent is a weighted average over the steps, with the
+    bump function exp(-1/(s (1 - s))), 0 < s < 1, as weight, which converges much faster for regular motion.
+
+    References
+    ----------
+    G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn (1980), Meccanica 15, 9-20 and 21-30, doi:10.1007/BF02128236 and
+    doi:10.1007/BF02128237.
+    E. Sander, J. D. Meiss (2024), arXiv:2409.08496.
 
     Examples
     --------
@@ -135,7 +142,7 @@ class Lyapunov(Study):
         )
 
     def validate(self) -> None:
-        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        """Raise if the fields are not valid; see `Study.validate`."""
         self.work.validate()
 
     def compute(self) -> xarray.Dataset:
@@ -149,7 +156,7 @@ lyapunov = study_function(Lyapunov)
 
 @plain_dataclass
 class LyapunovWork:
-    """A case, its variants, and how their neighbours are watched; attributes as of `lyapunov`."""
+    """Variants of a case and their pairs of neighbouring motions; see `Lyapunov` for the attributes."""
 
     case: Case
     grid: Grid
@@ -165,25 +172,25 @@ class LyapunovWork:
         return {name: value for name, value in self.__dict__.items() if name != "sweep"}
 
     def validate(self) -> None:
-        """Refuse what does not fit.
+        """Raise if the arguments are not valid for the case.
 
         Raises
         ------
         CaseError
-            With what to try.
+            If they are not.
         """
         packed = self.sweep.packed
         if self.count < 2:
-            raise CaseError("to look at one cycle is one step, and at least two are needed\n  try: steps = 100")
+            raise CaseError("one evaluated cycle is one step; at least two steps are required", "steps = 100")
         if np.ndim(packed.settings.duration) and self.cycles is None:
-            raise CaseError("the duration differs between variants\n  try: cycles, or one duration for all")
+            raise CaseError("the duration differs between variants", "cycles, or one duration for all")
         if any(isinstance(load.signal, _core.Record) for load in packed.loads):
             raise CaseError(
-                "motions under a record cannot be started anew in its middle\n"
-                "  try: rattlebox.analysis.lyapunov_exponent with pairs of runs"
+                "the case has a load from a record, in the middle of which a run cannot start",
+                "rattlebox.analysis.lyapunov_exponent with pairs of runs",
             )
 
-    # ---- as any study
+    # ---- interface of Work
 
     @property
     def size(self) -> int:
@@ -212,19 +219,19 @@ class LyapunovWork:
         }
         if self.cycles:
             found["growth_per_cycle"] = ((), "float64", {"units": "1", "long_name": "logarithmic growth in a cycle"})
-        found["running_exponent"] = (along, "float64", {"units": "1/s", "long_name": "Lyapunov exponent so far"})
+        found["running_exponent"] = (along, "float64", {"units": "1/s", "long_name": "Lyapunov exponent until then"})
         return found
 
     def coords(self) -> dict[str, Any]:
         """Return the coordinate of the running exponent."""
         part = np.arange(1, self.count + 1) / self.count
         if self.cycles:
-            return {"cycle": ("cycle", self.cycles[1] * part, {"units": "1", "long_name": "cycles looked at"})}
+            return {"cycle": ("cycle", self.cycles[1] * part, {"units": "1", "long_name": "evaluated cycles"})}
         seconds = (float(self.sweep.packed.settings.duration) - self.skip) * part
-        return {"time": ("time", seconds, {"units": "s", "long_name": "time looked at"})}
+        return {"time": ("time", seconds, {"units": "s", "long_name": "evaluated time"})}
 
     def describe(self) -> dict[str, Any]:
-        """What is computed besides the grid, in JSON's types."""
+        """Return a description of everything except the grid, in JSON types."""
         names = "skip", "steps", "pairs", "distance", "reach", "seed"
         cycles = None if self.cycles is None else list(self.cycles)
         about = {"study": "lyapunov", **describe_case(self.case, self.grid.columns), "cycles": cycles}
@@ -232,18 +239,18 @@ class LyapunovWork:
 
     @cached_property
     def sweep(self) -> ImpactWork:
-        """The variants as they are swept."""
+        """The variants as a sweep."""
         return ImpactWork(self.case, self.grid, skip=self.skip, cycles=self.cycles)
 
     def run(
         self, start: int, stop: int, *, threads: int = 1, cancelled: Callable[[], bool] | None = None
     ) -> Mapping[str, NDArray[Any]] | None:
-        """Run variants start to stop; None when it was stopped."""
+        """Run a range of variants; return None if the work was cancelled."""
         pairs = Pairs(self, start, stop, threads, cancelled)
         growth = pairs.growth()
         if growth is None:
             return None
-        with np.errstate(invalid="ignore"):  # of infinite growth
+        with np.errstate(invalid="ignore"):  # growth may be infinite
             rates = np.where(np.isinf(growth).any(axis=-1, keepdims=True), -np.inf, growth @ _weights(self.count).T)
             rates = rates / pairs.leg[..., None]
             mean, spread = rates[..., -1].mean(axis=1), rates[..., -1].std(axis=1, ddof=min(1, self.pairs - 1))
@@ -259,7 +266,7 @@ class LyapunovWork:
 
 
 def _weights(steps: int) -> NDArray[np.float64]:
-    """Weights of the steps in the average over the first one, two, ... of them, (steps, steps)."""
+    """Return the weights of the steps in the averages over the first 1, 2, ... steps, (steps, steps)."""
     count, step = np.arange(1, steps + 1)[:, None], np.arange(steps)
     with np.errstate(divide="ignore", over="ignore"):
         part = (step + 0.5) / count

@@ -1,4 +1,4 @@
-"""Which parameters a measure depends on: Sobol indices, by SALib."""
+"""Global sensitivity analysis: Sobol indices of measures, computed by SALib."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rattlebox.studies.axes import read_axes
 from rattlebox.studies.kinds.sweep import Sweep
 from rattlebox.studies.robust import robust_axes
 from rattlebox.studies.sampling import RandomDesign, random_design
-from rattlebox.studies.store import keep_map
+from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
     Axes,
@@ -40,12 +40,13 @@ from rattlebox.studies.study import (
 if TYPE_CHECKING:
     import xarray as xr
 
-_LEAST = 0.5  # of the points, that must have a value
+_MIN_SHARE = 0.5
+"""Smallest share of base points that must have a value."""
 
 
 @plain_dataclass(frozen=True)
 class _Crossed(RandomDesign):
-    """Points that differ in one parameter at a time, as Sobol indices need them."""
+    """Saltelli sample: points that differ in one parameter at a time, for Sobol indices."""
 
     def points(self) -> NDArray[np.float64]:
         """Return the points in the unit cube, (count, parameters)."""
@@ -58,47 +59,54 @@ class _Crossed(RandomDesign):
 
 @dataclass(frozen=True, config=CONFIG)
 class Sensitivity(Study):
-    """Find how much of the variance of a measure comes from each of some parameters.
+    """Compute the shares of the variance of a measure that several parameters cause (Sobol indices).
 
-    The parameters vary independently within their bounds. The first-order index of one is the share of the variance that
-    goes when that parameter is known; the total index is the share that stays when all others are. They differ where
-    parameters act together.
+    The parameters vary independently within their bounds. The first-order index of a parameter is the share of the variance
+    that disappears when it is fixed; the total index is the share that remains when all others are fixed. They differ if
+    parameters interact.
 
     Parameters
     ----------
     case
-        The case, with the values that do not vary.
+        Case with the values that do not vary.
     bounds
-        By path: a pair (smallest, largest), or a list to choose from where the parameter is no number, as for
+        By path: a pair (smallest, largest), or a list to choose from if the parameter is not a number; see
         `rb.random_design`.
     measure
-        Name of a measure (rb.MEASURES) or function of a Run, or several.
+        Names of measures (`rb.MEASURES`), or functions of a Run.
     n
-        Base points, a power of two; there are n (parameters + 2) points in all.
+        Number of base points, a power of two; the study has n (parameters + 2) points.
     levels, starts
-        Each point is the mean over all of these, as for `rb.design`: of a chaotic measure, let the ball start at several
-        places, or chaos counts as interaction.
+        Load levels and start positions as for `rb.design`; a point is the mean over them. Use several start positions
+        for a chaotic measure, whose scatter would otherwise count as interaction.
     log
-        Paths whose values are spread evenly in their logarithm.
+        Paths whose values are distributed uniformly in the logarithm.
     confidence
-        Level of the confidence intervals, by bootstrap.
+        Level of the confidence intervals, computed by bootstrap.
     seed
-        The same seed gives the same points and intervals.
+        Random seed of the points and intervals.
     skip, cycles, samples, point, workers, backend, store, progress
-        As in `rb.sweep`.
+        See `rb.sweep`.
 
     Returns
     -------
     xarray.Dataset
-        Over `measure` and `parameter`: first and total indices with the half widths first_confidence and
-        total_confidence; over `measure`: mean and variance, and the number of base points that were left_out because a run
-        of theirs gave no value.
+        Over `measure` and `parameter`: `first` and `total` indices with the half widths `first_confidence` and
+        `total_confidence` of their intervals; over `measure`: `mean`, `variance` and `left_out`, the number of base points
+        that were excluded because one of their runs has no value.
 
     Raises
     ------
     CaseError
-        When an argument does not fit, SALib is not installed, nothing varies, or more than half of the base points have no
-        value.
+        If an argument is not valid, a measure is constant, or more than half of the base points have no value.
+    MissingDependency
+        If SALib is not installed.
+
+    References
+    ----------
+    I. M. Sobol' (2001), Mathematics and Computers in Simulation 55, 271-280, doi:10.1016/S0378-4754(00)00270-6.
+    A. Saltelli et al. (2010), Computer Physics Communications 181, 259-270, doi:10.1016/j.cpc.2009.09.018.
+    J. Herman, W. Usher (2017), SALib, Journal of Open Source Software 2(9), 97, doi:10.21105/joss.00097.
 
     Examples
     --------
@@ -145,16 +153,16 @@ class Sensitivity(Study):
         )
 
     def validate(self) -> None:
-        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        """Raise if the fields are not valid; see `Study.validate`."""
         if self.n & (self.n - 1):
-            raise Hint(f"n = {self.n}: a power of two is needed", f"{2 ** self.n.bit_length()}")
-        read_axes(self.case, self._points, source="bounds")  # for messages in the words of this study
+            raise Hint(f"n = {self.n} is not a power of two", f"{2 ** self.n.bit_length()}")
+        read_axes(self.case, self._points, source="bounds")  # for messages that name the bounds
         self._sweep.validate()
 
     def compute(self) -> xr.Dataset:
         """Run the points and compute the indices; see `Study.compute`."""
         runs = self._sweep.run(**self.where)
-        return keep_map(_indices(runs, list(self.bounds), self.n, self.confidence, self.seed), self.kind, self.store)
+        return save_result(_indices(runs, list(self.bounds), self.n, self.confidence, self.seed), self.kind, self.store)
 
 
 sensitivity = study_function(Sensitivity)
@@ -162,11 +170,11 @@ sensitivity = study_function(Sensitivity)
 
 
 def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed: int) -> xr.Dataset:
-    """Sobol indices of every measure of a sweep."""
+    """Return the Sobol indices of all measures of a sweep."""
     import xarray as xr
 
     names = [str(name) for name in runs.data_vars if name not in OUTCOMES]
-    rows = [_of_measure(runs, name, len(paths), n, confidence, seed) for name in names]
+    rows = [_indices_of_measure(runs, name, len(paths), n, confidence, seed) for name in names]
     found = xr.Dataset(
         {
             name: (
@@ -182,23 +190,25 @@ def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed
     return found.assign_attrs(title="Rattlebox sensitivity", **about)
 
 
-def _of_measure(runs: xr.Dataset, name: str, width: int, n: int, confidence: float, seed: int) -> dict[str, Any]:
-    """Sobol indices of one measure."""
+def _indices_of_measure(
+    runs: xr.Dataset, name: str, width: int, n: int, confidence: float, seed: int
+) -> dict[str, Any]:
+    """Return the Sobol indices of one measure."""
     values = runs[name].where(runs["status"] == 0)
     values = values.mean([dim for dim in values.dims if dim != "sample"], skipna=False)
     by_base = values.values.reshape(n, width + 2)
-    kept = np.isfinite(by_base).all(axis=1)
-    left_out = int((~kept).sum())
-    if left_out > _LEAST * n:
+    complete = np.isfinite(by_base).all(axis=1)
+    left_out = int((~complete).sum())
+    if left_out > _MIN_SHARE * n:
         raise CaseError(
-            f"{name}: of {n} base points, {left_out} have a run without a value\n"
-            "  try: narrower bounds or a longer duration; a sweep over a random design shows where"
+            f"{name}: {left_out} of {n} base points have a run without a value",
+            "narrower bounds or a longer duration; a sweep over a random design shows where",
         )
-    output = by_base[kept].ravel()
+    output = by_base[complete].ravel()
     if np.ptp(output) == 0:
-        raise CaseError(f"{name} is {output[0]:.6g} at every point: nothing depends on anything\n  try: wider bounds")
+        raise CaseError(f"{name} is {output[0]:.6g} at every point and has no variance", "wider bounds")
     analyze = optional_import("SALib.analyze.sobol", "design").analyze
-    # SALib takes a seed of 0 for none.
+    # SALib interprets a seed of 0 as no seed.
     indices = analyze(_problem(width), output, calc_second_order=False, conf_level=confidence, seed=seed + 1)
     return {
         "first": indices["S1"],
@@ -223,5 +233,5 @@ _LONG = {
 
 
 def _problem(width: int) -> dict[str, Any]:
-    """The unit cube, as SALib wants it told."""
+    """Return the unit cube in the form of SALib."""
     return {"num_vars": width, "names": [str(number) for number in range(width)], "bounds": [[0.0, 1.0]] * width}

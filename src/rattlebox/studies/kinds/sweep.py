@@ -1,10 +1,10 @@
-"""Variants of a case over axes, and measures of each."""
+"""Sweeps: measures of a case over a grid of parameters."""
 
 from __future__ import annotations
 
 from dataclasses import KW_ONLY
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -40,46 +40,46 @@ class Sweep(Study):
     Parameters
     ----------
     case
-        The case, with the values that do not vary. Its output is not used, but for particles in space: they are run as by
-        `rb.simulate`, as many variants at once as there are threads.
+        Case with the values that do not vary. Its output is used for particle dampers only. Particle variants run as with
+        `rb.simulate`, one per thread.
     axes
-        Values by path, {"damper.gap": rb.linspace("0.1 mm", "2 mm", 200), "load.amplitude": ["1 kN", "5 kN"]}: a grid;
-        a tuple of paths as a key links them; or `rb.random_design`, `rb.replicas`.
+        Values by path, {"damper.gap": rb.linspace("0.1 mm", "2 mm", 200), "load.amplitude": ["1 kN", "5 kN"]}, which form
+        a grid; a tuple of paths as key for parameters that vary together; `rb.random_design` or `rb.replicas`.
     measure
-        Names of measures (rb.MEASURES), computed in the core without keeping trajectories, and functions of a Run,
-        for which each variant is run as by `rb.simulate`. Of particles in space those that look at single impacts are not
-        known.
+        Names of measures (`rb.MEASURES`) and functions of a Run. For a function, each variant runs as with `rb.simulate`.
+        Measures of single impacts do not exist for particle dampers.
     skip
-        Time before what is looked at, with a unit or in seconds: measures leave it out.
+        Time from which measures are evaluated [s].
     cycles
-        Instead of the case's duration and `skip`, with a harmonic load: how many cycles to skip and to look at.
+        Numbers of cycles of the harmonic load to skip and to evaluate, in place of `skip` and the duration of the case.
     samples
-        Equally spaced samples of the motion, both ends included, for measures that need them and for `motion`;
-        default 2001, or 20 a cycle where that is more and the first harmonic is asked for (of particles in space those of
-        the case's output), or 64 a cycle with `cycles` (there rounded up to a whole number a cycle).
+        Number of equally spaced samples of the evaluated motion, both ends included. Default: 64 per cycle with `cycles`;
+        else those of the case's output for particle dampers, and 2001 for impact dampers, or 20 per cycle if that is more
+        and a measure of the first harmonic is requested. For particle dampers with `cycles` the number per cycle is
+        rounded up.
     point
-        Of the structure, that is watched; default the first damper's.
+        Observed point of the structure; default that of the first damper.
     motion
-        Keep the samples of each variant.
+        Whether to return the samples of the motion of each variant; impact dampers only.
     last
-        Keep the last so many impacts of each variant.
+        Number of impacts to return from the end of each variant; impact dampers only.
     workers, backend, store, progress
-        Where the study runs, and where its results are stored; see `rattlebox.studies.study.Study`.
+        Execution and storage; see `rattlebox.studies.study.Study`.
 
     Returns
     -------
     xarray.Dataset
-        Over the axes: `status` and each measure with its unit; NaN where a run did not finish, or ended
-        with the status "energy_error" (except `energy_residual`). A variant with particles in
-        space whose particles do not fit or settle, or whose step is too long, has the status "refused"; `attrs["refused"]`
-        says why the first of them was. Averages over a motion that is driven to the end have a companion such as
-        `rms_interval`, half of their 95 % interval; NaN if the window is too short, and then `attrs["too_short"]` names the
-        measures. There `warnings` tells of each run in what it left its bounds (`flag_meanings`).
+        Over the axes: `status` and each measure with its unit; NaN for runs that did not finish or have the status
+        "energy_error" (except `energy_residual`). Averages over a motion that is driven to the end have a companion such
+        as `rms_interval`, half of the width of their 95 % interval; if the window is too short it is NaN, and
+        `attrs["too_short"]` names the measures. With particle dampers also `warnings`, the exceeded validity limits of
+        each run (`flag_meanings`); variants that cannot run, because particles do not fit or settle or the time step is
+        too long, have the status "refused", and `attrs["refused"]` is the reason for the first of them.
 
     Raises
     ------
     CaseError
-        When an argument does not fit, alone or to the case, before anything runs; when a function of a Run gives no number.
+        If an argument is not valid for the case (raised before anything runs), or a function does not return a number.
 
     Examples
     --------
@@ -103,26 +103,27 @@ class Sweep(Study):
     last: Annotated[Whole, Field(ge=0)] = 0
 
     @cached_property
-    def work(self) -> ImpactWork:
+    def work(self) -> ImpactWork | ParticleWork:
         """Runs of all variants."""
-        kind = ParticleWork if self.case.particle_dampers else ImpactWork
-        return kind(
-            self.case,
-            read_axes(self.case, self.axes),
-            measures=list(self.measure),  # type: ignore[arg-type]
-            skip=float(self.skip),
-            cycles=self.cycles,
-            samples=self.samples,
-            point=self.point,
-            motion=self.motion,
-            last=self.last,
-            intervals=True,
-        )
+        options: dict[str, Any] = {
+            "measures": list(self.measure),  # type: ignore[arg-type]
+            "skip": float(self.skip),
+            "cycles": self.cycles,
+            "samples": self.samples,
+            "point": self.point,
+            "intervals": True,
+        }
+        grid = read_axes(self.case, self.axes)
+        if self.case.particle_dampers:
+            return ParticleWork(self.case, grid, **options)
+        return ImpactWork(self.case, grid, **options, motion=self.motion, last=self.last)
 
     def validate(self) -> None:
-        """Raise if the fields do not fit the case or each other; see `Study.validate`."""
+        """Raise if the fields are not valid; see `Study.validate`."""
         if not (self.measure or self.motion or self.last):
-            raise Hint("there is no measure", ", ".join(MEASURES))
+            raise Hint("no measure is given", ", ".join(MEASURES))
+        if self.case.particle_dampers and (self.motion or self.last):
+            raise Hint("motion and last are for impact dampers only", "a function of a Run as measure")
         self.work.validate()
 
     def compute(self) -> xarray.Dataset:
@@ -141,9 +142,9 @@ sweep = study_function(Sweep)
 
 
 def _first_refused(work: ParticleWork, result: xarray.Dataset) -> dict[str, str]:
-    """Return the first variant that could not run, and the reason, as an attribute."""
+    """Return the first refused variant and the reason as an attribute."""
     refused = np.flatnonzero(result.status.values == Status.refused)
-    if not refused.size or not (why := work.why_refused(int(refused[0]))):
+    if not refused.size or not (why := work.refusal_reason(int(refused[0]))):
         return {}
     reason = why.replace("\n", "\n  ")
-    return {"refused": f"{work.grid.told(work.case, int(refused[0]))}\n  {reason}"}
+    return {"refused": f"{work.grid.describe_variant(work.case, int(refused[0]))}\n  {reason}"}

@@ -1,4 +1,4 @@
-"""Values of a parameter that are followed one after the other."""
+"""Runs along a parameter, each from the final state of the one before."""
 
 import signal
 import threading
@@ -8,10 +8,20 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
-from rattlebox.studies.continuation import follow
+from rattlebox.studies.axes import read_axes
+from rattlebox.studies.continuation import ContinuationWork, without_states
 from rattlebox.studies.kinds.sweep import sweep
+from rattlebox.studies.runner import run_work
 
 QUIET = {"progress": False}
+
+
+def continue_along(case, path, values, *, grid=None, workers=None, progress=False, **options):
+    """Run a case for each value of a parameter from the final state before, for each variant of a grid."""
+    axes = read_axes(case, [*([grid] if grid else []), {path: values}])
+    work = ContinuationWork.along(case, axes, directions=["up"], intervals=True, **options)
+    work.validate()
+    return without_states(run_work(work, workers=workers, progress=progress))
 
 
 def shaken(frequency="10 Hz", *, contact=None, method=None, motion=(), **damper):
@@ -50,13 +60,15 @@ def beam():
     )
 
 
-def assert_goes_on(case, path, value, cycles=(3, 2)):
-    """Check that a value followed three times ends as one long run of it."""
+def assert_continues(case, path, value, cycles=(3, 2)):
+    """Check that three runs of one value end as one long run."""
     skip, look = cycles
     options = {"samples": 9, "motion": True, "last": 4, **QUIET}
     whole = (2 * (skip + look) + skip, look)
-    long = follow(case, path, [value], measure=["impacts"], cycles=whole, **options).isel({path: 0, "direction": 0})
-    parts = follow(case, path, [value] * 3, measure=["impacts"], cycles=cycles, **options).isel(
+    long = continue_along(case, path, [value], measures=["impacts"], cycles=whole, **options).isel(
+        {path: 0, "direction": 0}
+    )
+    parts = continue_along(case, path, [value] * 3, measures=["impacts"], cycles=cycles, **options).isel(
         {path: 2, "direction": 0}
     )
     for name in ("ball_place", "ball_speed", "displacement", "velocity", "impacts", "last_approach_speed"):
@@ -66,9 +78,11 @@ def assert_goes_on(case, path, value, cycles=(3, 2)):
 
 
 def test_first_value_is_a_sweep():
-    """What has nothing to follow is what a sweep gives, with the same bits."""
+    """The first run of a chain has the bits of a sweep."""
     options = {"cycles": (3, 2), "samples": 9, "motion": True, "last": 4, **QUIET}
-    first = follow(shaken(), "damper.gap", [0.5e-3, 0.6e-3], measure=["impacts", "peak_contact_force"], **options)
+    first = continue_along(
+        shaken(), "damper.gap", [0.5e-3, 0.6e-3], measures=["impacts", "peak_contact_force"], **options
+    )
     alone = sweep(shaken(), {"damper.gap": [0.5e-3]}, ["impacts", "peak_contact_force"], **options)
     assert set(first) == set(alone)
     for name in alone:
@@ -76,14 +90,14 @@ def test_first_value_is_a_sweep():
 
 
 @pytest.mark.parametrize("method", [rb.Newton(), rb.EventDriven()])
-def test_value_that_is_repeated_goes_on(method):
-    """A value that follows itself goes on as one long run does."""
-    assert_goes_on(shaken(method=method), "structure.motion.amplitude", 1.2e-3)
+def test_repeated_value_continues(method):
+    """A repeated value continues like one long run."""
+    assert_continues(shaken(method=method), "structure.motion.amplitude", 1.2e-3)
 
 
-def test_modes_and_rows_go_on():
-    """Two modes, two dampers, a row of balls and a load with a phase and its double frequency go on."""
-    assert_goes_on(beam(), "loads[0].amplitude", 60.0, (0, 1))
+def test_modes_and_rows_continue():
+    """Two modes, two dampers, a row of balls and a load with a phase and its double frequency continue."""
+    assert_continues(beam(), "loads[0].amplitude", 60.0, (0, 1))
 
 
 def test_closed_contact_at_the_end_of_a_cycle():
@@ -93,65 +107,65 @@ def test_closed_contact_at_the_end_of_a_cycle():
     for phase in np.linspace(0, 2 * np.pi, 7)[:-1]:
         motion = rb.Harmonic(amplitude="1 mm", frequency="10 Hz", phase=phase)
         case = shaken(contact=soft).model_copy(update={"structure": rb.Shaker(motion=motion)})
-        assert_goes_on(case, "damper.gap", 0.5e-3)
+        assert_continues(case, "damper.gap", 0.5e-3)
         end = sweep(case, {"damper.gap": [0.5e-3]}, [], cycles=(3, 2), motion=True, **QUIET).ball_place[0, -1, 0]
         closed += abs(float(end)) > 0.5e-3
     assert closed >= 2
 
 
-def test_variants_beside_each_other_do_not_disturb_each_other():
-    """A variant among others, on several threads, has the bits that it has alone."""
+def test_chains_are_independent():
+    """A chain among others, on several threads, has the bits that it has alone."""
     frequencies = np.linspace(10.0, 11.0, 4)
-    options = {"cycles": (5, 2), "measure": ["impacts"], "samples": 3, "motion": True, "last": 3, **QUIET}
+    options = {"cycles": (5, 2), "measures": ["impacts"], "samples": 3, "motion": True, "last": 3, **QUIET}
     gaps = [1e-3, 0.8e-3, 0.6e-3]
-    both = follow(
-        shaken(), "structure.motion.frequency", frequencies, beside={"damper.gap": gaps}, workers=3, **options
+    both = continue_along(
+        shaken(), "structure.motion.frequency", frequencies, grid={"damper.gap": gaps}, workers=3, **options
     )
     assert both.status.dims == ("direction", "damper.gap", "structure.motion.frequency")
     for number, gap in enumerate(gaps):
-        alone = follow(
-            shaken(), "structure.motion.frequency", frequencies, beside={"damper.gap": [gap]}, workers=1, **options
+        alone = continue_along(
+            shaken(), "structure.motion.frequency", frequencies, grid={"damper.gap": [gap]}, workers=1, **options
         )
         for name in alone:
             np.testing.assert_array_equal(alone[name][:, 0], both[name][:, number])
 
 
 def test_shrinking_gap_keeps_the_ball_inside():
-    """A ball beyond the wall of a smaller cavity is put to the wall."""
+    """A ball beyond the wall of a smaller cavity is moved to the wall."""
     options = {"cycles": (0, 1), "samples": 2, "motion": True, **QUIET}
-    found = follow(shaken(method=rb.Newton()), "damper.gap", [1e-3, 1e-5], **options)
+    found = continue_along(shaken(method=rb.Newton()), "damper.gap", [1e-3, 1e-5], **options)
     assert (found.status == 0).all()
     assert float(abs(found.ball_place[0, 1]).max()) <= 1e-5 * (1 + 1e-15)
 
 
 def test_value_that_does_not_finish_leaves_the_state():
-    """A value beyond a law's domain carries its status, and the next one goes on from the one before."""
+    """A value beyond the domain of a law has its status, and the next run starts from the state before."""
     case = shaken(contact=rb.Tsuji(restitution=rb.JacksonGreen(yield_stress="100 MPa")))
     options = {"cycles": (3, 1), "samples": 3, "motion": True, **QUIET}
-    found = follow(case, "structure.motion.amplitude", [1e-3, 10.0, 1.1e-3], **options)
+    found = continue_along(case, "structure.motion.amplitude", [1e-3, 10.0, 1.1e-3], **options)
     assert found.status.values.tolist() == [[0, 1, 0]]
     assert found.ball_place[0, 1].isnull().all()
-    without = follow(case, "structure.motion.amplitude", [1e-3, 1.1e-3], **options)
+    without = continue_along(case, "structure.motion.amplitude", [1e-3, 1.1e-3], **options)
     np.testing.assert_array_equal(found.ball_place[0, 2], without.ball_place[0, 1])
 
 
 @pytest.mark.parametrize(
     ("path", "options", "said"),
     [
-        ("damper.start", {}, "damper.start is a start"),
-        ("damper.gap", {"measure": ["impact"]}, "did you mean 'impacts'"),
-        ("damper.gap", {"measure": [len]}, "there is no measure"),
+        ("damper.start", {}, "damper.start is an initial value"),
+        ("damper.gap", {"measures": ["impact"]}, "did you mean 'impacts'"),
+        ("damper.gap", {"measures": [len]}, "there is no measure"),
         ("damper.gaps", {}, "did you mean 'gap'"),
     ],
 )
-def test_what_cannot_be_followed_is_told(path, options, said):
-    """Bad arguments are told before anything runs."""
+def test_invalid_arguments(path, options, said):
+    """Bad arguments raise before anything runs."""
     with pytest.raises(rb.CaseError, match=said):
-        follow(shaken(), path, [0.5e-3, 0.6e-3], **{"cycles": (3, 1), **options})
+        continue_along(shaken(), path, [0.5e-3, 0.6e-3], **{"cycles": (3, 1), **options})
 
 
 def test_stops_at_once():
-    """Ctrl-C ends a value that would take hours within a second, and says where."""
+    """Ctrl-C ends a run that would take hours within a second, with a message of the progress."""
     begun = []
 
     def interrupt():
@@ -160,16 +174,16 @@ def test_stops_at_once():
 
     threading.Timer(0.5, interrupt).start()
     with pytest.raises(KeyboardInterrupt, match="stopped after 0 of 2 variants"):
-        follow(shaken(method=rb.Newton()), "damper.gap", [0.5e-3, 1e-3], cycles=(10**8, 1), **QUIET)
+        continue_along(shaken(method=rb.Newton()), "damper.gap", [0.5e-3, 1e-3], cycles=(10**8, 1), **QUIET)
     assert time.perf_counter() - begun[0] < 1.0
 
 
 def test_loads_that_do_not_repeat_are_refused():
-    """A pulse, or a second frequency that is no multiple of the first, leaves no cycle to go on from."""
+    """A pulse, or a second frequency that is no multiple of the first, has no common cycle."""
     for motion in (
         rb.HalfSine(amplitude="1 m/s^2", duration="1 ms"),
         rb.Harmonic(amplitude="1 mm", frequency="15 Hz"),
         rb.Harmonic(amplitude="1 mm", frequency="20 Hz", stop="1 s"),
     ):
-        with pytest.raises(rb.CaseError, match="does not repeat"):
-            follow(shaken(motion=[motion]), "damper.gap", [1e-3], cycles=(3, 1))
+        with pytest.raises(rb.CaseError, match="not periodic"):
+            continue_along(shaken(motion=[motion]), "damper.gap", [1e-3], cycles=(3, 1))

@@ -1,0 +1,152 @@
+"""Fields and methods that the work of 1-D runs and of particle runs share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.core import _core
+from rattlebox.model.errors import Hint
+from rattlebox.model.harmonics import Harmonic
+from rattlebox.model.random_vibration import Random
+
+from .case_digest import describe_case
+from .fingerprint import fingerprint
+from .measures import INTERVAL, MEASURES, name_of
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+    from rattlebox.results import Run
+
+    from .grid import Grid
+
+Extra = tuple[tuple[str, int], ...]
+"""Dimensions of an output beyond those of the grid, with their lengths."""
+
+UserMeasure = Callable[["Run"], float]
+_function_lock = Lock()  # functions of users need not be thread-safe
+
+
+@dataclass
+class CaseWork:
+    """Variants of a case and measures of each.
+
+    Attributes
+    ----------
+    case, grid
+        Base case and the grid of its variants.
+    measures
+        Names of measures, and functions of a Run.
+    skip
+        Time from which measures are evaluated [s].
+    cycles
+        Numbers of cycles of the harmonic load to skip and to evaluate, in place of `skip` and the duration of the case.
+    samples
+        Number of samples of the evaluated window; None for as many as the measures need.
+    point
+        Name of the observed point of the structure; default that of the first damper.
+    intervals
+        Whether to compute the 95 % intervals of measures of steady motion.
+    """
+
+    case: Case
+    grid: Grid
+    measures: Sequence[str | UserMeasure] = ()
+    skip: float = 0.0
+    cycles: tuple[int, int] | None = None
+    samples: int | None = None
+    point: str | None = None
+    intervals: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of variants."""
+        return self.grid.size
+
+    @property
+    def measure_names(self) -> list[str]:
+        """Measures that are given by name."""
+        return [measure for measure in self.measures if isinstance(measure, str)]
+
+    @property
+    def functions(self) -> dict[str, UserMeasure]:
+        """Measures that are functions of a Run, by name."""
+        return {name_of(measure): measure for measure in self.measures if not isinstance(measure, str)}
+
+    @property
+    def averages(self) -> list[str]:
+        """Measures with an interval: averages over a motion that is driven until the end of the run."""
+        if not self.intervals or not _is_driven(self.case):
+            return []
+        return [name for name in self.measure_names if MEASURES[name].average]
+
+    @cached_property
+    def outputs(self) -> dict[str, tuple[Extra, str, dict[str, Any]]]:
+        """Further dimensions, number type and attributes of each output."""
+        statuses = " ".join(status.name for status in _core.Status)
+        outputs: dict[str, tuple[Extra, str, dict[str, Any]]] = {
+            "status": ((), "int8", {"long_name": "status of the run", "flag_meanings": statuses})
+        }
+        for name in self.measure_names:
+            measure = MEASURES[name]
+            outputs[name] = ((), "float64", {"units": measure.units, "long_name": measure.long_name})
+        for name in self.averages:
+            attributes = {
+                "units": MEASURES[name].units,
+                "long_name": f"half of the 95 % interval, {MEASURES[name].long_name}",
+            }
+            outputs[name + INTERVAL] = ((), "float64", attributes)
+        for name in self.functions:
+            outputs[name] = ((), "float64", {"units": "", "long_name": name.replace("_", " ")})
+        return outputs
+
+    def describe(self) -> dict[str, Any]:
+        """Return a description of everything except the grid, in JSON types."""
+        functions = (f"{name} {fingerprint(function)}" for name, function in self.functions.items())
+        return {
+            **describe_case(self.case, self.grid.columns),
+            "measures": [*self.measure_names, *functions],
+            "cycles": None if self.cycles is None else list(self.cycles),
+            **{name: getattr(self, name) for name in ("skip", "samples", "point")},
+        }
+
+    def call_functions(self, run: Run, index: int) -> dict[str, float]:
+        """Return the values of the functions of a Run.
+
+        Parameters
+        ----------
+        run
+            Run of the variant.
+        index
+            Number of the variant, for messages.
+
+        Raises
+        ------
+        CaseError
+            If a function does not return a number.
+        """
+        values = {}
+        for name, function in self.functions.items():
+            with _function_lock:
+                value: Any = function(run)
+            try:
+                if isinstance(value, str) or np.ndim(value):
+                    raise TypeError
+                values[name] = float(value)
+            except TypeError:
+                kind = type(value).__name__
+                raise Hint(
+                    f"measure {name}: the function returned {kind} for variant {index}, not one number", "float(...)"
+                ) from None
+        return values
+
+
+def _is_driven(case: Case) -> bool:
+    """Return whether a harmonic or random load or motion acts until the end of every run."""
+    signals = (*case.loads, *case.base, *case.shaker_motion)
+    return any(isinstance(s, Random) or (isinstance(s, Harmonic) and s.stop is None) for s in signals)

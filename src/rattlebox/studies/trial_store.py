@@ -1,0 +1,141 @@
+"""Optuna studies in the store of a design search."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rattlebox._util.exceptions import StoreError
+from rattlebox._util.owned_folder import read_marker
+
+from .store import JOURNAL, exclusive_writer
+
+
+@contextmanager
+def quiet(optuna: Any) -> Iterator[None]:
+    """Suppress messages of Optuna below errors."""
+    before = optuna.logging.get_verbosity()
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    try:
+        yield
+    finally:
+        optuna.logging.set_verbosity(before)
+
+
+class _NoLock:
+    """No lock: the store has one already, and a lock of Optuna remains after its process is killed."""
+
+    def acquire(self) -> bool:
+        """Return True."""
+        return True
+
+    def release(self) -> None:
+        """Do nothing."""
+
+
+@contextmanager
+def trial_storage(optuna: Any, store: str | os.PathLike[str] | None) -> Iterator[Any]:
+    """Open the journal of a store, to which each trial appends lines.
+
+    Parameters
+    ----------
+    optuna
+        The module.
+    store
+        Folder of the study; None for a study in memory.
+
+    Yields
+    ------
+    optuna.storages.JournalStorage or None
+        The storage; None in memory.
+
+    Raises
+    ------
+    StoreError
+        If the folder holds another study.
+    """
+    if store is None:
+        yield None
+        return
+    with exclusive_writer(Path(store)) as progress:
+        if (marker := read_marker(Path(store))) and marker.complete:
+            raise StoreError(f"{store} holds another study", "another folder, or remove this one")
+        path = progress / JOURNAL
+        if path.exists():
+            with path.open("r+b") as file:  # remove an incomplete last line
+                file.truncate(file.read().rfind(b"\n") + 1)
+        journal = optuna.storages.journal
+        yield optuna.storages.JournalStorage(journal.JournalFileBackend(str(path), lock_obj=_NoLock()))
+
+
+def count_trials(path: str | os.PathLike[str]) -> int | None:
+    """Return the number of finished trials in the store of a design; None if it holds no design.
+
+    Parameters
+    ----------
+    path
+        Folder of the design.
+    """
+    journal = Path(path) / "progress" / JOURNAL
+    if not journal.exists():
+        return None
+    return len(re.findall(r'^{"op_code":6,.*"state":[12],', journal.read_text(), re.MULTILINE))  # complete or pruned
+
+
+def load_study(optuna: Any, storage: Any, directions: Sequence[str], description: Mapping[str, Any], store: Any) -> Any:
+    """Return an Optuna study with the earlier trials of its storage.
+
+    Parameters
+    ----------
+    optuna
+        The module.
+    storage
+        Storage of the study; None in memory.
+    directions
+        "minimize" or "maximize" for each objective.
+    description
+        Description of the search in JSON types.
+    store
+        Folder of the study, for messages.
+
+    Raises
+    ------
+    StoreError
+        If the storage holds the trials of another search.
+    """
+    about = json.loads(json.dumps(description))
+    study = optuna.create_study(
+        storage=storage,
+        study_name="rattlebox",
+        load_if_exists=True,
+        directions=list(directions),
+    )
+    stored = study.user_attrs.get("about")
+    if stored is None:
+        study.set_user_attr("about", about)
+    elif stored != about:
+        names = ", ".join(name for name in {**stored, **about} if stored.get(name) != about.get(name))
+        raise StoreError(f"{store} holds the trials of another study, which differs in {names}", "another folder")
+    # A trial that a stopped process was running is lost.
+    for trial in study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.RUNNING,)):
+        study.tell(trial.number, state=optuna.trial.TrialState.FAIL)
+    return study
+
+
+def finished_trials(optuna: Any, study: Any) -> list[Any]:
+    """Return the trials that are complete or pruned."""
+    states = optuna.trial.TrialState
+    trials: list[Any] = study.get_trials(deepcopy=False, states=(states.COMPLETE, states.PRUNED))
+    return trials
+
+
+def trial_seed(seed: int, number: int) -> int:
+    """Return the random seed of a trial; it does not depend on where the search was stopped."""
+    return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
