@@ -163,7 +163,7 @@ def test_names_hold_no_control_characters(mark: str) -> None:
         lambda: rb.Modal(frequencies=[8.0], damping_ratios=[0.01], shapes={name: [0.5]}),
         lambda: rb.Harmonic(amplitude="1 N", frequency="8 Hz", point=name),
     ):
-        with pytest.raises(rb.CaseError, match="holds a control character\n  try: printable characters"):
+        with pytest.raises(rb.CaseError, match="contains a control character\n  try: printable characters"):
             make()
 
 

@@ -238,7 +238,7 @@ def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer)
         (study("frequency_response").replace("frequencies", "frequency"), "did you mean 'frequencies'"),
         (study("frequency_response").replace('"29 Hz"', '"29 m"'), "not a length"),
         (study("basins").replace("[40, 8]", "[40, 8]\napart = 2"), "apart = 2"),
-        (study("loss_map").replace("shaken", "rig"), "needs a case on a shaker"),
+        (study("loss_map").replace("shaken", "rig"), "requires a case on a shaker"),
         (study("design").replace('"max"', '"most"'), "objective"),
         (study("design").replace('"damper.gap"', '"damper.gpa"'), "did you mean 'gap'"),
         (study("sensitivity").replace("n = 8", "n = 12"), "a power of two"),
