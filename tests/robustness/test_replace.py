@@ -104,12 +104,12 @@ def test_a_finished_run_is_kept_until_the_new_one_is_over(by: int) -> None:
     shown = subprocess.run(
         [sys.executable, "-m", "rattlebox.cli", "show", "out"], capture_output=True, text=True, check=True
     ).stdout
-    assert "takes its place is not over" in shown
+    assert "an unfinished run that replaces this one" in shown
     # The earlier case is run again, and says that there is something else.
     done = run("first.toml")
-    assert done.returncode == 0 and "begun with --replace and is not over" in done.stderr
+    assert done.returncode == 0 and "started with --replace" in done.stderr
     said = stop("long.toml", "--replace", by=signal.SIGINT, once=changes(next(Path("out").glob("*/run.checkpoint"))))
-    assert "going on from out/replacement-" in said
+    assert "resuming from out/replacement-" in said
     # A third case takes the place of the first, and the second is kept.
     assert run("second.toml", "--replace").returncode == 0
     assert begun()
@@ -126,7 +126,7 @@ def test_a_checkpoint_is_kept_until_the_new_run_is_over(by: int) -> None:
     assert "--replace" in run("long.toml").stderr
     stop("long.toml", "--replace", by=by, once=begun)
     assert {name: text for name, text in contents().items() if "lock" not in name} == before
-    assert "going on from out/run.checkpoint" in stop(
+    assert "resuming from out/run.checkpoint" in stop(
         "longer.toml", by=signal.SIGINT, once=changes(Path("out/run.checkpoint"))
     )
     assert run("impact.toml", "--replace").returncode == 0
@@ -150,7 +150,7 @@ def test_a_stop_during_the_exchange(after: int, monkeypatch: pytest.MonkeyPatch)
         return taken
 
     with monkeypatch.context() as patched:
-        for name in ("remove", "sync", "write_marker", "_discard", "_swap"):
+        for name in ("remove", "sync", "write_marker", "_discard", "_install"):
             patched.setattr(folders, name, stopping(getattr(folders, name)))
         with pytest.raises(SystemExit):
             app(["run", "wider.toml", "-o", "out", "--no-figures", "--mat", "--replace"], standalone_mode=False)

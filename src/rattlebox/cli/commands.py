@@ -1,4 +1,4 @@
-"""What the rattlebox command can do."""
+"""The subcommands of `rattlebox` and their options."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rattlebox.cli.exit_codes import STOPPED
 
 
 class _PlainFlags:
-    """Leaves out the type of options that take no value, in the help of commands."""
+    """Mixin that hides the type of flags in the help of commands."""
 
     def get_params(self, ctx: Any) -> list[Any]:
         """Return the arguments and options of a command."""
@@ -34,7 +34,8 @@ class _Group(_PlainFlags, TyperGroup):
     pass
 
 
-_WRITES = {"allow_extra_args": True}  # so that _check_single can say how the output is named
+# Extra arguments reach _check_single, whose message suggests the option for the output.
+_EXTRA_ARGUMENTS = {"allow_extra_args": True}
 
 app = typer.Typer(
     cls=_Group,
@@ -44,8 +45,8 @@ app = typer.Typer(
 )
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _print_version(requested: bool) -> None:
+    if requested:
         from rattlebox import __version__
 
         typer.echo(__version__)
@@ -55,75 +56,77 @@ def _version(asked: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
     pass
 
 
 def _check_single(ctx: typer.Context, first: Path) -> None:
-    """Raise if a command got more than its one file or folder."""
+    """Raise if a command received more than one file or folder."""
     if ctx.args:
         raise CaseError(
-            f"{' '.join(ctx.args)}: 'rattlebox {ctx.info_name}' takes one argument, {first}\n"
+            f"unexpected argument {' '.join(ctx.args)}: 'rattlebox {ctx.info_name}' takes one argument, here {first}\n"
             f"  try: rattlebox {ctx.info_name} {first} -o {ctx.args[0]}"
         )
 
 
-@app.command(cls=_Command, context_settings=_WRITES)
+@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
 def run(
     ctx: typer.Context,
     case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("out"),
-    csv: Annotated[bool, typer.Option(help="Write CSV files too.")] = False,
-    mat: Annotated[bool, typer.Option(help="Write a MAT file too.")] = False,
+    csv: Annotated[bool, typer.Option(help="Also write CSV files.")] = False,
+    mat: Annotated[bool, typer.Option(help="Also write a MATLAB file, run.mat.")] = False,
     figures: Annotated[bool, typer.Option(help="Draw motion and energy, and the impacts of impact dampers.")] = True,
     checkpoint: Annotated[
         Path | None,
-        typer.Option(help="File that keeps a run with particles on its way; default run.checkpoint in the folder."),
+        typer.Option(help="Checkpoint file, for particle dampers only; default run.checkpoint in the results folder."),
     ] = None,
     replace: Annotated[
-        bool, typer.Option("--replace", help="Take the place of a run of another case, once the new one is over.")
+        bool,
+        typer.Option("--replace", help="Replace the results of another case in the folder when this run is finished."),
     ] = False,
 ) -> None:
-    """Run a case file: summary on the terminal, netCDF and figures in a folder. The same command goes on after a stop."""
+    """Simulate a case file; print a summary, write netCDF and figures. Repeat the command to resume a stopped run."""
     _check_single(ctx, case)
     from rattlebox.cli.run import run_case
 
     run_case(case, out, csv=csv, mat=mat, figures=figures, checkpoint=checkpoint, replace=replace)
 
 
-@app.command(cls=_Command, context_settings=_WRITES)
+@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
 def sweep(
     ctx: typer.Context,
     study: Annotated[Path, typer.Argument(help="Study file (TOML).")],
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Folder of results (Zarr); default named after the study file.")
+        Path | None, typer.Option("--out", "-o", help="Folder for results (Zarr); default named after the study file.")
     ] = None,
-    workers: Annotated[int | None, typer.Option(min=1, help="Threads; default one for each core.")] = None,
+    workers: Annotated[int | None, typer.Option(min=1, help="Number of threads; default one per core.")] = None,
     dask: Annotated[
-        str | None, typer.Option(help="Address or file of a Dask scheduler, to run on its workers.")
+        str | None, typer.Option(help="Address or scheduler file of a Dask cluster on which to run.")
     ] = None,
 ) -> None:
-    """Run a study file: variants of a case over axes, or a ready map. The same command goes on after a stop."""
+    """Run a study file: many variants of one case. Repeat the command to resume a stopped study."""
     _check_single(ctx, study)
     from rattlebox.cli.sweep import run_sweep
 
     run_sweep(study, out, workers, dask)
 
 
-def _check_results(path: Path, wanted: str) -> None:
-    """Raise if a result does not exist, or is a case file or a study file."""
+def _check_results(path: Path) -> None:
+    """Raise if a path does not exist, or is a case file or a study file."""
+    suggestion = "the folder that 'rattlebox run -o' or 'rattlebox sweep -o' wrote"
     if not path.exists():
-        raise DataError(f"{path} is not there", wanted)
+        raise DataError(f"{path} does not exist", suggestion)
     if path.suffix == ".toml" and path.is_file():
-        raise DataError(f"{path} is a case file or a study file, not a result", wanted)
+        raise DataError(f"{path} is a case file or a study file, not a result", suggestion)
 
 
 @app.command(cls=_Command)
-def show(results: Annotated[Path, typer.Argument(help="Folder that run or sweep wrote; or run.nc.")]) -> None:
-    """Tell what is in a study, and how far it is; or the summary, notes and files of a run."""
-    _check_results(results, "the folder that 'rattlebox run -o' or 'rattlebox sweep -o' wrote")
+def show(results: Annotated[Path, typer.Argument(help="Folder written by run or sweep, or a file run.nc.")]) -> None:
+    """Print the summary, notes and files of a run, or the progress, axes and results of a study."""
+    _check_results(results)
     from rattlebox.cli.folder import is_run
 
     if is_run(results):
@@ -136,35 +139,36 @@ def show(results: Annotated[Path, typer.Argument(help="Folder that run or sweep 
     show_study(results)
 
 
-@app.command(cls=_Command, context_settings=_WRITES)
+@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
 def plot(
     ctx: typer.Context,
-    results: Annotated[
-        Path, typer.Argument(help="Folder that run or sweep wrote; or one of the files run.nc and run.vtkhdf.")
-    ],
+    results: Annotated[Path, typer.Argument(help="Folder written by run or sweep, or a file run.nc or run.vtkhdf.")],
     out: Annotated[
         Path | None,
         typer.Option(
             "--out",
             "-o",
-            help="File to write: PNG, SVG or PDF; a film of snapshots as GIF or MP4. Default study.png or run.png here.",
+            help="File to write: PNG, SVG or PDF; GIF or MP4 for a film of the snapshots. "
+            "Default run.png or study.png in the current folder.",
         ),
     ] = None,
     kind: Annotated[
         str | None,
         typer.Option(
-            help="map or lines of a measure, or the kind that the study file names; default that, and of a sweep a map "
-            "where both axes have more than six values. "
-            "Of a run motion, energy, impacts or particles."
+            help="Run: motion, energy, impacts or particles. Study: map, lines, or the kind in the study file. "
+            "Default: motion, or the figure of the study's kind; for a sweep, a map if both axes have more than "
+            "six values, otherwise lines."
         ),
     ] = None,
-    of: Annotated[str | None, typer.Option(help="Measure of a study; default the first.")] = None,
+    of: Annotated[str | None, typer.Option(help="Measure to draw; default the first. Studies only.")] = None,
     at: Annotated[
         list[str] | None,
-        typer.Option(help='Value of a further axis of a study, "load.amplitude=5 kN"; repeat for more.'),
+        typer.Option(help='Fix a further axis at a value, "load.amplitude=5 kN"; may be repeated. Studies only.'),
     ] = None,
-    number: Annotated[int | None, typer.Option(help="Which snapshot of a run, from 0; default the last.")] = None,
-    size: Annotated[str | None, typer.Option(help="column, page or slide; not of films.")] = None,
+    number: Annotated[
+        int | None, typer.Option(help="Number of the snapshot, from 0; default the last. Particles only.")
+    ] = None,
+    size: Annotated[str | None, typer.Option(help="Width of the figure: column, page or slide. Not for films.")] = None,
     colour: Annotated[
         str | None, typer.Option(help="Colour of particles: speed, spin, radius, species or none; default speed.")
     ] = None,
@@ -174,9 +178,9 @@ def plot(
     ] = None,
     pixels: Annotated[str | None, typer.Option(help="Width and height of a film; default 1280x720.")] = None,
 ) -> None:
-    """Draw a study: its own figure, or a measure over one or two of its axes. Draw a run, or film its particles."""
+    """Draw a figure of a run or a study, or a film of the particles of a run."""
     _check_single(ctx, results)
-    _check_results(results, "the folder that 'rattlebox run -o' or 'rattlebox sweep -o' wrote")
+    _check_results(results)
     from rattlebox.cli.folder import is_run
 
     if is_run(results):
@@ -206,7 +210,7 @@ def plot(
 def demo(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo"),
 ) -> None:
-    """Run a steel ball on a pulsed structure with two restitution models side by side."""
+    """Simulate a steel ball on a pulsed structure with two restitution models and compare them."""
     from rattlebox.cli.demo import run_demo
 
     run_demo(out)
@@ -214,9 +218,11 @@ def demo(
 
 @app.command(cls=_Command)
 def schema(
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="File; default the terminal.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="File to write; default: print on the terminal.")
+    ] = None,
 ) -> None:
-    """Export the JSON Schema of case files, for editors."""
+    """Write the JSON Schema of case files, with which an editor completes and checks them."""
     import json
 
     from rattlebox._util.atomic_io import atomic_write
@@ -232,7 +238,7 @@ def schema(
 
 @app.command(cls=_Command)
 def materials() -> None:
-    """List the materials of the library, with their sources."""
+    """List the materials of the library with their sources."""
     from rattlebox.cli.materials import show_materials
 
     show_materials()
@@ -240,17 +246,17 @@ def materials() -> None:
 
 @app.command(cls=_Command)
 def doctor() -> None:
-    """Say what this machine can do, and which core is used and why."""
-    from rattlebox.cli.doctor import examine
+    """Print versions, the instruction set of the compiled core in use, and missing packages."""
+    from rattlebox.cli.doctor import print_environment
 
-    examine()
+    print_environment()
 
 
-def carry_out() -> None:
+def run_command() -> None:
     """Run the command that the arguments of this process name.
 
-    This is the only place where errors end the program: those of the package, and those of the system that reach it, are
-    printed without a traceback, with exit code 2.
+    This is the only place where errors end the program. Errors of the package and of the operating system are printed
+    without a traceback, with exit code 2.
     """
     try:
         code = app(standalone_mode=False)
@@ -261,18 +267,18 @@ def carry_out() -> None:
         typer.echo(printable(f"error: {error}"), err=True)
         sys.exit(2)
     except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        typer.echo(printable(f"error: {where}{error.strerror or error}"), err=True)
+        file = f"{error.filename}: " if error.filename else ""
+        typer.echo(printable(f"error: {file}{error.strerror or error}"), err=True)
         sys.exit(2)
     except MemoryError:
-        typer.echo("error: there is not enough memory\n  try: a lower output rate, or fewer particles", err=True)
+        typer.echo("error: not enough memory\n  try: a lower output rate, or fewer particles", err=True)
         sys.exit(2)
     except typer.Abort:
         typer.echo("stopped", err=True)
         sys.exit(STOPPED)
-    except typer.Exit as stop:
-        sys.exit(stop.exit_code)
-    except Exception as error:
+    except typer.Exit as end:
+        sys.exit(end.exit_code)
+    except Exception as error:  # usage errors of typer print themselves
         show = getattr(error, "show", None)
         if show is None:
             raise

@@ -1,26 +1,26 @@
-"""`rattlebox demo`: one steel ball, two restitution models side by side."""
+"""`rattlebox demo`: one steel ball, two restitution models compared."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from rattlebox.cli.folder import check_own, make_folder, note_begun, note_written
+from rattlebox.cli.folder import check_overwrite, make_folder, register_digests, register_names
 from rattlebox.cli.terminal import terminal
 from rattlebox.engines.simulate import simulate_many
 from rattlebox.model.contacts import Tsuji
 from rattlebox.model.reference import reference_case
 from rattlebox.model.restitutions import JacksonGreen
-from rattlebox.plots.compare import plot_comparison as draw
+from rattlebox.plots.compare import plot_comparison
 from rattlebox.results.summary import compare
 
 
 def run_demo(out: Path) -> None:
-    """Run both models, print the comparison, write the figure and the netCDF and case files.
+    """Simulate both models, print the comparison, write the figure and the netCDF and case files.
 
     Parameters
     ----------
     out
-        Folder, made if needed.
+        Folder for results, created if needed.
     """
     cases = {
         "constant alpha": reference_case(duration=5.0),
@@ -29,14 +29,14 @@ def run_demo(out: Path) -> None:
     stems = {name: name.lower().replace(" ", "_").replace("-", "_") for name in cases}
     files = [*(f"{stem}.{suffix}" for stem in stems.values() for suffix in ("nc", "toml")), "demo.png"]
     make_folder(out)
-    check_own(out, files)
+    check_overwrite(out, files)
     runs = dict(zip(cases, simulate_many(list(cases.values())), strict=True))
     console = terminal()
     console.print(compare(runs))
-    note_begun(out, files)
+    register_names(out, files)
     for name, run in runs.items():
         run.save(out / f"{stems[name]}.nc")
         cases[name].to_file(out / f"{stems[name]}.toml")
-    draw(runs).savefig(out / "demo.png")
-    note_written(out, files)
+    plot_comparison(runs).savefig(out / "demo.png")
+    register_digests(out, files)
     console.print(f"written to {out}: demo.png, and a netCDF and a case file of each model", soft_wrap=True)

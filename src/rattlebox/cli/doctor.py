@@ -1,4 +1,4 @@
-"""`rattlebox doctor`."""
+"""`rattlebox doctor`: versions, compiled core and packages."""
 
 from __future__ import annotations
 
@@ -16,15 +16,17 @@ from rattlebox.core.choose import built, choice, core, supported
 _PACKAGES = ("numpy", "scipy", "xarray", "h5netcdf", "h5py", "pydantic", "pint", "matplotlib")
 
 
-def examine() -> None:
-    """Print what this installation and machine offer."""
-    level, why = choice()
+def print_environment() -> None:
+    """Print the versions, the processor cores, the compiled core in use and the installed packages."""
+    level, reason = choice()
     table = Table(show_header=False, box=None)
     table.add_row("rattlebox", __version__)
     table.add_row("python", f"{platform.python_version()} on {platform.system()} {platform.machine()}")
     table.add_row("cores", str(os.cpu_count()))
-    table.add_row("core", f"{level}: {why}")
-    table.add_row("", f"built: {', '.join(built())}; runnable here: {', '.join(supported())}; RATTLEBOX_SIMD overrides")
+    table.add_row("core", f"{level}: {reason}")
+    table.add_row(
+        "", f"built: {', '.join(built())}; runnable here: {', '.join(supported())}; RATTLEBOX_SIMD selects another"
+    )
     table.add_row("", f"loaded from {core().__name__}")
     for name in _PACKAGES:
         try:

@@ -3,4 +3,4 @@
 import signal
 
 STOPPED = 128 + signal.SIGINT
-"""Of a command that Ctrl-C stopped."""
+"""Exit code of a command that Ctrl-C stopped."""

@@ -1,4 +1,4 @@
-"""The folder that `rattlebox run` writes."""
+"""Results folder of `rattlebox run`: which files it may write, replace or resume."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ WRITTEN = (
     *(f"{figure}.png" for figure in ("motion", "energy", "impacts")),
     CHECKPOINT,
 )
-"""All files that the command writes there."""
+"""Names of all files that the command can write to the folder."""
 
 KIND, _REPLACEMENT = "Rattlebox run", "Rattlebox replacement"
-"""Kinds of folders in their markers."""
+"""Kinds of folders, as stored in their markers."""
 
 
 def make_folder(out: Path) -> None:
-    """Make a folder for results.
+    """Create a folder for results.
 
     Parameters
     ----------
@@ -54,78 +54,78 @@ def make_folder(out: Path) -> None:
     Raises
     ------
     DataError
-        When it cannot be made.
+        If the folder cannot be created.
     """
     try:
         out.mkdir(parents=True, exist_ok=True)
     except FileExistsError:
         raise DataError(f"{out} is a file; results need a folder\n  try: --out results") from None
     except OSError as error:
-        raise DataError(f"the folder {out} cannot be made: {error.strerror}\n  try: --out results") from None
+        raise DataError(f"the folder {out} cannot be created: {error.strerror}\n  try: --out results") from None
 
 
 @dataclass(frozen=True)
-class Place:
-    """Where a run writes its files.
+class RunFolder:
+    """Paths to which a run writes its files.
 
     Attributes
     ----------
     out
         Folder of the results.
     folder
-        Folder to write to: `out`, or a folder in it whose files replace those of an earlier run in the end.
+        Folder to write to: `out`, or a folder in it whose files replace those of an earlier run at the end.
     checkpoint
-        Checkpoint of the run.
+        Checkpoint file of the run.
     snapshots
-        Snapshots of the run.
-    again
+        Snapshot file of the run.
+    rewritten
         Names of the files of an earlier run of the same case, which are written again.
     notes
-        Facts about the folder that the user should know.
-    gone
-        Names of the files of an earlier run of another case, which are removed in the end.
+        Messages for the user about unfinished runs in the folder.
+    removed
+        Names of the files of an earlier run of another case, which are removed at the end.
     """
 
     out: Path
     folder: Path
     checkpoint: Path
     snapshots: Path
-    again: tuple[str, ...] = ()
+    rewritten: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    gone: tuple[str, ...] = ()
+    removed: tuple[str, ...] = ()
 
     def finish(self, names: Sequence[str], *, keep_checkpoint: bool) -> Path:
-        """Put the files in their place, and remove those that they replace.
+        """Move the files to the results folder, and remove those that they replace.
 
         Parameters
         ----------
         names
             Names of the files that were written.
         keep_checkpoint
-            Whether the checkpoint is needed further.
+            Whether to keep the checkpoint.
 
         Returns
         -------
         Path
-            The checkpoint, if it is kept.
+            Path of the checkpoint, which exists only if it is kept.
         """
-        kept = [CHECKPOINT] if keep_checkpoint and self.checkpoint == self.folder / CHECKPOINT else []
+        own_checkpoint = [CHECKPOINT] if keep_checkpoint and self.checkpoint == self.folder / CHECKPOINT else []
         if self.folder == self.out:
-            note_written(self.out, [*names, *kept])
+            register_digests(self.out, [*names, *own_checkpoint])
         else:
-            files = _digests(self.folder, [*names, *kept])
-            remaining = {self.checkpoint, self.snapshots}  # of this run, where they lie in the folder itself
-            gone = [name for name in self.gone if name not in files and self.out / name not in remaining]
-            write_marker(self.folder, replace(_new(_REPLACEMENT, files), complete=True, about={"gone": gone}))
-            _swap(self.out, self.folder)
-        checkpoint = self.out / CHECKPOINT if kept else self.checkpoint
+            files = _digests(self.folder, [*names, *own_checkpoint])
+            in_use = {self.checkpoint, self.snapshots}  # may be in `out` although the other files are not
+            removed = [name for name in self.removed if name not in files and self.out / name not in in_use]
+            write_marker(self.folder, replace(_new_marker(_REPLACEMENT, files), complete=True, about={"gone": removed}))
+            _install(self.out, self.folder)
+        checkpoint = self.out / CHECKPOINT if own_checkpoint else self.checkpoint
         if not keep_checkpoint:
             checkpoint.unlink(missing_ok=True)
         return checkpoint
 
 
-def check_own(out: Path, names: Iterable[str]) -> None:
-    """Raise if a file that is to be written exists and is not a result of this program.
+def check_overwrite(out: Path, names: Iterable[str]) -> None:
+    """Raise if writing results would overwrite a file that is not a result of this program.
 
     Parameters
     ----------
@@ -137,29 +137,16 @@ def check_own(out: Path, names: Iterable[str]) -> None:
     Raises
     ------
     DataError
-        If there is one.
+        If there is such a file.
     """
-    marker = _marker(out)
+    marker = _folder_marker(out)
     for name in names:
-        if not _is_own(out, name, marker):
-            raise DataError(_NOT_OURS.format(out / name))
+        if not _is_result(out, name, marker):
+            raise DataError(_FOREIGN.format(out / name))
 
 
-def note_begun(out: Path, names: Iterable[str]) -> None:
-    """Add the names of files that are about to be written to the list of results.
-
-    Parameters
-    ----------
-    out
-        Folder of the results.
-    names
-        Names of the files.
-    """
-    _add(out, dict.fromkeys(names, ""))
-
-
-def note_written(out: Path, names: Iterable[str]) -> None:
-    """Add the digests of files that were written to the list of results.
+def register_names(out: Path, names: Iterable[str]) -> None:
+    """Add files that are about to be written to the marker of the folder.
 
     Parameters
     ----------
@@ -168,109 +155,132 @@ def note_written(out: Path, names: Iterable[str]) -> None:
     names
         Names of the files.
     """
-    _add(out, _digests(out, names))
+    _register(out, dict.fromkeys(names, ""))
 
 
-def _add(out: Path, files: Mapping[str, str]) -> None:
-    earlier = _marker(out)
-    write_marker(out, _new(KIND, {**(earlier.files if earlier else {}), **files}))
+def register_digests(out: Path, names: Iterable[str]) -> None:
+    """Add the digests of files that were written to the marker of the folder.
+
+    Parameters
+    ----------
+    out
+        Folder of the results.
+    names
+        Names of the files.
+    """
+    _register(out, _digests(out, names))
+
+
+def _register(out: Path, files: Mapping[str, str]) -> None:
+    earlier = _folder_marker(out)
+    write_marker(out, _new_marker(KIND, {**(earlier.files if earlier else {}), **files}))
 
 
 @contextmanager
-def taken(out: Path, case: Case, *, checkpoint: Path | None, replace: bool) -> Iterator[Place]:
-    """Hold a folder for the results of a case, which may have those of an earlier run of it.
+def reserve_folder(out: Path, case: Case, *, checkpoint: Path | None, replace: bool) -> Iterator[RunFolder]:
+    """Lock a folder for the results of a case; it may contain results of an earlier run of the same case.
 
     Parameters
     ----------
     out
         Folder.
     case
-        What is to be run.
+        Case to run.
     checkpoint
-        From which it goes on, if that is not in the folder.
+        Checkpoint file outside the default place; None for run.checkpoint in the folder.
     replace
-        Replace a run of another case. All its files stay until those of the new run are complete; a run that is stopped
-        before then leaves them unchanged. A checkpoint of the same case stays, since the run continues from it.
+        Whether to replace a run of another case. All its files stay until those of the new run are complete; a run that
+        is stopped before then leaves them unchanged. A checkpoint of the same case stays, since the run resumes from it.
+
+    Yields
+    ------
+    RunFolder
+        Paths to which the run writes.
 
     Raises
     ------
     DataError
-        When the folder cannot be made, holds a study, a run of another case, with what differs, or what is no run; when
-        another process uses it, or the case reads a file that results would be written over.
+        If the folder cannot be created, if it contains a study, a run of another case or a foreign file, if another
+        process uses it, or if a result would overwrite an input file of the case.
     """
     make_folder(out)
-    marker = _marker(out)
+    marker = _folder_marker(out)
     if (out / "zarr.json").exists() or (marker and marker.name not in (KIND, "")):
-        raise DataError(f"{out} holds a study\n  try: another -o folder")
+        raise DataError(f"{out} contains a study; a run needs a folder of its own\n  try: another -o folder")
     _check_inputs(out, case)
     own = Checkpoint(out / CHECKPOINT, case)
-    goes_on = bool(case.particle_dampers) and checkpoint is None
+    resumable = bool(case.particle_dampers) and checkpoint is None
     with ExitStack() as stack:
         with own.lock():
             for name in WRITTEN:
                 remove_temporaries(out / name)
             for folder in replacements(out):
-                _swap(out, folder)
-            earlier = _case_in(out / RUN)
-            there = tuple(name for name in files_in(out) if _is_own(out, name, _marker(out)))
+                _install(out, folder)
+            earlier = _stored_case(out / RUN)
+            present = tuple(name for name in files_in(out) if _is_result(out, name, _folder_marker(out)))
             lines = (
                 differences({"case": _bare(earlier)}, {"case": comparable_toml(case)}) if earlier is not None else []
             )
             if lines and not replace:
-                raise DataError("\n".join([f"{out / RUN} holds another run", *lines, _ADVICE]))
-            foreign = own.path.is_file() and not (goes_on and (not replace or _is_of(own)))
+                raise DataError("\n".join([f"{out / RUN} is the result of another case", *lines, _SUGGESTION]))
+            foreign = own.path.is_file() and not (resumable and (not replace or _is_readable(own)))
             if foreign and not replace:
-                raise DataError(f"{own.path} is of a run that is not over\n{_ADVICE}")
+                raise DataError(f"{own.path} belongs to an unfinished run\n{_SUGGESTION}")
             if foreign and not is_checkpoint(own.path):
-                raise DataError(_NOT_OURS.format(own.path))
+                raise DataError(_FOREIGN.format(own.path))
         notes = [f"{folder} {_UNFINISHED}" for folder in replacements(out)]
-        here = goes_on and own.path.is_file() and not foreign  # the run continues from the checkpoint in the folder
-        if not goes_on or (not here and (lines or foreign)):  # else the run holds it
+        resumed = resumable and own.path.is_file() and not foreign
+        # Otherwise the run itself locks its checkpoint, and with it the folder.
+        if not resumable or (not resumed and (lines or foreign)):
             stack.enter_context(own.lock())
         if not lines and not foreign:
-            again = () if earlier is None else there
-            yield Place(out, out, checkpoint or own.path, out / SNAPSHOTS, again, tuple(notes))
+            rewritten = () if earlier is None else present
+            yield RunFolder(out, out, checkpoint or own.path, out / SNAPSHOTS, rewritten, tuple(notes))
             return
         folder = stack.enter_context(_replacement(out, case))
         notes = [note for note in notes if not note.startswith(f"{folder} ")]
-        mine = own.path if here else folder / CHECKPOINT
-        shots = (out if here else folder) / SNAPSHOTS
-        yield Place(out, folder, checkpoint or mine, shots, (), tuple(notes), there)
+        default = own.path if resumed else folder / CHECKPOINT
+        snapshots = (out if resumed else folder) / SNAPSHOTS
+        yield RunFolder(out, folder, checkpoint or default, snapshots, (), tuple(notes), present)
 
 
 def replacements(out: Path) -> list[Path]:
-    """Return the folders of runs that were begun to replace another run, and are not over.
+    """Return the folders of unfinished runs that will replace another run.
 
     Parameters
     ----------
     out
         Folder of the results.
+
+    Returns
+    -------
+    list of Path
+        Folders in `out`, sorted.
     """
-    found = []
+    paths = []
     for path in sorted(out.glob("replacement-*")):
         try:
             marker = read_marker(path)
         except DamagedError:
             continue
         if marker and marker.name == _REPLACEMENT:
-            found.append(path)
-    return found
+            paths.append(path)
+    return paths
 
 
 _UNFINISHED = (
-    "holds a run that was begun with --replace and is not over: its command continues it; "
-    "remove the folder if it is not needed"
+    "contains an unfinished run that was started with --replace: repeat its command to resume it, or remove the folder"
 )
 
 
 @contextmanager
 def _replacement(out: Path, case: Case) -> Iterator[Path]:
-    """Yield a folder for the files of a run that replaces another one; it stays if the run can continue from it."""
+    """Yield a folder for the files of a run that replaces another one; keep it if the run can resume from it."""
     folder = out / f"replacement-{hashlib.sha256(comparable_toml(case).encode()).hexdigest()[:8]}"
     if folder.exists() and folder not in replacements(out) and not (folder.is_dir() and is_free(folder)):
-        raise DataError(f"{folder} was not written by Rattlebox\n  try: another -o folder, or move it")
+        raise DataError(f"{folder} was not written by Rattlebox\n  try: another -o folder, or move this one")
     folder.mkdir(exist_ok=True)
-    write_marker(folder, _new(_REPLACEMENT, dict.fromkeys(WRITTEN, "")))
+    write_marker(folder, _new_marker(_REPLACEMENT, dict.fromkeys(WRITTEN, "")))
     try:
         yield folder
     finally:
@@ -278,8 +288,8 @@ def _replacement(out: Path, case: Case) -> Iterator[Path]:
             _discard(folder)
 
 
-def _swap(out: Path, folder: Path) -> None:
-    """Move the files of a run that is over to their place; where that was begun before, end it."""
+def _install(out: Path, folder: Path) -> None:
+    """Move the files of a finished replacement to the results folder, also if an earlier move was interrupted."""
     marker = read_marker(folder)
     if not marker or not marker.complete:
         return
@@ -288,12 +298,12 @@ def _swap(out: Path, folder: Path) -> None:
         if (folder / name).is_file():
             (folder / name).replace(out / name)
     sync(out)
-    write_marker(out, _new(KIND, marker.files))
+    write_marker(out, _new_marker(KIND, marker.files))
     _discard(folder)
 
 
 def _discard(folder: Path) -> None:
-    """Remove what a run wrote to a folder of its own, and the folder if nothing else is in it."""
+    """Remove the files of a replacement, and its folder if nothing else is in it."""
     for name in WRITTEN:
         remove_temporaries(folder / name)
     with suppress(FileNotFoundError):
@@ -302,34 +312,34 @@ def _discard(folder: Path) -> None:
         folder.rmdir()
 
 
-def _new(kind: str, files: Mapping[str, str]) -> Marker:
+def _new_marker(kind: str, files: Mapping[str, str]) -> Marker:
     from rattlebox import __version__
 
     return Marker(kind, __version__, files=files)
 
 
-def _marker(out: Path) -> Marker | None:
+def _folder_marker(out: Path) -> Marker | None:
     try:
         return read_marker(out)
     except DamagedError as error:
         raise DataError(f"{out / MARKER}: {error}", "another -o folder, or remove this file") from None
 
 
-_BY_CONTENT = (RUN, SNAPSHOTS, CHECKPOINT)
-"""Files that say themselves that Rattlebox wrote them; they may be large, and the last two grow."""
+_SELF_DESCRIBING = (RUN, SNAPSHOTS, CHECKPOINT)
+"""Files whose content identifies them as results of Rattlebox; they may be large, so they have no digest."""
 
 
 def _digests(folder: Path, names: Iterable[str]) -> dict[str, str]:
-    return {name: "" if name in _BY_CONTENT else digest_of(folder / name) for name in names}
+    return {name: "" if name in _SELF_DESCRIBING else digest_of(folder / name) for name in names}
 
 
-def _is_own(out: Path, name: str, marker: Marker | None) -> bool:
-    """Return whether a file is not there, or is a result of Rattlebox."""
+def _is_result(out: Path, name: str, marker: Marker | None) -> bool:
+    """Return whether a file does not exist, or is a result of Rattlebox."""
     path = out / name
     if not os.path.lexists(path):
         return True
     if name == RUN:
-        return _case_in(path) is not None
+        return _stored_case(path) is not None
     if name == SNAPSHOTS:
         return path.is_file() and is_snapshots(path)
     if name == CHECKPOINT:
@@ -337,20 +347,22 @@ def _is_own(out: Path, name: str, marker: Marker | None) -> bool:
     return marker is not None and marker.files.get(name) in ("", digest_of(path))
 
 
-_NOT_OURS = (
-    "{} was not written by this command, or has changed since; it is not replaced\n  try: another -o folder, or move it"
+_FOREIGN = (
+    "{} was not written by this command, or has changed since, and is not overwritten\n"
+    "  try: another -o folder, or move the file"
 )
-_ADVICE = "  try: another -o folder, or --replace"
+_SUGGESTION = "  try: another -o folder, or --replace"
 
 
-def _case_in(file: Path) -> str | None:
+def _stored_case(file: Path) -> str | None:
     try:
         return read_case(file) if file.is_file() else None
     except DataError as error:
         raise DataError(error.complaint, "another -o folder, or remove this file") from None
 
 
-def _is_of(checkpoint: Checkpoint) -> bool:
+def _is_readable(checkpoint: Checkpoint) -> bool:
+    """Return whether a checkpoint can be read and belongs to its case."""
     try:
         return checkpoint.read() is not None
     except DataError:
@@ -358,7 +370,7 @@ def _is_of(checkpoint: Checkpoint) -> bool:
 
 
 def _check_inputs(out: Path, case: Case) -> None:
-    """Refuse a case that reads what would be written over."""
+    """Raise if an output file would overwrite one of the case's input files."""
     signals = (*case.loads, *case.base, *case.shaker_motion)
     packings = [damper.packing for damper in case.particle_dampers]
     for part in (case.structure, *signals, *packings):
@@ -366,12 +378,13 @@ def _check_inputs(out: Path, case: Case) -> None:
         for file in [named] if isinstance(named, str) else [*named.values()] if named else []:
             if Path(file).name in WRITTEN and Path(file).resolve().parent == out.resolve():
                 raise DataError(
-                    f"{out / Path(file).name} is read by the case, and results go there\n  try: another -o folder"
+                    f"{out / Path(file).name} is an input of the case, and a result would overwrite it\n"
+                    "  try: another -o folder"
                 )
 
 
 def _bare(text: str) -> str:
-    """The text of a case without what its results do not depend on, or as it is where a file that it names is gone."""
+    """Return the text of a case without fields that do not affect results, or unchanged if an input file is missing."""
     try:
         return comparable_toml(Case.from_toml(text))
     except RattleboxError:
@@ -379,12 +392,17 @@ def _bare(text: str) -> str:
 
 
 def is_run(path: Path) -> bool:
-    """Tell whether a path is of a run, finished or not: a file, or the folder of one.
+    """Return whether a path is a file of a run, or the folder of one, finished or not.
 
     Parameters
     ----------
     path
-        What a user names.
+        File or folder, which need not exist.
+
+    Returns
+    -------
+    bool
+        For a path that does not exist, whether its suffix is that of a file of a run.
     """
     if path.exists():
         return path.is_file() or any((path / name).is_file() for name in (RUN, CHECKPOINT, SNAPSHOTS))
@@ -392,11 +410,16 @@ def is_run(path: Path) -> bool:
 
 
 def files_in(folder: Path) -> list[str]:
-    """Return the names of the files of a run that are in a folder.
+    """Return the names of the files of a run that exist in a folder.
 
     Parameters
     ----------
     folder
         Folder of the run.
+
+    Returns
+    -------
+    list of str
+        Names, in the order of `WRITTEN`.
     """
     return [name for name in WRITTEN if (folder / name).is_file()]

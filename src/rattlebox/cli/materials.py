@@ -1,4 +1,4 @@
-"""`rattlebox materials`."""
+"""`rattlebox materials`: the library of materials."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from rattlebox.model.materials import materials
 
 
 def show_materials() -> None:
-    """Print the library as a table, and below it where the values come from."""
+    """Print the library as a table, and below it the sources of the values."""
     numbers = (Column(head, justify="right") for head in ("density\nkg/m³", "E\nGPa", "ν", "yield\nMPa"))
-    table = Table(Column("name", no_wrap=True), "what", *numbers)
+    table = Table(Column("name", no_wrap=True), "material", *numbers)
     sources = Table(Column("name", no_wrap=True), "source", box=None)
     for name, m in materials().items():
         strength = "" if m.yield_stress is None else f"{m.yield_stress / 1e6:g}"

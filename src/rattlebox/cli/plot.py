@@ -11,7 +11,7 @@ import rattlebox
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
-from rattlebox.plots.maps import plot_map, select, taken_instead
+from rattlebox.plots.maps import nearest_value_notes, plot_map, select
 from rattlebox.plots.style import WIDTHS
 from rattlebox.studies.kinds import KINDS
 from rattlebox.studies.stored import open_study
@@ -41,39 +41,43 @@ def plot_study(
     study
         Folder of the study.
     out
-        File to write, as PNG, SVG or PDF; default study.png in the current folder.
+        File to write: PNG, SVG or PDF; default study.png in the current folder.
     kind
-        "map" or "lines" of one measure, or the name of a ready map; default that of the study.
+        "map" or "lines" of one measure, or the kind of the study; default the latter.
     of
-        What to draw, where there is a choice.
+        Name of the measure to draw.
     at
         Texts "axis=value".
     number
-        Of a snapshot, which a study has none of.
+        Number of a snapshot; must be None, since a study has no snapshots.
     size
-        Width; default that of the figure.
+        Width of the figure: "column", "page" or "slide"; None for the default of the figure.
 
     Raises
     ------
     CaseError
-        When an argument does not fit, or there is no such study.
+        If an option does not apply to the study.
+    DataError
+        If there is no such study.
     """
-    out, told = target(out, "study.png", size)
+    out, message = output_file(out, "study.png", size)
     if number is not None:
-        raise CaseError(f"--number {number}: this applies to snapshots of a run, run.vtkhdf\n  try: leave it out")
-    data, options, chosen = open_study(study), {"of": of, "size": size}, _values(at)
+        raise CaseError(
+            f"--number {number}: {study} is a study, which has no snapshots\n  try: leave out --number, or plot a run"
+        )
+    data, options, values = open_study(study), {"of": of, "size": size}, _axis_values(at)
     own = str(data.attrs.get("study", "sweep"))
     options = {name: value for name, value in options.items() if value is not None}
     if (kind or own) in MAPS:
-        figure = _map(data, kind or own, own, options, chosen)
+        figure = _draw_kind(data, kind or own, own, options, values)
     elif kind in (None, "map", "lines"):
-        figure = plot_map(data, kind=kind, at=chosen, **options)  # type: ignore[arg-type]
+        figure = plot_map(data, kind=kind, at=values, **options)  # type: ignore[arg-type]
     else:
-        raise CaseError(f"--kind {kind}: there is no such kind\n  {nearest(kind, ('map', 'lines', *MAPS))}")
+        raise CaseError(f"--kind {kind}: unknown kind of figure\n  {nearest(kind, ('map', 'lines', *MAPS))}")
     figure.savefig(out)
-    for line in taken_instead(data, chosen):
+    for line in nearest_value_notes(data, values):
         terminal().print(line, soft_wrap=True)
-    terminal().print(told, soft_wrap=True)
+    terminal().print(message, soft_wrap=True)
 
 
 def refuse_particle_options(**options: str | None) -> None:
@@ -92,61 +96,68 @@ def refuse_particle_options(**options: str | None) -> None:
     for name, value in options.items():
         if value is not None:
             raise CaseError(
-                f"--{name} {value}: this applies to pictures of particles",
+                f"--{name} {value}: this option is for pictures of particles",
                 "the folder of a run with particles, --kind particles",
             )
 
 
-def target(out: Path | None, usual: str, size: str | None, formats: Sequence[str] = FORMATS) -> tuple[Path, str]:
-    """Return the file to write, and what is said when it is written; refuse what cannot be.
+def output_file(out: Path | None, default: str, size: str | None, formats: Sequence[str] = FORMATS) -> tuple[Path, str]:
+    """Return the file to write and the message to print afterwards.
 
     Parameters
     ----------
     out
-        File to write.
-    usual
-        Its name in the current folder when none is given.
+        File to write, if given.
+    default
+        Name of the file in the current folder otherwise.
     size
-        Width, if one is asked for.
+        Width of the figure, if given.
     formats
-        Endings that are possible.
+        Allowed suffixes.
+
+    Returns
+    -------
+    tuple of Path and str
+        File, and message.
 
     Raises
     ------
     CaseError
-        When the ending or the size is not one of those that are possible.
+        If the suffix or the size is not allowed.
     DataError
-        When its folder does not exist.
+        If the folder of the file does not exist.
     """
-    over = out is None and Path(usual).exists()
-    out = out or Path(usual)
-    told = f"written: {out}" + ", in the place of an earlier one; -o names another file" * over
+    replaces = out is None and Path(default).exists()
+    out = out or Path(default)
+    message = f"written: {out}" + " (replaced an earlier file; choose another name with -o)" * replaces
     if out.suffix not in formats:
         raise CaseError(
-            f"-o {out}: the ending must be one of {', '.join(formats)}\n  try: -o {out.stem or 'study'}.png"
+            f"-o {out}: the suffix must be one of {', '.join(formats)}\n  try: -o {out.stem or 'study'}.png"
         )
     if size is not None and size not in WIDTHS:
-        raise CaseError(f"--size {size}: there is no such size\n  try: {', '.join(WIDTHS)}")
+        raise CaseError(f"--size {size}: unknown size\n  try: {', '.join(WIDTHS)}")
     if not out.parent.is_dir():
-        raise DataError(f"-o {out}: there is no folder {out.parent}", "another folder, or make it first")
-    return out, told
+        raise DataError(f"-o {out}: the folder {out.parent} does not exist", "another folder, or create it first")
+    return out, message
 
 
-def _map(data: xr.Dataset, kind: str, own: str, options: dict[str, Any], at: dict[str, str]) -> Figure:
-    """The figure of a ready map."""
+def _draw_kind(data: xr.Dataset, kind: str, own: str, options: dict[str, Any], at: dict[str, str]) -> Figure:
+    """Draw the figure that belongs to a kind of study."""
     if kind != own:
         raise CaseError(
-            f"--kind {kind}: there is none in this study, which holds a {own.replace('_', ' ')}, or is not finished\n"
-            f"  try: {f'--kind {own}' if own in MAPS else '--kind lines'}, or 'rattlebox show' to see how far it is"
+            f"--kind {kind}: this study is a {own.replace('_', ' ')}, or is not finished\n"
+            f"  try: {f'--kind {own}' if own in MAPS else '--kind lines'}, or 'rattlebox show' to see its progress"
         )
     draw = getattr(rattlebox, f"plot_{kind}")
     if "of" in options and "of" not in signature(draw).parameters:
-        raise CaseError(f"--of {options['of']}: a figure of {kind} shows all that there is\n  try: --kind lines")
+        raise CaseError(
+            f"--of {options['of']}: a figure of the kind {kind} has no choice of measures\n  try: --kind lines"
+        )
     figure: Figure = draw(select(data, at)[0], **options)
     return figure
 
 
-def _values(at: Sequence[str]) -> dict[str, str]:
+def _axis_values(at: Sequence[str]) -> dict[str, str]:
     values = {}
     for text in at:
         name, sign, value = text.partition("=")

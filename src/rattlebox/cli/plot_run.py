@@ -1,4 +1,4 @@
-"""`rattlebox plot` of a run on disk: its figures, or pictures and films of its particles."""
+"""`rattlebox plot` of a run on disk: its figures, pictures of its particles and films."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import typer
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.exit_codes import STOPPED
 from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS
-from rattlebox.cli.plot import FORMATS, refuse_particle_options, target
+from rattlebox.cli.plot import FORMATS, output_file, refuse_particle_options
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
@@ -43,59 +43,59 @@ def plot_run(
     Parameters
     ----------
     path
-        run.nc, run.vtkhdf, or the folder that holds them: a film, and a snapshot by its number, are of the latter.
+        run.nc, run.vtkhdf, or their folder. In a folder, films and numbered snapshots are drawn from run.vtkhdf.
     out
-        File to write: PNG, SVG or PDF, or of snapshots GIF or MP4; default run.png in the current folder.
+        File to write: PNG, SVG or PDF; GIF or MP4 for a film; default run.png in the current folder.
     kind
-        "motion", "energy", "impacts" or "particles"; default the first, of snapshots the last.
+        "motion", "energy", "impacts" or "particles"; default "motion", and "particles" for snapshots.
     of, at
-        What to draw of a study, which a run is not.
+        Options of studies; must be empty.
     number
-        Which snapshot, from 0; default the last.
+        Number of the snapshot, from 0; default the last.
     size
-        Width; default that of the figure.
+        Width of the figure: "column", "page" or "slide"; None for the default of the figure.
     colour, view
         Colour of particles, and name of a view or "azimuth,elevation" in degrees.
     pixels
-        "1280x720", for films.
+        Width and height of a film, "1280x720".
 
     Raises
     ------
     CaseError
-        When an argument does not fit.
+        If an option does not apply to the file.
     DataError
-        When there is no such file.
+        If the file does not exist.
     """
-    out, told = target(out, "run.png", size, (*FORMATS, *FILMS))
+    out, message = output_file(out, "run.png", size, (*FORMATS, *FILMS))
     if path.is_dir():
         path /= SNAPSHOTS if out.suffix in FILMS or number is not None else RUN
     for option, value in (("--of", of), ("--at", at and at[0])):
         if value:
-            what = "--number" if path.suffix == ".vtkhdf" else "--kind"
-            raise CaseError(f"{option} {value}: this applies to a study, and {path} is a run\n  try: {what}")
+            alternative = "--number" if path.suffix == ".vtkhdf" else "--kind"
+            raise CaseError(f"{option} {value}: this option is for studies, and {path} is a run\n  try: {alternative}")
     film = out.suffix in FILMS
     if film and size is not None:
-        raise CaseError(f"--size {size}: films have a number of pixels", "--pixels 1280x720")
+        raise CaseError(f"--size {size}: the size of films is in pixels", "--pixels 1280x720")
     if not film and pixels is not None:
-        raise CaseError(f"--pixels {pixels}: this applies to films", f"-o {out.with_suffix('.gif')}, or --size page")
+        raise CaseError(f"--pixels {pixels}: this option is for films", f"-o {out.with_suffix('.gif')}, or --size page")
     particles = {"colour": colour, "view": view if view is None or "," not in view else _numbers("view", view, ",")}
     given = {"size": size, **particles, "pixels": pixels and tuple(map(int, _numbers("pixels", pixels, "x")))}
     options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     if not path.exists():
-        raise DataError(f"there is no file {path}{_instead(path)}")
+        raise DataError(f"{path} does not exist{_missing_file_hint(path)}")
     run = Snapshots(path) if path.suffix == ".vtkhdf" else load(path)
     if number is not None and not isinstance(run, Snapshots):
         raise CaseError(
-            "--number: a run has no snapshots\n  try: run.vtkhdf beside it, with output.snapshots in the case"
+            f"--number {number}: {path} has no snapshots\n"
+            "  try: run.vtkhdf in the same folder; output.snapshots in the case creates it"
         )
     console = terminal()
     try:
         if film:
             _check_film(out, kind, number)
-            _film(run, out, options)
+            _write_film(run, out, options)
         else:
-            figure = _figure(run, kind, -1 if number is None else number, options)
-            figure.savefig(out)
+            _draw(run, kind, -1 if number is None else number, options).savefig(out)
     except (ValueError, IndexError) as error:
         raise CaseError(str(error)) from None
     if (kind == "particles" or isinstance(run, Snapshots)) and usual_renderer() == "plain":
@@ -103,7 +103,7 @@ def plot_run(
             "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'",
             soft_wrap=True,
         )
-    console.print(told, soft_wrap=True)
+    console.print(message, soft_wrap=True)
 
 
 def _numbers(option: str, text: str, separator: str) -> tuple[float, ...]:
@@ -119,49 +119,48 @@ def _numbers(option: str, text: str, separator: str) -> tuple[float, ...]:
     return numbers
 
 
-def _instead(path: Path) -> str:
-    """What to try where a file of a run is not there."""
-    there = {name for name in (RUN, SNAPSHOTS, CHECKPOINT) if (path.parent / name).is_file()}
-    if path.name == SNAPSHOTS and RUN in there and "particles" not in load(path.parent / RUN).groups:
-        return ", and this run has no particles in space to show"
+def _missing_file_hint(path: Path) -> str:
+    """Return the end of the message about a missing file of a run: the reason, if known, and a suggestion."""
+    present = {name for name in (RUN, SNAPSHOTS, CHECKPOINT) if (path.parent / name).is_file()}
+    if path.name == SNAPSHOTS and RUN in present and "particles" not in load(path.parent / RUN).groups:
+        return ": only runs of particle dampers have snapshots\n  try: -o run.png"
     if path.name == SNAPSHOTS:
         return "\n  try: output.snapshots in the case"
-    over = ": the run is not over" if CHECKPOINT in there else ""
-    hints = [f"rattlebox plot {path.parent / SNAPSHOTS}"] if SNAPSHOTS in there else []
-    hints += ["the command that began it, which goes on"] if over else []
-    told = ", or ".join(hints) or "the folder that 'rattlebox run -o' wrote"
-    return f"{over}\n  try: {told}"
+    unfinished = ": the run is not finished" if CHECKPOINT in present else ""
+    hints = [f"rattlebox plot {path.parent / SNAPSHOTS}"] if SNAPSHOTS in present else []
+    hints += ["repeat the command that started the run; it resumes"] if unfinished else []
+    suggestion = ", or ".join(hints) or "the folder that 'rattlebox run -o' wrote"
+    return f"{unfinished}\n  try: {suggestion}"
 
 
 def _check_film(out: Path, kind: str | None, number: int | None) -> None:
-    """Refuse what does not apply to a film."""
+    """Raise if an option does not apply to a film."""
     picture = out.with_suffix(".png")
     if number is not None:
         raise CaseError(f"--number {number}: a film shows all snapshots\n  try: -o {picture}")
     if kind not in (None, "particles"):
-        raise CaseError(f"--kind {kind}: a film shows particles\n  try: run.nc, -o {picture}")
+        raise CaseError(f"--kind {kind}: a film can only show particles\n  try: run.nc, -o {picture}")
 
 
-def _film(of: Any, out: Path, options: dict[str, Any]) -> None:
-    if not isinstance(of, Snapshots):
-        raise CaseError(f"-o {out}: a film needs snapshots\n  try: run.vtkhdf, with output.snapshots in the case")
+def _write_film(run: Any, out: Path, options: dict[str, Any]) -> None:
+    if not isinstance(run, Snapshots):
+        raise CaseError(
+            f"-o {out}: a film needs the snapshots in run.vtkhdf\n  try: run.vtkhdf; output.snapshots in the case creates it"
+        )
     try:
-        film_particles(of, out, **options)
+        film_particles(run, out, **options)
     except KeyboardInterrupt:
-        typer.echo(f"stopped; {out} is not written", err=True)
+        typer.echo(f"stopped; {out} was not written", err=True)
         sys.exit(STOPPED)
 
 
-def _figure(of: Any, kind: str | None, number: int, options: dict[str, Any]) -> Figure:
-    if isinstance(of, Snapshots):
-        kinds: tuple[str, ...] = ("particles",)
-    else:
-        kinds = of.groups
+def _draw(run: Any, kind: str | None, number: int, options: dict[str, Any]) -> Figure:
+    kinds: tuple[str, ...] = ("particles",) if isinstance(run, Snapshots) else run.groups
     if (kind or kinds[0]) not in kinds:
-        raise CaseError(f"--kind {kind}: there is no such kind here\n  {nearest(str(kind), kinds)}")
-    if isinstance(of, Snapshots):
-        return plot_particles(of, number=number, **options)
+        raise CaseError(f"--kind {kind}: this run has no such figure\n  {nearest(str(kind), kinds)}")
+    if isinstance(run, Snapshots):
+        return plot_particles(run, number=number, **options)
     if (kind or kinds[0]) != "particles":
         refuse_particle_options(colour=options.get("colour"), view=options.get("view"))
-    figure: Figure = getattr(of.plot, kind or kinds[0])(**options)
+    figure: Figure = getattr(run.plot, kind or kinds[0])(**options)
     return figure

@@ -1,4 +1,4 @@
-"""`rattlebox run`: one case file."""
+"""`rattlebox run`: simulate one case file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,15 @@ from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox._util.progress import progress_bar
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
-from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, Place, check_own, note_begun, taken
+from rattlebox.cli.folder import (
+    CHECKPOINT,
+    RUN,
+    SNAPSHOTS,
+    RunFolder,
+    check_overwrite,
+    register_names,
+    reserve_folder,
+)
 from rattlebox.cli.terminal import terminal
 from rattlebox.engines.checkpoint import CheckpointMismatch
 from rattlebox.engines.simulate import simulate
@@ -30,15 +38,15 @@ _RESULTS = (".nc", ".vtkhdf", ".mat", ".csv", ".png")
 _MINUTE = 60.0  # s
 
 
-class _Lines:
-    """Lines on how far a run is, one a minute, where there is no terminal for a bar."""
+class _ProgressLog:
+    """Progress of a run as one line per minute, for output that is not a terminal and so cannot show a bar."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
         self._last: tuple[float, int] | None = None  # time of the last line or of the first steps, and steps done
 
-    def tell(self, done: int, total: int) -> None:
-        """Print a line if it is time."""
+    def update(self, done: int, total: int) -> None:
+        """Print a line if a minute has passed."""
         now = monotonic()
         if self._console.is_terminal or (self._last and (now < self._last[0] + _MINUTE or done <= self._last[1])):
             return
@@ -49,30 +57,30 @@ class _Lines:
         self._last = now, done
 
 
-def _simulated(case: Case, place: Place) -> Run:
-    """Run a case; one with particles tells how far it is, and goes on where it was stopped."""
+def _simulate(case: Case, folder: RunFolder) -> Run:
+    """Simulate a case; a run with particles shows its progress and resumes from its checkpoint."""
     if not case.particle_dampers:
         return simulate(case)
     console = terminal(stderr=True)
-    checkpoint, snapshots = place.checkpoint, place.snapshots if case.output.snapshots else None
+    checkpoint, snapshots = folder.checkpoint, folder.snapshots if case.output.snapshots else None
     with progress_bar(True, "steps") as bar:
-        lines = _Lines(console)
-        going_on = checkpoint.is_file()
+        log = _ProgressLog(console)
+        resuming = checkpoint.is_file()
 
-        def tell() -> None:
-            """Say where the run goes on from, once the checkpoint has proved to be of this case."""
-            nonlocal going_on
-            if going_on:
-                console.print(f"going on from {checkpoint}", soft_wrap=True)
-            going_on = False
+        def report_resume() -> None:
+            """Print the checkpoint from which the run resumes, as soon as it is known to belong to this case."""
+            nonlocal resuming
+            if resuming:
+                console.print(f"resuming from {checkpoint}", soft_wrap=True)
+            resuming = False
 
         def progress(done: int, total: int) -> None:
-            tell()
-            lines.tell(done, total)
+            report_resume()
+            log.update(done, total)
             bar(done, total)
 
         run = simulate(case, checkpoint=checkpoint, snapshots=snapshots, progress=progress)
-        tell()
+        report_resume()
         return run
 
 
@@ -86,79 +94,86 @@ def run_case(
     checkpoint: Path | None = None,
     replace: bool = False,
 ) -> None:
-    """Run a case file and write what comes back.
+    """Simulate a case file, write its results and print its summary.
 
     Parameters
     ----------
     path
         Case file.
     out
-        Folder for results, made if needed.
+        Folder for results, created if needed.
     csv, mat, figures
-        What to write besides run.nc.
+        Whether to write CSV files, run.mat and figures besides run.nc.
     checkpoint
-        From which a run with particles goes on; default run.checkpoint in the folder. Removed when the results are written.
+        Checkpoint file of a run with particles, from which it resumes; default run.checkpoint in the folder. It is
+        removed when the results are written.
     replace
-        Take the place of a run of another case in the folder.
+        Whether to replace the results of another case in the folder.
     """
     case = Case.from_file(path)
     if checkpoint is not None and not case.particle_dampers:
         raise CaseError(
-            "--checkpoint: there are no particles in space, and other runs take no time\n  try: leave it out"
+            f"--checkpoint {checkpoint}: {path} has no particle damper, and only runs with particles write checkpoints\n"
+            "  try: leave out --checkpoint"
         )
     if checkpoint is not None and checkpoint.suffix in _RESULTS and checkpoint.parent.resolve() == out.resolve():
-        raise DataError(f"--checkpoint {checkpoint}: results are written there\n  try: {out / CHECKPOINT}")
-    with taken(out, case, checkpoint=checkpoint, replace=replace) as place:
-        for note in place.notes:
+        raise DataError(
+            f"--checkpoint {checkpoint}: a result could overwrite a file with this suffix in the results folder\n"
+            f"  try: --checkpoint {out / CHECKPOINT}"
+        )
+    with reserve_folder(out, case, checkpoint=checkpoint, replace=replace) as folder:
+        for note in folder.notes:
             typer.echo(note, err=True)
-        _run_in(path, case, place, csv=csv, mat=mat, figures=figures)
+        _run_in_folder(path, case, folder, csv=csv, mat=mat, figures=figures)
 
 
-def _run_in(path: Path, case: Case, place: Place, *, csv: bool, mat: bool, figures: bool) -> None:
-    """Run a case in a folder that is held."""
-    out, checkpoint = place.out, place.checkpoint
-    csv |= "motion.csv" in place.again  # so that all files are of one run
-    mat |= "run.mat" in place.again
-    figures |= "motion.png" in place.again
-    names = _names(case, csv=csv, mat=mat, figures=figures)
-    check_own(out, names)
+def _run_in_folder(path: Path, case: Case, folder: RunFolder, *, csv: bool, mat: bool, figures: bool) -> None:
+    """Simulate a case and write its results to a reserved folder."""
+    out, checkpoint = folder.out, folder.checkpoint
+    # Files of an earlier run of the same case are written again, so that all files belong to one run.
+    csv |= "motion.csv" in folder.rewritten
+    mat |= "run.mat" in folder.rewritten
+    figures |= "motion.png" in folder.rewritten
+    names = _result_names(case, csv=csv, mat=mat, figures=figures)
+    check_overwrite(out, names)
     written: list[str] = []
-    in_place = place.folder == out
+    installed = folder.folder == out
     try:
-        run = _simulated(case, place)
+        run = _simulate(case, folder)
         if run.status == "interrupted" and case.particle_dampers:
             typer.echo(printable(run.message), err=True)
             sys.exit(STOPPED)
-        if in_place:
-            note_begun(out, names)
+        if installed:
+            register_names(out, names)
         if case.output.snapshots:
             written.append(SNAPSHOTS)
-        for name in _write(run, place.folder, csv=csv, mat=mat, figures=figures):
+        for name in _write(run, folder.folder, csv=csv, mat=mat, figures=figures):
             written.append(name)
         unfinished = bool(case.particle_dampers) and run.status not in ("finished", "energy_error")
-        checkpoint = place.finish(written, keep_checkpoint=unfinished)
-        in_place = True
-    except CheckpointMismatch as refused:
-        replacing = "--replace, " if checkpoint == out / CHECKPOINT else ""
-        raise DataError(refused.complaint, f"another -o folder, {replacing}{refused.suggestion}") from None
+        checkpoint = folder.finish(written, keep_checkpoint=unfinished)
+        installed = True
+    except CheckpointMismatch as error:
+        option = "--replace, " if checkpoint == out / CHECKPOINT else ""
+        raise DataError(error.complaint, f"another -o folder, {option}{error.suggestion}") from None
     except Hint as hint:
         raise CaseError(f"{path}: {hint}") from None
     except KeyboardInterrupt:
-        typer.echo(f"stopped; {_kept(checkpoint, out, written if in_place else ())}", err=True)
+        typer.echo(f"stopped; {_stop_message(checkpoint, out, written if installed else ())}", err=True)
         sys.exit(STOPPED)
-    console = terminal()  # last, since who reads may have gone
+    # The summary comes last, since the reader of a pipe may have closed it.
+    console = terminal()
     console.print(run.summary())
     console.print(f"written to {out}: {', '.join(written)}", soft_wrap=True)
     if not run.ok:
-        told = terminal(stderr=True)
-        told.print(Text.assemble((run.status, "bold"), f": {run.message}"), soft_wrap=True)
+        errors = terminal(stderr=True)
+        errors.print(Text.assemble((run.status, "bold"), f": {run.message}"), soft_wrap=True)
         if checkpoint.is_file():
-            needed = "another -o folder, or --replace" if checkpoint == out / CHECKPOINT else "another --checkpoint"
-            told.print(f"{checkpoint} is kept; a case that you have changed needs {needed}", soft_wrap=True)
+            option = "another -o folder, or --replace" if checkpoint == out / CHECKPOINT else "another --checkpoint"
+            errors.print(f"{checkpoint} remains; to run a changed case, use {option}", soft_wrap=True)
         sys.exit(1)
 
 
-def _names(case: Case, *, csv: bool, mat: bool, figures: bool) -> list[str]:
+def _result_names(case: Case, *, csv: bool, mat: bool, figures: bool) -> list[str]:
     """Return the names of the files that a run of a case writes."""
     engine: Engine = "dem" if case.particle_dampers else "impact"
     names = [SNAPSHOTS] if case.output.snapshots else []
@@ -173,7 +188,7 @@ def _names(case: Case, *, csv: bool, mat: bool, figures: bool) -> list[str]:
 
 
 def _write(run: Run, folder: Path, *, csv: bool, mat: bool, figures: bool) -> Iterator[str]:
-    """Write files one after the other, and give the name of each when it is there."""
+    """Write the result files one after the other, and yield the name of each when it is complete."""
     run.save(folder / RUN)
     yield RUN
     if mat:
@@ -187,8 +202,8 @@ def _write(run: Run, folder: Path, *, csv: bool, mat: bool, figures: bool) -> It
             yield f"{name}.png"
 
 
-def _kept(checkpoint: Path, out: Path, written: Sequence[str]) -> str:
-    """What there is of a run that was stopped."""
+def _stop_message(checkpoint: Path, out: Path, written: Sequence[str]) -> str:
+    """Return which files a stopped run leaves, and how to resume it."""
     if checkpoint.is_file():
-        return f"the same command goes on from {checkpoint}"
-    return f"written to {out}: {', '.join(written)}" if written else "nothing is kept yet"
+        return f"repeat the command to resume from {checkpoint}"
+    return f"written to {out}: {', '.join(written)}" if written else "no results were written"

@@ -1,4 +1,4 @@
-"""`rattlebox show` of a run on disk: how it ended, its numbers and its files."""
+"""`rattlebox show` of a run on disk: its origin, summary and files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rattlebox.results import load
 
 
 def show_run(path: Path) -> None:
-    """Print where a run comes from, its summary with its notes, and the files beside it.
+    """Print the date, version and platform of a run, its summary with its notes, and the files in its folder.
 
     Parameters
     ----------
@@ -23,37 +23,42 @@ def show_run(path: Path) -> None:
     Raises
     ------
     DataError
-        When there is no such file, or it holds something else.
+        If the file does not exist or is not a run.
     """
     console, file = terminal(), path / RUN if path.is_dir() else path
     files = f"  files: {', '.join(files_in(file.parent))}" if file.name == RUN else ""
     if path.is_dir() and not file.is_file():
-        goes_on = (path / CHECKPOINT).is_file()
-        what = "a run that is not over" if goes_on else f"files of a run, without its {RUN}"
-        console.print(Text.assemble((str(path), "bold"), f": {what}"), soft_wrap=True)
-        told = "The command that began it goes on." if goes_on else f"rattlebox plot {path / SNAPSHOTS} draws it."
-        console.print(f"{files}\n  {told}" if goes_on or (path / SNAPSHOTS).is_file() else files, soft_wrap=True)
+        unfinished = (path / CHECKPOINT).is_file()
+        title = "an unfinished run" if unfinished else f"files of a run, without {RUN}"
+        console.print(Text.assemble((str(path), "bold"), f": {title}"), soft_wrap=True)
+        console.print(files, soft_wrap=True)
+        if unfinished:
+            console.print("  Repeat the command that started the run to resume it.", soft_wrap=True)
+        elif (path / SNAPSHOTS).is_file():
+            console.print(f"  To draw the snapshots: rattlebox plot {path / SNAPSHOTS}", soft_wrap=True)
         _show_replacements(path)
         return
     if not file.exists():
-        raise DataError(f"there is no file {file}", "the folder that 'rattlebox run -o' wrote")
+        raise DataError(f"{file} does not exist", "the folder that 'rattlebox run -o' wrote")
     run = load(file)
-    came = run.provenance
-    made = f"run of {came.created[:16].replace('T', ' ')} UTC, Rattlebox {came.version}, {came.platform}"
-    console.print(Text.assemble((str(path), "bold"), f": {made}"), soft_wrap=True)
+    origin = run.provenance
+    title = f"run of {origin.created[:16].replace('T', ' ')} UTC, Rattlebox {origin.version}, {origin.platform}"
+    console.print(Text.assemble((str(path), "bold"), f": {title}"), soft_wrap=True)
     console.print(run.summary())
     if files:
         console.print(files, soft_wrap=True)
         if (file.parent / CHECKPOINT).is_file():
-            console.print(
-                f"  {CHECKPOINT}: a run that takes its place is not over; its command continues it.", soft_wrap=True
-            )
+            _print_replacement(CHECKPOINT)
         _show_replacements(file.parent)
 
 
 def _show_replacements(folder: Path) -> None:
-    """Print which runs were begun to replace the one in a folder."""
+    """Print the unfinished runs that will replace the one in a folder."""
     for path in replacements(folder):
-        terminal().print(
-            f"  {path.name}: a run that takes its place is not over; its command continues it.", soft_wrap=True
-        )
+        _print_replacement(path.name)
+
+
+def _print_replacement(name: str) -> None:
+    terminal().print(
+        f"  {name}: an unfinished run that replaces this one; repeat its command to resume", soft_wrap=True
+    )

@@ -1,4 +1,4 @@
-"""`rattlebox sweep`: one study file."""
+"""`rattlebox sweep`: run one study file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from rich.text import Text
 from rattlebox._util.exceptions import RattleboxError, ResourceError
 from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.text import printable
-from rattlebox.cli.show import statuses, warned
+from rattlebox.cli.exit_codes import STOPPED
+from rattlebox.cli.show import status_lines
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.plausibility import plausibility_notes
 from rattlebox.studies.runner import Stopped
@@ -22,7 +23,7 @@ from rattlebox.studies.study_file import read_study
 
 
 def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | None) -> None:
-    """Run a study file into a store, or go on with one.
+    """Run a study file and store its results, or resume a stored study.
 
     Parameters
     ----------
@@ -31,35 +32,29 @@ def run_sweep(path: Path, out: Path | None, workers: int | None, dask: str | Non
     out
         Folder of the store; default named after the study file.
     workers
-        Threads of this process; default what the study file says, or one for each core.
+        Number of threads of this process; default that of the study file, or one per core.
     dask
-        Address of a Dask scheduler, or the file that it wrote, to run there instead.
+        Address or scheduler file of a Dask cluster on which to run instead.
     """
     if dask and workers:
-        raise typer.BadParameter("counts threads of this machine; with --dask, the cluster's workers run the study")
+        raise typer.BadParameter("--workers counts threads of this machine; --dask runs on the workers of the cluster")
     study = read_study(path)
     out = out or path.with_suffix(".zarr")
-    for told in plausibility_notes(study.case, signals=False):
-        typer.echo(printable(f"{path}: {told}"), err=True)
+    for note in plausibility_notes(study.case, signals=False):
+        typer.echo(printable(f"{path}: {note}"), err=True)
     try:
-        with _cluster(dask) as client, _naming(path, out):
-            where = {"backend": client, "workers": None} if client else {"workers": workers} if workers else {}
-            result = study.run(store=out, **where)
+        with _cluster(dask) as client, _error_context(path, out):
+            backend = {"backend": client, "workers": None} if client else {"workers": workers} if workers else {}
+            result = study.run(store=out, **backend)
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)
-        sys.exit(130)
-    console = terminal()
-    counts = statuses(result)
-    told = ", ".join(f"{count:,} {name}" for name, count in counts.items())
-    told = f"{sum(counts.values()):,} variants: {told}\n" if counts else ""
-    refused = f"refused, as with {result.attrs['refused']}\n" if "refused" in result.attrs else ""
-    warnings = "".join(f"{line}\n" for line in warned(result))
-    console.print(Text(f"{told}{refused}{warnings}written to {out}"), soft_wrap=True)
+        sys.exit(STOPPED)
+    terminal().print(Text("\n".join([*status_lines(result), f"written to {out}"])), soft_wrap=True)
 
 
 @contextmanager
-def _naming(study: Path, out: Path) -> Iterator[None]:
-    """Add to what is wrong with a study its file, unless it is about the folder of results."""
+def _error_context(study: Path, out: Path) -> Iterator[None]:
+    """Prefix errors with the study file, except those that name it or the results folder already."""
     try:
         yield
     except RattleboxError as error:
@@ -74,13 +69,13 @@ def _cluster(address: str | None) -> Iterator[Any]:
         yield None
         return
     distributed = optional_import("distributed", "cluster")
-    where = {"scheduler_file": address} if Path(address).is_file() else {"address": address}
+    target = {"scheduler_file": address} if Path(address).is_file() else {"address": address}
     try:
-        client: Any = distributed.Client(**where, timeout=10)
+        client: Any = distributed.Client(**target, timeout=10)
     except (OSError, ValueError, TypeError) as error:
         raise ResourceError(
-            f"no Dask scheduler answers at {address}: {error}\n  try: the address that 'dask scheduler' printed, "
-            "as tcp://10.0.0.1:8786"
+            f"no Dask scheduler responds at {address}: {error}\n  try: the address that 'dask scheduler' printed, "
+            "such as tcp://10.0.0.1:8786"
         ) from None
     with client:
         yield client

@@ -1,4 +1,4 @@
-"""What commands print on."""
+"""Consoles on which the commands print."""
 
 from __future__ import annotations
 
@@ -12,20 +12,25 @@ from rattlebox._util.text import printable
 
 
 class _Printable(Console):
-    """Console without the control characters that texts hold; results of others may have any."""
+    """Console that replaces control characters, which files from elsewhere may contain."""
 
     def render(self, renderable: Any, options: Any = None) -> Iterable[Segment]:
-        """Return what is printed."""
+        """Return the segments to print."""
         for segment in super().render(renderable, options):
             yield segment if segment.control else segment._replace(text=printable(segment.text))
 
 
 def terminal(*, stderr: bool = False) -> Console:
-    """Return a console that prints texts as they are: names of files and parts may hold square brackets and colons.
+    """Return a console without markup, since names of files and parts may contain square brackets and colons.
 
     Parameters
     ----------
     stderr
-        Print where errors go.
+        Whether to print on standard error.
+
+    Returns
+    -------
+    Console
+        Console of rich.
     """
     return _Printable(stderr=stderr, highlight=False, markup=False, emoji=False)

@@ -156,7 +156,7 @@ def select(study: xr.Dataset, at: Mapping[str, Any]) -> tuple[xr.Dataset, str]:
     return study, ", ".join(words)
 
 
-def taken_instead(study: xr.Dataset, at: Mapping[str, Any]) -> list[str]:
+def nearest_value_notes(study: xr.Dataset, at: Mapping[str, Any]) -> list[str]:
     """Tell where `select` takes another value than the one that is asked for.
 
     Parameters

@@ -552,7 +552,7 @@ def test_the_command_goes_on(number: int, tmp_path: Path) -> None:
     assert "out/run.checkpoint" in said
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    assert "going on from out/run.checkpoint" in done.stderr
+    assert "resuming from out/run.checkpoint" in done.stderr
     assert "written to out: run.vtkhdf, run.nc" in done.stdout
     assert {path.name for path in (tmp_path / "out").iterdir()} == {MARKER, "run.nc", "run.vtkhdf"}
     assert len(Snapshots(tmp_path / "out/run.vtkhdf")) == 11

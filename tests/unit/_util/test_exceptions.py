@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import rattlebox as rb
-from rattlebox.cli.commands import carry_out
+from rattlebox.cli.commands import run_command
 from rattlebox.cli.main import main
 
 CASE = """
@@ -104,6 +104,6 @@ def test_every_class_ends_the_command_alike(
     monkeypatch.setattr("rattlebox.cli.materials.show_materials", fails)
     monkeypatch.setattr(sys, "argv", ["rattlebox", "materials"])
     with pytest.raises(SystemExit) as end:
-        carry_out()
+        run_command()
     assert end.value.code == 2
     assert capsys.readouterr().err == "error: it is wrong\n  try: something else\n"

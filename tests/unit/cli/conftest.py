@@ -1,4 +1,4 @@
-"""The command in an empty folder."""
+"""Fixtures that run the command in an empty folder."""
 
 import sys
 from collections.abc import Callable
@@ -8,12 +8,12 @@ import pytest
 
 from rattlebox.cli.main import main
 
-Answer = Callable[..., tuple[int | str | None, str, str]]
+RunCli = Callable[..., tuple[int | str | None, str, str]]
 
 
 @pytest.fixture
-def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Answer:
-    """Run the command in an empty folder; return its exit code, what it prints, and what it says."""
+def run_cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> RunCli:
+    """Return a function that runs the command in an empty folder and returns exit code, standard output and errors."""
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments: object) -> tuple[int | str | None, str, str]:

@@ -1,6 +1,5 @@
-"""Ready maps from study files: run, shown and drawn by the commands."""
+"""Tests of the commands with study files of all kinds."""
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,9 +9,10 @@ import pytest
 import xarray as xr
 
 import rattlebox as rb
-from rattlebox.cli.main import main
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.study_file import read_study
+
+from .conftest import RunCli
 
 CASES = {
     "shaken.toml": """\
@@ -120,94 +120,85 @@ STUDIES: dict[str, tuple[str, str, Callable[[rb.Case], xr.Dataset]]] = {
     ),
 }
 
-Answer = Callable[..., tuple[int | str | None, str, str]]
 
-
-@pytest.fixture
-def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Answer:
-    """Run the command beside the case files; return its exit code, what it prints, and what it says."""
-    monkeypatch.chdir(tmp_path)
+@pytest.fixture(autouse=True)
+def case_files(run_cli: RunCli) -> None:
+    """Write the case files to the current folder."""
     for name, text in CASES.items():
         Path(name).write_text(text)
 
-    def run(*arguments: object) -> tuple[int | str | None, str, str]:
-        monkeypatch.setattr(sys, "argv", ["rattlebox", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        return stop.value.code or 0, *capsys.readouterr()
-
-    return run
-
 
 def study(kind: str) -> str:
-    """A study file of a kind."""
+    """Return the text of a study file of a kind."""
     case, text, _ = STUDIES[kind]
     return f'kind = "{kind}"\ncase = "{case}"\n{text}\n'
 
 
 @pytest.mark.parametrize("kind", STUDIES)
-def test_a_map_from_a_file(kind: str, answer: Answer) -> None:
-    """A study file of a ready map gives what the function returns, to the last bit; it is shown, drawn, and gone on with."""
+def test_study_file_of_each_kind(kind: str, run_cli: RunCli) -> None:
+    """The stored study equals the result of the function bit by bit; the commands show, draw and repeat it."""
     Path("study.toml").write_text(study(kind))
-    code, told, said = answer("sweep", "study.toml", "-o", "study.zarr", "--workers", 2)
-    assert (code, said) == (0, "")
-    assert told.endswith("written to study.zarr\n")
-    found = rb.open_study("study.zarr").load()
+    code, printed, errors = run_cli("sweep", "study.toml", "-o", "study.zarr", "--workers", 2)
+    assert (code, errors) == (0, "")
+    assert printed.endswith("written to study.zarr\n")
+    stored = rb.open_study("study.zarr").load()
     exact = STUDIES[kind][2](rb.Case.from_file(STUDIES[kind][0]))
-    assert list(found) == list(exact)
+    assert list(stored) == list(exact)
     for name, values in exact.variables.items():
-        np.testing.assert_array_equal(found[name].values.astype(values.dtype), values.values)
-        assert found[name].attrs == values.attrs
-    assert found.attrs["study"] == kind
-    code, told, said = answer("show", "study.zarr")
-    assert (code, said) == (0, "")
-    assert told.startswith(f"study.zarr: {kind.replace('_', ' ')}, ")
-    assert "goes on" not in told
-    assert answer("plot", "study.zarr", "-o", "a.png") == (0, "written: a.png\n", "")
-    assert answer("plot", "study.zarr", "-o", "b.svg", "--kind", kind, "--size", "page")[0] == 0
+        np.testing.assert_array_equal(stored[name].values.astype(values.dtype), values.values)
+        assert stored[name].attrs == values.attrs
+    assert stored.attrs["study"] == kind
+    code, printed, errors = run_cli("show", "study.zarr")
+    assert (code, errors) == (0, "")
+    assert printed.startswith(f"study.zarr: {kind.replace('_', ' ')}, ")
+    assert "not finished" not in printed
+    assert run_cli("plot", "study.zarr", "-o", "a.png") == (0, "written: a.png\n", "")
+    assert run_cli("plot", "study.zarr", "-o", "b.svg", "--kind", kind, "--size", "page")[0] == 0
     assert Path("a.png").stat().st_size > 5000
-    assert answer("sweep", "study.toml", "-o", "study.zarr")[0] == 0
-    assert rb.open_study("study.zarr").load().identical(found)
+    assert run_cli("sweep", "study.toml", "-o", "study.zarr")[0] == 0
+    assert rb.open_study("study.zarr").load().identical(stored)
 
 
-def test_measures_of_a_map_as_any_study(answer: Answer) -> None:
-    """Measures of a ready map are drawn over its axes, quantities are chosen, and others refused."""
+def test_measures_of_a_loss_map(run_cli: RunCli) -> None:
+    """Measures are drawn over the axes of the map; unsuitable kinds and measures end with exit code 2."""
     Path("study.toml").write_text(study("loss_map"))
-    answer("sweep", "study.toml")
-    assert answer("plot", "study.zarr", "--kind", "lines", "--of", "loss_per_cycle")[0] == 0
+    run_cli("sweep", "study.toml")
+    assert run_cli("plot", "study.zarr", "--kind", "lines", "--of", "loss_per_cycle")[0] == 0
     for options, words in (
-        (["--kind", "basins"], "which holds a loss map"),
+        (["--kind", "basins"], "this study is a loss map"),
         (["--kind", "basin"], "did you mean 'basins'"),
-        (["--of", "loss_factor"], "shows all that there is"),
+        (["--of", "loss_factor"], "has no choice of measures"),
     ):
-        code, _, said = answer("plot", "study.zarr", "-o", "none.png", *options)
-        assert code == 2 and words in said
+        code, _, errors = run_cli("plot", "study.zarr", "-o", "none.png", *options)
+        assert code == 2 and words in errors
     assert not Path("none.png").exists()
 
 
-def test_quantities_of_a_diagram(answer: Answer) -> None:
-    """What a diagram shows can be chosen."""
+def test_quantities_of_a_bifurcation_diagram(run_cli: RunCli) -> None:
+    """The quantity of a diagram can be chosen."""
     Path("study.toml").write_text(study("bifurcation"))
-    answer("sweep", "study.toml")
-    assert answer("plot", "study.zarr", "--of", "impact_phase")[0] == 0
-    code, _, said = answer("plot", "study.zarr", "--of", "impact_phas")
-    assert code == 2 and "did you mean 'impact_phase'" in said
+    run_cli("sweep", "study.toml")
+    assert run_cli("plot", "study.zarr", "--of", "impact_phase")[0] == 0
+    code, _, errors = run_cli("plot", "study.zarr", "--of", "impact_phas")
+    assert code == 2 and "did you mean 'impact_phase'" in errors
 
 
-def test_a_design_without_a_best_trial_is_shown(answer: Answer) -> None:
-    """Where every trial is too heavy there is no best one to list, and nothing is told of its case."""
+def test_design_without_a_feasible_trial(run_cli: RunCli) -> None:
+    """If every trial exceeds the mass limit, show lists no best trial."""
     Path("study.toml").write_text(
         study("design").replace('kind = "design"', 'kind = "design"\nmax_added_mass = "1 mg"')
     )
-    assert answer("sweep", "study.toml")[0] == 0
-    code, out, _ = answer("show", "study.zarr")
+    assert run_cli("sweep", "study.toml")[0] == 0
+    code, out, _ = run_cli("show", "study.zarr")
     assert code == 0 and "best trial" not in out and "case file" not in out
-    assert answer("plot", "study.zarr")[0] == 0
+    assert run_cli("plot", "study.zarr")[0] == 0
 
 
-@pytest.mark.parametrize(("kind", "after", "told"), [("bifurcation", 1, "3 of 18 variants"), ("design", 2, "2 trials")])
-def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer) -> None:
-    """A map that was stopped tells how far it is, cannot be drawn as one yet, and the command finishes it."""
+@pytest.mark.parametrize(
+    ("kind", "after", "progress"), [("bifurcation", 1, "3 of 18 variants"), ("design", 2, "2 trials")]
+)
+def test_stopped_study(kind: str, after: int, progress: str, run_cli: RunCli) -> None:
+    """Show prints the progress of a stopped study; its own figure needs all runs; the same command finishes it."""
     Path("study.toml").write_text(study(kind))
 
     def stop(done: int, total: int) -> None:
@@ -216,18 +207,18 @@ def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer)
 
     with pytest.raises(Stopped):
         read_study("study.toml").run(store="study.zarr", progress=stop)
-    code, out, _ = answer("show", "study.zarr")
-    assert code == 0 and told in out and "The command that began it goes on." in out
-    code, _, said = answer("plot", "study.zarr", "--kind", kind)
-    assert code == 2, said
-    assert answer("sweep", "study.toml")[0] == 0
-    finished = answer("show", "study.zarr")[1]
-    assert "goes on" not in finished
+    code, out, _ = run_cli("show", "study.zarr")
+    assert code == 0 and progress in out and "not finished" in out
+    code, _, errors = run_cli("plot", "study.zarr", "--kind", kind)
+    assert code == 2, errors
+    assert run_cli("sweep", "study.toml")[0] == 0
+    finished = run_cli("show", "study.zarr")[1]
+    assert "not finished" not in finished
     assert ("best trial" in finished) == (kind == "design")
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         (study("bifurcation").replace("bifurcation", "bifurcations"), "did you mean 'bifurcation'"),
         (study("bifurcation").replace("show", "shown"), "did you mean 'show'"),
@@ -245,12 +236,12 @@ def test_maps_that_are_stopped(kind: str, after: int, told: str, answer: Answer)
         (study("sensitivity").replace("reduced_loss", "reduced_los"), "did you mean 'reduced_loss'"),
     ],
 )
-def test_mistakes_are_told(content: str, said: str, answer: Answer) -> None:
-    """What does not fit ends with exit code 2, what is allowed, no traceback and nothing written."""
+def test_mistakes_in_study_files(content: str, message: str, run_cli: RunCli) -> None:
+    """A mistake ends with exit code 2 and the allowed values; nothing is written."""
     Path("study.toml").write_text(content)
     before = sorted(Path().iterdir())
-    code, _, message = answer("sweep", "study.toml")
+    code, _, errors = run_cli("sweep", "study.toml")
     assert code == 2
-    assert said in message
-    assert len(message.splitlines()) < 24
+    assert message in errors
+    assert len(errors.splitlines()) < 24
     assert sorted(Path().iterdir()) == before

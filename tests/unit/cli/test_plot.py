@@ -1,23 +1,21 @@
-"""The command plot: figures of studies on disk."""
+"""Tests of `rattlebox plot`: figures of studies on disk."""
 
-import sys
-from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 import rattlebox as rb
-from rattlebox.cli.main import main
+
+from .conftest import RunCli
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "steel_ball.toml"
-STARTS = {b"\x89PNG": "map.png", b"<?xml": "map.svg", b"%PDF": "map.pdf"}
-
-Answer = Callable[..., tuple[int | str | None, str, str]]
+SIGNATURES = {b"\x89PNG": "map.png", b"<?xml": "map.svg", b"%PDF": "map.pdf"}
 
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A study over three axes."""
+    """Return the folder of a study over three axes."""
     store = tmp_path_factory.mktemp("study") / "study.zarr"
     case = rb.Case.from_file(EXAMPLE).model_copy(update={"duration": 0.2})
     axes = {
@@ -30,31 +28,23 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Answer:
-    """Run the command in an empty folder; return its exit code, what it prints, and what it says."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: object) -> tuple[int | str | None, str, str]:
-        monkeypatch.setattr(sys, "argv", ["rattlebox", "plot", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        return stop.value.code or 0, *capsys.readouterr()
-
-    return run
+def plot(run_cli: RunCli) -> RunCli:
+    """Return a function that runs `rattlebox plot` in an empty folder."""
+    return partial(run_cli, "plot")
 
 
-def test_writes_every_format(study: Path, answer: Answer) -> None:
-    """A map or lines are written as PNG, SVG or PDF, and the file is told."""
-    for begin, name in STARTS.items():
+def test_writes_every_format(study: Path, plot: RunCli) -> None:
+    """Maps and lines are written as PNG, SVG or PDF, and the name of the file is printed."""
+    for signature, name in SIGNATURES.items():
         at = ["--at", "damper.start=0", "--of", "impacts", "--kind", "map", "--size", "page"]
-        assert answer(study, "-o", name, *at) == (0, f"written: {name}\n", "")
-        assert Path(name).read_bytes().startswith(begin)
+        assert plot(study, "-o", name, *at) == (0, f"written: {name}\n", "")
+        assert Path(name).read_bytes().startswith(signature)
     some = ["--at", "damper.start=-1", "--at", "load.amplitude=5 kN"]
-    assert answer(study, *some) == (0, "written: study.png\n", "")
+    assert plot(study, *some) == (0, "written: study.png\n", "")
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         ([], "two axes can be drawn\n  try: at damper.start = -1"),
         (["--at", "damper.start"], 'try: --at "load.amplitude=5 kN"'),
@@ -62,52 +52,51 @@ def test_writes_every_format(study: Path, answer: Answer) -> None:
         (["--at", "damper.start=0", "--kind", "maps"], "did you mean 'map'"),
         (["--at", "damper.start=0", "--of", "impact"], "did you mean 'impacts'"),
         (["--size", "poster"], "column, page, slide"),
-        (["--number", "2"], "--number 2: this applies to snapshots of a run, run.vtkhdf"),
+        (["--number", "2"], "which has no snapshots"),
         (["-o", "map.jpg"], ".png, .svg, .pdf"),
-        (["-o", "nowhere/map.png"], "there is no folder nowhere"),
+        (["-o", "nowhere/map.png"], "the folder nowhere does not exist"),
     ],
 )
-def test_clear_refusals(study: Path, answer: Answer, options: list[str], said: str) -> None:
-    """What cannot be drawn ends with exit code 2 and what to try, and no file."""
-    code, out, err = answer(study, *options)
+def test_options_that_do_not_apply(study: Path, plot: RunCli, options: list[str], message: str) -> None:
+    """A figure that cannot be drawn ends with exit code 2 and a suggestion, and no file is written."""
+    code, out, err = plot(study, *options)
     assert (code, out) == (2, "")
-    assert said in err
+    assert message in err
     assert list(Path().iterdir()) == []
 
 
-def test_the_value_that_is_taken_is_told(study: Path, answer: Answer) -> None:
-    """Where the study lacks the value of --at, the nearest is drawn and told; one that it holds is not told."""
+def test_the_nearest_value_is_printed(study: Path, plot: RunCli) -> None:
+    """For a value of --at that is not in the study, the nearest one is drawn and printed."""
     near = ["--at", "damper.start=-0.9", "--at", "load.amplitude=4.5 kN"]
-    told = (
-        "damper.start = -1, the nearest to -0.9 in the study\n"
-        "load.amplitude = 5 kN, the nearest to 4.5 kN in the study\n"
-    )
-    assert answer(study, *near, "-o", "a.png") == (0, f"{told}written: a.png\n", "")
+    code, printed, errors = plot(study, *near, "-o", "a.png")
+    start, amplitude, written = printed.splitlines()
+    assert (code, written, errors) == (0, "written: a.png", "")
+    assert start.startswith("damper.start = -1,") and amplitude.startswith("load.amplitude = 5 kN,")
     exact = ["--at", "damper.start=-1.0", "--at", "load.amplitude=5000"]
-    assert answer(study, *exact, "-o", "b.png") == (0, "written: b.png\n", "")
+    assert plot(study, *exact, "-o", "b.png") == (0, "written: b.png\n", "")
     assert Path("a.png").read_bytes() == Path("b.png").read_bytes()
 
 
-def test_the_usual_file_is_told(study: Path, answer: Answer) -> None:
-    """Without -o a figure is study.png or run.png in the current folder; where that takes the place of a file it is told."""
+def test_default_file(study: Path, plot: RunCli) -> None:
+    """Without -o the file is study.png or run.png in the current folder; replacing an existing file is printed."""
     rb.simulate(rb.Case.from_file(EXAMPLE).model_copy(update={"duration": 0.05})).save("first.nc")
     at = ["--at", "damper.start=0", "--kind", "lines"]
     for name, arguments in (("study.png", [study, *at]), ("run.png", ["first.nc"])):
-        assert answer(*arguments) == (0, f"written: {name}\n", "")
+        assert plot(*arguments) == (0, f"written: {name}\n", "")
         Path(name).write_text("somebody's")
-        told = f"written: {name}, in the place of an earlier one; -o names another file\n"
-        assert answer(*arguments) == (0, told, "")
+        code, printed, errors = plot(*arguments)
+        assert (code, errors) == (0, "") and printed.startswith(f"written: {name} (replaced")
         assert Path(name).read_bytes().startswith(b"\x89PNG")
-        assert answer(*arguments, "-o", name) == (0, f"written: {name}\n", "")
+        assert plot(*arguments, "-o", name) == (0, f"written: {name}\n", "")
 
 
-def test_figure_that_cannot_be_written(study: Path, answer: Answer) -> None:
-    """The message names the file, the reason and what to try."""
+def test_figure_that_cannot_be_written(study: Path, plot: RunCli) -> None:
+    """The message contains the file, the reason and a suggestion."""
     Path("a.png").mkdir()
-    said = "error: a.png cannot be written: Is a directory\n  try: another folder\n"
-    assert answer(study, "--at", "damper.start=0", "-o", "a.png") == (2, "", said)
+    message = "error: a.png cannot be written: Is a directory\n  try: another folder\n"
+    assert plot(study, "--at", "damper.start=0", "-o", "a.png") == (2, "", message)
 
 
-def test_no_study(answer: Answer) -> None:
-    """A folder that is not there is told."""
-    assert answer("nothing.zarr")[0] == 2
+def test_no_study(plot: RunCli) -> None:
+    """A folder that does not exist ends with exit code 2."""
+    assert plot("nothing.zarr")[0] == 2

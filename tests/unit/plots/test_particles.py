@@ -265,7 +265,7 @@ def test_the_command_draws_what_is_in_a_folder(
     assert Path("a.gif").read_bytes().startswith(b"GIF89a")
     Path("bare").mkdir()
     Path("bare/run.nc").write_bytes((folder / "run.nc").read_bytes())
-    said = "error: there is no file bare/run.vtkhdf\n  try: output.snapshots in the case\n"
+    said = "error: bare/run.vtkhdf does not exist\n  try: output.snapshots in the case\n"
     assert answer(monkeypatch, capsys, "bare", "-o", "b.gif") == (2, "", said)
 
 
@@ -294,39 +294,42 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
     monkeypatch.setattr(_Scene, "show", press)
     (tmp_path / name).write_text("an earlier film")
     code, out, err = answer(monkeypatch, capsys, run[1], "-o", tmp_path / name)
-    assert (code, out, err) == (130, "", f"stopped; {tmp_path / name} is not written\n")
+    assert (code, out, err) == (130, "", f"stopped; {tmp_path / name} was not written\n")
     assert [path.read_text() for path in tmp_path.iterdir()] == ["an earlier film"]
 
 
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["run.nc", "-o", "a.gif"], "a film needs snapshots\n  try: run.vtkhdf"),
-        (["run.nc", "--number", "1"], "--number: a run has no snapshots\n  try: run.vtkhdf beside it"),
+        (["run.nc", "-o", "a.gif"], "a film needs the snapshots in run.vtkhdf\n  try: run.vtkhdf"),
+        (["run.nc", "--number", "1"], "--number 1: run.nc has no snapshots\n  try: run.vtkhdf"),
         (
             ["run.nc", "--kind", "impacts"],
-            "--kind impacts: there is no such kind here\n  known: energy, motion, particles",
+            "--kind impacts: this run has no such figure\n  known: energy, motion, particles",
         ),
         (["run.vtkhdf", "--number", "5"], "holds 5 snapshots; 5 is not from 0 to 4"),
-        (["run.vtkhdf", "-o", "a.jpg"], "the ending must be one of .png, .svg, .pdf, .gif, .mp4"),
-        (["run.vtkhdf", "--size", "wide"], "--size wide: there is no such size"),
+        (["run.vtkhdf", "-o", "a.jpg"], "the suffix must be one of .png, .svg, .pdf, .gif, .mp4"),
+        (["run.vtkhdf", "--size", "wide"], "--size wide: unknown size"),
         (["run.vtkhdf", "--number", "0", "-o", "a.gif"], "--number 0: a film shows all snapshots\n  try: -o a.png"),
         (
             ["run.vtkhdf", "--kind", "motion", "-o", "a.gif"],
-            "--kind motion: a film shows particles\n  try: run.nc, -o a.png",
+            "--kind motion: a film can only show particles\n  try: run.nc, -o a.png",
         ),
-        (["run.nc", "--of", "loss"], "--of loss: this applies to a study, and run.nc is a run\n  try: --kind"),
-        (["run.vtkhdf", "--at", "x=1"], "--at x=1: this applies to a study, and run.vtkhdf is a run\n  try: --number"),
-        (["nope.nc"], "nope.nc is not there\n  try: the folder that 'rattlebox run -o' or"),
+        (["run.nc", "--of", "loss"], "--of loss: this option is for studies, and run.nc is a run\n  try: --kind"),
+        (
+            ["run.vtkhdf", "--at", "x=1"],
+            "--at x=1: this option is for studies, and run.vtkhdf is a run\n  try: --number",
+        ),
+        (["nope.nc"], "nope.nc does not exist\n  try: the folder that 'rattlebox run -o' or"),
         (
             [".", "-o", "a.gif", "--size", "page"],
-            "--size page: films have a number of pixels\n  try: --pixels 1280x720",
+            "--size page: the size of films is in pixels\n  try: --pixels 1280x720",
         ),
         ([".", "-o", "a.gif", "--pixels", "big"], "--pixels big: two numbers are needed\n  try: --pixels 1280x720"),
-        ([".", "--pixels", "320x180"], "--pixels 320x180: this applies to films"),
-        ([".", "--kind", "energy", "--colour", "spin"], "--colour spin: this applies to pictures of particles"),
+        ([".", "--pixels", "320x180"], "--pixels 320x180: this option is for films"),
+        ([".", "--kind", "energy", "--colour", "spin"], "--colour spin: this option is for pictures of particles"),
         ([".", "--kind", "particles", "--view", "below"], "view 'below' is not one of 'oblique', 'front'"),
-        ([".", "--kind", "impacts"], "--kind impacts: there is no such kind here\n  known: energy, motion, particles"),
+        ([".", "--kind", "impacts"], "--kind impacts: this run has no such figure\n  known: energy, motion, particles"),
     ],
 )
 def test_wrong_arguments_are_told(
