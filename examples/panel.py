@@ -16,6 +16,7 @@ panel = rb.Modal.from_file(
     Path(__file__).parent / "data" / "panel.uff",
     points={"middle": "1 z"},
     participation=[1.6847, 0.5616, 0.5616],  # phi^T M r [kg^1/2], from the model: a universal file has none
+    total_mass="4.32 kg",
 )
 damper = rb.ParticleDamper(
     particles=rb.Particles(material="steel", diameter="5 mm", fill_ratio=0.5),
@@ -51,4 +52,4 @@ axes.set_xticks(np.arange(level.size) + 0.2, level.nominal.values, rotation=90)
 axes.set(xlabel="Third-octave band (Hz)", ylabel="RMS acceleration ($g_0$)")
 axes.legend()
 figure.savefig("panel.png", dpi=200)
-assert np.allclose(list(found.values()), [(53.5, 964), (29.3, 613)], rtol=0.12)
+assert np.allclose(list(found.values()), [(53.5, 973), (29.3, 626)], rtol=0.12)

@@ -51,8 +51,10 @@ def responses(
     Notes
     -----
     The modal acceleration is q'' = f - D p - k q with the modal forces f of loads, contacts and base, the damping matrix D
-    and the stiffness k. The force on the base is L . (D p + k q) with the participation L: the force in springs and
-    dashpots, without the inertia of truncated modes. For a fixed cavity it is the contact force.
+    and the stiffness k. The force on the base is L . (D p + k q) - R a with the participation L: the force in springs and
+    dashpots, and the truncated modes, which follow the acceleration a of the base without vibrating. Their residual mass is
+    R = r^T M r - L^T L, the total mass less the effective masses of the modes; if the total mass is unknown, the second
+    term is left out and a run warns. For a fixed cavity the force is the contact force.
 
     References
     ----------
@@ -78,7 +80,7 @@ def responses(
         "absolute_acceleration": acceleration + base_at_points(case, base),
         "modal_displacement": q,
         "modal_velocity": p,
-        "interface_force": _interface_force(modes, internal, inertia, force, base.shape),
+        "interface_force": _interface_force(case, internal, inertia, force, base),
     }
 
 
@@ -115,9 +117,20 @@ def base_at_points(case: Case, base: FloatArray) -> FloatArray:
 
 
 def _interface_force(
-    modes: ModalModel, internal: FloatArray, inertia: FloatArray | None, force: FloatArray, shape: tuple[int, ...]
+    case: Case, internal: FloatArray, inertia: FloatArray | None, force: FloatArray, base: FloatArray
 ) -> FloatArray:
     """Return the force on the base; NaN if the participation of the modes is unknown."""
+    modes = case.modes
     if not modes.decay.size:
         return np.asarray(force.sum(axis=1))
-    return np.full(shape, np.nan) if inertia is None else np.asarray(internal @ inertia)
+    if inertia is None:
+        return np.full(base.shape, np.nan)
+    residual = modes.residual_mass
+    if residual is None:
+        return np.asarray(internal @ inertia)
+    if base.ndim == 1:
+        return np.asarray(internal @ inertia - residual * base)
+    if not modes.spatial:
+        axis = unit_vector(case.particle_dampers[0].direction)
+        residual = residual * np.multiply.outer(axis, axis)
+    return np.asarray(internal @ inertia - base @ residual)

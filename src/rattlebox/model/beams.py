@@ -193,6 +193,7 @@ class Beam(DampedModes):
             participation=mass * (inside @ weight + mu * tip) / norm,
             q0=zero,
             p0=zero,
+            total_mass=mass * (1 + mu),
         )
 
     def warnings(self) -> Iterator[str]:

@@ -200,6 +200,7 @@ class Matrices(DampedModes):
             p0=zero if self.velocity is None else projection @ np.array(self.velocity),
             spatial=spatial,
             coupling=None if proportional else 0.5 * (coupling + coupling.T),
+            total_mass=None if influence is None else np.asarray(influence) @ mass @ np.transpose(influence),
         )
 
 

@@ -133,6 +133,8 @@ def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any]
         participation = _participation(found, given, fields["shapes"], scale)
         if participation is not None:
             fields["participation"] = participation[kept].tolist()
+            if given.get("total_mass") is None and found.total_mass is not None:
+                fields["total_mass"] = _total_mass(found, given, participation.ndim == 2)
     largest = max((float(np.abs(row).max()), point) for point, row in fields["shapes"].items())
     if not largest[0] > _HEAVIEST:
         raise DataError(
@@ -195,6 +197,18 @@ def _points(found: ModesInFile, given: Mapping[str, Any], name: str) -> dict[str
                 shape = shape[:, AXES.index(axis[-1])] * (-1.0 if axis[0] == "-" else 1.0)
             points[str(point)] = shape
     return points
+
+
+def _total_mass(found: ModesInFile, given: Mapping[str, Any], spatial: bool) -> Any:
+    """Return the total mass in SI; three numbers if points move in space."""
+    unit = found.mass_unit or 1.0
+    if given.get("mass_unit") is not None:
+        unit = parse(f"1 {given['mass_unit']}", ("kg",))[0]
+    masses = np.asarray(found.total_mass) * unit
+    if spatial:
+        return masses.tolist() if (masses > 0).all() else None
+    axis = str(next(iter((given.get("points") or {}).values()))).rpartition(" ")[2]
+    return float(masses[AXES.index(axis[-1])])
 
 
 def _split(text: str) -> tuple[str, str | None]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +33,8 @@ class ModalModel:
         Names of the points that move in 3-D.
     attached : frozenset of str
         Names of the points of tuned masses; the others are those of the structure.
+    total_mass : float, (3, 3) float or None
+        Mass r^T M r that moves with the base if the structure is rigid [kg]; a matrix where points move in space.
     """
 
     decay: Vector
@@ -43,6 +46,15 @@ class ModalModel:
     spatial: frozenset[str] = frozenset()
     coupling: Vector | None = None
     attached: frozenset[str] = frozenset()
+    total_mass: Any = None
+
+    @property
+    def residual_mass(self) -> Vector | None:
+        """Mass of the truncated modes [kg]: total mass less the effective masses of the modes; None if it is unknown."""
+        if self.total_mass is None or self.participation is None:
+            return None
+        rows = self.participation
+        return np.asarray(self.total_mass - (rows.T @ rows))
 
     def point(self, name: str | None) -> str:
         """Return the name of a point; None is the only point of the structure.

@@ -144,6 +144,7 @@ class Plate(DampedModes):
             participation=2 * math.sqrt(mass) * means[:, 0] * means[:, 1],
             q0=zero,
             p0=zero,
+            total_mass=mass,
         )
 
     def warnings(self) -> Iterator[str]:

@@ -19,11 +19,14 @@ from .space import Direction, unit_vector
 
 if TYPE_CHECKING:
     from .case import Case
+    from .modes import ModalModel
     from .particle_damper import ParticleDamper
 
 _GRAVITY = 9.80665  # m/s^2
 _LARGEST_BODY = 1.0  # m
 _LARGEST_FRICTION = 3.0
+_LEAST_PARTICIPATION = 1e-3
+"""Participation times shape, from which a base excites a mode: the response of a rigid structure is 1."""
 _FEWEST_SAMPLES = 4.0  # per period
 _LARGEST_DAMPING_RATIO = 0.5  # also 0.5 % without its sign
 _SMALLEST_MODULUS = 1e5  # Pa
@@ -92,6 +95,27 @@ def _check_structure(case: Case) -> Iterator[str]:
             f"{_LARGEST_DAMPING_RATIO:g}; a percentage needs its sign: 2 % is 0.02"
         )
     yield from case.structure.warnings()
+    yield from _check_participation(case, modes)
+
+
+def _check_participation(case: Case, modes: ModalModel) -> Iterator[str]:
+    """Warn of a moving base that hardly excites the modes, and of an interface force without truncated modes."""
+    if not case.base or modes.participation is None or not modes.decay.size:
+        return
+    participation = modes.participation.reshape(modes.decay.size, 1, -1)
+    shapes = [shape.reshape(modes.decay.size, -1, 1) for shape in modes.shapes.values()]
+    reach = max((float(np.abs(shape * participation).max()) for shape in shapes), default=0.0)
+    if reach < _LEAST_PARTICIPATION:
+        yield (
+            f"the motion of the base hardly excites the modes: participation times shape is {reach:.2g} at most; at least "
+            f"{_LEAST_PARTICIPATION:g} is usual; try: other modes, points or direction"
+        )
+    if modes.total_mass is None:
+        effective = float(np.max(np.sum(np.square(modes.participation), axis=0)))
+        yield (
+            f"the force on the base lacks the inertia of the modes that are left out; the modes have {effective:.4g} kg;"
+            " try: total_mass, the mass of the structure"
+        )
 
 
 def _check_signals(case: Case) -> Iterator[str]:

@@ -88,4 +88,5 @@ class ShearBuilding(DampedModes):
             participation=root @ vectors,
             q0=zero,
             p0=zero,
+            total_mass=float(root @ root),
         )

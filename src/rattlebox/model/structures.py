@@ -175,6 +175,7 @@ class SDOF(StructurePart):
             participation=stacked([root]),
             q0=stacked([self.displacement * root]),
             p0=stacked([self.velocity * root]),
+            total_mass=self.mass,
         )
 
 
@@ -265,6 +266,9 @@ class Modal(StructurePart):
     participation
         Inertia of each mode per unit of base acceleration [kg^1/2], needed for base motion; three numbers for each mode if
         points move in 3-D.
+    total_mass
+        Mass of the structure that follows the base if it does not vibrate [kg]; three numbers, for x, y and z, if points
+        move in 3-D. With it the force on the base contains the inertia of truncated modes.
     displacement, velocity
         Initial modal displacements and velocities [kg^1/2 m], [kg^1/2 m/s]; default 0.
     file
@@ -296,6 +300,7 @@ class Modal(StructurePart):
     damping_matrix: Annotated[Matrix | None, SI("1/s")] = None
     shapes: Annotated[dict[str, Shape], SI("kg^-0.5")] = Field(examples=[{"tip": [0.7, -0.7]}])
     participation: Annotated[Shape | None, SI("kg^0.5")] = None
+    total_mass: PositiveMass | Annotated[list[PositiveMass], Field(min_length=3, max_length=3)] | None = None
     displacement: Annotated[Numbers | None, SI("kg^0.5 m")] = None
     velocity: Annotated[Numbers | None, SI("kg^0.5 m/s")] = None
     file: str | None = None
@@ -338,6 +343,7 @@ class Modal(StructurePart):
                 **own,
                 "shapes": {name: shape.tolist() for name, shape in model.shapes.items()},
                 "participation": None if model.participation is None else model.participation.tolist(),
+                "total_mass": _diagonal(model.total_mass),
                 "displacement": model.q0.tolist(),
                 "velocity": model.p0.tolist(),
                 **{name: np.asarray(value).tolist() for name, value in options.items()},
@@ -432,7 +438,24 @@ class Modal(StructurePart):
                 "participation has three numbers for each mode if points move in 3-D, else one",
                 place=["participation"],
             )
+        self._check_total_mass()
         return self
+
+    def _check_total_mass(self) -> None:
+        """Raise if the effective masses of the modes exceed the total mass, or directions do not match."""
+        if self.total_mass is None:
+            return
+        if isinstance(self.total_mass, list) != bool(self._spatial()):
+            raise Hint("total_mass is three numbers if points move in 3-D, else one", place=["total_mass"])
+        if self.participation is not None:
+            effective = np.sum(np.square(self.participation), axis=0)
+            if np.any(effective > np.array(self.total_mass) * (1 + 1e-3)):
+                raise Hint(
+                    f"the squares of the participation, the effective masses, add up to {effective.max():.4g} kg,"
+                    f" more than the total mass of {np.max(self.total_mass):.4g} kg",
+                    "participation of mass-normalised modes, in kg^1/2",
+                    ["total_mass"],
+                )
 
     def _decay(self, omega: list[Any]) -> Vector:
         if self.damping_matrix is not None:
@@ -464,7 +487,23 @@ class Modal(StructurePart):
             q0=stacked(zero if self.displacement is None else self.displacement),
             p0=stacked(zero if self.velocity is None else self.velocity),
             spatial=self._spatial(),
+            total_mass=self._total_mass(),
         )
+
+    def _total_mass(self) -> Any:
+        """Return the total mass [kg], as a matrix where points move in space; None if it is unknown."""
+        if self.total_mass is None:
+            return None
+        return np.diag(self.total_mass) if isinstance(self.total_mass, list) else self.total_mass
+
+
+def _diagonal(total_mass: Any) -> Any:
+    """Return a total mass as a number, or as three numbers if the directions do not couple; None otherwise."""
+    if total_mass is None or np.ndim(total_mass) == 0:
+        return None if total_mass is None else float(total_mass)
+    own = np.diag(total_mass)
+    coupled = np.abs(total_mass - np.diag(own)).max() > 1e-6 * own.max()
+    return None if coupled or not (own > 0).all() else own.tolist()
 
 
 def _still() -> ModalModel:

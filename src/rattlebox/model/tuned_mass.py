@@ -256,6 +256,10 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
     main = np.stack([in_modes[k, k] for k in range(total)])
     coupling = in_modes - diagonal(main)
     coupled = bool(np.any(np.abs(coupling) > _NO_COUPLING * np.abs(main).max(initial=0.0)))
+    total_mass = modes.total_mass
+    if total_mass is not None:
+        for one in inertia:  # m, or m d d^T of a mass that moves along d
+            total_mass = total_mass + (np.einsum("a...,b...->ab...", one, one) if modes.spatial else one * one)
     inertia_of_modes = modes.participation
     if inertia_of_modes is not None:
         inertia_of_modes = into_modes(inertia_of_modes, inertia, bool(modes.spatial))
@@ -269,6 +273,7 @@ def with_tuned_masses(modes: ModalModel, tuned: Sequence[TunedMass]) -> ModalMod
         spatial=modes.spatial,
         coupling=coupling if coupled else None,
         attached=modes.attached | frozenset(names),
+        total_mass=total_mass,
     )
 
 

@@ -112,3 +112,79 @@ def test_measures_of_acceleration() -> None:
     assert float(found.peak_acceleration[0]) == pytest.approx(float(abs(late).max()), rel=5e-3)
     assert float(found.rms_acceleration[0]) == pytest.approx(math.sqrt(float((late**2).mean())), rel=5e-3)
     assert float(found.rms_acceleration[1]) == pytest.approx(2 * float(found.rms_acceleration[0]), rel=1e-9)
+
+
+def test_truncated_modes_follow_the_base() -> None:
+    """Two of twenty modes with the residual mass give the force of the full model, below the truncated frequencies."""
+    motion = rb.HalfSine(amplitude=30.0, duration=0.2)
+    full = rb.ShearBuilding(masses=[1000.0] * 20, stiffnesses=[4e7] * 20, damping_ratio=0.02)
+    modes = full.modes()
+    kept = {"frequencies": (np.sqrt(modes.stiffness[:2]) / (2 * math.pi)).tolist(), "damping_ratios": [0.02, 0.02]}
+    kept |= {
+        "shapes": {"top": modes.shapes["storey 20"][:2].tolist()},
+        "participation": modes.participation[:2].tolist(),
+    }
+    assert modes.residual_mass == pytest.approx(0.0, abs=1e-9 * modes.total_mass)
+    forces = {}
+    for name, structure in {
+        "full": full,
+        "truncated": rb.Modal(**kept),
+        "corrected": rb.Modal(**kept, total_mass="20 t"),
+    }.items():
+        run = rb.simulate(rb.Case(structure=structure, base=motion, duration=0.5, output=rb.Output(rate=4000)))
+        forces[name] = run.motion.interface_force.interp(time=np.arange(0.0, 0.5, 1e-3))
+        assert any("total_mass" in note for note in run.notes) == (name == "truncated")
+    early = {name: force.sel(time=slice(0, 0.2)) for name, force in forces.items()}
+    largest = float(abs(forces["full"]).max())
+    lacking = float(abs(early["truncated"] - early["full"]).max()) / largest
+    corrected = float(abs(early["corrected"] - early["full"]).max()) / largest
+    assert lacking > 0.05
+    assert corrected < 0.01
+    # A slow motion of the base: the structure follows it as a rigid body.
+    slow = rb.Harmonic(amplitude=1.0, frequency=0.05, phase=math.pi / 2)
+    run = rb.simulate(rb.Case(structure=rb.Modal(**kept, total_mass="20 t"), base=slow, duration=60.0))
+    late = run.motion.sel(time=slice(40, 60))
+    np.testing.assert_allclose(late.interface_force, -20e3 * late.base_acceleration, atol=0.03 * 20e3)
+
+
+@pytest.mark.parametrize(
+    ("structure", "mass"),
+    [
+        (
+            rb.Beam(length="0.4 m", width="30 mm", height="20 mm", material="steel", tip_mass="0.3 kg", mode_count=40),
+            None,
+        ),
+        (rb.Plate(length="0.5 m", width="0.4 m", thickness="4 mm", material="aluminium", mode_count=200), None),
+        (rb.ShearBuilding(masses=[2.0, 1.0], stiffnesses=[1e4, 1e4], damping_ratio=0.01), 3.0),
+        (rb.SDOF(mass=3.0, frequency=10.0), 3.0),
+    ],
+)
+def test_the_modes_of_built_in_structures_make_up_their_mass(structure: Any, mass: float | None) -> None:
+    """The residual mass falls towards zero with the number of modes, and never below."""
+    modes = structure.modes()
+    if mass is not None:
+        assert modes.total_mass == pytest.approx(mass)
+    assert -1e-9 * modes.total_mass <= modes.residual_mass < 0.08 * modes.total_mass
+
+
+def test_a_tuned_mass_adds_to_the_total() -> None:
+    """Beside a tuned mass the residual mass is that of the structure alone."""
+    beam = rb.Beam(length="0.4 m", width="30 mm", height="20 mm", material="steel", mode_count=2, damping_ratio=0.01)
+    tuned = rb.TunedMass(mass="50 g", frequency="80 Hz", damping_ratio=0.1, point="tip")
+    case = rb.Case(structure=beam, tuned_mass=tuned, duration=0.1)
+    assert case.modes.residual_mass == pytest.approx(beam.modes().residual_mass, rel=1e-9)
+    assert beam.modes().residual_mass > 0.1 * beam.modes().total_mass
+
+
+def test_a_total_mass_below_the_effective_masses() -> None:
+    """A total mass in the wrong unit is refused."""
+    with pytest.raises(rb.CaseError, match="more than the total mass"):
+        rb.Modal(frequencies=[10], damping_ratios=[0.01], shapes={"a": [1.0]}, participation=[2.0], total_mass="1 kg")
+
+
+def test_a_base_that_hardly_excites_the_modes() -> None:
+    """A warning names participation times shape where the base moves across the modes."""
+    for participation, warned in ((1e-5, True), (0.9, False)):
+        modal = rb.Modal(frequencies=[10], damping_ratios=[0.01], shapes={"a": [1.0]}, participation=[participation])
+        run = rb.simulate(rb.Case(structure=modal, base=rb.HalfSine(amplitude=1.0, duration=0.01), duration=0.1))
+        assert any("hardly excites" in note for note in run.notes) == warned

@@ -160,7 +160,10 @@ def read_full(path: Path, count: int) -> ModesInFile:
         if axis < 3:
             shapes[str(int(node))][:, axis] = whole[row]
     return ModesInFile(
-        frequencies=np.sqrt(values) / (2 * np.pi), shapes=shapes, participation=whole.T @ (M @ directions)
+        frequencies=np.sqrt(values) / (2 * np.pi),
+        shapes=shapes,
+        participation=whole.T @ (M @ directions),
+        total_mass=np.asarray(directions.T @ (M @ directions)).diagonal().copy(),
     )
 
 

@@ -31,6 +31,8 @@ class ModesInFile:
         Damping ratios, if the file states them.
     participation : (m,) or (m, 3) float or None
         Participation phi^T M r in the file's unit of mass, or of its root for shapes that are mass-normalised.
+    total_mass : (3,) float or None
+        Mass that follows the base along x, y and z, in the file's unit of mass, if the file states it.
     mass_unit
         The file's unit of mass [kg]; None if the file does not state it.
     notes
@@ -42,6 +44,7 @@ class ModesInFile:
     modal_masses: FloatArray | None = None
     damping_ratios: FloatArray | None = None
     participation: FloatArray | None = None
+    total_mass: FloatArray | None = None
     mass_unit: float | None = None
     notes: tuple[str, ...] = field(default=())
 
