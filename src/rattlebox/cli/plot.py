@@ -11,7 +11,8 @@ import rattlebox
 from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
-from rattlebox.plots.maps import nearest_value_notes, plot_map, select
+from rattlebox.plots.maps import plot_map
+from rattlebox.plots.selection import nearest_value_notes, select
 from rattlebox.plots.style import WIDTHS
 from rattlebox.studies.kinds import KINDS
 from rattlebox.studies.stored import open_study

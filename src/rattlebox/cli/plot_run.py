@@ -17,7 +17,7 @@ from rattlebox.cli.plot import FORMATS, output_file, refuse_particle_options
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.errors import nearest
 from rattlebox.plots.particles import FILMS, film_particles, plot_particles
-from rattlebox.plots.spheres import usual_renderer
+from rattlebox.plots.spheres import default_renderer
 from rattlebox.results import load
 from rattlebox.results.snapshots import Snapshots
 
@@ -98,7 +98,7 @@ def plot_run(
             _draw(run, kind, -1 if number is None else number, options).savefig(out)
     except (ValueError, IndexError) as error:
         raise CaseError(str(error)) from None
-    if (kind == "particles" or isinstance(run, Snapshots)) and usual_renderer() == "plain":
+    if (kind == "particles" or isinstance(run, Snapshots)) and default_renderer() == "plain":
         console.print(
             "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'",
             soft_wrap=True,

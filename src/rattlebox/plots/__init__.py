@@ -1,4 +1,4 @@
-"""Figures in one style, and the style itself for figures of your own."""
+"""Figures of runs and studies, and their common style, which can be used for other figures."""
 
 from .basins import plot_basins
 from .bifurcation import plot_bifurcation

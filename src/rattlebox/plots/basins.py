@@ -1,4 +1,4 @@
-"""Basins of attraction: which motion each start leads to."""
+"""Figure of basins of attraction: the motion to which each start leads."""
 
 from __future__ import annotations
 
@@ -10,70 +10,69 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..model.errors import Hint
-from .style import FAINT, INK, Size, StyledFigure, figure_style, label, pen, scaled
+from .style import FAINT, INK, Size, StyledFigure, figure_style, label, map_colours, pen, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-_NAMED = 6
-_OTHER, _NONE, _FAILED = _NAMED, _NAMED + 1, _NAMED + 2
+_COLOURED = 6
+_OTHER, _NONE, _FAILED = _COLOURED, _COLOURED + 1, _COLOURED + 2
 
 
 def plot_basins(maps: xr.Dataset, *, size: Size = "column") -> Figure:
-    """Draw a map of starts, each in the colour of the motion that it leads to.
+    """Draw a map of starts, each in the colour of the attractor to which it leads.
 
-    Of more than six attractors, the smaller ones share a colour. Where the map spans place and velocity of one ball in a
-    cavity whose motion is given, strobes of the attractors are marked in it.
+    If there are more than six attractors, the smaller ones share a colour. A map over position and velocity of one ball in
+    a cavity with prescribed motion also shows the stroboscopic points of the attractors.
 
     Parameters
     ----------
     maps
-        From `rb.basins`, over two axes.
+        Dataset from `rb.basins`, over two axes.
     size
         Width of the figure: "column", "page" or "slide".
 
     Returns
     -------
     Figure
-        With one panel.
+        Figure with one panel.
 
     Raises
     ------
     CaseError
-        When the starts vary along one axis, or more than two.
+        If the starts vary along one axis, or along more than two.
     ValueError
-        When the size is unknown.
+        If the size is unknown.
     """
     dims = [str(dim) for dim in maps["attractor"].dims]
     if len(dims) != 2:
         raise Hint(
-            f"starts vary along {', '.join(dims)}; two axes can be drawn", "maps.isel(...) for one value of an axis"
+            f"the starts vary along {', '.join(dims)}; a map needs two axes", "maps.isel(...) to fix further axes"
         )
     with figure_style(size):
         figure = StyledFigure(size, 1.0 if size == "column" else 0.62)
         axes = figure.subplots()
         x, y = (_Axis(maps[dim]) for dim in dims)
         attractor = maps["attractor"].values.T
-        kinds = np.where(attractor > _NAMED, _OTHER, attractor - 1)
+        kinds = np.where(attractor > _COLOURED, _OTHER, attractor - 1)
         kinds = np.where(attractor == 0, _NONE, np.where(attractor < 0, _FAILED, kinds))
         palette = _palette()
         norm = BoundaryNorm(np.arange(-0.5, _FAILED + 1), _FAILED + 1)
         axes.pcolormesh(x.edges, y.edges, kinds, cmap=palette, norm=norm, rasterized=True)
-        x.name(axes, "x")
-        y.name(axes, "y")
-        _strobes(axes, maps, x, y, palette)
-        present = np.unique(kinds).tolist()
-        marks = [
-            Patch(facecolor=palette(kind), edgecolor=FAINT, linewidth=pen(0.5), label=_said(maps, kind, kinds))
-            for kind in present
+        x.label(axes, "x")
+        y.label(axes, "y")
+        _draw_strobes(axes, maps, x, y, palette)
+        handles = [
+            Patch(facecolor=palette(kind), edgecolor=FAINT, linewidth=pen(0.5), label=_legend_text(maps, kind, kinds))
+            for kind in np.unique(kinds).tolist()
         ]
-        figure.legend(handles=marks, loc="outside lower left", ncols=1 if size == "column" else 2, handlelength=1.2)
+        figure.legend(handles=handles, loc="outside lower left", ncols=1 if size == "column" else 2, handlelength=1.2)
     return figure
 
 
 class _Axis:
-    """One axis of the map."""
+    """Axis of the map."""
 
     def __init__(self, coord: xr.DataArray) -> None:
         unit = str(coord.attrs.get("units", "1"))
@@ -85,13 +84,15 @@ class _Axis:
 
     @property
     def edges(self) -> Any:
+        """Edges of the cells, (n + 1,)."""
         c = self.centres
         if len(c) == 1:
             return c[0] + np.array([-0.5, 0.5])
         inner = 0.5 * (c[1:] + c[:-1])
         return np.concatenate([[2 * c[0] - inner[0]], inner, [2 * c[-1] - inner[-1]]])
 
-    def name(self, axes: Axes, which: Any) -> None:
+    def label(self, axes: Axes, which: Any) -> None:
+        """Label an axis of the figure and its ticks."""
         text = str(self.coord.attrs.get("long_name", self.coord.name))
         fraction = str(self.coord.name).endswith("start") and not self.unit
         label(axes, which, text[:1].upper() + text[1:], "part of the gap" if fraction else self.unit)
@@ -101,25 +102,23 @@ class _Axis:
 
 
 def _palette() -> ListedColormap:
-    """Even steps of lightness for the attractors; grey, ink and white for the rest."""
-    from cmcrameri import cm  # type: ignore[import-untyped]
-
-    order = [0.08, 0.62, 0.86, 0.36, 0.74, 0.22]  # neighbours in size differ most
-    return ListedColormap([*cm.batlow(order), FAINT, INK, "white"])
+    """Return colours in even steps of lightness for the attractors, and grey, black and white for other motions."""
+    order = [0.08, 0.62, 0.86, 0.36, 0.74, 0.22]  # attractors of similar size differ most
+    return ListedColormap([*map_colours()(order), FAINT, INK, "white"])
 
 
-def _said(maps: xr.Dataset, kind: int, kinds: Any) -> str:
+def _legend_text(maps: xr.Dataset, kind: int, kinds: Any) -> str:
     if kind >= _OTHER:
-        text = {_OTHER: "smaller ones", _NONE: "no period found", _FAILED: "did not finish"}[kind]
+        text = {_OTHER: "smaller basins", _NONE: "no period found", _FAILED: "did not finish"}[kind]
         return f"{text}, {_percent(float(np.mean(kinds == kind)))}"
     orbit = maps.isel(orbit=kind)
     period, hits = int(orbit["orbit_period"]), float(orbit["orbit_impacts_per_cycle"])
     if hits == 0:
         text = "no impacts"
     else:
-        each = round(hits * period)
-        span = "a cycle" if period == 1 else f"in {period} cycles"
-        text = f"{each} impact{'s' * (each != 1)} {span}"
+        count = round(hits * period)
+        span = "per cycle" if period == 1 else f"in {period} cycles"
+        text = f"{count} impact{'s' * (count != 1)} {span}"
     return f"{text}, {_percent(float(orbit['share']))}"
 
 
@@ -127,12 +126,12 @@ def _percent(share: float) -> str:
     return f"{100 * share:.2g} %" if share < 0.1 else f"{100 * share:.0f} %"
 
 
-def _strobes(axes: Axes, maps: xr.Dataset, x: _Axis, y: _Axis, palette: ListedColormap) -> None:
-    """Mark the attractors in the plane of their ball, where the cavity's motion is given."""
+def _draw_strobes(axes: Axes, maps: xr.Dataset, x: _Axis, y: _Axis, palette: ListedColormap) -> None:
+    """Mark the attractors in the phase plane of their ball, if the motion of the cavity is prescribed."""
     names = [str(axis.coord.name).rsplit(".", 1)[-1] for axis in (x, y)]
     if names not in (["start", "velocity"], ["velocity", "start"]) or "gap" not in maps.attrs:
         return
-    for kind in range(min(_NAMED, maps.sizes["orbit"])):
+    for kind in range(min(_COLOURED, maps.sizes["orbit"])):
         orbit = maps.isel(orbit=kind, ball=0)
         place, speed = orbit["orbit_ball_place"].values, orbit["orbit_ball_speed"].values
         if not orbit["orbit_impacts_per_cycle"] > 0:

@@ -1,4 +1,4 @@
-"""Bifurcation diagrams: strobes or impacts over a parameter, and after how many cycles the motion repeats."""
+"""Bifurcation diagrams: stroboscopic points or impacts over a parameter, and the period of the motion in cycles."""
 
 from __future__ import annotations
 
@@ -32,59 +32,61 @@ _PHASE_NAMES = ("0", "π/2", "π", "3π/2", "2π")
 
 
 def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, size: Size = "column") -> Figure:
-    """Draw a bifurcation diagram: each strobe or impact a dot over the parameter.
+    """Draw a bifurcation diagram: each stroboscopic point or impact is a dot over the parameter.
 
-    The strip below tells after how many cycles the motion repeats, one row for each direction.
+    The strip below shows the period of the motion in cycles, one row for each direction.
 
     Parameters
     ----------
     maps
-        From `rb.bifurcation`.
+        Dataset from `rb.bifurcation`.
     of
-        "ball_place", "ball_speed", "displacement" or "velocity" of the strobes, "approach_speed" or "impact_phase" of the
-        impacts; default the approach speed, or the place of the ball where impacts are not kept.
+        "ball_place", "ball_speed", "displacement" or "velocity" at the strobes, "approach_speed" or "impact_phase" of the
+        impacts; default the approach speed, or the position of the ball if the dataset has no impacts.
     ball
-        Number of the ball, for a quantity of balls.
+        Index of the ball, for a quantity of balls.
     size
         Width of the figure: "column", "page" or "slide".
 
     Returns
     -------
     Figure
-        With two panels.
+        Figure with two panels.
 
     Raises
     ------
     CaseError
-        When there is no such quantity or ball.
+        If there is no such quantity or ball.
     ValueError
-        When the size is unknown.
+        If the size is unknown.
     """
     known = [name for name in TEXTS if name in maps]
     of = of or ("approach_speed" if "approach_speed" in known else "ball_place")
     if of not in known:
-        raise Hint(f"of = {of!r}: there is no such quantity of strobes or impacts", nearest(of, known))
+        raise Hint(f"of = {of!r}: the diagram has no such quantity", nearest(of, known))
     values = maps[of]
     if "ball" in values.dims:
         if not 0 <= ball < values.sizes["ball"]:
-            raise Hint(f"ball = {ball!r}: there is no such ball", f"0 to {values.sizes['ball'] - 1}")
+            raise Hint(f"ball = {ball!r}: the case has no ball with this index", f"0 to {values.sizes['ball'] - 1}")
         values = values.isel(ball=ball)
     parameter = maps[next(str(dim) for dim in maps["period"].dims if dim != "direction")]
     with figure_style(size):
         figure = StyledFigure(size, 0.95 if size == "column" else 0.6)
-        ways = maps["direction"].values.tolist()
-        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(8 - len(ways) * 0.5, len(ways) * 0.6))
-        x, unit = _across(parameter)
-        _dots(upper, x, values, ways)
-        _strip(lower, x, maps)
-        label(lower, "x", _capital(str(parameter.attrs.get("long_name", parameter.name))), unit)
+        directions = maps["direction"].values.tolist()
+        upper, lower = figure.subplots(
+            2, 1, sharex=True, height_ratios=(8 - len(directions) * 0.5, len(directions) * 0.6)
+        )
+        x, unit = _x_values(parameter)
+        _draw_points(upper, x, values, directions)
+        _draw_periods(lower, x, maps)
+        label(lower, "x", _capitalise(str(parameter.attrs.get("long_name", parameter.name))), unit)
         if parameter.dtype.kind not in "fiu":
             lower.set_xticks(x, [str(value) for value in parameter.values])
     return figure
 
 
-def _across(parameter: xr.DataArray) -> tuple[Any, str]:
-    """Places along the axis, and their unit."""
+def _x_values(parameter: xr.DataArray) -> tuple[Any, str]:
+    """Return the positions along the horizontal axis, and their unit."""
     if parameter.dtype.kind not in "fiu":
         return np.arange(parameter.size), ""
     unit = str(parameter.attrs.get("units", "1"))
@@ -92,10 +94,10 @@ def _across(parameter: xr.DataArray) -> tuple[Any, str]:
     return parameter.values / scale[0], scale[1]
 
 
-def _dots(axes: Axes, x: Any, values: xr.DataArray, ways: list[str]) -> None:
+def _draw_points(axes: Axes, x: Any, values: xr.DataArray, directions: list[str]) -> None:
     unit = str(values.attrs.get("units", "1"))
-    divisor, shown = (1.0, "rad") if unit == "rad" else scaled(values.values, unit)
-    for number, way in reversed(list(enumerate(ways))):  # the first on top
+    divisor, prefixed = (1.0, "rad") if unit == "rad" else scaled(values.values, unit)
+    for number, direction in reversed(list(enumerate(directions))):  # the first one is drawn on top
         y = values.isel(direction=number).values / divisor
         axes.plot(
             np.repeat(x, y[0].size),
@@ -105,20 +107,20 @@ def _dots(axes: Axes, x: Any, values: xr.DataArray, ways: list[str]) -> None:
             markersize=pen(0.9 + 0.7 * number),
             markeredgewidth=0,
             color=SERIES_COLOURS[number],
-            label=way,
+            label=direction,
             rasterized=True,
         )
-    label(axes, "y", TEXTS[str(values.name)], shown)
+    label(axes, "y", TEXTS[str(values.name)], prefixed)
     axes.margins(y=0.04)
     if unit == "rad":
         axes.set_yticks(_PHASES, _PHASE_NAMES)
         axes.set_ylim(-0.1, 2 * np.pi + 0.1)
-    if len(ways) > 1:
+    if len(directions) > 1:
         legend_above(axes, markerscale=pen(4.0), reverse=True)
 
 
-def _strip(axes: Axes, x: Any, maps: xr.Dataset) -> None:
-    """After how many cycles the motion repeats."""
+def _draw_periods(axes: Axes, x: Any, maps: xr.Dataset) -> None:
+    """Draw the period of the motion in cycles."""
     from cmcrameri import cm  # type: ignore[import-untyped]
 
     palette = ListedColormap([*cm.devon(np.linspace(0.95, 0.35, len(_PERIODS) - 1)), INK])
@@ -136,24 +138,24 @@ def _strip(axes: Axes, x: Any, maps: xr.Dataset) -> None:
     axes.set_yticks(rows[:-1] + 0.5, maps["direction"].values.tolist())
     axes.invert_yaxis()
     axes.tick_params(axis="y", length=0)
-    marks = [
+    handles = [
         Patch(facecolor=palette(kind), edgecolor=FAINT, linewidth=pen(0.5), label=text)
         for kind, text in enumerate(_PERIODS)
         if (kinds == kind).any()
     ]
     if np.isnan(kinds).any():
-        marks.append(Patch(facecolor="white", edgecolor=FAINT, linewidth=pen(0.5), label="did not finish"))
+        handles.append(Patch(facecolor="white", edgecolor=FAINT, linewidth=pen(0.5), label="did not finish"))
     figure = present(axes.get_figure(root=True))
     figure.legend(
-        handles=marks,
-        title="Cycles until the motion repeats",
+        handles=handles,
+        title="Period in cycles",
         loc="outside lower center",
-        ncols=len(marks),
+        ncols=len(handles),
         handlelength=1.0,
         columnspacing=1.0,
         title_fontsize="small",
     )
 
 
-def _capital(text: str) -> str:
+def _capitalise(text: str) -> str:
     return text[:1].upper() + text[1:]

@@ -1,4 +1,4 @@
-"""Several runs side by side: motion and energy ledger, one column a run."""
+"""Comparison of runs: motion and energy ledger, one column per run."""
 
 from __future__ import annotations
 
@@ -10,33 +10,33 @@ from matplotlib.figure import Figure
 
 from ..results import Run
 from .energy import draw_ledger
-from .motion import draw_cavity, draw_structure, row_places
+from .motion import ball_displacements, draw_cavity, draw_structure
 from .style import Size, StyledFigure, figure_style, letters, scaled, shorten, time_axis
 
 
 def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
-    """Draw the motion and the energy ledger of several runs side by side, on common axes.
+    """Draw the motion and the energy ledger of several runs in columns with common axes.
 
     Parameters
     ----------
     runs
-        Runs by the name that heads their column; two to four fit well.
+        Runs by the title of their column; two to four fit well.
     size
         Width of the figure: "column", "page" or "slide".
 
     Returns
     -------
     Figure
-        With one column a run: displacement of the structure, balls of the first damper, ledger. Rows that no
-        run can fill are left out.
+        Figure with one column per run: displacement of the structure, balls of the first damper, ledger. Rows that
+        are empty for all runs are omitted.
 
     Raises
     ------
     ValueError
-        When there is no run, or the size is unknown.
+        If there is no run, or the size is unknown.
     """
     if not runs:
-        raise ValueError("there is no run to compare")
+        raise ValueError('runs is empty; a comparison needs at least one run\n  try: {"name": run}')
     every = list(runs.values())
     moving = any(run.arrays.mode_frequency.size for run in every)
     with_balls = [run for run in every if _has_balls(run)]
@@ -45,22 +45,22 @@ def plot_comparison(runs: Mapping[str, Run], *, size: Size = "page") -> Figure:
         figure = StyledFigure(size, 0.1 + 0.17 * rows)
         panels = figure.subplots(rows, len(every), sharex="col", sharey="row", squeeze=False)
         length = scaled([np.abs(run.arrays.displacement).max(initial=0.0) for run in every], "m")
-        places = [np.abs(row_places(run.arrays, 0)).max() for run in with_balls]
-        travel = scaled(places, "m")
+        distances = [np.abs(ball_displacements(run.arrays, 0)).max() for run in with_balls]
+        travel = scaled(distances, "m")
         energy = scaled([run.ledger.supplied.max() for run in every], "J")
         for column, (name, run) in enumerate(runs.items()):
-            arrays, left = run.arrays, iter(panels[:, column])
+            arrays, free_panels = run.arrays, iter(panels[:, column])
             shown, time = slice(0, arrays.time.size), scaled(arrays.time, "s")
             panels[0, column].set_title(shorten(name, letters(panels[0, column])))
             if moving:
-                draw_structure(next(left), arrays, shown, time, length)
+                draw_structure(next(free_panels), arrays, shown, time, length)
             if with_balls:
-                panel = next(left)
+                panel = next(free_panels)
                 if _has_balls(run):
                     draw_cavity(panel, arrays, 0, shown, time, travel)
                 else:
                     panel.text(0.5, 0.5, "no ball", transform=panel.transAxes, ha="center", va="center")
-            draw_ledger(run, next(left), time, energy)
+            draw_ledger(run, next(free_panels), time, energy)
             time_axis(panels[-1, column], arrays.time, time, 5)
         for panel in panels[:, 1:].flat:
             panel.set_ylabel("")

@@ -1,4 +1,4 @@
-"""Damping ratio over the amplitude of vibration."""
+"""Figure of damping curves: damping ratio over the amplitude of vibration."""
 
 from __future__ import annotations
 
@@ -27,21 +27,26 @@ if TYPE_CHECKING:
 
 
 def plot_damping_curve(curves: xarray.Dataset | Mapping[str, xarray.Dataset], *, size: Size = "column") -> Figure:
-    """Draw the damping ratio over the amplitude, with its 95 % interval, and that of the structure alone.
+    """Draw the damping ratio over the amplitude, with its 95 % interval, and the damping ratio of the structure alone.
 
     Parameters
     ----------
     curves
-        From `rattlebox.damping_curve`, or several of them by name.
+        Dataset from `rattlebox.damping_curve`, or several datasets by name.
     size
         Width of the figure: "column", "page" or "slide".
 
     Returns
     -------
-    matplotlib.figure.Figure
-        The figure.
+    Figure
+        Figure with one panel.
+
+    Raises
+    ------
+    ValueError
+        If the size is unknown.
     """
-    import xarray  # takes longer to load than a figure of a run takes to draw
+    import xarray  # importing it takes longer than drawing a figure of a run
 
     named = {"": curves} if isinstance(curves, xarray.Dataset) else dict(curves)
     with figure_style(size):

@@ -1,4 +1,4 @@
-"""The energy of a run: what is there at each time, and where everything that was supplied has gone."""
+"""Figure of the energy of a run: instantaneous energies, and the ledger of the energy supplied."""
 
 from __future__ import annotations
 
@@ -30,17 +30,16 @@ _LEDGER_LABELS = {
     "plastic": "plastic flow",
     "sliding": "sliding",
     "rolling": "rolling",
-    "motion": "left in motion",
+    "motion": "remaining motion",
 }
 
 
 @run_figure("energy")
 def plot_energy(run: Run, *, size: Size = "column", log: bool = False) -> Figure:
-    """Draw the instantaneous energies, and below them the ledger stacked up to the energy supplied.
+    """Draw the instantaneous energies, and below them the energy ledger as stacked areas.
 
-    The coloured areas of the ledger are the losses since the start and the energy left in the motion; the
-    line is what load, base, initial motion and gravity have supplied. Where the ledger does not close, the
-    line leaves the edge of the areas.
+    The areas of the ledger are the losses since the start and the energy that remains in the motion. The line is the energy
+    supplied by load, base, initial motion and gravity; the distance between the line and the areas is the energy residual.
 
     Parameters
     ----------
@@ -49,17 +48,17 @@ def plot_energy(run: Run, *, size: Size = "column", log: bool = False) -> Figure
     size
         Width of the figure: "column", "page" or "slide".
     log
-        Draw the instantaneous energies on a logarithmic axis of six decades.
+        Whether to draw the instantaneous energies on a logarithmic axis of six decades.
 
     Returns
     -------
     Figure
-        With two panels over the same time.
+        Figure with two panels with a common time axis.
 
     Raises
     ------
     ValueError
-        When the size is unknown.
+        If the size is unknown.
     """
     with figure_style(size):
         figure = StyledFigure(size, 1.15 if size == "column" else 0.62)
@@ -82,11 +81,11 @@ def draw_energies(run: Run, axes: Axes, time: Scale, *, log: bool = False) -> No
     run
         Run to draw.
     axes
-        Axes to fill.
+        Axes to draw on.
     time
         Scale of the horizontal axis.
     log
-        Use a logarithmic axis.
+        Whether to use a logarithmic axis.
     """
     ledger = run.ledger
     parts = {
@@ -117,14 +116,14 @@ def draw_energies(run: Run, axes: Axes, time: Scale, *, log: bool = False) -> No
 
 
 def draw_ledger(run: Run, axes: Axes, time: Scale, energy: Scale) -> None:
-    """Draw losses and remaining energy as stacked areas under the line of the energy supplied.
+    """Draw losses and remaining energy as stacked areas, and the energy supplied as a line.
 
     Parameters
     ----------
     run
         Run to draw.
     axes
-        Axes to fill.
+        Axes to draw on.
     time, energy
         Scales of the axes.
     """

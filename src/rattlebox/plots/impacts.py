@@ -1,4 +1,4 @@
-"""The impact log against time: approach speed, peak force, restitution."""
+"""Figure of the impact log: approach speed, peak force and restitution over time."""
 
 from __future__ import annotations
 
@@ -37,11 +37,10 @@ _SIDES: dict[str, dict[str, Any]] = {
 
 @run_figure("impacts", needs="impacts")
 def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figure:
-    """Draw approach speed, peak force and restitution of every impact against its time of first touch.
+    """Draw approach speed, peak force and restitution of every impact over the time at which its contact begins.
 
-    Filled marks are hits on the trailing wall, open ones on the leading wall, crosses between balls; dampers
-    differ in colour. Quantities that no impact has (force of hard impacts, restitution of hysteretic laws)
-    are left out.
+    Filled markers are impacts on the trailing wall, open ones on the leading wall, and crosses impacts between balls; each
+    damper has its colour. Quantities without values (force of hard impacts, restitution of hysteretic laws) are omitted.
 
     Parameters
     ----------
@@ -50,32 +49,32 @@ def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figur
     size
         Width of the figure: "column", "page" or "slide".
     log
-        Use logarithmic axes for speed and force.
+        Whether to use logarithmic axes for speed and force.
 
     Returns
     -------
     Figure
-        With one panel a quantity; a note when there was no impact.
+        Figure with one panel per quantity, or a note if there was no impact.
 
     Raises
     ------
     ValueError
-        When the size is unknown.
+        If the size is unknown.
     """
     impacts = run.arrays.impacts
-    offered = (
+    quantities = (
         ("Approach speed", "m/s", impacts.approach_speed),
         ("Peak force", "N", impacts.peak_force),
         ("Coefficient of restitution", "", impacts.restitution),
     )
-    shown = [panel for panel in offered if np.any(np.isfinite(panel[2]))] or [offered[0]]
+    panels = [quantity for quantity in quantities if np.any(np.isfinite(quantity[2]))] or [quantities[0]]
     time = scaled(run.arrays.time, "s")
     with figure_style(size):
         figure = StyledFigure(
-            size, (0.2 if size == "column" else 0.1) + (0.34 if size == "column" else 0.18) * len(shown)
+            size, (0.2 if size == "column" else 0.1) + (0.34 if size == "column" else 0.18) * len(panels)
         )
-        axes = list(np.ravel(figure.subplots(len(shown), 1, sharex=True)))
-        for panel, (name, unit, values) in zip(axes, shown, strict=True):
+        axes = list(np.ravel(figure.subplots(len(panels), 1, sharex=True)))
+        for panel, (name, unit, values) in zip(axes, panels, strict=True):
             scale, prefixed = scaled(values, unit) if unit else (1.0, "")
             _scatter(panel, run.arrays, impacts.time / time.divisor, values / scale)
             label(panel, "y", name, prefixed)
@@ -96,7 +95,7 @@ def plot_impacts(run: Run, *, size: Size = "column", log: bool = False) -> Figur
 
 
 def _limit_restitution(axes: Axes, values: Any) -> None:
-    """Show the range that the law used, and never less than a tenth, so that a constant is a flat line."""
+    """Limit the axis to the range of the values, at least 0.1, so that a constant appears as a flat line."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     span = max(high - low, 0.1)
     middle = (low + high) / 2
@@ -107,38 +106,38 @@ def _limit_restitution(axes: Axes, values: Any) -> None:
 
 
 def _scatter(axes: Axes, arrays: RunArrays, x: Any, y: Any) -> None:
-    """Mark each impact by its damper and by the side of the contact."""
+    """Draw each impact with the colour of its damper and the marker of the side of the contact."""
     log = arrays.impacts
     area = (9.0 if len(log) < 300 else 3.0) * pen(1.0) ** 2
     for d in range(len(arrays.dampers)):
         for side, marks in _SIDES.items():
             here = (log.damper == d) & (_sides(arrays) == side)
-            axes.scatter(x[here], y[here], s=area, **_marks(marks, SERIES_COLOURS[d % len(SERIES_COLOURS)]))
+            axes.scatter(x[here], y[here], s=area, **_marker_style(marks, SERIES_COLOURS[d % len(SERIES_COLOURS)]))
     axes.margins(x=0.02, y=0.08)
 
 
 def _sides(arrays: RunArrays) -> Any:
-    """Name of the side of each impact."""
+    """Return the name of the side of each impact."""
     last = np.bincount(arrays.ball_damper, minlength=len(arrays.dampers))[arrays.impacts.damper]
     contact = arrays.impacts.contact
     return np.select([contact == 0, contact == last], ["trailing wall", "leading wall"], "between balls")
 
 
-def _marks(marks: dict[str, Any], colour: str) -> dict[str, Any]:
-    """Settings of a scatter in a colour, the edge as wide as the letters ask."""
-    set_in = {name: colour if value == "colour" else value for name, value in marks.items()}
-    return set_in | {"linewidths": pen(marks["linewidths"])}
+def _marker_style(marks: dict[str, Any], colour: str) -> dict[str, Any]:
+    """Return the options of a scatter in a colour, with edges in proportion to the font size."""
+    style = {name: colour if value == "colour" else value for name, value in marks.items()}
+    return style | {"linewidths": pen(marks["linewidths"])}
 
 
 def _add_legend(figure: Figure, arrays: RunArrays) -> None:
-    """Explain the marks that occur, and in a second line the colours when there are several dampers."""
-    seen = set(_sides(arrays).tolist())
+    """Add a legend of the markers that occur, and in a second row of the colours if there are several dampers."""
+    present = set(_sides(arrays).tolist())
     size = float(rcParams["lines.markersize"])
     sides = [
         Line2D([], [], linestyle="", markersize=size, marker=marks["marker"], color=INK, label=side,
                markerfacecolor="none" if marks.get("facecolors") == "none" else INK)
         for side, marks in _SIDES.items()
-        if side in seen
+        if side in present
     ]  # fmt: skip
     room = letters(figure.axes[0]) // 3
     dampers = [
@@ -149,15 +148,15 @@ def _add_legend(figure: Figure, arrays: RunArrays) -> None:
     if not sides:
         return
     columns = 3
-    entries = _filled(sides, columns)
+    entries = _padded(sides, columns)
     if len(dampers) > 1:
-        entries += _filled(dampers, columns)
+        entries += _padded(dampers, columns)
     # Legends fill column by column.
     by_column = [entry for k in range(columns) for entry in entries[k::columns]]
     figure.legend(handles=by_column, loc="outside upper left", ncols=columns, handletextpad=0.2, handlelength=1.0)
 
 
-def _filled(entries: list[Line2D], columns: int) -> list[Line2D]:
-    """Entries with blank ones behind, so that they fill whole lines of the legend."""
+def _padded(entries: list[Line2D], columns: int) -> list[Line2D]:
+    """Return entries with blank ones appended, so that they fill whole rows of the legend."""
     blank = [Line2D([], [], linestyle="", label=" ") for _ in range(-len(entries) % columns)]
     return entries + blank

@@ -1,4 +1,4 @@
-"""Variables of a dataset as a figure shows them: in a fitting unit, named by their attributes."""
+"""Texts, units and axes of variables of a dataset, as figures show them."""
 
 from __future__ import annotations
 
@@ -19,23 +19,28 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 
-_LETTERS = 16  # of names beside ticks
-_EXACT = 2**53  # whole numbers below are written with all their digits
+REPLICA = "replica"
+"""Dimension of repeated runs that differ in their random seeds only."""
+
+_TICK_LETTERS = 16  # of names at ticks
+_LARGEST_EXACT = 2**53  # whole numbers below it are written with all their digits
+_UNBOUNDED = ("loss_factor",)  # it is infinite where the effective mass passes through zero
+_PERCENTILE = 95.0  # of an unbounded measure, at which its scale ends
 
 
 class LabelledValues(NamedTuple):
-    """Numbers in a unit with prefix; or places in a list of names.
+    """Values of a variable in a unit with prefix, or indices into a list of names.
 
     Attributes
     ----------
     numbers
-        Values over the divisor, or numbers of names.
+        Values divided by the divisor, or indices into `names`.
     divisor, unit
-        Of the values; no unit for pure numbers and names.
+        Divisor of the values and unit with its prefix; 1 and "" for pure numbers and names.
     text
-        What the variable is.
+        Description of the variable.
     names
-        None for numbers.
+        Names, for a variable of names; None for numbers.
     """
 
     numbers: Vector
@@ -46,42 +51,106 @@ class LabelledValues(NamedTuple):
 
     @classmethod
     def of(cls, values: xr.DataArray) -> LabelledValues:
-        """Read values, their `units` and `long_name`."""
-        spoken = name_of(values).replace(" V^2", "\N{NO-BREAK SPACE}V²").replace("^2", "²")
-        text = spoken[:1].upper() + spoken[1:]
+        """Return the values of a variable with its `units` and `long_name`."""
+        text = name_of(values).replace(" V^2", "\N{NO-BREAK SPACE}V²").replace("^2", "²")
+        text = text[:1].upper() + text[1:]
         if values.dtype.kind not in "fiu":
             names = list(dict.fromkeys(map(str, values.values.ravel())))
-            places = {name: float(place) for place, name in enumerate(names)}
-            numbers = np.array([places[str(value)] for value in values.values.ravel()])
+            indices = {name: float(index) for index, name in enumerate(names)}
+            numbers = np.array([indices[str(value)] for value in values.values.ravel()])
             return cls(numbers.reshape(values.shape), 1.0, "", text, names)
-        own = unit_of(values)
-        divisor, unit = scaled(values.values, own) if own else (1.0, "")
+        si_unit = unit_of(values)
+        divisor, unit = scaled(values.values, si_unit) if si_unit else (1.0, "")
         return cls(np.asarray(values.values / divisor, dtype=float), divisor, unit.replace("^2", "²"), text, None)
 
     @property
     def with_unit(self) -> str:
-        """The text with its unit, on one line."""
+        """Description with its unit, on one line."""
         return f"{self.text} ({self.unit})" if self.unit else self.text
 
-    def along(self, axes: Axes, which: Literal["x", "y"], *, log: bool = False) -> None:
-        """Label an axis of a figure, name its ticks, make it logarithmic."""
+    def label(self, axes: Axes, which: Literal["x", "y"], *, log: bool = False) -> None:
+        """Label an axis of a figure and its ticks, and make it logarithmic if requested."""
         axis = axes.xaxis if which == "x" else axes.yaxis
         if log:
             (axes.set_xscale if which == "x" else axes.set_yscale)("log")
             log_ticks(axis)
         if self.names is not None:
-            axis.set_ticks(range(len(self.names)), [shorten(name, _LETTERS) for name in self.names])
+            axis.set_ticks(range(len(self.names)), [shorten(name, _TICK_LETTERS) for name in self.names])
         label(axes, which, self.text, self.unit)
 
 
+class StudyAxis(NamedTuple):
+    """Axis of a study, with the edges of the cells of a map.
+
+    Attributes
+    ----------
+    values
+        Values of the axis, (n,).
+    edges
+        Edges of the cells around the values, (n + 1,), in the same unit.
+    log
+        Whether the axis is logarithmic: at least four positive values with a constant ratio.
+    """
+
+    values: LabelledValues
+    edges: Vector
+    log: bool
+
+    @classmethod
+    def of(cls, coord: xr.DataArray) -> StudyAxis:
+        """Return the axis of a coordinate."""
+        values = LabelledValues.of(coord)
+        log = values.names is None and _is_geometric(values.numbers)
+        numbers = np.log(values.numbers) if log else values.numbers
+        if numbers.size == 1:
+            half = 0.5 * abs(numbers[0]) or 0.5
+            return cls(values, np.array([numbers[0] - half, numbers[0] + half]), log)
+        middle = 0.5 * (numbers[1:] + numbers[:-1])
+        edges = np.concatenate(([2 * numbers[0] - middle[0]], middle, [2 * numbers[-1] - middle[-1]]))
+        return cls(values, np.asarray(np.exp(edges) if log else edges, dtype=float), log)
+
+    def label(self, axes: Axes, which: Literal["x", "y"]) -> None:
+        """Label an axis of a figure and its ticks."""
+        self.values.label(axes, which, log=self.log)
+
+
+def _is_geometric(values: Vector) -> bool:
+    if values.size < 4 or np.any(values <= 0):
+        return False
+    ratios = values[1:] / values[:-1]
+    return bool(np.allclose(ratios, ratios[0], rtol=1e-6) and abs(ratios[0] - 1) > 1e-6)
+
+
+def upper_limit(name: str, values: Vector) -> float | None:
+    """Return where the scale of an unbounded measure ends, None for a measure whose values all fit on one scale.
+
+    Parameters
+    ----------
+    name
+        Name of the measure.
+    values
+        Values of the measure, any shape.
+
+    Returns
+    -------
+    float or None
+        95th percentile of the finite values of an unbounded measure.
+    """
+    finite = values[np.isfinite(values)]
+    if name not in _UNBOUNDED or not finite.size:
+        return None
+    limit = float(np.percentile(finite, _PERCENTILE))
+    return limit if finite.max() > limit > 0 else None
+
+
 def log_ticks(axis: Axis) -> None:
-    """Write the numbers of a logarithmic axis as one does."""
+    """Write the numbers of a logarithmic axis without powers of ten."""
     axis.set_major_formatter(plain)
-    axis.set_minor_formatter(_Between())
+    axis.set_minor_formatter(_MinorFormatter())
 
 
-class _Between(Formatter):
-    """Labels between the powers of ten, the more, the shorter the axis."""
+class _MinorFormatter(Formatter):
+    """Labels between the powers of ten: all of them on short axes, 2 and 5 on longer ones, none on long ones."""
 
     def __call__(self, value: float, pos: int | None = None) -> str:
         low, high = self.axis.get_view_interval()  # type: ignore[union-attr]
@@ -90,12 +159,12 @@ class _Between(Formatter):
 
 
 def plain(value: float, _: Any = None) -> str:
-    """Write a number of a logarithmic axis as one does: 0.1, 10."""
+    """Return a number of a logarithmic axis as text without a power of ten: 0.1, 10."""
     return f"{value:g}"
 
 
 def name_of(values: xr.DataArray) -> str:
-    """Return what a variable is called."""
+    """Return the description of a variable, or its name if it has none."""
     return str(values.attrs.get("long_name", values.name)).replace("_", " ")
 
 
@@ -106,11 +175,11 @@ def unit_of(values: xr.DataArray) -> str:
 
 
 def value_of(coord: xr.DataArray, value: Any) -> str:
-    """Write one value of a coordinate with its unit, without zeros behind the last decimal."""
+    """Return one value of a coordinate as text with its unit, without trailing zeros."""
     if coord.dtype.kind not in "fiu":
         return str(value)
     unit = unit_of(coord)
-    number = float(value) + 0.0  # no minus before a zero
-    if not unit and number.is_integer() and abs(number) < _EXACT:
+    number = float(value) + 0.0  # turns -0.0 into 0.0
+    if not unit and number.is_integer() and abs(number) < _LARGEST_EXACT:
         return f"{number:.0f}"
     return re.sub(r"\.0+(?!\d)|(\.\d*[1-9])0+(?!\d)", r"\1", quantity(number, unit))

@@ -1,4 +1,4 @@
-"""Loss factor, effective mass and loss of a damper on a shaker, over amplitude and frequency."""
+"""Figure of the loss factor, effective mass and loss of a damper on a shaker, over amplitude and frequency."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
+from .gaps import add_gap_legend
 from .labels import value_of
-from .maps import draw_lines, draw_map, explain_gaps
+from .lines import draw_lines
+from .maps import draw_map
 from .style import Size, StyledFigure, figure_style, letters, shorten
 
 if TYPE_CHECKING:
@@ -18,42 +20,42 @@ _NAMES = {_AMPLITUDE: "Amplitude", _FREQUENCY: "Frequency"}
 _PANELS = (
     ("loss_factor", "Loss factor $m''/|m'|$"),
     ("mass_ratio", "Effective mass $m'/m$"),
-    ("reduced_loss", "Loss a cycle $/\\,mV^2$"),
+    ("reduced_loss", "Loss per cycle $/\\,mV^2$"),
 )
 
 
 def plot_loss_map(study: xr.Dataset, *, size: Size = "page") -> Figure:
-    """Draw loss factor, effective mass over the mass of the particles, and loss a cycle over m V^2.
+    """Draw loss factor, effective mass over the mass of the particles, and loss per cycle over m V^2.
 
-    The colours of the loss factor end at its 95th percentile: where the effective mass passes through zero it has no bound.
+    The colours of the loss factor end at its 95th percentile, since it is unbounded where the effective mass is zero.
 
     Parameters
     ----------
     study
-        From `rb.loss_map`.
+        Dataset from `rb.loss_map`.
     size
         Width of the figure: "column", "page" or "slide".
 
     Returns
     -------
     Figure
-        With three panels over frequency and amplitude: side by side, or in a column below each other. A study of one
-        frequency is drawn as lines over the amplitude, one of one amplitude as lines over the frequency.
+        Figure with three panels over frequency and amplitude: in one row, or in one column at the size "column". A study
+        at one frequency is drawn as lines over the amplitude, one at one amplitude as lines over the frequency.
 
     Raises
     ------
     ValueError
-        When the size is unknown.
+        If the size is unknown.
     """
     ratio = (study["effective_mass"] / study["particle_mass"]).drop_attrs(deep=False)
-    shown = study.assign(mass_ratio=ratio)
+    data = study.assign(mass_ratio=ratio)
     single = [axis for axis in _AXES if study.sizes[axis] == 1]
     with figure_style(size):
         figure = StyledFigure(size, 1.9 if size == "column" else 0.33)
         if single:
-            _draw_lines(figure, shown, single[-1], size)
+            _draw_lines(figure, data, single[-1], size)
         else:
-            _draw_maps(figure, shown, size)
+            _draw_maps(figure, data, size)
     return figure
 
 
@@ -64,11 +66,11 @@ def _draw_maps(figure: Figure, study: xr.Dataset, size: Size) -> None:
         panel.label_outer()
         panel.set_xlabel("Frequency (Hz)" if panel.get_xlabel() else "")
         panel.set_ylabel(panel.get_ylabel().replace("Structure motion amplitude", "Amplitude"))
-    explain_gaps(figure, study, "loss_factor")
+    add_gap_legend(figure, study, "loss_factor")
 
 
 def _draw_lines(figure: Figure, study: xr.Dataset, fixed: str, size: Size) -> None:
-    """Draw the panels as lines over one axis, where the other has one value."""
+    """Draw the panels as lines over one axis, if the other has one value."""
     (along,) = (axis for axis in _AXES if axis != fixed)
     line = study.isel({fixed: 0})
     panels = figure.subplots(3, 1, sharex=True) if size == "column" else figure.subplots(1, 3, sharex=True)
@@ -81,5 +83,5 @@ def _draw_lines(figure: Figure, study: xr.Dataset, fixed: str, size: Size) -> No
             panel.label_outer()
     if marks:
         figure.legend(handles=marks, loc="outside lower left", ncols=2, handlelength=1.0)
-    told = f"{_NAMES[fixed]} {value_of(study[fixed], study[fixed].values[0])}"
-    figure.suptitle(shorten(told, letters(panels[0])), x=0.01, ha="left", fontsize="medium")
+    title = f"{_NAMES[fixed]} {value_of(study[fixed], study[fixed].values[0])}"
+    figure.suptitle(shorten(title, letters(panels[0])), x=0.01, ha="left", fontsize="medium")

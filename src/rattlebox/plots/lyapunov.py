@@ -1,4 +1,4 @@
-"""Lyapunov exponents: their convergence, and what they are over one or two axes of a study."""
+"""Figures of Lyapunov exponents: their convergence, and their values over one or two axes of a study."""
 
 from __future__ import annotations
 
@@ -18,31 +18,42 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _REGULAR, _CHAOTIC = SERIES_COLOURS[:2]
-_LINES = 200  # of the convergence, at most
+_MAX_LINES = 200  # of the convergence
 
 
 def plot_lyapunov(study: xarray.Dataset, *, size: Size = "column") -> Figure:
-    """Draw Lyapunov exponents: a cycle where there is one, else a second.
+    """Draw Lyapunov exponents per cycle of the load, or per second if there is no cycle.
 
-    Of one case, how the exponent converges; over one axis also the exponents with twice their standard error; over two axes
-    a map. Positive exponents, chaos, are warm and light, negative ones cold and dark, and grey those that are above zero by
-    no more than neighbours show that part in proportion to time. What is -inf lies at the lower edge.
+    For one case, the figure shows the convergence of the exponent; over one axis, also the exponents with twice their
+    standard error; over two axes, a map. Positive exponents (chaos) have warm, light colours and negative ones cold, dark
+    colours. Exponents are grey if they are positive but no larger than those of neighbouring motions that separate in
+    proportion to time. Exponents of -inf are drawn at the lower edge.
 
     Parameters
     ----------
     study
-        From `rattlebox.lyapunov`, over two axes at most.
+        Dataset from `rattlebox.lyapunov`, over at most two axes.
     size
         Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    Figure
+        Figure with one panel, or two for a study over one axis.
 
     Raises
     ------
     CaseError
-        When there are more axes.
+        If the study has more than two axes.
+    ValueError
+        If the size is unknown.
     """
     values = study.growth_per_cycle if "growth_per_cycle" in study else study.exponent
     if values.ndim > 2:
-        raise CaseError(f"{' x '.join(map(str, values.dims))} are too many axes\n  try: study.sel(...), two at most")
+        raise CaseError(
+            f"the study varies along {', '.join(map(str, values.dims))}; at most two axes can be drawn\n"
+            "  try: study.sel(...) to fix the others"
+        )
     with figure_style(size):
         if values.ndim == 2:
             figure = StyledFigure(size, 0.75 if size == "column" else 0.6)
@@ -59,7 +70,7 @@ def plot_lyapunov(study: xarray.Dataset, *, size: Size = "column") -> Figure:
 
 
 def _text(values: xarray.DataArray) -> str:
-    return "Growth a cycle" if values.name == "growth_per_cycle" else "Exponent"
+    return "Growth per cycle" if values.name == "growth_per_cycle" else "Exponent"
 
 
 def _unit(values: xarray.DataArray) -> str:
@@ -67,13 +78,13 @@ def _unit(values: xarray.DataArray) -> str:
 
 
 def _resolution(study: xarray.Dataset) -> float:
-    """Growth of a separation in proportion to time, from the first step to the last."""
+    """Return the exponent of a separation that grows in proportion to time from the first step to the last."""
     steps = study[study.running_exponent.dims[-1]].values
     return float(np.log(steps.size) / steps[-1])
 
 
-def _floor(values: Any) -> tuple[float, float]:
-    """Limits of an axis that shows all finite values and zero."""
+def _limits(values: Any) -> tuple[float, float]:
+    """Return the limits of an axis that shows all finite values and zero."""
     finite = np.asarray(values)[np.isfinite(values)]
     low, high = min(0.0, finite.min(initial=0.0)), max(0.0, finite.max(initial=0.0))
     margin = 0.06 * (high - low) or 1.0
@@ -87,52 +98,58 @@ def _convergence(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) ->
     factor = values / study.exponent if values.name == "growth_per_cycle" else 1.0
     lines = np.atleast_2d((running * factor).transpose(..., over).values)
     ends = np.atleast_1d(values.values)
-    chosen = np.unique(np.linspace(0, len(lines) - 1, _LINES).astype(int))
-    for k in chosen:
+    indices = np.unique(np.linspace(0, len(lines) - 1, _MAX_LINES).astype(int))
+    for k in indices:
         colour = _REGULAR if ends[k] <= 0 else _CHAOTIC if ends[k] > _resolution(study) else FAINT
-        axes.plot(times, lines[k], color=colour, lw=pen(0.9 if len(chosen) == 1 else 0.4))
+        axes.plot(times, lines[k], color=colour, lw=pen(0.9 if len(indices) == 1 else 0.4))
     axes.axhline(0, color=INK, lw=pen(0.5), zorder=0)
     if values.ndim == 0:
         error = 2 * float(study.standard_error * factor)
         axes.axhspan(float(values) - error, float(values) + error, color=FAINT, alpha=0.5, lw=0, zorder=0)
-    axes.set_ylim(*_floor(lines[:, lines.shape[1] // 10 :]))
+    axes.set_ylim(*_limits(lines[:, lines.shape[1] // 10 :]))
     axes.set_xlim(0, float(times[-1]))
-    label(axes, "x", "Cycles looked at" if over == "cycle" else "Time looked at", "" if over == "cycle" else "s")
+    label(axes, "x", "Cycles" if over == "cycle" else "Averaging time", "" if over == "cycle" else "s")
     label(axes, "y", _text(values), _unit(values))
 
 
-def _name(axis: Any, names: xarray.DataArray) -> None:
-    """Write names along an axis that has no numbers."""
+def _label_names(axis: Any, names: xarray.DataArray) -> None:
+    """Label the ticks of an axis of names."""
     if names.dtype.kind not in "fiu":
         axis.set_ticks(range(names.size), [str(name) for name in names.values])
 
 
 def _coordinate(values: xarray.DataArray, name: Any) -> tuple[Any, str, str]:
-    """Values, name and unit of an axis."""
+    """Return values, description and unit of an axis."""
     axis = values[name]
     if axis.dtype.kind not in "fiu":
         return np.arange(axis.size), str(axis.attrs.get("long_name", name)), ""
     unit = str(axis.attrs.get("units", "")).removeprefix("1")
-    divisor, shown = scaled(axis, unit) if unit else (1.0, "")
+    divisor, prefixed = scaled(axis, unit) if unit else (1.0, "")
     text = str(axis.attrs.get("long_name", name))
-    return axis.values / divisor, text[0].upper() + text[1:], shown
+    return axis.values / divisor, text[0].upper() + text[1:], prefixed
 
 
 def _exponents(axes: Axes, study: xarray.Dataset, values: xarray.DataArray) -> None:
-    at, text, unit = _coordinate(values, values.dims[0])
+    x, text, unit = _coordinate(values, values.dims[0])
     error = 2 * np.nan_to_num(study.standard_error.values * (values / study.exponent).fillna(1.0).values)
-    grown, told = values.values > 0, values.values > _resolution(study)
-    for mask, colour, marker in ((told, _CHAOTIC, "o"), (grown & ~told, FAINT, "D"), (~grown, _REGULAR, "s")):
+    positive, chaotic = values.values > 0, values.values > _resolution(study)
+    for mask, colour, marker in (
+        (chaotic, _CHAOTIC, "o"),
+        (positive & ~chaotic, FAINT, "D"),
+        (~positive, _REGULAR, "s"),
+    ):
         axes.errorbar(
-            at[mask], values.values[mask], error[mask], fmt=marker, color=colour, ms=pen(2), lw=pen(0.6), mew=0
+            x[mask], values.values[mask], error[mask], fmt=marker, color=colour, ms=pen(2), lw=pen(0.6), mew=0
         )
-    limits = _floor(values)
-    lost = np.isneginf(values.values)
-    if lost.any():
-        axes.plot(at[lost], np.full(lost.sum(), limits[0]), "v", color=_REGULAR, ms=pen(3), clip_on=False)
+    limits = _limits(values)
+    minus_infinity = np.isneginf(values.values)
+    if minus_infinity.any():
+        axes.plot(
+            x[minus_infinity], np.full(minus_infinity.sum(), limits[0]), "v", color=_REGULAR, ms=pen(3), clip_on=False
+        )
     axes.axhline(0, color=INK, lw=pen(0.5), zorder=0)
     axes.margins(x=0.02)
-    _name(axes.xaxis, values[values.dims[0]])
+    _label_names(axes.xaxis, values[values.dims[0]])
     label(axes, "x", text, unit)
     label(axes, "y", _text(values), _unit(values))
 
@@ -150,12 +167,12 @@ def _map(figure: Figure, study: xarray.Dataset, values: xarray.DataArray) -> Non
     if neutral.any():
         grey = np.where(neutral, 0.0, np.nan)
         axes.pcolormesh(x, y, grey, cmap=ListedColormap([FAINT]), rasterized=True)
-        patch = Patch(color=FAINT, label="too near zero to tell")
+        patch = Patch(color=FAINT, label="indistinguishable from zero")
         axes.legend(handles=[patch], loc="lower left", bbox_to_anchor=(0.0, 1.0))
     label(axes, "x", x_text, x_unit)
     axes.set_ylabel(f"{y_text} ({y_unit})" if y_unit else y_text)
     for axis, name in zip((axes.yaxis, axes.xaxis), values.dims, strict=True):
-        _name(axis, values[name])
+        _label_names(axis, values[name])
     bar = figure.colorbar(mesh, ax=axes, extend="both", aspect=30, pad=0.02)
     bar.outline.set_visible(False)
     unit = _unit(values)
@@ -163,6 +180,6 @@ def _map(figure: Figure, study: xarray.Dataset, values: xarray.DataArray) -> Non
 
 
 def _colours() -> LinearSegmentedColormap:
-    """Lightness rises all the way, so that grey tells the order; the hue changes at zero, so that colour tells the sign."""
+    """Return colours whose lightness rises monotonically, and whose hue changes at zero."""
     stops = [(0.0, "#0a1f3a"), (0.5, "#5f86a8"), (0.5, "#d1742c"), (1.0, "#fdf0d2")]
     return LinearSegmentedColormap.from_list("sign", stops)

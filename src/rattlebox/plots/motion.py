@@ -1,4 +1,4 @@
-"""Motion of the structure and of the balls in their cavities against time."""
+"""Figure of the motion of the structure, and of the balls or particles in their cavities, over time."""
 
 from __future__ import annotations
 
@@ -29,18 +29,17 @@ from .style import (
     time_axis,
 )
 
-MOST_SERIES = len(SERIES_COLOURS)
-LETTERS_ASIDE = 14
-FAR = 3.0  # a wall at this many times the balls' travel is out of sight
+MAX_SERIES = len(SERIES_COLOURS)
+MAX_NAME_LETTERS = 14
+WALL_DISTANCE = 3.0  # a wall farther away than this multiple of the balls' travel is not drawn
 
 
 @run_figure("motion")
 def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float] | None = None) -> Figure:
     """Draw the displacement of the structure, and below it the motion in each cavity.
 
-    Of balls, their positions are drawn, and their range is marked: a ball touches a wall or its neighbour when it reaches
-    the edge of its band. Of particles, the shift of their centre of mass is drawn, and below it their mean number of
-    contacts.
+    For balls, the figure shows their positions and the limits at which they touch a wall. For particles, it shows the
+    displacement of their centre of mass, and below it their mean number of contacts.
 
     Parameters
     ----------
@@ -49,20 +48,21 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
     size
         Width of the figure: "column", "page" or "slide".
     between
-        First and last time to show [s]; the whole run when left out.
+        First and last time to draw [s]; default the whole run.
 
     Returns
     -------
     Figure
-        With one panel for the structure (unless it cannot move), one for each damper, and one for contacts of particles.
+        Figure with one panel for the structure (unless it cannot move), one for each damper, and one for contacts of
+        particles.
 
     Raises
     ------
     ValueError
-        When no output time lies between the given ones, or the size is unknown.
+        If no output time lies within `between`, or the size is unknown.
     """
     arrays = run.arrays
-    shown = _window(arrays, between)
+    window = _time_window(arrays, between)
     with_particles = "particles" in run.groups
     filled = [d for d in range(len(arrays.dampers)) if with_particles or np.any(arrays.ball_damper == d)]
     moving = arrays.mode_frequency.size > 0 or not filled
@@ -70,44 +70,44 @@ def plot_motion(run: Run, *, size: Size = "column", between: tuple[float, float]
     with figure_style(size):
         figure = StyledFigure(size, 0.14 + 0.36 * panels if size == "column" else 0.1 + 0.2 * panels)
         axes = list(np.ravel(figure.subplots(panels, 1, sharex=True)))
-        time = scaled(arrays.time[shown], "s")
-        left = iter(axes)
+        time = scaled(arrays.time[window], "s")
+        free_panels = iter(axes)
         if moving:
-            draw_structure(next(left), arrays, shown, time, scaled(arrays.displacement[shown], "m"))
+            draw_structure(next(free_panels), arrays, window, time, scaled(arrays.displacement[window], "m"))
         for d in filled:
-            panel = next(left)
+            panel = next(free_panels)
             if with_particles:
-                _draw_centre_of_mass(panel, arrays, d, shown, time)
+                _draw_centre_of_mass(panel, arrays, d, window, time)
             else:
-                draw_cavity(panel, arrays, d, shown, time, scaled(row_places(arrays, d), "m"))
+                draw_cavity(panel, arrays, d, window, time, scaled(ball_displacements(arrays, d), "m"))
             if len(arrays.dampers) > 1:
-                name_aside(panel, arrays.dampers[d])
+                label_panel(panel, arrays.dampers[d])
         if with_particles:
-            _draw_contacts(next(left), run, shown, time)
-        time_axis(axes[-1], arrays.time[shown], time)
+            _draw_contacts(next(free_panels), run, window, time)
+        time_axis(axes[-1], arrays.time[window], time)
         figure.align_ylabels(axes)
     return figure
 
 
-def _draw_centre_of_mass(axes: Axes, arrays: RunArrays, damper: int, shown: slice, time: Scale) -> None:
-    """Draw the shift of the particles' centre of mass in a cavity since the start, along each axis."""
-    x = (arrays.centre_of_mass[:, damper] - arrays.centre_of_mass[0, damper])[shown]
+def _draw_centre_of_mass(axes: Axes, arrays: RunArrays, damper: int, window: slice, time: Scale) -> None:
+    """Draw the displacement of the particles' centre of mass relative to the cavity since the start, along each axis."""
+    x = (arrays.centre_of_mass[:, damper] - arrays.centre_of_mass[0, damper])[window]
     axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
     length = scaled(x, "m")
     for k, name in enumerate(AXES):
-        _line(axes, arrays.time[shown] / time.divisor, x[:, k] / length.divisor, k, f"along {name}")
+        _line(axes, arrays.time[window] / time.divisor, x[:, k] / length.divisor, k, f"along {name}")
     label(axes, "y", "Shift of particles", length.unit)
     legend_above(axes)
 
 
-def _draw_contacts(axes: Axes, run: Run, shown: slice, time: Scale) -> None:
+def _draw_contacts(axes: Axes, run: Run, window: slice, time: Scale) -> None:
     """Draw the mean number of contacts of a particle in each cavity."""
     arrays = run.arrays
-    for k, name in enumerate(arrays.dampers[:MOST_SERIES]):
-        told = name if len(arrays.dampers) > 1 else None
-        _line(axes, arrays.time[shown] / time.divisor, run.ledger.coordination[shown, k], k, told)
+    for k, name in enumerate(arrays.dampers[:MAX_SERIES]):
+        text = name if len(arrays.dampers) > 1 else None
+        _line(axes, arrays.time[window] / time.divisor, run.ledger.coordination[window, k], k, text)
     axes.set_ylim(bottom=0.0)
-    label(axes, "y", "Contacts of a particle", "")
+    label(axes, "y", "Contacts per particle", "")
     legend_above(axes)
 
 
@@ -116,62 +116,70 @@ def _line(axes: Axes, x: Any, y: Any, series: int, name: str | None) -> None:
     axes.plot(x, y, label=name, **style)
 
 
-def _window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
+def _time_window(arrays: RunArrays, between: tuple[float, float] | None) -> slice:
     if between is None:
         return slice(0, arrays.time.size)
     first, last = np.searchsorted(arrays.time, between[0]), np.searchsorted(arrays.time, between[1], "right")
     if first >= last:
-        raise ValueError(f"no output time lies between {between[0]} s and {between[1]} s")
+        raise ValueError(
+            f"between = {between}: the run has no output time in this interval\n"
+            f"  try: times from {arrays.time[0]:g} s to {arrays.time[-1]:g} s"
+        )
     return slice(int(first), int(last))
 
 
-def name_aside(axes: Axes, name: str) -> None:
-    """Write the name of a damper beside its panel.
+def label_panel(axes: Axes, name: str) -> None:
+    """Write the name of a damper to the right of its panel.
 
     Parameters
     ----------
     axes
         Panel.
     name
-        Of the damper.
+        Name of the damper.
     """
-    aside: dict[str, Any] = {"rotation": 270, "ha": "left", "va": "center", "transform": axes.transAxes}
-    axes.text(1.03, 0.5, shorten(name, LETTERS_ASIDE), **aside)
+    style: dict[str, Any] = {"rotation": 270, "ha": "left", "va": "center", "transform": axes.transAxes}
+    axes.text(1.03, 0.5, shorten(name, MAX_NAME_LETTERS), **style)
 
 
-def row_places(arrays: RunArrays, damper: int) -> Any:
-    """Departures of the balls of one damper from the packed, centred row, and the range of both sides [m].
+def ball_displacements(arrays: RunArrays, damper: int) -> Any:
+    """Return the displacements of the balls of one damper from the packed, centred row, and half the clearance.
 
     Parameters
     ----------
     arrays
         Arrays of the run.
     damper
-        Damper, counted from 0.
+        Index of the damper.
+
+    Returns
+    -------
+    ndarray
+        Displacements and half the clearance [m], in one flat array.
     """
     own = arrays.ball_damper == damper
     return np.append((arrays.relative_position - arrays.ball_centre)[:, own], arrays.clearance[damper] / 2)
 
 
-def draw_structure(axes: Axes, arrays: RunArrays, shown: slice, time: Scale, length: Scale) -> None:
-    """Draw the displacement of the structure's points that move, of many those that move most.
+def draw_structure(axes: Axes, arrays: RunArrays, window: slice, time: Scale, length: Scale) -> None:
+    """Draw the displacement of the points of the structure that move; of many points, those that move most.
 
     Parameters
     ----------
     axes
-        Axes to fill.
+        Axes to draw on.
     arrays
         Arrays of the run.
-    shown
-        Output times to show.
+    window
+        Output times to draw.
     time, length
         Scales of the axes.
     """
-    x = arrays.displacement[shown]
+    x = arrays.displacement[window]
     axes.axhline(0.0, color=FAINT, linewidth=pen(0.5), zorder=0)
-    for k, point in enumerate(largest_points(np.abs(x).max(axis=0), MOST_SERIES)):
+    for k, point in enumerate(largest_points(np.abs(x).max(axis=0), MAX_SERIES)):
         axes.plot(
-            arrays.time[shown] / time.divisor,
+            arrays.time[window] / time.divisor,
             x[:, point] / length.divisor,
             color=SERIES_COLOURS[k],
             linestyle=SERIES_STYLES[k],
@@ -181,40 +189,40 @@ def draw_structure(axes: Axes, arrays: RunArrays, shown: slice, time: Scale, len
     legend_above(axes)
 
 
-def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, shown: slice, time: Scale, length: Scale) -> None:
-    """Draw the place of the balls of one damper in its cavity, as departures from the packed, centred row.
+def draw_cavity(axes: Axes, arrays: RunArrays, damper: int, window: slice, time: Scale, length: Scale) -> None:
+    """Draw the displacements of the balls of one damper from the packed, centred row.
 
-    A wall that the balls stay far away from is left out.
+    Walls far away from the balls are not drawn.
 
     Parameters
     ----------
     axes
-        Axes to fill.
+        Axes to draw on.
     arrays
         Arrays of the run.
     damper
-        Damper, counted from 0.
-    shown
-        Output times to show.
+        Index of the damper.
+    window
+        Output times to draw.
     time, length
         Scales of the axes.
     """
     own = np.flatnonzero(arrays.ball_damper == damper)
     half = arrays.clearance[damper] / 2
-    x = (arrays.relative_position - arrays.ball_centre)[shown][:, own]
+    x = (arrays.relative_position - arrays.ball_centre)[window][:, own]
     low, high = float(x.min()), float(x.max())
-    travel = FAR * (high - low) or 2 * half
+    travel = WALL_DISTANCE * (high - low) or 2 * half
     for wall in (wall for wall in (-half, half) if low - travel <= wall <= high + travel):
         axes.axhline(wall / length.divisor, color=INK, linewidth=pen(0.5), zorder=3)
-    for k in range(min(len(own), MOST_SERIES)):
+    for k in range(min(len(own), MAX_SERIES)):
         axes.plot(
-            arrays.time[shown] / time.divisor,
+            arrays.time[window] / time.divisor,
             x[:, k] / length.divisor,
-            color=SERIES_COLOURS[(k + 1) % MOST_SERIES],
+            color=SERIES_COLOURS[(k + 1) % MAX_SERIES],
             linestyle=SERIES_STYLES[k],
             linewidth=pen(),
             label=f"ball {k + 1}" if len(own) > 1 else None,
         )
     axes.margins(y=0.12)
-    label(axes, "y", "Place in cavity", length.unit)
+    label(axes, "y", "Position in cavity", length.unit)
     legend_above(axes)

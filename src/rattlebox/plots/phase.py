@@ -10,42 +10,41 @@ from matplotlib.figure import Figure
 from ..analysis import phase_portrait
 from ..results import Run
 from ..results.figures import run_figure
-from .style import FAINT, INK, Size, StyledFigure, figure_style, label, pen, scaled
+from .style import FAINT, INK, Size, StyledFigure, figure_style, label, map_colours, pen, scaled
 
 
 @run_figure("phase_portrait")
 def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column") -> Figure:
     """Draw velocity against position of a ball relative to its cavity, or of a point of the structure.
 
-    The line runs from dark to light with time. For a ball, the walls that bound its range are marked (for a
-    ball in a row, they touch it through its packed neighbours), and its position counts from the packed,
-    centred row.
+    The line turns from dark to light with time. For a ball, the walls that limit its range are drawn (a ball in a row
+    reaches them through its packed neighbours), and its position is relative to the packed, centred row.
 
     Parameters
     ----------
     run
         Run to draw.
     of
-        Name of a ball or of a point; the first ball when left out, or the first point without balls.
+        Name of a ball or of a point; default the first ball, or the first point if there are no balls.
     size
         Width of the figure: "column", "page" or "slide".
 
     Returns
     -------
     Figure
-        With one panel and a scale of time.
+        Figure with one panel and a colour bar for time.
 
     Raises
     ------
     ValueError
-        When no ball or point has that name, or the size is unknown.
+        If no ball or point has that name, or the size is unknown.
     """
     arrays, portrait = run.arrays, phase_portrait(run, of)
     x, v = portrait.position.values, portrait.velocity.values
     half, texts = None, ("Displacement", "Velocity")
     if portrait.of in arrays.balls:
         half = float(arrays.clearance[arrays.ball_damper[arrays.balls.index(portrait.of)]]) / 2
-        texts = "Place in cavity", "Relative velocity"
+        texts = "Position in cavity", "Relative velocity"
     x_scale, x_unit = scaled(x if half is None else np.append(x, half), "m")
     v_scale, v_unit = scaled(v, "m/s")
     t_scale, t_unit = scaled(arrays.time, "s")
@@ -79,7 +78,5 @@ def plot_phase_portrait(run: Run, of: str | None = None, *, size: Size = "column
 
 
 def _colours() -> LinearSegmentedColormap:
-    """The dark three quarters of a map with even lightness: its pale end would vanish on paper."""
-    from cmcrameri import cm  # type: ignore[import-untyped]
-
-    return LinearSegmentedColormap.from_list("batlow_dark", cm.batlow(np.linspace(0.0, 0.78, 256)))
+    """Return the dark three quarters of the map colours; the pale end would not be visible on paper."""
+    return LinearSegmentedColormap.from_list("batlow_dark", map_colours()(np.linspace(0.0, 0.78, 256)))

@@ -1,4 +1,4 @@
-"""Frequency responses: the steady motion over frequency at several levels, swept up and down."""
+"""Figures of frequency responses: the steady motion over frequency at several levels, swept up and down."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _STYLES = {"up": "-", "down": (0, (3.5, 1.5)), "fresh": (0, (1, 1.2))}
-_APART = 0.02  # beyond it, up and down are two motions
-_LENGTHS = "amplitude", "peak", "rms", "bare_amplitude"
+_COEXISTING = 0.02  # relative difference between up and down above which two motions coexist
+_DISPLACEMENTS = "amplitude", "peak", "rms", "bare_amplitude"
 
 
 def plot_frequency_response(
@@ -31,26 +31,33 @@ def plot_frequency_response(
     per_level: bool = False,
     size: Size = "column",
 ) -> Figure:
-    """Draw measures of the steady motion over frequency, one colour a level, one panel a measure.
+    """Draw measures of the steady motion over frequency, one colour per level and one panel per measure.
 
-    Upwards is drawn full and downwards dashed; where two motions coexist, the space between them is shaded. Crosses
-    mark motions that do not repeat.
+    Upward sweeps are solid lines and downward sweeps dashed; the area between two coexisting motions is shaded. Crosses mark
+    motions that are not periodic.
 
     Parameters
     ----------
     response
-        From `rattlebox.frequency_response`.
+        Dataset from `rattlebox.frequency_response`.
     of
-        Measures: "amplitude", "peak", "rms", "phase", "impacts_per_cycle", or others that were asked for.
+        Measures: "amplitude", "peak", "rms", "phase", "impacts_per_cycle", or another measure of the dataset.
     per_level
-        Divide displacements by the level: curves of a linear structure fall on one.
+        Whether to divide displacements by the level, so that the curves of a linear structure coincide.
     size
         Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    Figure
+        Figure with one panel per measure.
 
     Raises
     ------
     CaseError
-        When there is no such measure.
+        If there is no such measure.
+    ValueError
+        If the size is unknown.
     """
     names = [of] if isinstance(of, str) else list(of)
     for name in names:
@@ -61,21 +68,21 @@ def plot_frequency_response(
         figure = StyledFigure(size, 0.3 + (0.4 if size == "column" else 0.2) * len(names))
         panels = np.atleast_1d(figure.subplots(len(names), 1, sharex=True, height_ratios=[2] + [1] * (len(names) - 1)))
         for axes, name in zip(panels, names, strict=True):
-            _draw(axes, response, name, per_level and name in _LENGTHS)
+            _draw(axes, response, name, per_level and name in _DISPLACEMENTS)
         divisor, unit = scaled(response.frequency, "Hz")
         label(panels[-1], "x", "Frequency", unit)
         panels[-1].set_xlim(float(response.frequency[0]) / divisor, float(response.frequency[-1]) / divisor)
-        panels[0].legend(handles=_levels(response), loc="lower left", bbox_to_anchor=(0, 1), ncols=4)
-        figure.legend(handles=_kinds(response), loc="outside upper left", ncols=3 if size == "column" else 5)
+        panels[0].legend(handles=_level_handles(response), loc="lower left", bbox_to_anchor=(0, 1), ncols=4)
+        figure.legend(handles=_line_handles(response), loc="outside upper left", ncols=3 if size == "column" else 5)
     return figure
 
 
 def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> None:
     values = response[name] / response.level if per_level else response[name]
     unit = str(response[name].attrs["units"]).replace("1", "") + (f"/{response.level.attrs['units']}" * per_level)
-    divisor, shown = scaled(values, unit) if unit != "rad" else (1.0, unit)
+    divisor, prefixed = scaled(values, unit) if unit != "rad" else (1.0, unit)
     frequency = response.frequency / scaled(response.frequency, "Hz").divisor
-    if name in _LENGTHS:
+    if name in _DISPLACEMENTS:
         bare = (response.bare_amplitude / response.level)[:1] if per_level else response.bare_amplitude
         axes.plot(frequency, bare.T / divisor, color=FAINT, lw=pen(0.8), zorder=0)
         axes.set_yscale("log")
@@ -85,18 +92,18 @@ def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> N
         lines = values.sel(level=level) / divisor
         if {"up", "down"} <= set(response.direction.values):
             low, high = lines.min("direction"), lines.max("direction")
-            apart = high - low > _APART * np.maximum(abs(high), abs(low))
-            axes.fill_between(frequency, low, high, where=apart, color=colour, alpha=0.25, lw=0)
-        for way in response.direction.values:
-            line = lines.sel(direction=way)
-            axes.plot(frequency, line, color=colour, ls=_STYLES[str(way)])
-            restless = line.where(response.period.sel(level=level, direction=way) == 0)
-            axes.plot(frequency, restless, "x", ms=pen(2.5), mew=pen(0.5), color=colour)
+            coexisting = high - low > _COEXISTING * np.maximum(abs(high), abs(low))
+            axes.fill_between(frequency, low, high, where=coexisting, color=colour, alpha=0.25, lw=0)
+        for direction in response.direction.values:
+            line = lines.sel(direction=direction)
+            axes.plot(frequency, line, color=colour, ls=_STYLES[str(direction)])
+            irregular = line.where(response.period.sel(level=level, direction=direction) == 0)
+            axes.plot(frequency, irregular, "x", ms=pen(2.5), mew=pen(0.5), color=colour)
     text = str(response[name].attrs["long_name"])
-    label(axes, "y", text[0].upper() + text[1:] + " over level" * per_level, shown)
+    label(axes, "y", text[0].upper() + text[1:] + " over level" * per_level, prefixed)
 
 
-def _levels(response: xarray.Dataset) -> list[Line2D]:
+def _level_handles(response: xarray.Dataset) -> list[Line2D]:
     divisor, unit = scaled(response.level, str(response.level.attrs["units"]))
     return [
         Line2D([], [], color=SERIES_COLOURS[k % len(SERIES_COLOURS)], label=f"{level:.4g} {unit}")
@@ -104,10 +111,12 @@ def _levels(response: xarray.Dataset) -> list[Line2D]:
     ]
 
 
-def _kinds(response: xarray.Dataset) -> list[Line2D | Patch]:
-    ways = [str(way) for way in response.direction.values]
-    handles: list[Line2D | Patch] = [Line2D([], [], color=INK, ls=_STYLES[way], label=way) for way in ways]
-    if {"up", "down"} <= set(ways):
+def _line_handles(response: xarray.Dataset) -> list[Line2D | Patch]:
+    directions = [str(direction) for direction in response.direction.values]
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], color=INK, ls=_STYLES[direction], label=direction) for direction in directions
+    ]
+    if {"up", "down"} <= set(directions):
         handles.append(Patch(color=INK, alpha=0.25, lw=0, label="coexisting"))
     handles.append(Line2D([], [], color=INK, ls="", marker="x", ms=pen(2.5), mew=pen(0.5), label="irregular"))
     return [*handles, Line2D([], [], color=FAINT, lw=pen(0.8), label="no damper")]

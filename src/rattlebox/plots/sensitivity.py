@@ -1,4 +1,4 @@
-"""Sobol indices as bars."""
+"""Figure of Sobol indices as bars."""
 
 from __future__ import annotations
 
@@ -15,41 +15,41 @@ if TYPE_CHECKING:
 _BARS = (("first", "alone", SERIES_COLOURS[0]), ("total", "with interactions", SERIES_COLOURS[1]))
 
 
-def plot_sensitivity(found: xr.Dataset, *, size: Size = "column") -> Figure:
+def plot_sensitivity(study: xr.Dataset, *, size: Size = "column") -> Figure:
     """Draw first-order and total Sobol indices with their confidence intervals, the most important parameter on top.
 
     Parameters
     ----------
-    found
-        From `rb.sensitivity`.
+    study
+        Dataset from `rb.sensitivity`.
     size
         Width of the figure: "column", "page" or "slide".
 
     Returns
     -------
     Figure
-        With one panel a measure, below each other.
+        Figure with one panel per measure, in one column.
 
     Raises
     ------
     ValueError
-        When the size is unknown.
+        If the size is unknown.
     """
-    order = np.argsort(found.total.mean("measure").values)
-    rows, count = found.isel(parameter=order), found.sizes["measure"]
+    order = np.argsort(study.total.mean("measure").values)
+    rows, count = study.isel(parameter=order), study.sizes["measure"]
     with figure_style(size):
         inches = count * (0.5 + 0.36 * order.size) + 0.5
         figure = StyledFigure(size, 1.0)
         scale = 1.0 if size != "slide" else 15 / 8
         figure.set_figheight(scale * inches)
         panels = figure.subplots(count, 1, sharex=True, squeeze=False).ravel()
-        places = np.arange(order.size)
+        positions = np.arange(order.size)
         for panel, (_, row) in zip(panels, rows.groupby("measure", squeeze=False), strict=True):
             row = row.squeeze("measure")
             for side, (name, text, colour) in zip((0.19, -0.19), _BARS, strict=True):
-                panel.barh(places + side, row[name], 0.36, xerr=row[f"{name}_confidence"], color=colour, label=text,
+                panel.barh(positions + side, row[name], 0.36, xerr=row[f"{name}_confidence"], color=colour, label=text,
                            error_kw={"ecolor": INK, "elinewidth": pen(0.8), "capsize": pen(1.5)})  # fmt: skip
-            panel.set_yticks(places, [shorten(str(path).replace("_", " "), 34) for path in row.parameter.values])
+            panel.set_yticks(positions, [shorten(str(path).replace("_", " "), 34) for path in row.parameter.values])
             panel.tick_params(axis="y", length=0)
             panel.axvline(0.0, color=INK, linewidth=pen(0.6))
             panel.spines["left"].set_visible(False)

@@ -1,4 +1,4 @@
-"""Draws many spheres as seen from far away: with PyVista where it is installed, else by itself."""
+"""Pictures of many spheres in parallel projection, with PyVista or with NumPy alone."""
 
 from __future__ import annotations
 
@@ -14,16 +14,28 @@ Array = NDArray[np.float64]
 Renderer = Literal["pyvista", "plain"]
 
 LIGHT = np.array([-0.45, 0.65, 0.61])
-"""Towards the light, in the picture: right, up, towards the viewer."""
-MOST_OF_TRIANGLES = 20_000
+"""Direction to the light in the picture: right, up, towards the viewer."""
+MAX_MESHES = 20_000
+"""Number of spheres up to which PyVista draws triangle meshes in reasonable time."""
 _AMBIENT, _DIFFUSE = 0.35, 0.7
-_FLAT = 0.1  # pixels that a sphere of triangles may miss at its rim
-_FINER = 2  # pixels are averaged over so many in each direction
+_RIM_ERROR = 0.1  # largest distance between the rim of a mesh and that of its sphere [pixels]
+_OVERSAMPLING = 2  # samples per pixel in each direction, which are averaged
 
 
-def usual_renderer(count: int = 0) -> Renderer:
-    """Return PyVista where it is installed and has not too many spheres to make of triangles."""
-    return "pyvista" if count <= MOST_OF_TRIANGLES and find_spec("pyvista") is not None else "plain"
+def default_renderer(count: int = 0) -> Renderer:
+    """Return the default renderer for a number of spheres.
+
+    Parameters
+    ----------
+    count
+        Number of spheres.
+
+    Returns
+    -------
+    str
+        "pyvista" if PyVista is installed and there are not too many spheres, otherwise "plain".
+    """
+    return "pyvista" if count <= MAX_MESHES and find_spec("pyvista") is not None else "plain"
 
 
 def draw_spheres(
@@ -34,44 +46,45 @@ def draw_spheres(
     width: int,
     renderer: Renderer | None = None,
 ) -> NDArray[np.uint8]:
-    """Return a picture of spheres, without perspective.
+    """Draw spheres in parallel projection.
 
     Parameters
     ----------
     places
         Centres: right, up and towards the viewer, (n, 3).
     radii
-        (n,).
+        Radii in the unit of the places, (n,).
     colours
         Red, green, blue from 0 to 1, (n, 3).
     extent
-        Left, right, bottom and top of the picture.
+        Left, right, bottom and top of the picture, in the same unit.
     width
-        Of the picture in pixels.
+        Width of the picture in pixels.
     renderer
-        Default PyVista where it is installed, up to some ten thousand spheres.
+        Default PyVista if it is installed and there are at most 20 000 spheres.
 
     Returns
     -------
-    (height, width, 4) uint8
-        The first row is at the top; nothing is transparent but the background.
+    ndarray of uint8
+        Red, green, blue and opacity, (height, width, 4); the first row is at the top; only the background is
+        transparent.
 
     Raises
     ------
     MissingDependency
-        When PyVista is asked for and not installed.
+        If PyVista is requested and not installed.
     """
     height = max(1, round(width * (extent[3] - extent[2]) / (extent[1] - extent[0])))
-    draw = _pyvista if (renderer or usual_renderer(len(places))) == "pyvista" else _plain
+    draw = _pyvista if (renderer or default_renderer(len(places))) == "pyvista" else _plain
     return draw(places, radii, colours, extent, width, height)
 
 
 def _plain(
     places: Array, radii: Array, colours: Array, extent: tuple[float, ...], width: int, height: int
 ) -> NDArray[np.uint8]:
-    """The nearest sphere at each pixel, shaded by the angle to the light."""
+    """Draw the nearest sphere at each pixel, shaded by the angle to the light."""
     light = LIGHT / np.linalg.norm(LIGHT)
-    size = (_FINER * height, _FINER * width)
+    size = (_OVERSAMPLING * height, _OVERSAMPLING * width)
     scale = size[1] / (extent[1] - extent[0])
     nearest = np.full(size, -np.inf)
     picture = np.zeros((*size, 4))
@@ -92,7 +105,7 @@ def _plain(
         nearest[window][seen] = (z + r * w)[seen]
         picture[window][seen, 3] = 1.0
         picture[window][seen, :3] = colour * shade[seen, None]
-    averaged = picture.reshape(height, _FINER, width, _FINER, 4).mean(axis=(1, 3))
+    averaged = picture.reshape(height, _OVERSAMPLING, width, _OVERSAMPLING, 4).mean(axis=(1, 3))
     covered = averaged[..., 3:]
     averaged[..., :3] = np.divide(averaged[..., :3], covered, out=np.zeros((height, width, 3)), where=covered > 0)
     return np.asarray(255 * np.clip(averaged, 0, 1), np.uint8)
@@ -104,13 +117,14 @@ def _pyvista(
     pyvista = optional_import("pyvista", "3d", 'renderer="plain"')
     from vtkmodules.vtkCommonCore import vtkLogger
 
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # without a screen it warns before it goes on without
+    # Without a display, VTK prints a warning before it falls back to off-screen rendering.
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=[width, height], lighting="none")
     try:
         cloud = pyvista.PolyData(places)
         cloud["radius"], cloud["colour"] = radii, colours
         pixels = radii.max(initial=0.0) * width / (extent[1] - extent[0])
-        corners = int(np.clip(np.pi * np.sqrt(pixels / (2 * _FLAT)), 8, 64))
+        corners = int(np.clip(np.pi * np.sqrt(pixels / (2 * _RIM_ERROR)), 8, 64))
         ball = pyvista.Sphere(radius=1.0, theta_resolution=corners, phi_resolution=corners)
         balls = cloud.glyph(geom=ball, scale="radius", orient=False, factor=1.0)
         plotter.add_mesh(

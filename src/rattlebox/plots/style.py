@@ -1,4 +1,4 @@
-"""One style for all figures: sizes of a journal, colours that survive greyscale and colour blindness."""
+"""Common style of all figures: widths of a journal, colours that work in greyscale and for colour-blind readers."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from ..results.quantities import in_unit
 Size = Literal["column", "page", "slide"]
 
 WIDTHS: dict[Size, float] = {"column": 85.0, "page": 178.0, "slide": 254.0}
-"""Width of a figure in mm: one column and the full page of a journal, and a slide."""
+"""Width of a figure [mm]: one column and the full page of a journal, and a slide."""
 
 _DPI: dict[Size, float] = {"column": 300.0, "page": 300.0, "slide": 150.0}
 _FONT: dict[Size, float] = {"column": 8.0, "page": 8.0, "slide": 15.0}
@@ -45,7 +45,7 @@ CHANNEL_COLOURS: dict[str, str] = {
     "gravity": "#9a86b8",
     "work": INK,
 }
-"""Fill of each channel of the energy; neighbours in the ledger differ clearly in lightness."""
+"""Fill colour of each energy channel; neighbours in the ledger differ clearly in lightness."""
 
 SERIES_COLOURS: tuple[str, ...] = ("#0b3d6b", "#d1742c", "#5f9ea0", "#a33b5c", "#8c8c2e", "#7a6fb0")
 SERIES_STYLES: tuple[Any, ...] = (
@@ -106,7 +106,7 @@ def _settings(size: Size) -> dict[str, Any]:
 
 @contextmanager
 def figure_style(size: Size = "column") -> Iterator[None]:
-    """Draw in the style of all figures of Rattlebox while the context lasts.
+    """Apply the style of all figures of Rattlebox inside a `with` block.
 
     Parameters
     ----------
@@ -116,23 +116,23 @@ def figure_style(size: Size = "column") -> Iterator[None]:
     Raises
     ------
     ValueError
-        When there is no such size.
+        If there is no such size.
     """
     if size not in WIDTHS:
-        raise ValueError(f"size {size!r} is not one of {', '.join(map(repr, WIDTHS))}")
+        raise ValueError(f"size = {size!r}: unknown size\n  try: {', '.join(map(repr, WIDTHS))}")
     with mpl.rc_context(cast("Any", _settings(size))):
         yield
 
 
 class StyledFigure(Figure):
-    """Figure without a window, shown by notebooks, that also keeps the style while it is saved.
+    """Figure without a window, displayed by notebooks, that is saved in the style in which it was drawn.
 
     Parameters
     ----------
     size
-        Name of the width.
+        "column", "page" or "slide".
     height
-        Height over width.
+        Ratio of height to width.
     """
 
     def __init__(self, size: Size, height: float) -> None:
@@ -141,14 +141,14 @@ class StyledFigure(Figure):
         self._size_name: Size = size
 
     def savefig(self, fname: Any, **options: Any) -> None:
-        """Save as `matplotlib.figure.Figure.savefig` does, with letters that stay text in PDF and SVG.
+        """Save the figure as `matplotlib.figure.Figure.savefig` does, with editable text in PDF and SVG.
 
         Parameters
         ----------
         fname
-            File to write, its ending tells the format.
+            File to write; its suffix determines the format.
         **options
-            Passed on to matplotlib.
+            Options of `matplotlib.figure.Figure.savefig`.
         """
         with figure_style(self._size_name):
             if isinstance(fname, (str, os.PathLike)):
@@ -157,10 +157,12 @@ class StyledFigure(Figure):
                 super().savefig(fname, **options)
 
     def _save(self, path: Path, options: dict[str, Any]) -> None:
-        """Write a file; matplotlib adds a suffix to a name without one."""
+        """Write a file atomically; a name without a suffix gets that of the format, as in matplotlib."""
         form = options.pop("format", None) or path.suffix[1:] or str(mpl.rcParams["savefig.format"])
         path = path if path.suffix else path.with_name(f"{path.name}.{form}")
-        if form == "png":  # Level 4 takes two thirds of the time of the usual level 6, for slightly larger files.
+        if (
+            form == "png"
+        ):  # Level 4 takes two thirds of the time of the default level 6 and writes slightly larger files.
             options = {"pil_kwargs": {"compress_level": 4}} | options
         with atomic_write(path, "make room and save the figure again") as name:
             super().savefig(name, format=form, **options)
@@ -171,20 +173,27 @@ class StyledFigure(Figure):
         return buffer.getvalue()
 
 
+def map_colours() -> Any:
+    """Return the colour map of maps, whose lightness rises evenly, so that it works in greyscale."""
+    from cmcrameri import cm  # type: ignore[import-untyped]
+
+    return cm.batlow
+
+
 class Scale(NamedTuple):
-    """Divisor of an axis, and its unit with the SI prefix."""
+    """Divisor of the values on an axis, and their unit with an SI prefix."""
 
     divisor: float
     unit: str
 
 
 def scaled(values: Any, unit: str) -> Scale:
-    """Divisor and unit with the SI prefix that suits the largest of `values`.
+    """Return the divisor and the unit with the SI prefix that suits the largest value.
 
     Parameters
     ----------
     values
-        Numbers in SI units, any shape; may be empty.
+        Values in SI units, any shape; may be empty.
     unit
         SI unit.
 
@@ -195,13 +204,13 @@ def scaled(values: Any, unit: str) -> Scale:
     """
     array = np.abs(np.asarray(values, dtype=float))
     array = array[np.isfinite(array)]
-    # One reads 0.4 mm and 0.5 s, not 400 µm and 500 ms.
+    # 0.4 mm and 0.5 s are easier to read than 400 µm and 500 ms.
     least = 0.1 if unit in ("m", "s") else 1.0
     return Scale(*in_unit(float(array.max()) if array.size else 0.0, unit, least))
 
 
 def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
-    """Write text and unit on an axis, on two lines beside a vertical one, which may be short.
+    """Label an axis with a text and a unit; on a vertical axis the unit is on a second line.
 
     Parameters
     ----------
@@ -210,7 +219,7 @@ def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
     which
         "x" or "y".
     text
-        Quantity.
+        Name of the quantity.
     unit
         Unit with its prefix; "" for a pure number.
     """
@@ -221,29 +230,34 @@ def label(axes: Axes, which: Literal["x", "y"], text: str, unit: str) -> None:
 
 
 def pen(width: float = 0.6) -> float:
-    """Width of a line that grows with the letters.
+    """Return a line width in proportion to the font size.
 
     Parameters
     ----------
     width
-        Width in points beside letters of 8 points.
+        Line width [pt] at a font size of 8 pt.
+
+    Returns
+    -------
+    float
+        Line width [pt] at the font size of the current style.
     """
     return width * float(mpl.rcParams["font.size"]) / 8.0
 
 
 def time_axis(axes: Axes, time: Any, scale: Scale, ticks: int = 6) -> None:
-    """Label the time axis of the lowest panel and limit it to the times shown.
+    """Label the time axis of the lowest panel and limit it to the drawn times.
 
     Parameters
     ----------
     axes
         Lowest panel.
     time
-        Times shown [s].
+        Drawn times [s], (n,).
     scale
         Scale of the axis.
     ticks
-        Largest number of intervals.
+        Maximum number of intervals between ticks.
     """
     label(axes, "x", "Time", scale.unit)
     axes.xaxis.set_major_locator(MaxNLocator(ticks, steps=[1, 2, 5, 10]))
@@ -252,33 +266,38 @@ def time_axis(axes: Axes, time: Any, scale: Scale, ticks: int = 6) -> None:
 
 
 def legend_above(axes: Axes, **options: Any) -> None:
-    """Put the legend over the axes, where it hides nothing, in as many columns as fit.
+    """Place the legend above the axes, in as many columns as fit.
 
     Parameters
     ----------
     axes
         Axes with labelled artists; without any, nothing happens.
     **options
-        Passed on to `Axes.legend`.
+        Options of `Axes.legend`.
     """
     handles, names = axes.get_legend_handles_labels()
     if handles:
         room = letters(axes)
         rows = math.ceil(len(names) / _fitting_columns(names, room))
-        columns = math.ceil(len(names) / rows)  # no more than that many rows need
-        shown = [shorten(name, room - _MARK) for name in names]
-        axes.legend(handles, shown, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, **options)
+        columns = math.ceil(len(names) / rows)  # fill the last row as well as possible
+        texts = [shorten(name, room - _HANDLE_LETTERS) for name in names]
+        axes.legend(handles, texts, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, **options)
 
 
 def shorten(text: str, room: int) -> str:
-    """Cut the middle out of a text that is too long.
+    """Replace the middle of a text that is too long by an ellipsis.
 
     Parameters
     ----------
     text
         Text.
     room
-        Number of letters to keep at most.
+        Maximum number of letters.
+
+    Returns
+    -------
+    str
+        Text of at most `room` letters.
     """
     if len(text) <= room:
         return text
@@ -287,24 +306,29 @@ def shorten(text: str, room: int) -> str:
 
 
 def letters(axes: Axes) -> int:
-    """Count of letters of a legend that fit over an axes.
+    """Estimate the number of legend letters that fit above an axes.
 
     Parameters
     ----------
     axes
         Axes of a figure with its final width.
+
+    Returns
+    -------
+    int
+        Number of letters.
     """
     figure, grid = present(axes.get_figure(root=True)), axes.get_gridspec()
     width = 72.0 * figure.get_figwidth() / (grid.ncols if grid is not None else 1)
     return int(0.8 * width / (0.58 * 0.9 * float(mpl.rcParams["font.size"])))
 
 
-_MARK = 6
+_HANDLE_LETTERS = 6  # width of a legend handle in letters
 
 
 def _fitting_columns(names: list[str], room: int) -> int:
-    """Largest number of legend columns that are not wider than `room` letters."""
+    """Return the largest number of legend columns that are not wider than `room` letters."""
     for columns in range(len(names), 1, -1):
-        if sum(max(len(name) for name in names[k::columns]) + _MARK for k in range(columns)) <= room:
+        if sum(max(len(name) for name in names[k::columns]) + _HANDLE_LETTERS for k in range(columns)) <= room:
             return columns
     return 1

@@ -154,7 +154,7 @@ def test_resumed_run_prints_its_checkpoint(run_cli: RunCli) -> None:
 def test_running_run_is_not_replaced(run_cli: RunCli) -> None:
     """While another process uses the folder, --replace removes nothing and prints the number of that process."""
     write_checkpoint()
-    with Checkpoint(Path("out/run.checkpoint"), rb.Case.from_file("beads.toml")).held():
+    with Checkpoint(Path("out/run.checkpoint"), rb.Case.from_file("beads.toml")).lock():
         code, printed, errors = run_cli("run", "rougher.toml", "--replace")
     assert (code, printed) == (2, "")
     assert errors.startswith("error: out/run.checkpoint is in use by process ")
@@ -182,7 +182,7 @@ def test_unfinished_run_is_not_overwritten(run_cli: RunCli) -> None:
         code, printed, errors = run_cli("run", *command, "--no-figures")
         assert (code, printed) == (2, "")
         assert errors.startswith("error: out/run.checkpoint ") and "unfinished" in errors and "--replace" in errors
-    with Checkpoint(Path("out/run.checkpoint"), rb.Case.from_file("beads.toml")).held():
+    with Checkpoint(Path("out/run.checkpoint"), rb.Case.from_file("beads.toml")).lock():
         assert "in use by process" in run_cli("run", "case.toml", "--no-figures", "--replace")[2]
     assert names() == {"run.checkpoint"} and Path("out/run.checkpoint").read_bytes() == before
     assert run_cli("run", "case.toml", "--no-figures", "--replace")[0] == 0

@@ -1,4 +1,4 @@
-"""Figures: every kind of run is drawn, what is drawn is true, and it can be read in print."""
+"""Tests of the figures of runs."""
 
 from __future__ import annotations
 
@@ -7,51 +7,44 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 
 import rattlebox as rb
 from rattlebox.plots import figure_style, plot_comparison
 from rattlebox.plots.style import CHANNEL_COLOURS, WIDTHS, Scale, scaled
 from rattlebox.results import Run
 
+from .conftest import is_within_page
+
 FIGURES = ("motion", "energy", "impacts", "phase_portrait")
-
-
-def _texts_inside(figure: Figure) -> bool:
-    """Whether everything that is drawn lies on the paper."""
-    figure.draw_without_rendering()
-    box = figure.get_tightbbox()
-    width, height = figure.get_size_inches()
-    return bool(box.x0 > -0.01 and box.y0 > -0.01 and box.x1 < width + 0.01 and box.y1 < height + 0.01)
 
 
 @pytest.mark.parametrize("kind", FIGURES)
 def test_every_run_is_drawn(any_run: Run, kind: str, tmp_path: Path) -> None:
-    """Every figure of every kind of run is saved without a warning, and nothing leaves the paper."""
+    """Every figure of every kind of run is saved without a warning and fits on the page."""
     figure = getattr(any_run.plot, kind)()
     path = tmp_path / "figure.png"
     figure.savefig(path)
     assert path.stat().st_size > 5000
-    assert _texts_inside(figure)
+    assert is_within_page(figure)
 
 
 @pytest.mark.parametrize("size", WIDTHS)
 @pytest.mark.parametrize("kind", FIGURES)
 def test_sizes(two_dampers: Run, kind: str, size: str) -> None:
-    """Figures are as wide as they are said to be, with everything on the paper."""
+    """Figures have the width of their size and fit on the page."""
     figure = getattr(two_dampers.plot, kind)(size=size)
     assert figure.get_figwidth() * 25.4 == pytest.approx(WIDTHS[size])
-    assert _texts_inside(figure)
+    assert is_within_page(figure)
 
 
-def test_unknown_size_is_refused(run: Run) -> None:
-    """A size that does not exist is answered with those that do."""
+def test_unknown_size(run: Run) -> None:
+    """An unknown size raises an error that lists the known ones."""
     with pytest.raises(ValueError, match="'column', 'page', 'slide'"):
         run.plot.motion(size="poster")
 
 
-def test_style_leaves_no_trace() -> None:
-    """The style ends with its context."""
+def test_style_is_temporary() -> None:
+    """The style does not change the settings outside its context."""
     import matplotlib as mpl
 
     before = dict(mpl.rcParams)
@@ -61,9 +54,9 @@ def test_style_leaves_no_trace() -> None:
 
 
 def test_axes_have_units(run: Run) -> None:
-    """Axes are labelled with fitting prefixes."""
+    """Labels of axes contain units with SI prefixes."""
     motion = run.plot.motion().axes
-    assert [a.get_ylabel() for a in motion] == ["Displacement\n(mm)", "Place in cavity\n(mm)"]
+    assert [a.get_ylabel() for a in motion] == ["Displacement\n(mm)", "Position in cavity\n(mm)"]
     assert motion[-1].get_xlabel() == "Time (s)"
     assert [a.get_ylabel() for a in run.plot.energy().axes] == ["Energy\n(mJ)", "Energy ledger\n(mJ)"]
     labels = [a.get_ylabel() for a in run.plot.impacts().axes]
@@ -71,14 +64,14 @@ def test_axes_have_units(run: Run) -> None:
 
 
 def test_prefixes() -> None:
-    """Lengths and times keep the larger prefix from a tenth on; nothing at all keeps the unit."""
+    """Lengths and times keep the larger prefix from 0.1 on; an empty array keeps the unit."""
     assert scaled([4e-4], "m") == Scale(1e-3, "mm")
     assert scaled([0.02, np.nan], "s") == Scale(1e-3, "ms")
     assert scaled([0.25], "J") == Scale(1e-3, "mJ")
     assert scaled([], "N") == Scale(1.0, "N")
 
 
-def test_ledger_closes_in_the_picture(run: Run) -> None:
+def test_areas_of_the_ledger_reach_the_energy_supplied(run: Run) -> None:
     """The upper edge of the stacked areas is the line of the energy supplied, at every output time."""
     lower = run.plot.energy().axes[1]
     edge = lower.collections[-1].get_paths()[0].vertices
@@ -89,8 +82,8 @@ def test_ledger_closes_in_the_picture(run: Run) -> None:
         assert edge[edge[:, 0] == t, 1].max() == pytest.approx(level, rel=1e-12, abs=1e-9)
 
 
-def test_open_ledger_shows(run: Run) -> None:
-    """Where energy is missing, the areas end below the line."""
+def test_missing_energy_is_visible(run: Run) -> None:
+    """If energy is missing, the areas end below the line of the energy supplied."""
     leaking = Run(run.arrays.replaced(viscous_loss=0.5 * run.arrays.viscous_loss))
     lower = leaking.plot.energy().axes[1]
     edge = lower.collections[-1].get_paths()[0].vertices
@@ -98,7 +91,7 @@ def test_open_ledger_shows(run: Run) -> None:
     assert last < 0.8 * lower.lines[0].get_ydata()[-1]
 
 
-def test_all_channels_are_told_apart_in_grey(run: Run) -> None:
+def test_channels_differ_in_grey(run: Run) -> None:
     """Neighbouring areas of the ledger differ by at least a tenth in lightness when printed in grey."""
 
     def grey(name: str) -> float:
@@ -111,15 +104,15 @@ def test_all_channels_are_told_apart_in_grey(run: Run) -> None:
 
 
 def test_logarithmic_energies(run: Run) -> None:
-    """The energies may be drawn over six decades; zeros leave gaps instead of warnings."""
+    """Logarithmic energies cover six decades; zeros result in gaps without warnings."""
     upper = run.plot.energy(log=True).axes[0]
     assert upper.get_yscale() == "log"
     low, high = upper.get_ylim()
     assert 1e5 < high / low < 1e7
 
 
-def test_gravity_is_drawn(run: Run) -> None:
-    """A gravity potential has its own line, counted from its lowest value."""
+def test_gravity_energy(run: Run) -> None:
+    """The potential energy of gravity is drawn relative to its lowest value."""
     heavy = Run(run.arrays.replaced(gravity_energy=-10.0 - run.arrays.ball_position))
     upper = heavy.plot.energy().axes[0]
     names = [text.get_text() for text in upper.get_legend().get_texts()]
@@ -128,7 +121,7 @@ def test_gravity_is_drawn(run: Run) -> None:
 
 
 def test_impacts_show_every_impact(two_dampers: Run) -> None:
-    """Each impact has one mark at its time and speed, in the group of its damper and side."""
+    """Each impact has one marker at its time and speed, in the group of its damper and side."""
     axes = two_dampers.plot.impacts().axes
     log = two_dampers.arrays.impacts
     marks = np.concatenate([c.get_offsets() for c in axes[0].collections])
@@ -140,7 +133,7 @@ def test_impacts_show_every_impact(two_dampers: Run) -> None:
 
 
 def test_impacts_without_force_or_restitution(run: Run) -> None:
-    """Quantities that no impact has get no empty panel."""
+    """Quantities without values have no panel."""
     log = run.arrays.impacts
     nan = np.full(len(log), np.nan)
     bare = Run(run.arrays.replaced(impacts=log.replaced(peak_force=nan, restitution=nan)))
@@ -148,16 +141,16 @@ def test_impacts_without_force_or_restitution(run: Run) -> None:
     assert len(bare.plot.impacts(log=True).axes) == 1
 
 
-def test_wall_far_away_is_left_out() -> None:
-    """A ball that bounces on the floor of a high cavity fills the panel; the lid is not drawn."""
+def test_distant_wall_is_not_drawn() -> None:
+    """The panel of a ball that bounces on the floor of a high cavity does not include the lid."""
     case = rb.Case.from_file(Path(__file__).parents[3] / "examples" / "shaker.toml")
     (axes,) = rb.simulate(case).plot.motion().axes
     assert [line.get_ydata()[0] for line in axes.lines[:-1]] == [pytest.approx(-50)]
     assert np.diff(axes.get_ylim()) < 2
 
 
-def test_walls_stand_where_the_ball_turns(two_dampers: Run) -> None:
-    """The walls of a portrait bound the positions of a ball in a row, each at half the clearance."""
+def test_walls_of_a_phase_portrait(two_dampers: Run) -> None:
+    """The walls are at half the clearance and limit the positions of a ball in a row."""
     axes = two_dampers.plot.phase_portrait("damper2/3").axes[0]
     walls = sorted(line.get_xdata()[0] for line in axes.lines)
     np.testing.assert_allclose(walls, [-0.4, 0.4])
@@ -166,22 +159,22 @@ def test_walls_stand_where_the_ball_turns(two_dampers: Run) -> None:
 
 
 def test_portrait_of_a_point(run: Run) -> None:
-    """A point of the structure is drawn with its own names and without walls."""
+    """The portrait of a point of the structure has its own labels and no walls."""
     axes = run.plot.phase_portrait("mass").axes[0]
     assert axes.get_xlabel() == "Displacement (mm)"
     assert not axes.lines
 
 
-def test_motion_in_a_window(run: Run) -> None:
-    """A window limits the times; one without any output time is refused."""
+def test_motion_in_a_time_interval(run: Run) -> None:
+    """An interval limits the time axis; an interval without output times raises an error."""
     axes = run.plot.motion(between=(0.1, 0.2)).axes
     assert axes[-1].get_xlim() == pytest.approx((0.1, 0.2))
     with pytest.raises(ValueError, match="no output time"):
         run.plot.motion(between=(3.0, 4.0))
 
 
-def test_comparison_shares_its_axes(run: Run, make_run, tmp_path: Path) -> None:
-    """Columns of a comparison have the same scales, so that what looks larger is larger."""
+def test_comparison_has_common_axes(run: Run, make_run, tmp_path: Path) -> None:
+    """All columns of a comparison have the same scales."""
     weak = make_run(pulse=100.0)
     figure = plot_comparison({"strong": run, "weak": weak})
     figure.savefig(tmp_path / "comparison.png")
@@ -191,20 +184,20 @@ def test_comparison_shares_its_axes(run: Run, make_run, tmp_path: Path) -> None:
         assert row[0].get_ylim() == row[1].get_ylim()
     strong, faint = (panel.lines[-1].get_ydata().max() for panel in panels[0])
     assert strong / faint == pytest.approx(run.arrays.displacement.max() / weak.arrays.displacement.max())
-    assert _texts_inside(figure)
+    assert is_within_page(figure)
 
 
 def test_comparison_of_different_structures(run: Run, make_run) -> None:
-    """Runs without a ball or without a moving structure stand beside others; none at all is refused."""
+    """Runs without a ball or without a moving structure can be compared; an empty comparison raises an error."""
     figure = plot_comparison({"a": run, "b": make_run(rows=()), "c": make_run(fixed=True, ball_speed=0.1)})
-    assert _texts_inside(figure)
+    assert is_within_page(figure)
     assert len(plot_comparison({"c": make_run(fixed=True, ball_speed=0.1)}).axes) == 2
-    with pytest.raises(ValueError, match="no run"):
+    with pytest.raises(ValueError, match="at least one run"):
         plot_comparison({})
 
 
-def test_long_names_stay_on_the_paper(two_dampers: Run) -> None:
-    """Names longer than the paper are wide are cut rather than squeezing the panels away."""
+def test_long_names(two_dampers: Run) -> None:
+    """Long names are shortened, so that the panels keep their width."""
     arrays = two_dampers.arrays
     points = ("left end of the upper flange " * 4, "right end")
     double = arrays.replaced(
@@ -217,12 +210,12 @@ def test_long_names_stay_on_the_paper(two_dampers: Run) -> None:
     )
     for kind in ("motion", "impacts"):
         figure = getattr(Run(double).plot, kind)()
-        assert _texts_inside(figure), kind
+        assert is_within_page(figure), kind
         assert figure.axes[0].get_position().width > 0.5, kind
 
 
-def test_letters_stay_letters_in_pdf(run: Run, tmp_path: Path) -> None:
-    """A saved PDF embeds TrueType letters, as journals ask, and none as type 3."""
+def test_fonts_in_pdf(run: Run, tmp_path: Path) -> None:
+    """A PDF file contains TrueType fonts and no Type 3 fonts, as journals require."""
     path = tmp_path / "figure.pdf"
     run.plot.energy().savefig(path)
     content = path.read_bytes()
@@ -230,6 +223,6 @@ def test_letters_stay_letters_in_pdf(run: Run, tmp_path: Path) -> None:
     assert b"/CIDFontType2" in content
 
 
-def test_notebooks_show_figures(run: Run) -> None:
-    """A figure offers itself as a PNG picture."""
+def test_figures_in_notebooks(run: Run) -> None:
+    """A figure has a PNG representation."""
     assert run.plot.energy()._repr_png_().startswith(b"\x89PNG")

@@ -1,4 +1,4 @@
-"""Figures of frequency responses and Lyapunov exponents: they can be read, and say what is in the data."""
+"""Tests of the figures of frequency responses and Lyapunov exponents."""
 
 import numpy as np
 import pytest
@@ -9,16 +9,11 @@ import rattlebox as rb
 from rattlebox.plots.lyapunov import _colours
 from rattlebox.plots.style import FAINT, WIDTHS
 
-
-def inside(figure):
-    """Whether everything that is drawn lies on the paper."""
-    figure.draw_without_rendering()
-    box, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
-    return box.x0 > -0.01 and box.y0 > -0.01 and box.x1 < width + 0.01 and box.y1 < height + 0.01
+from .conftest import is_within_page
 
 
-def response(ways=("up", "down")):
-    """Two levels; at the first frequencies of the second one, up and down differ; the last motion is irregular."""
+def response(directions=("up", "down")):
+    """Return a response at two levels, with coexisting motions at the second one and irregular last motions."""
     frequency = np.linspace(20.0, 30.0, 11)
     amplitude = np.ones((2, 2, 11)) * [[[1e-3], [2e-3]]]
     amplitude[1, 1, :4] = 5e-3
@@ -27,7 +22,7 @@ def response(ways=("up", "down")):
     over = ("direction", "level", "frequency")
 
     def variable(values, units, name):
-        return over, values[: len(ways)], {"units": units, "long_name": name}
+        return over, values[: len(directions)], {"units": units, "long_name": name}
 
     return xr.Dataset(
         {
@@ -38,7 +33,7 @@ def response(ways=("up", "down")):
             "bare_amplitude": (over[1:], amplitude[0], {"units": "m", "long_name": "amplitude without dampers"}),
         },
         {
-            "direction": list(ways),
+            "direction": list(directions),
             "level": ("level", [1.0, 2.0], {"units": "N"}),
             "frequency": ("frequency", frequency, {"units": "Hz"}),
         },
@@ -46,7 +41,7 @@ def response(ways=("up", "down")):
 
 
 def exponents(axes):
-    """Exponents of ordered, neutral, chaotic and merging motions, over so many axes."""
+    """Return exponents of regular, neutral, chaotic and merging motions over 0, 1 or 2 axes."""
     values = np.array([-0.5, 0.001, 1.2, -np.inf])[: 4 if axes else 1]
     values = values[0] if axes == 0 else np.repeat(values[:, None], 3, axis=1) if axes == 2 else values
     running = np.multiply.outer(values, np.ones(50))
@@ -70,17 +65,17 @@ def exponents(axes):
 
 @pytest.mark.parametrize("size", WIDTHS)
 @pytest.mark.parametrize("of", ["amplitude", ("amplitude", "phase", "impacts_per_cycle")])
-def test_responses_can_be_read(tmp_path, of, size):
-    """In every size, with one panel or three, all is on the paper, and saving warns of nothing."""
+def test_layout_of_responses(tmp_path, of, size):
+    """Figures of every size, with one panel or three, are saved without a warning and fit on the page."""
     figure = rb.plot_frequency_response(response(), of, size=size, per_level=size == "page")
     figure.savefig(tmp_path / "figure.png")
     assert figure.get_figwidth() * 25.4 == pytest.approx(WIDTHS[size])
-    assert inside(figure)
+    assert is_within_page(figure)
     assert "Hz" in figure.axes[-1].get_xlabel()
 
 
-def test_what_coexists_is_shaded():
-    """The space between up and down is filled where they differ, and nowhere else; crosses mark what is irregular."""
+def test_coexisting_motions_are_shaded():
+    """The area between up and down is filled only where they differ; crosses mark irregular motions."""
     axes = rb.plot_frequency_response(response(), "amplitude").axes[0]
     filled = [path.vertices[:, 0] for part in axes.collections for path in part.get_paths() if len(path.vertices)]
     assert len(filled) == 1
@@ -89,25 +84,25 @@ def test_what_coexists_is_shaded():
     assert all(np.flatnonzero(np.isfinite(line.get_ydata())).tolist() == [10] for line in crosses)
     alone = rb.plot_frequency_response(response(("fresh",)), "amplitude")
     assert not alone.axes[0].collections
-    assert inside(alone)
+    assert is_within_page(alone)
 
 
 def test_response_over_level():
-    """Divided by the level, curves of a linear structure fall on one."""
+    """Curves of a linear structure coincide after division by the level."""
     axes = rb.plot_frequency_response(response(("up",)), "amplitude", per_level=True).axes[0]
     curves = [line.get_ydata() for line in axes.lines if line.get_linestyle() == "-" and line.get_color() != FAINT]
     assert curves[0] == pytest.approx(curves[1])
     assert "mm/N" in axes.get_ylabel()
 
 
-def test_unknown_measure_is_refused():
-    """A measure that the response has not is answered with those it has."""
+def test_unknown_measure():
+    """An unknown measure raises an error that lists the known ones."""
     with pytest.raises(rb.CaseError, match="amplitude"):
         rb.plot_frequency_response(response(), "amplitud")
 
 
-def test_names_stand_at_their_axis():
-    """Along an axis of names, the names are written."""
+def test_axis_of_names():
+    """The ticks of an axis of names have these names."""
     axes = rb.plot_lyapunov(exponents(2)).axes[0]
     assert [text.get_text() for text in axes.get_xticklabels()] == ["steel", "lead", "brass"]
     alone = rb.plot_lyapunov(exponents(2).isel({"load.amplitude": 0})).axes[0]
@@ -116,23 +111,23 @@ def test_names_stand_at_their_axis():
 
 @pytest.mark.parametrize("size", WIDTHS)
 @pytest.mark.parametrize("axes", [0, 1, 2])
-def test_exponents_can_be_read(tmp_path, axes, size):
-    """Over none, one and two axes all is on the paper, -inf too, and saving warns of nothing."""
+def test_layout_of_exponents(tmp_path, axes, size):
+    """Figures over 0, 1 and 2 axes are saved without a warning and fit on the page, also with -inf."""
     figure = rb.plot_lyapunov(exponents(axes), size=size)
     figure.savefig(tmp_path / "figure.png")
-    assert inside(figure)
+    assert is_within_page(figure)
     assert figure.get_figwidth() * 25.4 == pytest.approx(WIDTHS[size])
 
 
-def test_too_many_axes_are_refused():
-    """Three axes are answered with what to do."""
+def test_three_axes():
+    """Three axes raise an error with a suggestion."""
     study = exponents(2).expand_dims(third=2)
     with pytest.raises(rb.CaseError, match="sel"):
         rb.plot_lyapunov(study)
 
 
-def test_grey_tells_the_order():
-    """Printed without colour, a larger exponent is lighter everywhere."""
+def test_colours_in_grey():
+    """A larger exponent has a lighter colour everywhere."""
     lightness = _colours()(np.linspace(0, 1, 200))[:, :3] @ [0.299, 0.587, 0.114]
     assert (np.diff(lightness) > 0).all()
     assert np.ptp(to_rgb(FAINT)) < 0.01

@@ -1,0 +1,133 @@
+"""Lines of a measure of a study over one axis, one line for each value of a second axis."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
+from matplotlib.lines import Line2D
+
+from .gaps import gaps_of
+from .labels import REPLICA, LabelledValues, StudyAxis, Vector, log_ticks, name_of, upper_limit, value_of
+from .style import INK, SERIES_COLOURS, SERIES_MARKERS, SERIES_STYLES, map_colours, pen
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_MAX_MARKED_POINTS = 30  # of a line
+_CLIP_RATIO = 4.0  # largest value over the end of the scale at which lines are clipped
+
+
+def draw_lines(figure: Figure, axes: Axes, study: xr.Dataset, name: str, dims: list[str]) -> list[Line2D]:
+    """Draw a measure over the longest axis, one line for each value of the other.
+
+    Parameters
+    ----------
+    figure, axes
+        Figure and axes to draw on.
+    study
+        Dataset over the axes, optionally with replicas, whose median and band are drawn.
+    name
+        Name of the measure.
+    dims
+        One or two axes of the study.
+
+    Returns
+    -------
+    list of Line2D
+        Legend entries of the marks of runs without a value.
+    """
+    along, *others = sorted(dims, key=lambda dim: study.sizes[dim], reverse=True)
+    x_axis, values = StudyAxis.of(study[along]), study[name]
+    measure = LabelledValues.of(values)
+    styles: list[dict[str, Any]] = [{"color": SERIES_COLOURS[0], "marker": SERIES_MARKERS[0]}]
+    for other in others:
+        styles = _series_styles(figure, axes, study[other])
+        values = values.transpose(other, ...)
+    half_widths = study.get(f"{name}_interval")
+    for number, (member, style) in enumerate(zip(values if others else [values], styles, strict=True)):
+        if x_axis.values.names:
+            style |= {"linestyle": "", "marker": "o"}
+        elif x_axis.values.numbers.size <= _MAX_MARKED_POINTS:
+            style |= {"markersize": pen(2.4)}
+        else:
+            del style["marker"]
+        half = None
+        if half_widths is not None:
+            half = half_widths.transpose(*values.dims)[number if others else ...] / measure.divisor
+        _draw_line(axes, x_axis.values.numbers, member / measure.divisor, half, style)
+    marks = _clip_peaks(axes, name, values, along, x_axis) + _mark_gaps(axes, study, name, along, x_axis)
+    x_axis.label(axes, "x")
+    measure.label(axes, "y")
+    return marks
+
+
+def _clip_peaks(axes: Axes, name: str, values: xr.DataArray, along: str, x_axis: StudyAxis) -> list[Line2D]:
+    """Limit the scale of an unbounded measure whose peaks would flatten all other values, and mark the peaks."""
+    top = upper_limit(name, values.values)
+    if top is None or float(values.max()) < _CLIP_RATIO * top:
+        return []
+    for line in axes.lines:
+        line.set_clip_on(True)
+    axes.set_ylim(0.0, 1.25 * top / LabelledValues.of(values).divisor)
+    peaks = (values > 1.25 * top).transpose(along, ...).values.reshape(x_axis.values.numbers.size, -1)
+    x = x_axis.values.numbers[peaks.any(axis=1)]
+    style: dict[str, Any] = {"marker": "^", "color": INK, "linestyle": ""}
+    axes.plot(x, np.full(x.size, 1.0), transform=axes.get_xaxis_transform(), clip_on=False, **style)
+    return [Line2D([], [], label="beyond the scale", **style)]
+
+
+def _draw_line(axes: Axes, x: Vector, member: xr.DataArray, half: xr.DataArray | None, style: dict[str, Any]) -> None:
+    """Draw a line with its interval of a given half-width, or the median of replicas within their band."""
+    middle = member
+    if REPLICA in member.dims:
+        computed = member.notnull().any(REPLICA)
+        low, middle, high = member.where(computed, 0.0).quantile([0.1, 0.5, 0.9], REPLICA).where(computed)
+        axes.fill_between(x, low.values, high.values, color=style["color"], alpha=0.25, linewidth=0)
+    elif half is not None:
+        low, high = member - half, member + half
+        axes.fill_between(x, low.values, high.values, color=style["color"], alpha=0.25, linewidth=0)
+    axes.plot(x, middle.values, clip_on="marker" not in style, **style)
+    if "marker" in style:
+        return
+    # A point between two gaps has no line, so it needs a dot.
+    finite = np.pad(np.isfinite(middle.values), 1)
+    isolated = finite[1:-1] & ~finite[:-2] & ~finite[2:]
+    if isolated.any():
+        dots: dict[str, Any] = {"linestyle": "", "marker": "o", "markersize": 2.5, "clip_on": False}
+        axes.plot(x[isolated], middle.values[isolated], color=style["color"], **dots)
+
+
+def _series_styles(figure: Figure, axes: Axes, coord: xr.DataArray) -> list[dict[str, Any]]:
+    """Return styles and legend texts of lines; add a colour bar if there are too many lines for a legend."""
+    from matplotlib.cm import ScalarMappable
+
+    if coord.size <= len(SERIES_COLOURS):
+        names = [f"{name_of(coord)} {value_of(coord, value)}" for value in coord.values]
+        series = zip(SERIES_COLOURS, SERIES_STYLES, SERIES_MARKERS, names, strict=False)
+        return [dict(zip(("color", "linestyle", "marker", "label"), style, strict=True)) for style in series]
+    axis = StudyAxis.of(coord)
+    dark = LinearSegmentedColormap.from_list("dark", map_colours()(np.linspace(0, 0.85, 256)))
+    numbers = axis.values.numbers
+    norm = (LogNorm if axis.log else Normalize)(float(numbers.min()), float(numbers.max()))
+    bar = figure.colorbar(ScalarMappable(norm, dark), ax=axes, aspect=28, pad=0.02)
+    if axis.log:
+        log_ticks(bar.ax.yaxis)
+    bar.outline.set_visible(False)
+    bar.set_label(axis.values.with_unit)
+    return [{"color": dark(norm(number)), "marker": SERIES_MARKERS[0]} for number in numbers]
+
+
+def _mark_gaps(axes: Axes, study: xr.Dataset, name: str, along: str, x_axis: StudyAxis) -> list[Line2D]:
+    """Mark values of the horizontal axis at which runs have no value."""
+    marks = []
+    for number, gap in enumerate(gaps_of(study, name)):
+        mask = gap.mask.transpose(along, ...).values.reshape(x_axis.values.numbers.size, -1).any(axis=1)
+        style: dict[str, Any] = {"marker": gap.marker, "color": INK, "linestyle": ""}
+        height = np.full(mask.sum(), 0.02 + 0.03 * number)
+        axes.plot(x_axis.values.numbers[mask], height, transform=axes.get_xaxis_transform(), clip_on=False, **style)
+        marks.append(Line2D([], [], label=gap.text, **style))
+    return marks
