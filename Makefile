@@ -8,7 +8,8 @@ CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*
 
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
-.PHONY: setup demo reproduction test verify lint stub docs bench bench-guard format clean
+.PHONY: setup demo reproduction test verify sanitize sanitize-memory sanitize-threads coverage mutate lint stub docs bench bench-guard \
+    format clean
 
 setup: $(VENV)/.installed
 
@@ -39,8 +40,46 @@ reproduction: $(PACKAGE)
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m 'not slow'
 
-verify: setup
+verify: setup sanitize coverage mutate
 	$(BIN)/python -m pytest -n 2 --dist worksteal --durations=10 -m slow
+
+sanitize: sanitize-memory sanitize-threads
+
+# The core is compiled with sanitizers of GCC into build/NAME/package. Python runs without `site` (-S), because an editable
+# installation would come first, and at fixed addresses (setarch -R), which ThreadSanitizer needs. Tests that start other
+# processes are left out: those would load the core without the sanitizer.
+comma := ,
+SITE = $(shell $(BIN)/python -c "import sysconfig; print(sysconfig.get_path('purelib'))")
+LEVEL = $(if $(filter x86_64 amd64,$(shell uname -m)),v3,native)
+LIBRARY = $(shell $(CXX) -print-file-name=$(1))
+define sanitized
+	$(PIP) --no-deps --no-build-isolation --upgrade \
+	    --target build/$(1)/package -Cbuild-dir=build/$(1)/cmake -Cinstall.strip=false -Ccmake.build-type=Debug \
+	    -Ccmake.define.RATTLEBOX_LEVELS=$(LEVEL) -Ccmake.define.RATTLEBOX_OPTIMIZATION=-O1 "-Ccmake.define.CMAKE_CXX_FLAGS=$(2)" .
+	LD_PRELOAD="$(call LIBRARY,lib$(1).so) $(call LIBRARY,libstdc++.so.6)" PYTHONPATH=$(CURDIR)/build/$(1)/package:$(SITE) \
+	    setarch -R $(BIN)/python -S -m pytest -q -m 'not slow'
+endef
+
+# Leaks are not looked for: Python itself does not free all of its memory at its end.
+sanitize-memory: export ASAN_OPTIONS := detect_leaks=0
+sanitize-memory: setup
+	$(call sanitized,asan,-fsanitize=address$(comma)undefined -fno-sanitize-recover=undefined) tests/unit/engines tests/verification/dem/test_normal.py -k 'not core_stub'
+
+sanitize-threads: export TSAN_OPTIONS := halt_on_error=1
+sanitize-threads: setup
+	$(call sanitized,tsan,-fsanitize=thread) tests/verification/dem/test_bits.py -k 'not another_process and not held_up'
+
+# Branch coverage of each package by the fast tests; `make mutate` needs its data.
+coverage: export COVERAGE_FILE := build/coverage
+coverage: setup
+	mkdir -p build
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m 'not slow' --cov=rattlebox --cov-branch --cov-context=test --cov-report= \
+	    --junitxml=build/tests.xml
+	for package in $(filter-out __pycache__,$(notdir $(patsubst %/,%,$(wildcard src/rattlebox/*/)))); do \
+	    echo "$$package: $$($(BIN)/coverage report --format=total --include="src/rattlebox/$$package/*") %"; done
+
+mutate: coverage
+	$(BIN)/python tools/mutate.py --minutes 10
 
 bench: setup
 	$(BIN)/python benchmarks/bench.py
