@@ -83,7 +83,7 @@ def read_frequency_response(
     --------
     >>> import tempfile, pathlib
     >>> path = pathlib.Path(tempfile.mkdtemp()) / "frf.csv"
-    >>> _ = path.write_text("frequency (Hz), magnitude (mm/N), phase (deg)\\n10, 0.2, -5\\n20, 1.5, -90\\n30, 0.3, -175\\n")
+    >>> _ = path.write_text("frequency (Hz), magnitude (mm/N), phase (deg)\n10, 0.2, -5\n20, 1.5, -90\n30, 0.3, -175\n")
     >>> measured = read_frequency_response(path)
     >>> measured.transfer.attrs["units"], float(abs(measured.transfer).max())
     ('m/N', 0.0015)
