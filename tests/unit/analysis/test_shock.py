@@ -37,6 +37,14 @@ def test_half_sine(ratio):
     assert float(found.maximax[0]) == pytest.approx(exact_half_sine(ratio), rel=1e-3)
 
 
+def test_default_frequencies():
+    """By default twelve frequencies an octave reach from one period in the record to a tenth of the sampling rate."""
+    found = shock_response_spectrum(*half_sine(0.011, 2000.0, 0.5)).frequency.values
+    assert found[0] == pytest.approx(2.0)
+    np.testing.assert_allclose(found[1:] / found[:-1], 2 ** (1 / 12))
+    assert found[-1] <= 200.0 < found[-1] * 2 ** (1 / 12)
+
+
 def test_limits():
     """A stiff oscillator follows the base, a soft one keeps still: acceleration 1, displacement that of the base."""
     time, pulse = half_sine(0.011, 50_000.0, 0.05)
