@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 Value = float | int | str
 
 _MAX_POINTS = 4
+"""Points of a structure with all their lines."""
+_MAX_PEAKS = 20
+"""Points of a structure with a line of their peak."""
 _ROUNDING = 1e-9
 """Motion over the largest motion of any point, below which a point counts as at rest."""
 _CHANNEL_LABELS = {
@@ -246,9 +249,12 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         _Row("largest_approach_speed", "largest approach speed", "m/s"),
     ]
     several = len({key for values in all_values for key in values if key.startswith("peak_displacement[")}) > 1
-    for key, point in _largest_of("peak_displacement", all_values):
+    detailed = dict(_largest_of("peak_displacement", all_values))
+    for key, point in _largest_of("peak_displacement", all_values, _MAX_PEAKS):
         where = f", {point}" if several else ""
         rows.append(_Row(key, f"peak displacement{where}", "m"))
+        if key not in detailed:
+            continue
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
         steady = f"steady_rms_displacement[{point}]"
         rows.append(
@@ -264,11 +270,11 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
     return [row for row in rows if any(row.key in values for values in all_values)]
 
 
-def _largest_of(what: str, all_values: tuple[dict[str, Value], ...]) -> list[tuple[str, str]]:
+def _largest_of(what: str, all_values: tuple[dict[str, Value], ...], count: int = _MAX_POINTS) -> list[tuple[str, str]]:
     """Return key and name of the largest values with keys "what[name]"."""
     keys = list(dict.fromkeys(key for values in all_values for key in values if key.startswith(f"{what}[")))
     highest = [max(float(values.get(key, 0.0)) for values in all_values) for key in keys]
-    return [(keys[k], keys[k].partition("[")[2][:-1]) for k in largest_points(highest, _MAX_POINTS)]
+    return [(keys[k], keys[k].partition("[")[2][:-1]) for k in largest_points(highest, count)]
 
 
 def largest_points(peaks: ArrayLike, count: int) -> list[int]:
