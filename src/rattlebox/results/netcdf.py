@@ -4,6 +4,9 @@ Numbers are double, 32-bit integer or byte; texts are arrays of characters (UTF-
 strings; attributes are plain characters. The file has a group for each dataset of the run, and the groups `counts` and
 `diagnostics`. The root group holds the engine, the case, the status, the message, the notes and the provenance.
 Dimensions of length zero are omitted together with their variables, except `impact`, which is unlimited.
+
+The groups are not written by xarray, which takes as long (0.27 s instead of 0.28 s for 10 s of the reference case), but
+writes texts of variable length, and no digests, by which damage is found.
 """
 
 from __future__ import annotations
