@@ -20,3 +20,23 @@ def test_records_that_begin_before_the_run(times: list[float], values: list[floa
     np.testing.assert_allclose(velocity[1:], np.cumsum(step * (acceleration[1:] + acceleration[:-1]) / 2), atol=1e-9)
     np.testing.assert_allclose(displacement[1:], np.cumsum(step * (velocity[1:] + velocity[:-1]) / 2), atol=1e-9)
     assert displacement[0] == velocity[0] == 0
+
+
+@pytest.mark.parametrize(
+    "signal",
+    [
+        rb.HalfSine(amplitude=3.0, duration=0.2, start=0.1),
+        rb.Harmonic(amplitude=3.0, frequency=2.0, phase=0.4, start=0.1, stop=0.7),
+        rb.Record(times=[0.0, 0.2, 0.7, 1.0], values=[1.0, -4.0, 2.0, 0.5], unit="m/s^2"),
+    ],
+    ids=["half sine", "harmonic", "record"],
+)
+def test_signals_that_begin_in_the_run(signal: rb.HalfSine | rb.Harmonic | rb.Record) -> None:
+    """From rest, velocity and displacement are the acceleration integrated once and twice, also after its end."""
+    fine = np.linspace(0.0, 1.0, 200_001)
+    displacement, velocity, acceleration = base_motion(signal, fine)
+    step = np.diff(fine)
+    np.testing.assert_allclose(velocity[1:], np.cumsum(step * (acceleration[1:] + acceleration[:-1]) / 2), atol=3e-5)
+    np.testing.assert_allclose(displacement[1:], np.cumsum(step * (velocity[1:] + velocity[:-1]) / 2), atol=1e-9)
+    assert displacement[0] == velocity[0] == 0
+    assert abs(acceleration).max() == pytest.approx(4.0 if isinstance(signal, rb.Record) else 3.0, rel=1e-6)
