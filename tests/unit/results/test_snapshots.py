@@ -194,7 +194,7 @@ def test_times_after_the_end_are_refused() -> None:
         case(snapshots=["5 ms", "30 ms", "1 s"])
     assert str(told.value).splitlines() == [
         "Case: output.snapshots = (0.005, 0.03, 1.0)",
-        "  a snapshot is asked for at 0.03 s, after the end of the run at 0.02 s",
+        "  the snapshot at 0.03 s is after the end of the run at 0.02 s",
         "  try: times up to the end, or a longer duration",
     ]
 
@@ -275,7 +275,7 @@ def test_several_snapshots_at_once(written: Any) -> None:
 @pytest.mark.parametrize(
     ("value", "said"),
     [
-        (1, "two snapshots are the least"),
+        (1, "at least two snapshots are needed"),
         (True, "a number of snapshots"),
         ("5 ms", "a list of times"),
         ([-1.0], "negative"),
