@@ -13,7 +13,7 @@ import scipy.io
 from ansys.mapdl.reader import examples
 
 import rattlebox as rb
-from rattlebox.exchange.read.universal import read_functions
+from rattlebox.exchange.read.universal import _phase_scatter, read_functions
 from rattlebox.model.plausibility import plausibility_notes
 
 UFF = Path(__file__).parents[2] / "data/uff"
@@ -198,7 +198,7 @@ DAMAGED: list[tuple[str, str, bytes, str]] = [
     ("cut universal file", "a.uff", MODES[: len(MODES) * 2 // 3], "is not closed by -1"),
     ("mis-scaled units", "a.uff", changed(MODES, b"1.00000000000000000D+03", b"1.00000000000000000D-03"),
      "set 164 states a factor of 0.001 for lengths, but its code 5 means 1000"),
-    ("complex mode", "a.uff", (UFF / "complex_mode_55.uff").read_bytes(), "no normal modes"),
+    ("complex mode", "a.uff", (UFF / "complex_mode_55.uff").read_bytes(), r"complex modes.* 6\.46 degrees"),
     ("temperatures", "a.uff", (UFF / "temperatures_2414.uff").read_bytes(), "no normal modes"),
     ("measurement", "a.uff", BINARY, "holds no set 55 or 2414 or 164, but 58"),
     ("empty result", "a.rst", b"", "is empty"),
@@ -296,3 +296,10 @@ def test_a_base_without_direction_moves_no_point_in_space() -> None:
         rb.Case(structure=modal, base=rb.HalfSine(amplitude="1 g", duration="1 ms"), duration=0.1)
     load = rb.HalfSine(amplitude="1 N", duration="1 ms", direction="z")
     assert rb.simulate(rb.Case(structure=modal, load=load, duration=0.1)).ok
+
+
+def test_the_scatter_of_phases_is_that_of_a_known_mode() -> None:
+    """Components at phases of +-20 degrees about any line, on both sides of zero, scatter by 20 degrees."""
+    turn = np.exp(0.7j)
+    z = turn * np.exp(1j * np.radians([20, -20, 200])), turn * np.exp(1j * np.radians([160, 20, -20])), np.zeros(3)
+    assert _phase_scatter({f"r{k + 1}": part for k, part in enumerate(z)}) == pytest.approx(20.0)

@@ -20,6 +20,7 @@ _CODES = {
     7: (39.37008, 0.224809), 8: (1e3, 0.101972), 10: (1e3, 1.0),
 }  # fmt: skip
 _NORMAL_MODES = 2
+_COMPLEX_MODES = (3, 7)  # analysis types
 _DISPLACEMENT = 8
 _END = 4096  # bytes in which the last line is
 _COMPLEX = 1e-6  # of the largest component: what an imaginary part may be
@@ -108,6 +109,14 @@ def read_universal_modes(path: Path) -> ModesInFile:
     modes = [_mode(path, each) for each in sets if each["type"] != 164 and _is_mode(each)]
     if not modes:
         kinds = sorted({int(each["analysis_type"]) for each in sets if each["type"] != 164})
+        scatter = [
+            _phase_scatter(each) for each in sets if each["type"] == 55 and int(each["analysis_type"]) in _COMPLEX_MODES
+        ]
+        if scatter:
+            raise DataError(
+                f"{path} holds no normal modes, but complex modes, whose phases scatter by up to {max(scatter):.3g} degrees",
+                "an export of real normal modes; below some 10 degrees they hardly differ",
+            )
         raise DataError(
             f"{path} holds no normal modes (analysis type 2), but types {', '.join(map(str, kinds)) or 'none'}",
             "an export of real normal modes",
@@ -134,6 +143,16 @@ def read_universal_modes(path: Path) -> ModesInFile:
         damping_ratios=damping if damping.any() else None,
         mass_unit=_mass_unit(path, [each for each in sets if each["type"] == 164]),
     )
+
+
+def _phase_scatter(each: dict[str, Any]) -> float:
+    """Return the RMS deviation of the phases of a complex mode from one line through zero, weighted by size [degrees].
+
+    The line is the principal axis of the components z in the complex plane, at half the phase of sum(z^2).
+    """
+    z = np.concatenate([np.asarray(each[f"r{k}"], dtype=complex) for k in (1, 2, 3)])
+    z = z * np.exp(-0.5j * np.angle(np.sum(z**2)))
+    return float(np.degrees(np.arctan2(np.linalg.norm(z.imag), np.linalg.norm(z.real))))
 
 
 def _is_mode(each: dict[str, Any]) -> bool:
