@@ -274,7 +274,7 @@ def test_damaged_measurements(tmp_path: Path, content: bytes, said: str) -> None
         ({"damping_ratio": 0.01, "points": {"a": 1}, "mode_count": 0}, "at least 1"),
         ({"damping_ratio": 0.01, "points": {"a": 1}, "modal_masses": [1.0]}, "1 modal masses for 6 modes"),
         ({"damping_ratio": 0.01, "points": {"a": 1}, "frequencies": [1.0]}, "give frequencies or a file"),
-        ({"damping_ratio": 0.01, "damping_ratios": [0.1] * 6, "points": {"a": 1}}, "twice"),
+        ({"damping_ratio": 0.01, "damping_ratios": [0.1] * 6, "points": {"a": 1}}, "exclude each other"),
     ],
 )
 def test_what_does_not_fit_the_file(options: dict[str, Any], said: str) -> None:
