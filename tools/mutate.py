@@ -40,8 +40,8 @@ SWAPS: dict[type, type] = {new: old for old, new in PAIRS} | dict(PAIRS)
 
 def changes(node: ast.AST) -> Iterator[tuple[int, Callable[[], None]]]:
     """Yield the line of each possible change and the function that makes it in place."""
-    if isinstance(node, ast.Raise | ast.JoinedStr | ast.arg):
-        return  # messages and types
+    if isinstance(node, ast.Raise | ast.JoinedStr | ast.arg) or getattr(node, "arg", None) == "strict":
+        return  # messages, types, and checks of zip
     for name in ("op", "ops"):
         value = getattr(node, name, None)
         first, *rest = value if isinstance(value, list) else [value]
