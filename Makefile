@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 # Tests start many processes, which must not compile the package again each time.
 unexport PYTHONDONTWRITEBYTECODE
-CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*.hpp' -o -name '*.cpp')
+CORE := CMakeLists.txt pyproject.toml constraints.txt $(shell find core -name '*.h' -o -name '*.hpp' -o -name '*.cpp')
 
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 
@@ -88,17 +88,28 @@ bench: setup
 bench-guard: setup
 	$(BIN)/python benchmarks/guard.py $(if $(SINCE),--since $(SINCE))
 
-lint: setup
+# Systems for which the core must compile. The objects serve until the core changes.
+SYSTEMS := x86_64-linux-gnu.2.28 aarch64-linux-gnu.2.28 aarch64-macos x86_64-windows-gnu wasm32-wasi
+COMPILED := $(SYSTEMS:%=build/portable/%.o)
+HEADERS := $(filter-out core/bindings/%,$(filter %.h %.hpp,$(CORE)))
+
+$(COMPILED): build/portable/%.o: tests/portable/cases.cpp $(HEADERS) constraints.txt | $(VENV)/.installed
+	@mkdir -p $(@D)
+	@echo compiling the core for $*
+	@$(BIN)/python -m ziglang c++ -target $* -std=c++20 -O0 -g0 -fno-sanitize=undefined -fopenmp-simd -Wall -Wextra -Wno-psabi -Werror \
+		-Icore $(HEADERS:%=-include %) -c $< -o $@
+
+lint: setup $(COMPILED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo --no-cache
-	$(BIN)/clang-format --dry-run --Werror $(shell git ls-files 'core/*.hpp' 'core/*.cpp')
+	$(BIN)/clang-format --dry-run --Werror $(shell git ls-files 'core/*.hpp' 'core/*.cpp' 'tests/*.cpp')
 
 format: setup
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
-	$(BIN)/clang-format -i $(shell git ls-files 'core/*.hpp' 'core/*.cpp')
+	$(BIN)/clang-format -i $(shell git ls-files 'core/*.hpp' 'core/*.cpp' 'tests/*.cpp')
 
 # The types of the compiled core, after a change of core/bindings or of the table of laws.
 stub: setup

@@ -2,8 +2,19 @@
 //
 // The argument of the function is its worker: rank, number of workers, and synchronisation. Between two
 // barriers no worker may read what another one writes; each worker takes a contiguous range of the items.
+//
+// With RATTLEBOX_THREADS=0, the default for WebAssembly, the calling thread is the only worker.
 #pragma once
 
+#ifndef RATTLEBOX_THREADS
+#ifdef __wasi__
+#define RATTLEBOX_THREADS 0
+#else
+#define RATTLEBOX_THREADS 1
+#endif
+#endif
+
+#if RATTLEBOX_THREADS
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -11,6 +22,7 @@
 
 #include "parallel/contention.hpp"
 #include "parallel/core_placement.hpp"
+#endif
 
 namespace rattlebox {
 
@@ -24,6 +36,8 @@ struct SingleThread {
     static bool is_contended() { return false; }
     static void reset_wait_times() {}
 };
+
+#if RATTLEBOX_THREADS
 
 // A barrier, and counters with which a worker waits for the workers of lower rank only. A phase lasts
 // microseconds, so a waiting thread spins for about two microseconds, then yields its core, because the
@@ -134,5 +148,12 @@ template <class Work> void run_parallel(int threads, Work&& work) {
     work(Worker(barrier, 0, threads));
     for (std::thread& t : others) t.join();
 }
+
+#else
+
+// Calls work(worker) on the calling thread.
+template <class Work> void run_parallel(int, Work&& work) { work(SingleThread{}); }
+
+#endif
 
 } // namespace rattlebox

@@ -16,6 +16,8 @@ def commands(target: str, *stamps: str, folder: Path) -> str:
     for name in ("CMakeLists.txt", "pyproject.toml", "constraints.txt"):
         (folder / name).touch()
     (folder / "core").mkdir()
+    (folder / "tests/portable").mkdir(parents=True)
+    (folder / "tests/portable/cases.cpp").touch()
     for name in ("bin/python", *stamps):
         (folder / ".venv" / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / ".venv" / name).touch()
