@@ -1,5 +1,6 @@
 """The core, built without Python by other compilers and for other systems, computes the same digits."""
 
+import platform
 import shutil
 import subprocess
 import sys
@@ -8,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+from rattlebox.core._core_processor import x86_64_level
 
 ROOT = Path(__file__).parents[2]
 HERE = Path(__file__).parent
@@ -86,3 +89,14 @@ def test_web_assembly_gives_the_same_numbers(usual: list[str], tmp_path: Path) -
     assert lines[0] == usual[0]
     impact, expected = (np.array(" ".join(found[1:middle]).split(), float) for found in (lines, usual))
     np.testing.assert_allclose(impact, expected, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed")
+@pytest.mark.skipif(sys.platform != "linux" or platform.machine() != "x86_64", reason="not Linux on x86-64")
+def test_clang_finds_the_same_instructions(tmp_path: Path) -> None:
+    """The level of the processor does not depend on the run-time library of the compiler."""
+    source, program = tmp_path / "level.cpp", tmp_path / "level"
+    source.write_text('#include "util/processor.hpp"\nint main() { return rattlebox::x86_64_level(); }\n')
+    command = [sys.executable, "-m", "ziglang", "cc", "-std=c++20", "-O1", "-I", ROOT / "core", source, "-o", program]
+    subprocess.run(command, check=True, timeout=120)
+    assert subprocess.run([program], check=False).returncode == x86_64_level()
