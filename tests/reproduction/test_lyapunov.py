@@ -49,7 +49,7 @@ def test_growth_is_measured_from_its_onset_to_saturation():
     time = np.arange(1, 1501) * 4e-3
     grown = 1e-12 * np.exp(7 * np.clip(time - 1, 0, None))
     rows = np.minimum([grown, 2 * grown, 0.5 * grown], 1e-3)
-    found = lyapunov._parting(time, rows)
+    found = lyapunov._separation(time, rows)
     assert found.exponent == pytest.approx(7, rel=1e-9)
     assert found.onset == pytest.approx(1 + np.log(100) / 7, abs=5e-3)
     assert found.determination == pytest.approx(1)

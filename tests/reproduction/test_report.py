@@ -198,7 +198,7 @@ def test_other_folders_are_not_overwritten(tmp_path):
     """A folder with other files, or a file instead of a folder, raises an error."""
     other = tmp_path / "index.html"
     other.write_text("mine")
-    with pytest.raises(FileExistsError, match="holds other files"):
+    with pytest.raises(FileExistsError, match="other files"):
         write_report(tmp_path)
     assert [*tmp_path.iterdir()] == [other]
     with pytest.raises(NotADirectoryError, match="is a file"):
@@ -211,9 +211,9 @@ def test_selection_of_figures():
     assert choose(["2"]) == ("figure_02",)
     assert choose(["paper"]) == tuple(m for m in FIGURES if not load_figure(m).number.startswith("A"))
     assert choose(["paper", "A5"]) == (*choose(["paper"]), "lyapunov")
-    with pytest.raises(ValueError, match=r"no figure '99'; there are 2, "):
+    with pytest.raises(ValueError, match=r"99.*7a, 7b"):
         choose(["99"])
-    with pytest.raises(ValueError, match="no figure ''"):
+    with pytest.raises(ValueError, match="unknown figure"):
         choose([""])
 
 

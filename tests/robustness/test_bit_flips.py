@@ -159,7 +159,8 @@ def test_the_damaged_block_is_named(folder: Path, tmp_path: Path) -> None:
     path = tmp_path / "run.vtkhdf"
     path.write_bytes((folder / "run.vtkhdf").read_bytes())
     with h5py.File(path, "r+") as file:
-        file["VTKHDF/PointData/contact_force"][7] += 1.0  # of the second snapshot of five particles
+        second = file["VTKHDF/Steps/PointDataOffsets/contact_force"][1]
+        file["VTKHDF/PointData/contact_force"][second + 2] += 1.0
     snapshots = rb.Snapshots(path)
     assert len(snapshots) == 4
     assert np.isfinite(snapshots[0].position).all()

@@ -28,7 +28,7 @@ from ..mounts import needs_mounts, with_own_mounts
 from .long_run import bits, case
 
 SCRIPT = Path(__file__).with_name("long_run.py")
-FULL = ((16, "run.vtkhdf"), (64, "run.vtkhdf"), (160, "run.checkpoint"), (240, "run.checkpoint"))
+FULL = ((16, "run.vtkhdf"), (64, "run.vtkhdf"), (300, "run.checkpoint"), (500, "run.checkpoint"))
 """Sizes of disks [kB], and the file that they have no room for."""
 
 
@@ -421,7 +421,8 @@ def test_a_particle_that_leaves_is_told(tmp_path: Path) -> None:
     told = run.message.removeprefix(where).split()
     assert float(told[0]) == pytest.approx(40, rel=0.1)
     step = run.diagnostics["step"]
-    assert f"The step was {step:.4g} s. The last checkpoint is of t = 0 s, in {file.name}." in run.message
+    assert f"{step:.4g} s" in run.message
+    assert "t = 0 s" in run.message and file.name in run.message
     time_told = float(run.message.split("at t = ")[1].split()[0])
     assert 0.012 / 40 < time_told < 0.0185 / 40 + 3 * step
 

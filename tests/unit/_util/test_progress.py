@@ -12,6 +12,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox._util.progress import progress_bar
+from rattlebox.model.paths import replaced
 
 
 class Terminal(io.StringIO):
@@ -171,7 +172,8 @@ def test_simulate_many_counts_runs_and_stops():
     runs = rb.simulate_many([case] * 3, progress=lambda *numbers: calls.append(numbers))
     assert calls[-1] == (3, 3) and [done for done, _ in calls] == sorted(done for done, _ in calls)
     assert all(run.ok for run in runs)
-    long = rb.reference_case(duration=1000.0)
+    shaken = rb.Harmonic(amplitude="500 N", frequency="11 Hz")
+    long = replaced(rb.reference_case(duration=1000.0), {"load": shaken})
     began = time.monotonic()
     assert [run.status for run in rb.simulate_many([long] * 2, progress=lambda *_: False)] == ["interrupted"] * 2
     assert rb.simulate(long, progress=lambda *_: False).status == "interrupted"

@@ -143,7 +143,7 @@ def test_unknown_quantity_is_refused():
     maps = rb.bifurcation(shaken(), AMPLITUDE, [1e-3], cycles=(3, 2), **QUIET)
     with pytest.raises(rb.CaseError, match="no such quantity"):
         rb.plot_bifurcation(maps, "approach_speed")
-    with pytest.raises(rb.CaseError, match="no such ball"):
+    with pytest.raises(rb.CaseError, match="ball = 1"):
         rb.plot_bifurcation(maps, "ball_place", ball=1)
 
 

@@ -317,7 +317,7 @@ def test_plot_tells_why_a_trial_does_not_count() -> None:
     """Trials whose runs have no value are told apart from those that are too heavy, and trials are whole numbers."""
     nothing = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
     limited = searched(objective="impact_share")
-    for found, told in ((nothing, "without a value (3)"), (limited, f"too heavy ({int((~limited.feasible).sum())})")):
+    for found, told in ((nothing, "no value (3)"), (limited, f"too heavy ({int((~limited.feasible).sum())})")):
         axes = rb.plot_design(found).axes[0]
         assert axes.get_legend_handles_labels()[1][2:] == [told]
         assert all(tick == int(tick) for tick in axes.get_xticks())

@@ -70,7 +70,7 @@ def test_plot(found: Any, size: Any, tmp_path: Path) -> None:
     figure = rb.plot_loss_map(found, size=size)
     figure.savefig(tmp_path / "map.png")
     bars = [axes.get_ylabel() for axes in figure.axes[3:]]
-    assert bars == ["Loss factor $m''/|m'|$", "Effective mass $m'/m$", "Loss a cycle $/\\,mV^2$"]
+    assert [bar.split("$")[0].strip() for bar in bars] == ["Loss factor", "Effective mass", "Loss per cycle"]
     assert (tmp_path / "map.png").stat().st_size > 5000
 
 
