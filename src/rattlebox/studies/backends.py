@@ -19,6 +19,7 @@ from multiprocessing.connection import Connection
 from typing import Any, Protocol, TypeVar
 
 from rattlebox._util.exceptions import CaseError, ResourceError
+from rattlebox._util.interrupts import raise_if_pressed
 from rattlebox.model.errors import Hint
 
 from .work import Block, Cancelled, Chain, Values, Work, last_values, run_block
@@ -89,7 +90,7 @@ def cores() -> int:
 def wait_for(future: Future[Any]) -> Any:
     """Return the result of a future; unlike `future.result()`, Ctrl-C interrupts the wait on every system."""
     while not wait([future], timeout=_POLL).done:
-        pass
+        raise_if_pressed()
     return future.result()
 
 
@@ -225,6 +226,7 @@ def _run_chains(
     for _ in range(parallel):
         start_chain()
     while running:
+        raise_if_pressed()
         for future in wait(running, timeout=_POLL, return_when=FIRST_COMPLETED).done:
             blocks, values = running.pop(future), _complete(future.result())
             block = blocks.popleft()

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rattlebox._util.interrupts import remember_ctrl_c
 from rattlebox._util.progress import progress_bar
 from rattlebox.model.errors import Hint
 
@@ -95,6 +96,7 @@ def run_work(
     opened: list[MemoryResult | Store] = []
     try:
         with ExitStack() as stack:
+            stack.enter_context(remember_ctrl_c())
             result: MemoryResult | Store = MemoryResult(plan, blocks) if store is None else Store(store, plan, blocks)
             opened.append(result)
             stack.enter_context(result)

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 
@@ -117,6 +118,26 @@ def test_ctrl_c_between_blocks(tmp_path: Path) -> None:
 
 def _press_once() -> Callable[[int, int], object]:
     return lambda done, total: os.kill(os.getpid(), signal.SIGINT) if done == 20 else None
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_ctrl_c_in_a_callback_of_the_garbage_collector(tmp_path: Path) -> None:
+    """Ctrl-C stops a study even where Python discards the exception, and does not stop a later one."""
+
+    class Garbage: ...
+
+    def press(done: int, total: int) -> None:
+        if done == 20:
+            garbage = Garbage()
+            callback = weakref.ref(garbage, lambda _: signal.raise_signal(signal.SIGINT))
+            del garbage
+            assert callback() is None
+
+    with pytest.raises(Stopped):
+        run_work(Logistic(), store=tmp_path / "study.zarr", block=5, progress=press)
+    assert progress_of(tmp_path / "study.zarr").done < 60
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    run_work(Logistic(), store=tmp_path / "study.zarr")
 
 
 def test_two_processes_on_one_store(tmp_path: Path) -> None:
