@@ -284,7 +284,7 @@ ANSWERS = {
     "record with units": (
         'duration = 1\nstructure = { kind = "sdof", mass = 1, stiffness = 1 }\n'
         'load = { kind = "record", times = ["0 s", "1 s"], values = [0, 1] }\n',
-        "load.times[0] = '0 s'\n  a finite number is needed\n  try: numbers alone: times in s, values in `unit`",
+        "load.times[0] = '0 s'\n  a finite number is needed\n  try: numbers without units: times in s",
     ),
     "file that is cut off": (
         GOOD[: GOOD.index("steel") + 3],

@@ -1,4 +1,4 @@
-"""Reads named arrays from NPY, NPZ and MAT files."""
+"""Files that a case names: paths, TOML, and arrays in NPY, NPZ and MAT files."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from .units import LARGEST
 Array = NDArray[np.float64]
 BINARY = (".npy", ".npz", ".mat")
 _SEVERAL = {"damper": "dampers", "load": "loads", "ball": "balls", "particles": "particles", "base": "base"}
-"""Tables of which there may be several, and what they are called then."""
+"""Keys of tables that may occur several times, and the keys of the lists."""
 
 
 def absolute(path: Any) -> str:
-    """Return a path that means the same from any folder.
+    """Return an absolute path.
 
     Raises
     ------
     Hint
-        When it is no path.
+        If the value is not a path.
     """
     if not isinstance(path, (str, os.PathLike)):
-        raise Hint("a file is named by text", 'file = "push.csv"')
+        raise Hint("the path of a file must be text", 'file = "push.csv"')
     return os.path.abspath(os.fspath(path))
 
 
@@ -45,7 +45,7 @@ def existing(path: str | os.PathLike[str]) -> Path:
     Raises
     ------
     DataError
-        When there is none, with files of similar name.
+        If there is none; with files of similar name.
     """
     file = Path(path)
     if file.is_file():
@@ -65,7 +65,7 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
     Raises
     ------
     CaseError
-        When it is not TOML, with the line.
+        If the text is not TOML; with the line at fault.
     """
     try:
         return tomllib.loads(content)
@@ -89,15 +89,15 @@ def read_toml(content: str, source: str) -> dict[str, Any]:
         twice = re.search(r"Cannot declare \((.*)\) twice", str(error))
         names = re.findall(r"'([\w-]+)'", twice[1]) if twice else []
         if names and names[0] == "materials":
-            complaint.append("  try: another name for one of them, since each has a table of its own")
+            complaint.append("  try: another name for one of the two materials")
         elif names and names[-1] in _SEVERAL:
             table = ".".join([*names[:-1], _SEVERAL[names[-1]]])
-            complaint.append(f"  try: [[{table}]] in double brackets, for each of them")
+            complaint.append(f"  try: double brackets for each of them, [[{table}]]")
         raise CaseError("\n".join(complaint)) from None
 
 
 def read_arrays(file: Path) -> dict[str, Array]:
-    """Read everything numeric in a NPY, NPZ or MAT file.
+    """Read all numeric arrays of a NPY, NPZ or MAT file.
 
     Parameters
     ----------
@@ -107,16 +107,16 @@ def read_arrays(file: Path) -> dict[str, Array]:
     Returns
     -------
     dict of str to float array
-        By name; fields of a MATLAB struct as "struct.field", the only array of a NPY file as "".
+        Arrays by name; fields of a MATLAB struct as "struct.field", the only array of a NPY file as "".
 
     Raises
     ------
     DataError
-        When the file cannot be read.
+        If the file cannot be read.
     """
     try:
-        file.open("rb").close()  # SciPy does not say why it cannot
-        content = dict(_flat(_from_mat(file) if file.suffix.lower() == ".mat" else _from_numpy(file)))
+        file.open("rb").close()  # SciPy would hide the reason if this fails
+        content = dict(_flatten(_load_mat(file) if file.suffix.lower() == ".mat" else _load_numpy(file)))
     except NotImplementedError:
         raise DataError(f"{file} is a MAT file of version 7.3", "save('...', '-v7') in MATLAB") from None
     except OSError as error:
@@ -126,39 +126,41 @@ def read_arrays(file: Path) -> dict[str, Array]:
     return {name: np.asarray(value, dtype=float) for name, value in content.items() if _is_real(value)}
 
 
-def _from_numpy(file: Path) -> Mapping[str, Any]:
+def _load_numpy(file: Path) -> Mapping[str, Any]:
     loaded = np.load(file, allow_pickle=False)
     if not isinstance(loaded, np.ndarray):
         with loaded:
-            return dict(_members(loaded))
+            return dict(_without_pickles(loaded))
     return {"": loaded} if loaded.dtype.names is None else {name: loaded[name] for name in loaded.dtype.names}
 
 
-def _members(loaded: Any) -> Iterator[tuple[str, Any]]:
+def _without_pickles(loaded: Any) -> Iterator[tuple[str, Any]]:
+    """Yield the arrays of an NPZ file except those of Python objects, which only pickle could read."""
     for name in loaded:
         try:
             yield name, loaded[name]
         except ValueError as error:
             if "Object arrays" not in str(error):
-                raise  # only these would need pickle; nothing else in the file is worse for them
+                raise
 
 
-def _from_mat(file: Path) -> Mapping[str, Any]:
+def _load_mat(file: Path) -> Mapping[str, Any]:
     from scipy.io import loadmat
 
     content = file.read_bytes()
     check_mat(content)
     stream: Any = io.BytesIO(content)
-    found: Mapping[str, Any] = loadmat(stream, simplify_cells=True)
-    return found
+    variables: Mapping[str, Any] = loadmat(stream, simplify_cells=True)
+    return variables
 
 
-def _flat(content: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
+def _flatten(content: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the arrays of nested structs, with their path as name."""
     for name, value in content.items():
         if isinstance(value, Mapping):
-            yield from _flat(value, f"{above}{name}.")
+            yield from _flatten(value, f"{prefix}{name}.")
         elif not name.startswith("__"):
-            yield above + name, value.toarray() if hasattr(value, "toarray") else np.asarray(value)
+            yield prefix + name, value.toarray() if hasattr(value, "toarray") else np.asarray(value)
 
 
 def _is_real(value: NDArray[Any]) -> bool:
@@ -166,15 +168,18 @@ def _is_real(value: NDArray[Any]) -> bool:
 
 
 def check_finite(array: Array, where: str) -> Array:
-    """Return the array.
+    """Return the array if all of its numbers are finite and at most `LARGEST`.
 
     Raises
     ------
     DataError
-        When a number in it is not finite, or beyond all use; `where` says what is read.
+        If they are not; the message begins with `where`.
     """
     bad = np.argwhere(~(np.abs(array) <= LARGEST))
     if len(bad):
         place = ", ".join(f"{word} {i + 1}" for word, i in zip(("row", "column"), bad[0], strict=False))
-        raise DataError(f"{where} holds {array[tuple(bad[0])]} in {place or 'it'}")
+        number = array[tuple(bad[0])]
+        raise DataError(
+            f"{where} contains {number}{f' in {place}' if place else ''}", f"finite numbers up to {LARGEST:g}"
+        )
     return array

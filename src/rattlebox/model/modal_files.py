@@ -1,4 +1,4 @@
-"""Modes in files: which points are taken, mass normalisation, units."""
+"""Modes from files: selection of points, mass normalisation, units."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ from .units import numbers, parse, whole_number
 
 _TABLES = (".csv", ".txt", ".tsv")
 _UNIVERSAL = (".uff", ".unv", ".uf")
-_KNOWN = ".csv, .toml, .uff, .unv, .rst or .full"
-_IN_TOML = ("frequencies", "damping_ratios", "modal_masses", "shapes", "participation")
-_COMPUTED = 10  # modes of a .full file, unless another number is asked for
-_ALL = 8  # points of a file that are taken if none is named
-_HEAVIEST = 1e-12  # kg^-1/2
+_SUPPORTED = ".csv, .toml, .uff, .unv, .rst or .full"
+_TOML_FIELDS = ("frequencies", "damping_ratios", "modal_masses", "shapes", "participation")
+_DEFAULT_MODES = 10  # number of modes computed from a .full file
+_MOST_POINTS = 8  # largest number of points that are all read if none is named
+_SMALLEST_SHAPE = 1e-12  # kg^-1/2
 
-_PLACE = re.compile(r"^\s*(.+?)(?:\s+(-?[xyz]))?\s*$")
+_POINT_AND_AXIS = re.compile(r"^\s*(.+?)(?:\s+(-?[xyz]))?\s*$")
 
 
 def read_modes(path: str, count: int | None) -> ModesInFile | dict[str, Any]:
-    """Read modes from a file of any known kind; a TOML file gives fields of Modal.
+    """Read modes from a file of any supported kind; from a TOML file as fields of Modal.
 
     Raises
     ------
@@ -52,8 +52,8 @@ def read_modes(path: str, count: int | None) -> ModesInFile | dict[str, Any]:
     if ending == ".rst":
         return read_result(file)
     if ending == ".full":
-        return read_full(file, count or _COMPUTED)
-    raise DataError(f"{path}: files with the ending {ending!r} hold no modes that are read here", _KNOWN)
+        return read_full(file, count or _DEFAULT_MODES)
+    raise DataError(f"{path}: modes cannot be read from files with the ending {ending!r}", _SUPPORTED)
 
 
 def _from_toml(file: Path) -> dict[str, Any]:
@@ -61,164 +61,168 @@ def _from_toml(file: Path) -> dict[str, Any]:
         content = file.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise DataError(f"{file} cannot be read: {error}") from None
-    given = read_toml(content, str(file))
-    if not given:
+    table = read_toml(content, str(file))
+    if not table:
         raise DataError(f"{file} is empty", "frequencies, damping_ratios and shapes")
-    for name in given:
-        if name not in _IN_TOML:
-            raise DataError(f"{file}: there is no field {name!r} in a table of modes", nearest(name, _IN_TOML))
+    for name in table:
+        if name not in _TOML_FIELDS:
+            raise DataError(f"{file}: a table of modes has no field {name!r}", nearest(name, _TOML_FIELDS))
     for name in ("frequencies", "shapes"):
-        if name not in given:
+        if name not in table:
             raise DataError(f"{file}: {name} are needed", 'frequencies = ["10 Hz"] and [shapes] tip = [0.7]')
-    return given
+    return table
 
 
 def fields_of_modes(given: Mapping[str, Any], path: str) -> tuple[dict[str, Any], list[str]]:
-    """Return the fields of Modal that a file stands for, and notes of what was assumed.
+    """Return the fields of Modal with the modes of a file, and notes of assumptions.
 
     Parameters
     ----------
     given
-        Fields beside the file: points, mode_count, mass_unit, modal_masses, damping_ratios, damping_ratio, participation.
+        Other fields: points, mode_count, mass_unit, modal_masses, damping_ratios, damping_ratio, participation.
     path
         The file.
 
+    Returns
+    -------
+    dict of str to object
+        Fields of Modal, in SI units.
+    list of str
+        Notes of assumptions.
+
     Raises
     ------
-    DataError, Hint
-        If the file cannot be read, or does not fit the fields.
+    DataError
+        If the file cannot be read.
+    Hint
+        If the other fields do not fit the file.
     """
     count = given.get("mode_count")
     if count is not None:
         with at("mode_count"):
             count = whole_number(count, "mode_count", 1)
     with at("file"):
-        found = read_modes(path, count)
+        modes = read_modes(path, count)
     name = Path(path).name
-    if isinstance(found, dict):
-        masses = given.get("modal_masses", found.pop("modal_masses", None))
+    if isinstance(modes, dict):
+        masses = given.get("modal_masses", modes.pop("modal_masses", None))
         if masses is not None:
             with at("modal_masses"):
                 masses = np.array([parse(mass, ("kg",))[0] for mass in masses])
-        shapes = {point: numbers(row) for point, row in found["shapes"].items()}
-        found = ModesInFile(
-            frequencies=np.array([parse(f, ("Hz",))[0] for f in found["frequencies"]]),
+        shapes = {point: numbers(row) for point, row in modes["shapes"].items()}
+        modes = ModesInFile(
+            frequencies=np.array([parse(f, ("Hz",))[0] for f in modes["frequencies"]]),
             shapes=shapes,
             modal_masses=masses,
-            damping_ratios=numbers(found["damping_ratios"]) if "damping_ratios" in found else None,
-            participation=numbers(found["participation"]) if "participation" in found else None,
+            damping_ratios=numbers(modes["damping_ratios"]) if "damping_ratios" in modes else None,
+            participation=numbers(modes["participation"]) if "participation" in modes else None,
             mass_unit=1.0,
         )
     elif given.get("modal_masses") is not None:
         with at("modal_masses"):
-            found = replace(
-                found, modal_masses=np.array([parse(m, ("kg",))[0] for m in given["modal_masses"]]), mass_unit=1.0
-            )
-    kept = slice(None, count)
-    total = found.frequencies.size
+            masses = np.array([parse(mass, ("kg",))[0] for mass in given["modal_masses"]])
+        modes = replace(modes, modal_masses=masses, mass_unit=1.0)
+    first = slice(None, count)
+    total = modes.frequencies.size
     if count is not None and count > total:
         raise Hint(f"{name} has {total} modes", f"mode_count = {total}", ["mode_count"])
-    scale, notes = _scale(found, given, name, path)
+    scale, notes = _scale(modes, given, name, path)
+    points = _select_points(modes, given, name)
     fields: dict[str, Any] = {
-        "frequencies": found.frequencies[kept].tolist(),
-        "shapes": {
-            point: (shape[kept].T * scale[kept]).T.tolist() for point, shape in _points(found, given, name).items()
-        },
+        "frequencies": modes.frequencies[first].tolist(),
+        "shapes": {point: (shape[first].T * scale[first]).T.tolist() for point, shape in points.items()},
     }
     if all(given.get(name) is None for name in ("damping_ratios", "damping_ratio", "damping_matrix")):
-        if found.damping_ratios is None:
+        if modes.damping_ratios is None:
             raise Hint(f"{name} states no damping", "damping_ratio = 0.01, or 0", ["damping_ratio"])
-        fields["damping_ratios"] = found.damping_ratios[kept].tolist()
-    if given.get("participation") is None and found.participation is not None:
-        participation = _participation(found, given, fields["shapes"], scale)
+        fields["damping_ratios"] = modes.damping_ratios[first].tolist()
+    if given.get("participation") is None and modes.participation is not None:
+        participation = _participation(modes, given, fields["shapes"], scale)
         if participation is not None:
-            fields["participation"] = participation[kept].tolist()
-            if given.get("total_mass") is None and found.total_mass is not None:
-                fields["total_mass"] = _total_mass(found, given, participation.ndim == 2)
-    largest = max((float(np.abs(row).max()), point) for point, row in fields["shapes"].items())
-    if not largest[0] > _HEAVIEST:
+            fields["participation"] = participation[first].tolist()
+            if given.get("total_mass") is None and modes.total_mass is not None:
+                fields["total_mass"] = _total_mass(modes, given, participation.ndim == 2)
+    largest, point = max((float(np.abs(row).max()), point) for point, row in fields["shapes"].items())
+    if not largest > _SMALLEST_SHAPE:
         raise DataError(
-            f"{path}: no point of {listed(list(fields['shapes']))} moves in any mode", "other points", ["file"]
+            f"{path}: no mode moves any of the points {listed(list(fields['shapes']))}", "other points", ["file"]
         )
-    told = f"the largest mass-normalised shape is {largest[0]:.4g} kg^-0.5, at {largest[1]}"
-    return fields, [f"{note}; {told}" for note in (*notes, *(found.notes))]
+    size = f"the largest mass-normalised shape is {largest:.4g} kg^-0.5, at {point}"
+    return fields, [f"{note}; {size}" for note in (*notes, *modes.notes)]
 
 
-def _scale(found: ModesInFile, given: Mapping[str, Any], name: str, path: str) -> tuple[Vector, list[str]]:
-    """Factor of each mode that makes its shape mass-normalised in SI, and what was assumed."""
-    unit, notes = found.mass_unit, []
+def _scale(modes: ModesInFile, given: Mapping[str, Any], name: str, path: str) -> tuple[Vector, list[str]]:
+    """Return the factor of each mode that makes its shape mass-normalised in SI, and notes of assumptions."""
+    unit, notes = modes.mass_unit, []
     if given.get("mass_unit") is not None:
         with at("mass_unit"):
             unit = parse(f"1 {given['mass_unit']}", ("kg",))[0]
     elif unit is None:
         unit = 1.0
         notes.append(f"{name} states no unit of mass; kg is assumed (mass_unit sets another)")
-    total = found.frequencies.size
-    if found.modal_masses is None:
+    total = modes.frequencies.size
+    if modes.modal_masses is None:
         return np.full(total, unit**-0.5), notes
-    masses = np.asarray(found.modal_masses, dtype=float)
+    masses = np.asarray(modes.modal_masses, dtype=float)
     if masses.shape != (total,):
         raise Hint(f"{masses.size} modal masses for {total} modes", "one for each mode", ["modal_masses"])
     wrong = np.flatnonzero(~(masses > 0))
     if wrong.size:
         raise DataError(
-            f"{path}: mode {wrong[0] + 1} has a modal mass of {masses[wrong[0]]:g}, so that its shape has no scale",
+            f"{path}: mode {wrong[0] + 1} has a modal mass of {masses[wrong[0]]:g}; it must be greater than zero",
             'modal_masses = ["1 kg", ...], one for each mode; "1 kg" for shapes that are mass-normalised',
             ["file"],
         )
     return (masses * unit) ** -0.5, notes
 
 
-def _points(found: ModesInFile, given: Mapping[str, Any], name: str) -> dict[str, Vector]:
-    """Mode shapes at the points that are asked for."""
-    asked = given.get("points")
-    labels = list(found.shapes)
-    if asked is None:
-        if len(labels) > _ALL:
+def _select_points(modes: ModesInFile, given: Mapping[str, Any], name: str) -> dict[str, Vector]:
+    """Return the mode shapes at the requested points."""
+    requested = given.get("points")
+    labels = list(modes.shapes)
+    if requested is None:
+        if len(labels) > _MOST_POINTS:
             raise Hint(
-                f"{name} has {len(labels)} points; which of them are needed?",
+                f"{name} has {len(labels)} points; a selection is needed of more than {_MOST_POINTS}",
                 f'points = {{ tip = "{labels[0]}" }}, or "{labels[0]} z" for one direction',
                 ["points"],
             )
-        return found.shapes
-    if not isinstance(asked, Mapping) or not asked:
+        return modes.shapes
+    if not isinstance(requested, Mapping) or not requested:
         raise Hint("points are a table of names and labels in the file", f'{{ tip = "{labels[0]}" }}', ["points"])
     points = {}
-    for point, place in asked.items():
+    for point, value in requested.items():
         with at("points", point):
-            text = str(place) if isinstance(place, (int, str)) and not isinstance(place, bool) else ""
-            label, axis = (text, None) if text in found.shapes else _split(text)
-            if label not in found.shapes:
+            text = str(value) if isinstance(value, (int, str)) and not isinstance(value, bool) else ""
+            label, axis = text, None
+            if text not in modes.shapes and (match := _POINT_AND_AXIS.match(text)):
+                label, axis = match[1], match[2]
+            if label not in modes.shapes:
                 raise Hint(f"{name} has no point {label!r}; it has {listed(labels)}", nearest(label, labels[:200]))
-            shape = found.shapes[label]
+            shape = modes.shapes[label]
             if axis is not None:
                 if shape.ndim == 1:
-                    raise Hint(f"the point {label!r} moves along one line only", f'"{label}"')
+                    raise Hint(f"the shape at {label!r} has no components", f'"{label}"')
                 shape = shape[:, AXES.index(axis[-1])] * (-1.0 if axis[0] == "-" else 1.0)
             points[str(point)] = shape
     return points
 
 
-def _total_mass(found: ModesInFile, given: Mapping[str, Any], spatial: bool) -> Any:
-    """Return the total mass in SI; three numbers if points move in space."""
-    unit = found.mass_unit or 1.0
+def _total_mass(modes: ModesInFile, given: Mapping[str, Any], spatial: bool) -> Any:
+    """Return the total mass [kg]; three numbers if shapes have three components."""
+    unit = modes.mass_unit or 1.0
     if given.get("mass_unit") is not None:
         unit = parse(f"1 {given['mass_unit']}", ("kg",))[0]
-    masses = np.asarray(found.total_mass) * unit
+    masses = np.asarray(modes.total_mass) * unit
     if spatial:
         return masses.tolist() if (masses > 0).all() else None
     axis = str(next(iter((given.get("points") or {}).values()))).rpartition(" ")[2]
     return float(masses[AXES.index(axis[-1])])
 
 
-def _split(text: str) -> tuple[str, str | None]:
-    match = _PLACE.match(text)
-    return (match[1], match[2]) if match else (text, None)
-
-
-def _participation(found: ModesInFile, given: Mapping[str, Any], shapes: Mapping[str, Any], scale: Vector) -> Any:
-    """Participation in SI, with three numbers for each mode if a point moves in space; None if its direction is open."""
-    rows = np.asarray(found.participation, dtype=float)
+def _participation(modes: ModesInFile, given: Mapping[str, Any], shapes: Mapping[str, Any], scale: Vector) -> Any:
+    """Return the participation in SI, per axis if shapes have three components; None if the axis is unknown."""
+    rows = np.asarray(modes.participation, dtype=float)
     spatial = any(np.ndim(row) == 2 for row in shapes.values())
     if rows.ndim == 2 and not spatial:
         axes = {str(place).rpartition(" ")[2] for place in (given.get("points") or {}).values()}
@@ -228,12 +232,12 @@ def _participation(found: ModesInFile, given: Mapping[str, Any], shapes: Mapping
         rows = rows[:, AXES.index(axis[-1])] * (-1.0 if axis[0] == "-" else 1.0)
     elif rows.ndim == 1 and spatial:
         raise Hint(
-            "the file has one participation for each mode, but points move in space",
+            "the file has one participation factor for each mode, but shapes with three components need three",
             "columns participation x, participation y and participation z",
             ["file"],
         )
-    # phi^T M r is in units of mass for shapes with modal masses, and in their root for mass-normalised ones.
+    # phi^T M r has the unit of mass for shapes with modal masses, and of its root for mass-normalised shapes.
     factor = 1 / scale
-    if found.modal_masses is not None:
-        factor = factor / np.asarray(found.modal_masses, dtype=float)
+    if modes.modal_masses is not None:
+        factor = factor / np.asarray(modes.modal_masses, dtype=float)
     return (rows.T * factor).T

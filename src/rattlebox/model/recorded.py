@@ -1,4 +1,4 @@
-"""Records: signals that were measured, or made by other programs."""
+"""Records: signals that were measured or written by other programs."""
 
 from __future__ import annotations
 
@@ -22,100 +22,103 @@ from .signals import UNIT_NAMES, UNITS, Sampled
 from .units import Number, PositiveTime, factor_of, numbers, parse, plain, unit_above
 
 
-def _in_si(found: Columns, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return times and values of a file, with unit and scale as given, or else as stated above the columns.
+def _apply_stated_units(columns: Columns, fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Return times, values, unit and scale of a file; units of the fields take precedence over those above the columns.
 
     Raises
     ------
     DataError
         If the file states a unit that is unknown.
     Hint
-        If the unit is of another kind than the one given.
+        If the file and the field `unit` state different dimensions.
     """
-    times, values, (above_times, above_values) = found
+    times, values, (time_headings, value_headings) = columns
     try:
-        slower, _ = unit_above(above_times, ("s",)) or (1.0, "s")
+        time_scale, _ = unit_above(time_headings, ("s",)) or (1.0, "s")
     except Hint as hint:
         raise DataError(hint.complaint, 'times in seconds below the heading "time (s)"', ["file"]) from None
-    read = {"times": times * slower if slower != 1 else times, "values": values}
-    if given.get("scale") is not None:
-        return read
-    wanted = given.get("unit")
+    record = {"times": times * time_scale if time_scale != 1 else times, "values": values}
+    if fields.get("scale") is not None:
+        return record
+    wanted = fields.get("unit")
     try:
-        written = unit_above(above_values, UNITS)
+        stated = unit_above(value_headings, UNITS)
     except Hint as hint:
         if wanted in UNITS:
-            return read  # the numbers are in the unit that is given
+            return record
         advice = 'unit = "m/s^2", and scale = ..., the factor from the numbers to that unit'
         raise DataError(hint.complaint, advice, ["file"]) from None
-    if written is None:
-        return read
-    scale, unit = written
+    if stated is None:
+        return record
+    scale, unit = stated
     if wanted in UNITS and wanted != unit:
         raise Hint(
             f"the file has {UNIT_NAMES[unit]} in this column, not {UNIT_NAMES[wanted]}",
-            f"another column, or scale = ..., what its numbers are multiplied by to be in {wanted}",
+            f"another column, or scale = ..., the factor from its numbers to {wanted}",
             ["unit"],
         )
-    return {**read, "unit": wanted or unit, "scale": scale}
+    return {**record, "unit": wanted or unit, "scale": scale}
 
 
 def _with_si_unit(values: dict[str, Any]) -> dict[str, Any]:
     """Return the fields of a record with another unit of the same dimension turned into the SI unit and a scale."""
     unit = values.get("unit")
-    known = factor_of(unit, UNITS) if isinstance(unit, str) and unit not in UNITS else None
-    if known is None:
+    conversion = factor_of(unit, UNITS) if isinstance(unit, str) and unit not in UNITS else None
+    if conversion is None:
         return values
-    if known[0] == 1:
-        return {**values, "unit": known[1]}
+    factor, si_unit = conversion
+    if factor == 1:
+        return {**values, "unit": si_unit}
     with at("scale"):
         scale = 1.0 if values.get("scale") is None else plain(values["scale"])
     if not isinstance(scale, (int, float)):
         return values
-    return {**values, "unit": known[1], "scale": scale * known[0]}
+    return {**values, "unit": si_unit, "scale": scale * factor}
 
 
 def _time_history(path: Path, columns: Any) -> Columns:
-    """Read a time history of a universal file: the only one, or the one that is called so or has this number.
+    """Read a time history of a universal file, by its name or number in `columns`; None stands for the only one.
 
     Raises
     ------
     DataError
-        If there is none, or more than one and none is chosen.
+        If there is no such time history, or several and `columns` is None.
     """
     functions = [each for each in read_functions(path) if each.kind in (0, 1) and not np.iscomplexobj(each.values)]
     names = [each.name for each in functions]
     if not functions:
-        raise DataError(f"{path} holds no time history", "a function of type 1 in a set 58")
+        raise DataError(f"{path} contains no time history", "a function of type 1 in a set 58")
     if columns is None and len(functions) > 1:
-        raise DataError(f"{path} holds {len(functions)} time histories ({', '.join(names)})", "columns = [1]")
+        raise DataError(f"{path} contains {len(functions)} time histories ({', '.join(names)})", "columns = [1]")
     wanted = columns[0] if columns else 1
-    place = names.index(wanted) if wanted in names else wanted - 1 if isinstance(wanted, int) else -1
-    if not 0 <= place < len(functions):
-        raise DataError(f"{path} holds no time history {wanted!r}, but {', '.join(names)}", "columns = [1]")
-    found = functions[place]
-    times = found.abscissa - found.abscissa[0]
-    return Columns(times, np.asarray(found.values, dtype=float), ([], [f"a ({found.unit})"] if found.unit else []))
+    index = names.index(wanted) if wanted in names else wanted - 1 if isinstance(wanted, int) else -1
+    if not 0 <= index < len(functions):
+        raise DataError(f"{path} contains no time history {wanted!r}, but {', '.join(names)}", "columns = [1]")
+    history = functions[index]
+    times = history.abscissa - history.abscissa[0]
+    headings = [f"a ({history.unit})"] if history.unit else []
+    return Columns(times, np.asarray(history.values, dtype=float), ([], headings))
 
 
-def _check_unit(found: Columns, wanted: Any) -> None:
-    """Raise if a file states another unit of acceleration, force or displacement than the one that is given."""
-    given = factor_of(wanted, UNITS) if isinstance(wanted, str) and wanted not in UNITS else None
-    if given is None or given[0] == 1:
+def _check_unit(columns: Columns, wanted: Any) -> None:
+    """Raise if a file states another unit of acceleration, force or displacement than the field `unit`."""
+    conversion = factor_of(wanted, UNITS) if isinstance(wanted, str) and wanted not in UNITS else None
+    if conversion is None or conversion[0] == 1:
         return
+    headings = columns.headings[1]
     try:
-        stated = unit_above(found.above[1], UNITS)
+        stated = unit_above(headings, UNITS)
     except Hint:
-        return  # the numbers are in the unit that is given
-    if stated is not None and stated != given:
-        raise Hint(f"the file states another unit above the column: {found.above[1][-1]!r}", "leave unit out", ["unit"])
+        return  # an unknown heading does not contradict the field
+    if stated is not None and stated != conversion:
+        raise Hint(f"the file states another unit above the column: {headings[-1]!r}", "leave unit out", ["unit"])
 
 
 def _column(value: Any) -> tuple[float, ...]:
     try:
         array = numbers(value)
     except Hint as hint:
-        advice = 'numbers alone: times in s, values in `unit` ("N"), which are multiplied by `scale`'
+        advice = "numbers without units: times in s, values in `unit` times `scale`"
         raise Hint(hint.complaint, hint.suggestion or advice, hint.place) from None
     if array.ndim != 1:
         raise Hint(f"one row of numbers is needed, not shape {array.shape}")
@@ -123,31 +126,33 @@ def _column(value: Any) -> tuple[float, ...]:
 
 
 class Record(Sampled):
-    """A record, straight lines between points; it must cover the whole run.
+    """A record with linear interpolation between its points; it must cover the whole run.
 
-    Samples of a signal lose high frequencies: the straight lines between samples at a rate R multiply the amplitude at
-    frequency f by sinc^2(f / R) = (sin(pi f / R) / (pi f / R))^2, and add images at k R +- f, of amplitude
-    sinc^2(k +- f / R). It is 1 % at 18 samples a period, 3 % at 10 and 19 % at 4. A run warns where this changes the
-    response of a mode by more than 2 %.
+    Linear interpolation between samples at a rate R multiplies the amplitude at frequency f by
+    sinc^2(f / R) = (sin(pi f / R) / (pi f / R))^2, and adds images at k R +- f of amplitude sinc^2(k +- f / R). The
+    amplitude falls by 1 % at 18 samples per period, by 3 % at 10 and by 19 % at 4. A run warns if this changes the response
+    of a mode by more than 2 %.
 
     Parameters
     ----------
     times
         Strictly increasing [s].
-    values, scale
-        As many, in `unit`, and what they are multiplied by. Left out, `scale` is 1, or follows from the unit in the file.
+    values
+        As many values, in `unit`.
+    scale
+        Factor of the values; default 1, or the factor from the unit in the file.
     dt
-        Time between samples [s] that are evenly spaced from 0 s on, instead of times.
+        Time between evenly spaced samples [s], the first at 0 s; instead of `times`.
     unit
         Unit of the values: "N", "m/s^2", "m", or another of these dimensions, such as "g", "gal", "mg", "cm/s^2" or "kN".
-    file, columns
-        Instead of times and values: a CSV, NPY, NPZ, MAT or AT2 file, and its columns of times and values, by number counted
-        from 1 or by name: `columns=(1, 3)`, `columns=("t", "a")`; with `dt` that of the values alone. Variables count in the
-        order of the file. Columns may be left out where there are only two (with `dt` one), or variables called time and
-        value; an AT2 file of the PEER data base has one record, and of a universal file (.uff, .unv) `columns=(2,)` is the
-        second time history. Units above the columns of a text file, as in "time (ms),
-        acceleration (g)", are converted; unknown ones are refused. Without them times are in s, and values in `unit`; if
-        neither states a unit, the run notes the unit that is assumed, and the peak.
+    file
+        CSV, NPY, NPZ, MAT, AT2 (PEER) or universal file (.uff, .unv), instead of times and values. Units above the columns
+        of a text file, as in "time (ms), acceleration (g)", are converted; unknown ones raise. Without them times are in s
+        and values in `unit`; if neither states a unit, the run notes the assumed unit and the peak.
+    columns
+        Columns or variables with times and values, by number in the order of the file from 1, or by name: `columns=(1, 3)`,
+        `columns=("t", "a")`. With `dt` only that of the values; in a universal file the number of the time history. Optional
+        if the file has only two columns (with `dt` one), or variables called time and value.
     """
 
     file_fields: ClassVar[tuple[str, ...]] = ("times", "values")
@@ -175,7 +180,7 @@ class Record(Sampled):
                     raise Hint("must be greater than zero")
         if values.get("file") is None:
             if values.get("columns") is not None:
-                raise Hint("columns are those of a file", 'file = "push.csv"', ["columns"])
+                raise Hint("columns need a file", 'file = "push.csv"', ["columns"])
             if step is not None and "values" in values:
                 if "times" in values:
                     raise Hint("give times or dt, not both", "leave dt out", ["dt"])
@@ -194,19 +199,20 @@ class Record(Sampled):
                 if step is not None or columns is not None:
                     raise Hint(f"{path} states its time step and has one record", "leave dt and columns out")
                 motion = read_ground_motion(existing(path))
-                heads = [f"a ({motion.unit})"] if motion.unit else []
-                found = Columns(np.arange(motion.values.size, dtype=float) * motion.step, motion.values, ([], heads))
+                headings = [f"a ({motion.unit})"] if motion.unit else []
+                times = np.arange(motion.values.size, dtype=float) * motion.step
+                record = Columns(times, motion.values, ([], headings))
                 if not motion.unit and values.get("unit") is None:
                     raise DataError(f"{path} states no unit", 'unit = "g"')
             elif path.lower().endswith((".uff", ".unv", ".uf")):
-                found = _time_history(existing(path), values.get("columns"))
+                record = _time_history(existing(path), values.get("columns"))
             elif step is not None:
-                samples, heads = read_samples(path, columns[0] if columns else None)
-                found = Columns(np.arange(samples.size, dtype=float) * step, samples, ([], heads))
+                samples, headings = read_samples(path, columns[0] if columns else None)
+                record = Columns(np.arange(samples.size, dtype=float) * step, samples, ([], headings))
             else:
-                found = read_columns(path, columns)
-        _check_unit(found, wanted)
-        return {**values, **_in_si(found, values), "file": path}
+                record = read_columns(path, columns)
+        _check_unit(record, wanted)
+        return {**values, **_apply_stated_units(record, values), "file": path}
 
     @model_validator(mode="after")
     def _validate(self) -> Record:
@@ -235,7 +241,7 @@ class Record(Sampled):
         return ("file",) if self.file else ("times",)
 
     @model_serializer(mode="wrap")
-    def _file_stands_for_numbers(self, handler: Any) -> Any:
+    def _without_numbers_of_file(self, handler: Any) -> Any:
         data = handler(self)
         if self.file is not None:
             for name in self.file_fields:
@@ -251,17 +257,17 @@ class Record(Sampled):
         Parameters
         ----------
         path
-            The file; times in seconds, unless it says otherwise above them.
+            The file; times in seconds, unless their column states another unit.
         **options
-            columns, dt, unit, scale, point, direction.
+            Other fields: columns, dt, unit, scale, point, direction.
 
         Raises
         ------
         CaseError
-            When the file cannot be read, naming the line that is wrong or the columns that there are.
+            If the file cannot be read; with the line at fault, or the available columns.
         """
         return cls(file=os.fspath(path), **options)
 
     def polyline(self) -> tuple[Vector, Vector]:
-        """Return times [s] and values of its points."""
+        """Return times [s] and values of the points."""
         return np.array(self.times), self.scale * np.array(self.values)

@@ -1,7 +1,7 @@
-"""Reads records from files: a column of times and one of values.
+"""Tables of numbers in text, NPY, NPZ and MAT files: columns of times and values.
 
 `numpy.loadtxt` is 28 times as fast (0.1 s instead of 2.8 s for 200 000 lines), but needs the delimiter, the number of
-lines above the data and the columns, and finds neither units nor decimal commas.
+lines above the data and the columns, and detects neither units nor decimal commas.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,16 +21,15 @@ from .files import BINARY, Array, check_finite, existing, read_arrays
 Column = int | str
 """Number of a column, counted from 1, or its name."""
 
-
 _NEEDED = {1: "one is", 2: "two are", 3: "three are"}
 
 
 class Columns(NamedTuple):
-    """A column of times and one of values, (n,) float, and what is written above each: names, units."""
+    """Columns of times and values, (n,) float, and the headings (names, units) above each."""
 
     times: Array
     values: Array
-    above: tuple[list[str], list[str]] = ([], [])
+    headings: tuple[list[str], list[str]] = ([], [])
 
 
 def read_columns(path: str, columns: Sequence[Column] | None = None) -> Columns:
@@ -39,22 +38,30 @@ def read_columns(path: str, columns: Sequence[Column] | None = None) -> Columns:
     Parameters
     ----------
     path
-        CSV and other text: comma, semicolon, tab or blank between columns; lines above the numbers and lines that begin
-        with # or % are no data. NPY, NPZ, MAT: an array of columns, or one variable for each, which count in the order of
-        the file; without columns also an array of two rows.
+        CSV and other text, with columns separated by comma, semicolon, tab or blank; lines above the numbers and lines that
+        begin with # or % are not data. NPY, NPZ, MAT: an array of columns, or a variable for each, numbered in the order of
+        the file; without `columns` also an array of two rows.
     columns
-        Which column or variable holds times and which values; may be left out where there are two, or variables called
-        time and value.
+        Columns or variables with times and values. Optional if there are two, or variables called time and value.
+
+    Returns
+    -------
+    Columns
+        Times and values, with their headings.
 
     Raises
     ------
     DataError
-        When the file cannot be read, naming the line that is wrong, or the columns that there are.
+        If the file cannot be read; with the line at fault, or the available columns.
     """
     file = existing(path)
     if file.suffix.lower() in BINARY:
-        return Columns(*_pick(file, read_arrays(file), columns))
-    return _from_text(file, columns)
+        return Columns(*_select_arrays(file, read_arrays(file), columns))
+    lines, names, headings = _parse_text(file, requested=[str(column) for column in columns or ()])
+    indices = _column_indices(file, columns, names)
+    times, values = _parse_rows(file, lines, indices).T
+    above_times, above_values = ([cells[index] for cells in headings] for index in indices)
+    return Columns(times, values, (above_times, above_values))
 
 
 def read_samples(path: str, column: Column | None = None) -> tuple[Array, list[str]]:
@@ -65,65 +72,64 @@ def read_samples(path: str, column: Column | None = None) -> tuple[Array, list[s
     path
         File as for `read_columns`.
     column
-        Column or variable that holds them; may be left out where there is only one.
+        Column or variable of the samples. Optional if there is only one.
 
     Returns
     -------
     (n,) float
         Samples.
     list of str
-        What is written above the column.
+        Headings of the column.
 
     Raises
     ------
     DataError
-        When the file cannot be read, naming the line that is wrong, or the columns that there are.
+        If the file cannot be read; with the line at fault, or the available columns.
     """
     file = existing(path)
+    columns = None if column is None else [column]
     if file.suffix.lower() not in BINARY:
-        lines, names, heads = _data(file, asked=[] if column is None else [str(column)])
-        (place,) = _numbers(file, None if column is None else [column], names, needed=1)
-        return _rows(file, lines, [place])[:, 0], [cells[place] for cells in heads]
+        lines, names, headings = _parse_text(file, requested=[] if column is None else [str(column)])
+        (index,) = _column_indices(file, columns, names, needed=1)
+        return _parse_rows(file, lines, [index])[:, 0], [cells[index] for cells in headings]
     arrays = read_arrays(file)
     if not arrays:
-        raise DataError(f"{file} holds no numbers")
+        raise DataError(f"{file} contains no numbers")
     if len(arrays) == 1 and next(iter(arrays.values())).ndim == 2 and not isinstance(column, str):
         (table,) = arrays.values()
         table = table.T if table.shape[0] == 1 else table
-        (place,) = _numbers(
-            file, None if column is None else [column], [str(k + 1) for k in range(table.shape[1])], needed=1
-        )
-        return check_finite(table[:, place], f"{file}: column {place + 1}"), []
-    there = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
-    (place,) = _numbers(file, None if column is None else [column], list(arrays), there, needed=1)
-    name, array = list(arrays.items())[place]
+        (index,) = _column_indices(file, columns, [str(k + 1) for k in range(table.shape[1])], needed=1)
+        return check_finite(table[:, index], f"{file}: column {index + 1}"), []
+    variables = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
+    (index,) = _column_indices(file, columns, list(arrays), variables, needed=1)
+    name, array = list(arrays.items())[index]
     if array.size != max(array.shape, default=1):
-        raise DataError(f"{file}: one row of numbers is needed, but {name} has shape {array.shape}")
+        raise DataError(f"{file}: {name} has shape {array.shape}; one row of numbers is needed")
     return check_finite(array.ravel(), f"{file}: {name}"), []
 
 
 def as_columns(value: Any, count: int = 2) -> Any:
-    """Return a pair of columns as it is given, or a tuple of one.
+    """Return `count` columns as a tuple; None stays None.
 
     Raises
     ------
     Hint
-        When it is no pair of numbers and names.
+        If the value is not a sequence of so many numbers and names.
     """
     if value is None:
         return None
     good = isinstance(value, (list, tuple)) and len(value) == count
     if not good or not all(isinstance(item, (int, str)) and not isinstance(item, bool) for item in value):
         if count == 1:
-            raise Hint("with dt, columns names one column, that of values", 'columns = ["force"]')
-        raise Hint("columns are two numbers or names: that of times, that of values", 'columns = ["time", "force"]')
+            raise Hint("with dt, one column is needed, that of the values", 'columns = ["force"]')
+        raise Hint("two numbers or names are needed: columns of times and of values", 'columns = ["time", "force"]')
     return tuple(value)
 
 
-def _pick(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> tuple[Array, Array]:
-    """Two of the variables, or two columns of the only one."""
+def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> tuple[Array, Array]:
+    """Return times and values: two variables, or two columns of the only variable."""
     if not arrays:
-        raise DataError(f"{file} holds no numbers")
+        raise DataError(f"{file} contains no numbers")
     if columns is None and {"time", "value"} <= set(arrays):
         columns = ("time", "value")
     if len(arrays) == 1 and (columns is None or all(isinstance(column, int) for column in columns)):
@@ -132,30 +138,31 @@ def _pick(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None
             table = table.T
         if table.ndim == 2:
             names = [str(k + 1) for k in range(table.shape[1])]
-            first, second = (table[:, k] for k in _numbers(file, columns, names))
+            first, second = (table[:, k] for k in _column_indices(file, columns, names))
             return check_finite(first, f"{file}: the times"), check_finite(second, f"{file}: the values")
-    there = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
-    pair = [list(arrays.items())[k] for k in _numbers(file, columns, list(arrays), there)]
+    variables = [f"{name or 'an array'} {array.shape}" for name, array in arrays.items()]
+    pair = [list(arrays.items())[k] for k in _column_indices(file, columns, list(arrays), variables)]
     for name, array in pair:
         if array.size != max(array.shape, default=1):
-            raise DataError(f"{file}: one row of numbers is needed, but {name} has shape {array.shape}")
+            raise DataError(f"{file}: {name} has shape {array.shape}; one row of numbers is needed")
         check_finite(array.ravel(), f"{file}: {name}")
     (time, times), (value, values) = pair
     if times.size != values.size:
-        raise DataError(f"{file}: {time} holds {times.size} numbers, {value} {values.size}")
+        raise DataError(f"{file}: {time} has {times.size} numbers, but {value} {values.size}", "as many of both")
     return times.ravel(), values.ravel()
 
 
-def _numbers(
+def _column_indices(
     file: Path,
     columns: Sequence[Column] | None,
     names: list[str],
-    there: Sequence[str] | None = None,
+    variables: Sequence[str] | None = None,
     needed: int = 2,
 ) -> list[int]:
-    """Places of the columns, or of the variables that are there, counted from 0."""
-    what = "column" if there is None else "variable"
-    available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in enumerate(there or names, start=1))
+    """Return the indices of columns, or of variables described by `variables`; None stands for the first ones."""
+    what = "column" if variables is None else "variable"
+    listed = enumerate(variables or names, start=1)
+    available = ", ".join(f"{k} {name}" if name != str(k) else name for k, name in listed)
     if columns is None:
         if len(names) != needed:
             advice = 'dt = "0.01 s", the time between samples' if (needed, len(names)) == (2, 1) else ""
@@ -164,23 +171,23 @@ def _numbers(
                 f"columns = {list(range(1, needed + 1))}" if len(names) > needed else advice,
             )
         columns = range(1, needed + 1)
-    places = []
+    indices = []
     for column in columns:
         if isinstance(column, str) and names.count(column) > 1:
             same = " or ".join(str(k) for k, name in enumerate(names, start=1) if name == column)
             raise DataError(f"{file} has {names.count(column)} {what}s {column!r}", f"its number, {same}")
         if isinstance(column, str) and column in names:
-            places.append(names.index(column))
+            indices.append(names.index(column))
         elif isinstance(column, int) and 1 <= column <= len(names):
-            places.append(column - 1)
+            indices.append(column - 1)
         else:
             suggestion = nearest(column, names) if isinstance(column, str) else f"{what}s count from 1"
             raise DataError(f"{file} has no {what} {column!r}; it has {available}", suggestion)
-    if needed == 2 and places[0] == places[1]:
+    if needed == 2 and indices[0] == indices[1]:
         raise DataError(
-            f"{file}: times and values are both {what} {columns[0]!r}; it has {available}", "two that differ"
+            f"{file}: times and values are both {what} {columns[0]!r}; it has {available}", f"two different {what}s"
         )
-    return places
+    return indices
 
 
 def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
@@ -189,25 +196,25 @@ def read_table(file: Path, known: Sequence[str] = ()) -> dict[str, Array]:
     Parameters
     ----------
     file
-        Path of an existing file: CSV and the like, as for `read_columns`.
+        Path of an existing text file, as for `read_columns`.
     known
-        Names that columns may have: a line of them tells how many columns there are.
+        Possible names of columns; a line of them determines the number of columns.
 
     Returns
     -------
     dict of str to (n,) float
-        By the names above the columns, or their numbers counted from 1.
+        Columns by name, or by number from 1 if they have no names.
 
     Raises
     ------
     DataError
-        When the file cannot be read, naming the line that is wrong.
+        If the file cannot be read; with the line at fault.
     """
-    lines, names, _ = _data(file, known)
+    lines, names, _ = _parse_text(file, known)
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
-        raise DataError(f"{file} has two columns {twice!r}")
-    return dict(zip(names, _rows(file, lines, list(range(len(names)))).T, strict=True))
+        raise DataError(f"{file} has two columns {twice!r}", "another name for one of them")
+    return dict(zip(names, _parse_rows(file, lines, list(range(len(names)))).T, strict=True))
 
 
 def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tuple[Array, list[list[str]]]:
@@ -218,97 +225,95 @@ def read_numbers(path: str, columns: Sequence[Column] | None, count: int) -> tup
     path
         File as for `read_columns`.
     columns
-        Columns; may be left out if there are as many as are needed.
+        Columns. Optional if the file has exactly `count`.
     count
-        Number of columns that are needed.
+        Number of columns to read.
 
     Returns
     -------
     (n, count) float
         Numbers.
     list of list of str
-        What is written above each column.
+        Headings of each column.
 
     Raises
     ------
     DataError
-        If the file cannot be read, naming the line that is wrong, or the columns that there are.
+        If the file cannot be read; with the line at fault, or the available columns.
     """
     file = existing(path)
-    lines, names, heads = _data(file, asked=[str(column) for column in columns or ()])
-    places = _numbers(file, columns, names, needed=count)
-    return _rows(file, lines, places), [[cells[place] for cells in heads] for place in places]
+    lines, names, headings = _parse_text(file, requested=[str(column) for column in columns or ()])
+    indices = _column_indices(file, columns, names, needed=count)
+    return _parse_rows(file, lines, indices), [[cells[index] for cells in headings] for index in indices]
 
 
-def _from_text(file: Path, columns: Sequence[Column] | None) -> Columns:
-    lines, names, heads = _data(file, asked=[str(column) for column in columns or ()])
-    first, second = _numbers(file, columns, names)
-    table = _rows(file, lines, [first, second])
-    return Columns(table[:, 0], table[:, 1], ([cells[first] for cells in heads], [cells[second] for cells in heads]))
-
-
-def _data(
-    file: Path, known: Sequence[str] = (), asked: Sequence[str] = ()
+def _parse_text(
+    file: Path, known: Sequence[str] = (), requested: Sequence[str] = ()
 ) -> tuple[list[tuple[int, list[str]]], list[str], list[list[str]]]:
-    """Number and cells of the lines with data, the names of the columns, and all lines above that have as many cells.
+    """Return the numbered lines of data as cells, the names of the columns, and all headings with as many cells.
 
-    The names are the last line above the data that has as many cells and no number in it, or one before, above one of units
-    say, that holds more of the names that are known or asked for.
+    The names are the last line above the data with as many cells and no number in them, or an earlier one (above a line of
+    units) that contains more of the known or requested names.
     """
-    lines = _lines(file)
-    start = _begin(lines)
+    lines = _split_lines(file)
+    start = _first_data_line(lines)
     if start is None:
-        raise DataError(f"{file} holds no numbers")
+        raise DataError(f"{file} contains no numbers")
     width = len(lines[start][1])
     for number, cells, _ in lines[:start]:
         if len(cells) != width and set(cells) <= set(known):
             raise DataError(f"{file}, line {lines[start][0]}: {width} columns, but {len(cells)} in line {number}")
     above = [cells for _, cells, _ in lines[:start]]
     if width == 1:
-        above = [[" ".join(cells)] for cells in above]  # of one column no delimiter is known
-    heads = [cells for cells in above if len(cells) == width and not any(map(_is_number, cells))]
-    sought = {*known, *asked}
-    names = max(reversed(heads), key=lambda cells: len(sought & set(cells)), default=None)
-    data = [(number, cells) for number, cells, marked in lines[start:] if not marked]
-    return data, names or [str(k + 1) for k in range(width)], heads
+        above = [[" ".join(cells)] for cells in above]  # a single column has no delimiter
+    headings = [cells for cells in above if len(cells) == width and not any(map(_is_number, cells))]
+    expected = {*known, *requested}
+    names = max(reversed(headings), key=lambda cells: len(expected & set(cells)), default=None)
+    data = [(number, cells) for number, cells, is_comment in lines[start:] if not is_comment]
+    return data, names or [str(k + 1) for k in range(width)], headings
 
 
-def _begin(lines: list[tuple[int, list[str], bool]]) -> int | None:
-    """Place of the first line of data: of numbers only or, with columns of text, with a number.
+def _first_data_line(lines: list[tuple[int, list[str], bool]]) -> int | None:
+    """Return the index of the first line of data: one with numbers only, or else (columns of text) with a number.
 
-    Lines right above it that begin with a number are data too, with a fault that is to be told.
+    Lines directly above that begin with a number count as data, so that an error in them is reported.
     """
-    bare = [
-        (k, [_is_number(_pointed(cell)) for cell in cells]) for k, (_, cells, marked) in enumerate(lines) if not marked
+    uncommented = [
+        (k, [_is_number(_with_decimal_point(cell)) for cell in cells])
+        for k, (_, cells, is_comment) in enumerate(lines)
+        if not is_comment
     ]
-    whole = (place for place, (k, _) in enumerate(bare) if all(map(_is_number, lines[k][1])))
-    some = (place for place, (_, numeric) in enumerate(bare) if any(numeric))
-    first = next(whole, next(some, None))
-    while first and bare[first - 1][1][0]:
+    only_numbers = (place for place, (k, _) in enumerate(uncommented) if all(map(_is_number, lines[k][1])))
+    some_numbers = (place for place, (_, numeric) in enumerate(uncommented) if any(numeric))
+    first = next(only_numbers, next(some_numbers, None))
+    while first and uncommented[first - 1][1][0]:
         first -= 1
-    return None if first is None else bare[first][0]
+    return None if first is None else uncommented[first][0]
 
 
-def _rows(file: Path, lines: list[tuple[int, list[str]]], places: list[int]) -> Array:
+def _parse_rows(file: Path, lines: list[tuple[int, list[str]]], indices: list[int]) -> Array:
     width = len(lines[0][1])
     rows: list[list[float]] = []
     for number, cells in lines:
         if len(cells) != width:
-            cut = "the whole file: its last line is cut short" if number == lines[-1][0] and len(cells) < width else ""
+            advice = "the whole file: its last line is cut short"
             raise DataError(
-                f"{file}, line {number}: {several(len(cells), 'column')}, but {width} in line {lines[0][0]}", cut
+                f"{file}, line {number}: {several(len(cells), 'column')}, but {width} in line {lines[0][0]}",
+                advice if number == lines[-1][0] and len(cells) < width else "",
             )
         try:
-            rows.append([float(cells[k]) for k in places])
+            rows.append([float(cells[k]) for k in indices])
         except ValueError:
-            _complain(file, number, [cells[k] for k in places])
+            bad = next(cells[k] for k in indices if not _is_number(cells[k]))
+            advice = "a decimal point, not a comma" if _is_number(_with_decimal_point(bad)) else ""
+            raise DataError(f"{file}, line {number}: {bad!r} is not a number", advice) from None
         if not np.isfinite(rows[-1]).all():
-            raise DataError(f"{file}, line {number}: {', '.join(cells[k] for k in places)} is not finite")
+            raise DataError(f"{file}, line {number}: {', '.join(cells[k] for k in indices)} is not finite")
     return np.array(rows)
 
 
-def _lines(file: Path) -> list[tuple[int, list[str], bool]]:
-    """Number, cells, and whether it is marked as a comment, of each line with something in it."""
+def _split_lines(file: Path) -> list[tuple[int, list[str], bool]]:
+    """Return the number, the cells and the comment flag of each line that is not empty."""
     try:
         text = file.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
@@ -316,21 +321,21 @@ def _lines(file: Path) -> list[tuple[int, list[str], bool]]:
     except OSError as error:
         raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
     data = [line for line in text if line.strip() and line.lstrip()[0] not in "#%"][-3:]
-    # The very last line may be cut short.
+    # The last line may be cut short, so that the delimiter is the one of most of the last three lines.
     delimiter = next((mark for mark in ";\t," if 2 * sum(mark in line for line in data) >= max(1, len(data))), None)
     lines = []
     for number, line in enumerate(text, start=1):
-        marked = line.lstrip()[:1] in ("#", "%")
-        bare = line.lstrip("#% \t") if marked and delimiter != "\t" else line.strip(" ").lstrip("#%")
+        is_comment = line.lstrip()[:1] in ("#", "%")
+        content = line.lstrip("#% \t") if is_comment and delimiter != "\t" else line.strip(" ").lstrip("#%")
         try:
-            cells = bare.split() if delimiter is None else next(csv.reader([bare], delimiter=delimiter), [])
+            cells = content.split() if delimiter is None else next(csv.reader([content], delimiter=delimiter), [])
         except csv.Error as error:
             raise DataError(f"{file}, line {number}: {error}") from None
         cells = [cell.strip() for cell in cells]
         while cells and not cells[-1]:
             cells.pop()
         if cells:
-            lines.append((number, cells, marked))
+            lines.append((number, cells, is_comment))
     return lines
 
 
@@ -342,12 +347,6 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _pointed(cell: str) -> str:
-    """The cell with a decimal point for a decimal comma."""
+def _with_decimal_point(cell: str) -> str:
+    """Return the cell with a point in place of a decimal comma."""
     return cell.replace(",", ".", 1)
-
-
-def _complain(file: Path, number: int, cells: list[str]) -> NoReturn:
-    bad = next(cell for cell in cells if not _is_number(cell))
-    comma = _is_number(_pointed(bad))
-    raise DataError(f"{file}, line {number}: {bad!r} is not a number", "a decimal point, not a comma" if comma else "")

@@ -1,4 +1,4 @@
-"""Signatures of the parts of a case as `help` and notebooks show them: plain names of types without checks of values."""
+"""Signatures of the parts of a case for `help` and notebooks: plain names of types without validators."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ class _Plain(str):
 
 
 def type_text(annotation: Any, metadata: tuple[Any, ...] = ()) -> str:
-    """Return a type as a reader wants it: without validators, and with text beside quantities.
+    """Return the name of a type without validators; a quantity with a unit accepts text as well.
 
     Parameters
     ----------
     annotation
         Type of a field.
     metadata
-        What pydantic found in `Annotated` around it.
+        Arguments of the `Annotated` around it.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def part_signature(part: type[Part]) -> Signature:
     Parameters
     ----------
     part
-        The class.
+        Class of the part.
     """
     singular = {field: name for name, field in part.aliases.items()}
     alternatives = {name for pair in part.alternatives for name in pair}
@@ -100,7 +100,7 @@ def part_signature(part: type[Part]) -> Signature:
         elif name in alternatives:
             annotation, metadata, default = Annotated[annotation, *metadata] | None, (), None
         if name in singular:
-            # Both names are shown: the plural takes several, and may be left out if the singular is given.
+            # Show both names: the plural takes several, and is optional if the singular is given.
             metadata = tuple(each for each in metadata if not isinstance(each, AlsoAccepts))
             default = () if default is Parameter.empty else default
             one = _Plain(f"{type_text(get_args(annotation)[0])} | None")

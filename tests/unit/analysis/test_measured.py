@@ -94,8 +94,8 @@ def test_an_assumed_unit_is_stated_with_the_peak(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "content", "options", "said"),
     [
-        ("a.csv", b"", {}, "holds no numbers"),
-        ("a.csv", b"f,real,imag\n", {}, "holds no numbers"),
+        ("a.csv", b"", {}, "no numbers"),
+        ("a.csv", b"f,real,imag\n", {}, "no numbers"),
         ("a.csv", b"f,real,imag\n1,2,3\n2,3\n", {}, "2 columns, but 3"),
         ("a.csv", b"f,real,imag\n1,2,nan\n2,3,4\n", {}, "not finite"),
         ("a.csv", b"f,real,imag\n2,2,3\n1,3,4\n", {}, "do not rise"),
@@ -106,12 +106,12 @@ def test_an_assumed_unit_is_stated_with_the_peak(tmp_path: Path) -> None:
         ("a.csv", b"f,real,imag,coh\n1,2,3,1\n2,3,4,1\n", {}, "4 columns"),
         ("a.csv", b"f,real,imag\n1,2,3\n2,3,4\n", {"unit": "kg"}, "'kg' is not a unit"),
         ("a.uff", b"", {}, "is empty"),
-        ("a.uff", FRF[: len(FRF) // 2], {}, "cut short|whole data set|cannot be read"),
+        ("a.uff", FRF[: len(FRF) // 2], {}, "cut short|complete data set|cannot be read"),
         ("a.uff", FRF, {"function": "H9"}, "no function 'H9'"),
         ("a.uff", FRF, {"function": 2}, "no function 2"),
         ("a.uff", (UFF / "time_history_58.uff").read_bytes(), {}, "no frequency response function"),
         ("a.uff", (UFF / "normal_modes_55.uff").read_bytes(), {}, "no set 58"),
-        ("a.uff", (UFF / "cut_58.uff").read_bytes(), {}, "states 2508876 points, but holds 42"),
+        ("a.uff", (UFF / "cut_58.uff").read_bytes(), {}, "states 2508876 points, but has 42"),
     ],
 )
 def test_damaged_files(tmp_path: Path, name: str, content: bytes, options: dict[str, Any], said: str) -> None:
@@ -134,5 +134,5 @@ def test_the_wrong_order_of_bytes(tmp_path: Path) -> None:
     assert found.transfer.size == 250 and abs(found.transfer).max() < 1.1
     assert b"58b     1     2" in content
     path.write_bytes(content.replace(b"58b     1     2", b"58b     2     2"))
-    with pytest.raises(rb.DataError, match=r"no measurement has|cannot be read"):
+    with pytest.raises(rb.DataError, match=r"any measurement|cannot be read"):
         read_frequency_response(path, unit="m/s^2/N")

@@ -73,7 +73,7 @@ def test_modes_in_millimetres_and_millinewtons() -> None:
 def test_modes_of_set_55_need_modal_masses() -> None:
     """A file whose modal masses are zero has shapes without a scale; with masses it has one."""
     file = UFF / "normal_modes_55.uff"
-    with pytest.raises(rb.DataError, match="mode 1 has a modal mass of 0, so that its shape has no scale"):
+    with pytest.raises(rb.DataError, match="mode 1 has a modal mass of 0"):
         rb.Modal.from_file(file, damping_ratio=0.01)
     one = rb.Modal.from_file(file, damping_ratio=0.01, modal_masses=["1 kg"] * 3)
     four = rb.Modal.from_file(file, damping_ratio=0.01, modal_masses=[4.0] * 3)
@@ -153,9 +153,9 @@ def test_records_of_universal_files() -> None:
     )
     text = rb.Record.from_file(UFF / "time_history_58.uff")
     assert text.unit == "m/s^2" and len(text.times) == 13
-    with pytest.raises(rb.DataError, match="holds no time history 3"):
+    with pytest.raises(rb.DataError, match="no time history 3"):
         rb.Record.from_file(UFF / "time_history_58b.uff", columns=[3])
-    with pytest.raises(rb.DataError, match="holds no time history"):
+    with pytest.raises(rb.DataError, match="no time history"):
         rb.Record.from_file(UFF / "frf_58.uff")
     assert np.iscomplexobj(read_functions(UFF / "frf_58.uff")[0].values)
 
@@ -184,32 +184,32 @@ DAMAGED: list[tuple[str, str, bytes, str]] = [
     ("header alone", "a.csv", b"frequency,tip\n", "no mode below it"),
     ("cut table", "a.csv", TABLE.encode()[:-12], "its last line is cut short"),
     ("no shapes", "a.csv", b"frequency,damping\n10,0.1\n", "no mode shape at any point"),
-    ("unknown unit", "a.csv", b"frequency (rpm),damping,tip\n10,0.1,1\n", "'rpm', the unit of the column 'frequency'"),
+    ("unknown unit", "a.csv", b"frequency (rpm),damping,tip\n10,0.1,1\n", "'frequency' .*'rpm'"),
     ("text in a table", "a.csv", b"frequency,damping,tip\n10,0.1,one\n", "column 'tip': 'one' is not a number"),
     ("nan in a table", "a.csv", b"frequency,damping,tip\n10,0.1,nan\n", "is not finite"),
     ("per cent without sign", "a.csv", b"frequency,tip\n10,0\n", "states no damping"),
-    ("nothing moves", "a.csv", b"frequency,damping,tip\n10,0.1,0\n", "no point of tip moves"),
+    ("nothing moves", "a.csv", b"frequency,damping,tip\n10,0.1,0\n", "points tip"),
     ("negative mass", "a.csv", b"frequency,damping,modal mass,tip\n10,0.1,-1,1\n", "modal mass of -1"),
     ("bytes as a table", "a.csv", bytes(range(128, 256)), "is not text"),
     ("empty toml", "a.toml", b"", "is empty"),
     ("foreign toml", "a.toml", b"[shape]\ntip = [1]\n", "no field 'shape'"),
     ("empty universal file", "a.uff", b"", "is empty"),
-    ("no universal file", "a.uff", b"hello\nworld\n" * 10, "holds no whole data set"),
-    ("cut universal file", "a.uff", MODES[: len(MODES) * 2 // 3], "is not closed by -1"),
+    ("no universal file", "a.uff", b"hello\nworld\n" * 10, "data set of a universal file"),
+    ("cut universal file", "a.uff", MODES[: len(MODES) * 2 // 3], "with -1"),
     ("mis-scaled units", "a.uff", changed(MODES, b"1.00000000000000000D+03", b"1.00000000000000000D-03"),
      "set 164 states a factor of 0.001 for lengths, but its code 5 means 1000"),
     ("complex mode", "a.uff", (UFF / "complex_mode_55.uff").read_bytes(), r"complex modes.* 6\.46 degrees"),
     ("temperatures", "a.uff", (UFF / "temperatures_2414.uff").read_bytes(), "no normal modes"),
-    ("measurement", "a.uff", BINARY, "holds no set 55 or 2414 or 164, but 58"),
+    ("measurement", "a.uff", BINARY, "no set 55 or 2414 or 164; .* 58"),
     ("empty result", "a.rst", b"", "is empty"),
-    ("text as a result", "a.rst", b"hello world " * 1000, "is no binary file of Ansys"),
-    ("swapped result", "a.rst", swapped(RESULT), "bytes in the order of other machines"),
+    ("text as a result", "a.rst", b"hello world " * 1000, "binary file of Ansys"),
+    ("swapped result", "a.rst", swapped(RESULT), "big-endian"),
     ("cut header", "a.rst", RESULT[:2000], "ends within its header"),
     ("cut result", "a.rst", RESULT[: len(RESULT) // 2], "but its header states"),
-    ("matrices as a result", "a.rst", MATRICES, "is no .rst file"),
-    ("swapped matrices", "a.full", swapped(MATRICES), "bytes in the order of other machines"),
+    ("matrices as a result", "a.rst", MATRICES, ".rst file; its format is"),
+    ("swapped matrices", "a.full", swapped(MATRICES), "big-endian"),
     ("cut matrices", "a.full", MATRICES[: len(MATRICES) // 2], "but its header states"),
-    ("unknown ending", "a.op2", b"abc", "hold no modes that are read here"),
+    ("unknown ending", "a.op2", b"abc", "the ending '.op2'"),
 ]  # fmt: skip
 
 
@@ -245,15 +245,15 @@ def test_damaged_matrices(tmp_path: Path, content: bytes, said: str) -> None:
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (BINARY[: len(BINARY) // 2], "holds no whole data set of a universal file"),
-        ((UFF / "cut_58.uff").read_bytes(), "states 2508876 points, but holds 42"),
+        (BINARY[: len(BINARY) // 2], "data set of a universal file"),
+        ((UFF / "cut_58.uff").read_bytes(), "states 2508876 points, but has 42"),
         (
             changed(BINARY, b"58b     1     2", b"58b     2     2"),
-            "no measurement has|cannot be read as a universal file",
+            "any measurement|cannot be read as a universal file",
         ),
         (
             changed(BINARY, struct.pack("<d", math.sin(2 * math.pi * 5 * 0.05)), struct.pack("<d", math.nan)),
-            "no measurement",
+            "any measurement",
         ),
     ],
 )
@@ -268,7 +268,7 @@ def test_damaged_measurements(tmp_path: Path, content: bytes, said: str) -> None
     ("options", "said"),
     [
         ({"points": {"a": 1}}, "states no damping\n  try: damping_ratio"),
-        ({"damping_ratio": 0.01}, "has 321 points; which of them are needed"),
+        ({"damping_ratio": 0.01}, "has 321 points"),
         ({"damping_ratio": 0.01, "points": {"a": 99999}}, "has no point '99999'"),
         ({"damping_ratio": 0.01, "points": {"a": 1}, "mode_count": 7}, "has 6 modes"),
         ({"damping_ratio": 0.01, "points": {"a": 1}, "mode_count": 0}, "at least 1"),

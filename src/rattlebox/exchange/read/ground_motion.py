@@ -13,15 +13,15 @@ from rattlebox._util.exceptions import DataError
 
 _COUNT = re.compile(r"NPTS\s*=\s*(\d+)", re.I)
 _STEP = re.compile(r"DT\s*=\s*([\d.]+(?:E[-+]?\d+)?)", re.I)
-_OLD = re.compile(r"^\s*(\d+)\s+([\d.]+(?:E[-+]?\d+)?)\s+NPTS\s*,\s*DT", re.I)
+_OLD_HEADER = re.compile(r"^\s*(\d+)\s+([\d.]+(?:E[-+]?\d+)?)\s+NPTS\s*,\s*DT", re.I)
 _UNIT = re.compile(r"UNITS?\s+OF\s+(\S+)|\bIN\s+(G|CM/S\S*|M/S\S*)\s*$", re.I)
-_OTHER = re.compile(r"\b(velocity|displacement)\b", re.I)
-_HEADER = 12  # lines
+_OTHER_QUANTITY = re.compile(r"\b(velocity|displacement)\b", re.I)
+_HEADER = 12  # most lines of the header
 
 
 @dataclass(frozen=True, eq=False)
 class GroundMotion:
-    """Evenly spaced samples of an acceleration.
+    """Evenly spaced samples of a ground acceleration.
 
     Attributes
     ----------
@@ -46,10 +46,15 @@ def read_ground_motion(path: Path) -> GroundMotion:
     path
         An existing file: up to twelve lines of text, the last with NPTS and DT, then the samples row by row.
 
+    Returns
+    -------
+    GroundMotion
+        Time step, samples and unit.
+
     Raises
     ------
     DataError
-        If the file is not an AT2 file of an acceleration, or holds another number of samples than it states.
+        If the file is not an AT2 file of an acceleration, or contains another number of samples than it states.
     """
     try:
         lines = path.read_text(encoding="latin-1").splitlines()
@@ -58,31 +63,31 @@ def read_ground_motion(path: Path) -> GroundMotion:
     begin, count, step = 0, "", ""
     for line in lines[:_HEADER]:
         begin += 1
-        old = _OLD.match(line)
-        count, step = (old[1], old[2]) if old else (_first(_COUNT, line), _first(_STEP, line))
+        old = _OLD_HEADER.match(line)
+        count, step = (old[1], old[2]) if old else (_first_group(_COUNT, line), _first_group(_STEP, line))
         if count and step:
             break
     else:
         raise DataError(
-            f"{path}: none of the first {min(_HEADER, len(lines))} lines states NPTS and DT, as an AT2 file does",
-            'the ending .csv or .txt, with dt = "0.01 s" for one column of numbers',
+            f"{path}: none of the first {min(_HEADER, len(lines))} lines states NPTS and DT; an AT2 file needs both",
+            'the ending .csv or .txt, and dt = "0.01 s" for one column of numbers',
         )
     header = "\n".join(lines[:begin])
-    other = _OTHER.search(header)
+    other = _OTHER_QUANTITY.search(header)
     if other and not re.search(r"\baccel", header, re.I):
-        raise DataError(f"{path} holds a {other[1].lower()}, not an acceleration", "the file with the ending .AT2")
+        raise DataError(f"{path} contains a {other[1].lower()}, not an acceleration", "the file with the ending .AT2")
     if not float(step) > 0:
         raise DataError(f"{path}, line {begin}: the time step is {step}; it must be greater than zero")
     values = []
-    for place, line in enumerate(lines[begin:], start=begin + 1):
+    for number, line in enumerate(lines[begin:], start=begin + 1):
         try:
             values += [float(word) for word in line.split()]
         except ValueError:
-            raise DataError(f"{path}, line {place}: {line.strip()[:40]!r} is not a row of numbers") from None
+            raise DataError(f"{path}, line {number}: {line.strip()[:40]!r} is not a row of numbers") from None
     if len(values) != int(count):
         raise DataError(
-            f"{path} states {count} samples, but holds {len(values)}",
-            "the whole file: it may be cut short" if len(values) < int(count) else "the file as it was downloaded",
+            f"{path} states {count} samples, but contains {len(values)}",
+            "the complete file: it may be cut short" if len(values) < int(count) else "the file as it was downloaded",
         )
     samples = np.array(values)
     if not np.isfinite(samples).all():
@@ -91,6 +96,6 @@ def read_ground_motion(path: Path) -> GroundMotion:
     return GroundMotion(float(step), samples, (unit[1] or unit[2]).strip(".,") if unit else "")
 
 
-def _first(pattern: re.Pattern[str], line: str) -> str:
+def _first_group(pattern: re.Pattern[str], line: str) -> str:
     match = pattern.search(line)
     return match[1] if match else ""

@@ -12,7 +12,7 @@ from rattlebox._util.exceptions import DataError
 from .modes_in_file import FloatArray, read_start
 
 MOST = 3000
-"""Most degrees of freedom of a matrix that is read in full."""
+"""Largest number of degrees of freedom of a matrix."""
 
 
 def read_matrix(path: Path) -> FloatArray:
@@ -26,7 +26,7 @@ def read_matrix(path: Path) -> FloatArray:
     Returns
     -------
     (n, n) float
-        The whole matrix.
+        The matrix, dense.
 
     Raises
     ------
@@ -40,20 +40,20 @@ def read_matrix(path: Path) -> FloatArray:
     try:
         rows, columns, _, _, kind, _ = mminfo(str(path))
         if kind == "complex":
-            raise DataError(f"{path} holds complex numbers", "a real matrix")
+            raise DataError(f"{path} contains complex numbers", "a real matrix")
         if rows != columns:
-            raise DataError(f"{path} holds a matrix of {rows} rows and {columns} columns; it must be square")
+            raise DataError(f"{path} contains a matrix of {rows} rows and {columns} columns; it must be square")
         if rows > MOST:
             raise DataError(
-                f"{path} holds {rows} degrees of freedom; at most {MOST} are read in full",
-                "modes of the finite element program, or a Craig-Bampton reduction",
+                f"{path} has {rows} degrees of freedom; at most {MOST} are allowed",
+                "modes of the finite-element program, or a Craig-Bampton reduction",
             )
-        found: Any = mmread(str(path))
+        content: Any = mmread(str(path))
     except DataError:
         raise
     except Exception as error:
-        raise DataError(f"{path} cannot be read: {error}", "the whole file") from None
-    matrix = np.asarray(found.toarray() if hasattr(found, "toarray") else found, dtype=float)
+        raise DataError(f"{path} cannot be read: {error}", "the complete file") from None
+    matrix = np.asarray(content.toarray() if hasattr(content, "toarray") else content, dtype=float)
     if not np.isfinite(matrix).all():
-        raise DataError(f"{path} holds numbers that are not finite")
+        raise DataError(f"{path} contains numbers that are not finite")
     return matrix

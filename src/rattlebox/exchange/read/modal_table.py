@@ -1,4 +1,4 @@
-"""Tables of modes: one row a mode, one column a quantity or a point."""
+"""Tables of modes: one row per mode, one column per quantity or point."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rattlebox._util.exceptions import DataError
 
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
-_HEAD = re.compile(r"^\s*(.*?)\s*(?:[\[(]([^\])]*)[\])])?\s*$")
+_HEADING = re.compile(r"^\s*(.*?)\s*(?:[\[(]([^\])]*)[\])])?\s*$")
 _AXES = {"x": 0, "y": 1, "z": 2}
-_MEANS = {
+_QUANTITIES = {
     "frequency": "frequency", "f": "frequency", "damping": "damping", "damping ratio": "damping", "modal mass": "mass",
     "participation": "participation",
 }  # fmt: skip
@@ -31,18 +31,18 @@ def read_modal_table(path: Path) -> ModesInFile:
     ----------
     path
         An existing file. The first line names the columns: "frequency (Hz)", "damping (%)", "modal mass (kg)",
-        "participation" (or "participation x", "y", "z"); every other column is the mode shape at a point, "tip", or three of
-        them, "tip x", "tip y", "tip z". Lines that begin with # are no data.
+        "participation" (or "participation x", "y", "z"); every other column is the mode shape at a point, "tip", or one of
+        its components, "tip x", "tip y", "tip z". Lines that begin with # are comments.
 
     Returns
     -------
     ModesInFile
-        The modes. Without a column of modal masses the shapes count as mass-normalised.
+        The modes. Without a column of modal masses the shapes are assumed to be mass-normalised.
 
     Raises
     ------
     DataError
-        If the file is no such table, naming the line and the column.
+        If the file is not such a table; with the line and the column at fault.
     """
     read_start(path, 64)
     try:
@@ -53,14 +53,14 @@ def read_modal_table(path: Path) -> ModesInFile:
         (k, line) for k, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")
     ]
     if not numbered:
-        raise DataError(f"{path} holds no table")
+        raise DataError(f"{path} contains no table")
     mark = next((mark for mark in ";\t," if mark in numbered[0][1]), ",")
     rows = [(k, [cell.strip() for cell in row]) for k, line in numbered for row in csv.reader([line], delimiter=mark)]
     head, body = rows[0][1], rows[1:]
-    names, units = zip(*((match[1], match[2] or "") for match in map(_HEAD.match, head) if match), strict=True)
-    if "frequency" not in {_MEANS.get(name.lower()) for name in names}:
+    names, units = zip(*((match[1], match[2] or "") for match in map(_HEADING.match, head) if match), strict=True)
+    if "frequency" not in {_QUANTITIES.get(name.lower()) for name in names}:
         raise DataError(
-            f"{path}, line {rows[0][0]}: no column is called frequency, but {', '.join(map(repr, names))}",
+            f"{path}, line {rows[0][0]}: no column is called frequency; the columns are {', '.join(map(repr, names))}",
             "frequency (Hz), damping (%), tip",
         )
     if not body:
@@ -68,55 +68,59 @@ def read_modal_table(path: Path) -> ModesInFile:
     table = np.empty((len(body), len(head)))
     for row, (number, cells) in enumerate(body):
         if len(cells) != len(head):
-            cut = "the whole file: its last line is cut short" if row == len(body) - 1 else ""
-            raise DataError(f"{path}, line {number}: {len(cells)} columns, but {len(head)} names above", cut)
-        for place, cell in enumerate(cells):
+            advice = "the complete file: its last line is cut short" if row == len(body) - 1 else ""
+            raise DataError(f"{path}, line {number}: {len(cells)} columns, but {len(head)} names above", advice)
+        for column, cell in enumerate(cells):
             try:
-                table[row, place] = float(cell)
+                table[row, column] = float(cell)
             except ValueError:
-                raise DataError(f"{path}, line {number}, column {names[place]!r}: {cell!r} is not a number") from None
-            if not np.isfinite(table[row, place]):
-                raise DataError(f"{path}, line {number}, column {names[place]!r}: {cell} is not finite")
+                raise DataError(f"{path}, line {number}, column {names[column]!r}: {cell!r} is not a number") from None
+            if not np.isfinite(table[row, column]):
+                raise DataError(f"{path}, line {number}, column {names[column]!r}: {cell} is not finite")
     return _modes(path, names, units, table)
 
 
 def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: FloatArray) -> ModesInFile:
-    def scale(place: int, known: dict[str, float] | dict[str, float | None]) -> float | None:
-        unit = units[place].strip()
-        key = unit.lower() if unit.lower() in known else unit
-        if key not in known:
-            raise DataError(
-                f"{path}: {unit!r}, the unit of the column {names[place]!r}, is not known here",
-                " or ".join(repr(word) for word in known if word),
-            )
-        return known[key]
+    """Return the modes in a table of columns with these names and units."""
 
-    found: dict[str, list[int]] = {}
-    points: dict[str, dict[int, int]] = {}
-    for place, name in enumerate(names):
-        meaning = _MEANS.get(name.lower()) or ("participation" if name.lower().startswith("participation ") else "")
-        if meaning:
-            found.setdefault(meaning, []).append(place)
+    def scale(column: int, factors: dict[str, float] | dict[str, float | None]) -> float | None:
+        unit = units[column].strip()
+        key = unit.lower() if unit.lower() in factors else unit
+        if key not in factors:
+            raise DataError(
+                f"{path}: the column {names[column]!r} has the unknown unit {unit!r}",
+                " or ".join(repr(word) for word in factors if word),
+            )
+        return factors[key]
+
+    columns: dict[str, list[int]] = {}  # by quantity
+    points: dict[str, dict[int, int]] = {}  # column of each axis, -1 for a shape without components
+    for column, name in enumerate(names):
+        quantity = _QUANTITIES.get(name.lower()) or (
+            "participation" if name.lower().startswith("participation ") else ""
+        )
+        if quantity:
+            columns.setdefault(quantity, []).append(column)
             continue
         stem, _, axis = name.rpartition(" ")
-        key = stem if axis.lower() in _AXES and stem else name
-        axes = points.setdefault(key, {})
-        along = _AXES[axis.lower()] if key != name else -1
-        if along in axes:
-            raise DataError(f"{path}: two columns are called {name!r}")
-        axes[along] = place
-    for meaning, places in found.items():
-        if len(places) > (3 if meaning == "participation" else 1):
-            raise DataError(f"{path}: two columns are called {names[places[1]]!r}")
+        point = stem if axis.lower() in _AXES and stem else name
+        axes = points.setdefault(point, {})
+        component = _AXES[axis.lower()] if point != name else -1
+        if component in axes:
+            raise DataError(f"{path}: two columns are called {name!r}", "another name for one of them")
+        axes[component] = column
+    for quantity, places in columns.items():
+        if len(places) > (3 if quantity == "participation" else 1):
+            raise DataError(f"{path}: two columns are called {names[places[1]]!r}", "another name for one of them")
     if not points:
-        raise DataError(f"{path} holds no mode shape at any point", "a column for each point, called by its name")
-    (frequency,) = found["frequency"]
+        raise DataError(f"{path} contains no mode shape at any point", "a column for each point, called by its name")
+    (frequency,) = columns["frequency"]
     modal_masses, mass_unit = None, None
-    if "mass" in found:
-        (place,) = found["mass"]
-        mass_unit, modal_masses = scale(place, _MASS), table[:, place]
+    if "mass" in columns:
+        (column,) = columns["mass"]
+        mass_unit, modal_masses = scale(column, _MASS), table[:, column]
     else:
-        roots = {scale(place, _SHAPE) for axes in points.values() for place in axes.values()}
+        roots = {scale(column, _SHAPE) for axes in points.values() for column in axes.values()}
         if len(roots) > 1:
             raise DataError(f"{path}: the mode shapes are in different units", "one unit for all of them")
         mass_unit = roots.pop()
@@ -126,16 +130,16 @@ def _modes(path: Path, names: tuple[str, ...], units: tuple[str, ...], table: Fl
             shapes[name] = table[:, axes[-1]]
         else:
             shapes[name] = np.zeros((len(table), 3))
-            for along, place in axes.items():
-                shapes[name][:, along] = table[:, place]
+            for component, column in axes.items():
+                shapes[name][:, component] = table[:, column]
     participation = None
-    if "participation" in found:
-        places = found["participation"]
+    if "participation" in columns:
+        places = columns["participation"]
         participation = table[:, places[0]] if len(places) == 1 else table[:, places]
     damping = None
-    if "damping" in found:
-        (place,) = found["damping"]
-        damping = table[:, place] * float(scale(place, _DAMPING) or 1.0)
+    if "damping" in columns:
+        (column,) = columns["damping"]
+        damping = table[:, column] * float(scale(column, _DAMPING) or 1.0)
     return ModesInFile(
         frequencies=table[:, frequency] * float(scale(frequency, _FREQUENCY) or 1.0),
         shapes=shapes,

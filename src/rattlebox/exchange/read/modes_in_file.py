@@ -1,4 +1,4 @@
-"""Modes as a file states them, before they are mass-normalised."""
+"""Modes of a file before mass normalisation, and helpers of all readers."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ class ModesInFile:
     frequencies : (m,) float
         Natural frequencies [Hz].
     shapes : dict of str to (m,) or (m, 3) float
-        Mode shapes at points, by the name or the node number that the file gives them; with three components for a node.
+        Mode shapes at points, by name or node number; three components at a node.
     modal_masses : (m,) float or None
-        Modal masses in the file's unit of mass; None of shapes that are mass-normalised.
+        Modal masses in the file's unit of mass; None for mass-normalised shapes.
     damping_ratios : (m,) float or None
         Damping ratios, if the file states them.
     participation : (m,) or (m, 3) float or None
-        Participation phi^T M r in the file's unit of mass, or of its root for shapes that are mass-normalised.
+        Participation phi^T M r in the file's unit of mass, or in its root for mass-normalised shapes.
     total_mass : (3,) float or None
-        Mass that follows the base along x, y and z, in the file's unit of mass, if the file states it.
+        Mass that a rigid motion of the base along x, y and z moves, in the file's unit of mass, if the file states it.
     mass_unit
         The file's unit of mass [kg]; None if the file does not state it.
     notes
-        What was assumed, in whole sentences.
+        Assumptions, in whole sentences.
     """
 
     frequencies: FloatArray
@@ -50,7 +50,7 @@ class ModesInFile:
 
 
 def listed(labels: Sequence[str]) -> str:
-    """Return labels for a message, of many only the first."""
+    """Return the first labels as text for a message."""
     more = f", ... ({len(labels)} in all)" if len(labels) > _LISTED else ""
     return ", ".join(labels[:_LISTED]) + more
 

@@ -14,16 +14,16 @@ from rattlebox._util.optional_imports import optional_import
 
 from .modes_in_file import FloatArray, ModesInFile, read_start
 
-# Factors from SI to the units of a file, by their code: length, force. 9 is for units of the user.
-_CODES = {
+# Factors of length and force from SI to the units of a file, by code; code 9 stands for units of the user.
+_UNIT_CODES = {
     1: (1.0, 1.0), 2: (3.28084, 0.224809), 3: (1.0, 0.101972), 4: (3.28084, 7.23301), 5: (1e3, 1e3), 6: (1e2, 1e2),
     7: (39.37008, 0.224809), 8: (1e3, 0.101972), 10: (1e3, 1.0),
 }  # fmt: skip
 _NORMAL_MODES = 2
 _COMPLEX_MODES = (3, 7)  # analysis types
 _DISPLACEMENT = 8
-_END = 4096  # bytes in which the last line is
-_COMPLEX = 1e-6  # of the largest component: what an imaginary part may be
+_TAIL = 4096  # bytes that contain the last line
+_LARGEST_IMAGINARY = 1e-6  # largest imaginary part of a real mode, over the largest component
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,13 +33,15 @@ class Function:
     Attributes
     ----------
     name
-        Its name in the file.
+        Name in the file.
     kind
         Type of the function: 1 time response, 4 frequency response, 9 power spectral density.
-    abscissa, values : (n,) float or complex
-        Times [s] or frequencies [Hz], and values, in `unit`.
+    abscissa : (n,) float
+        Times [s] or frequencies [Hz].
+    values : (n,) float or complex
+        Values, in `unit`, or `unit` over `source_unit`.
     unit, source_unit
-        Unit of the values and of what they are divided by, as the file states it; "" if it states none.
+        Units of response and source (excitation) in the file; "" if it states none.
     quantities
         Codes of the quantities of response and source: 8 displacement, 11 velocity, 12 acceleration, 9 and 13 force,
         0 unknown.
@@ -54,17 +56,17 @@ class Function:
     quantities: tuple[int, int] = (0, 0)
 
 
-def _sets(path: Path, kinds: tuple[int, ...]) -> list[dict[str, Any]]:
-    """Return the data sets of some kinds.
+def _read_sets(path: Path, kinds: tuple[int, ...]) -> list[dict[str, Any]]:
+    """Return the data sets of these kinds.
 
     Raises
     ------
     DataError
-        If the file is no universal file, or damaged.
+        If the file is not a universal file, is damaged, or has no such set.
     """
     read_start(path, 64)
     with path.open("rb") as stream:
-        stream.seek(-min(path.stat().st_size, _END), 2)
+        stream.seek(-min(path.stat().st_size, _TAIL), 2)
         end = stream.read().rstrip().rsplit(b"\n", 1)[-1].strip()
     pyuff = optional_import("pyuff", "uff", "a modal table in CSV")
     try:
@@ -72,24 +74,24 @@ def _sets(path: Path, kinds: tuple[int, ...]) -> list[dict[str, Any]]:
             warnings.simplefilter("ignore")
             file = pyuff.UFF(str(path))
             types = [int(kind) for kind in file.get_set_types()]
-            found = [file.read_sets(number) for number, kind in enumerate(types) if kind in kinds]
-    except Exception as error:  # pyuff raises whatever its parser meets
+            sets = [file.read_sets(number) for number, kind in enumerate(types) if kind in kinds]
+    except Exception as error:  # pyuff does not wrap the errors of its parser
         raise DataError(
             f"{path} cannot be read as a universal file: {str(error).strip() or type(error).__name__}",
-            "the whole file, as the program wrote it",
+            "the complete file, as the program wrote it",
         ) from None
     if not types:
         raise DataError(
-            f"{path} holds no whole data set of a universal file", "the whole file, with -1 around each set"
+            f"{path} contains no complete data set of a universal file", "the complete file, with -1 around each set"
         )
     if not end.endswith(b"-1"):
         raise DataError(
-            f"{path}: the last data set is not closed by -1, as if the file were cut short", "the whole file"
+            f"{path}: the last data set does not end with -1; the file may be cut short", "the complete file"
         )
-    if not found:
-        held = ", ".join(map(str, sorted(set(types))))
-        raise DataError(f"{path} holds no set {' or '.join(map(str, kinds))}, but {held}")
-    return found
+    if not sets:
+        available = ", ".join(map(str, sorted(set(types))))
+        raise DataError(f"{path} contains no set {' or '.join(map(str, kinds))}; it contains {available}")
+    return sets
 
 
 def read_universal_modes(path: Path) -> ModesInFile:
@@ -100,12 +102,17 @@ def read_universal_modes(path: Path) -> ModesInFile:
     path
         An existing file with sets 55 or 2414 of normal modes and, for the units, 164.
 
+    Returns
+    -------
+    ModesInFile
+        The modes, with modal masses.
+
     Raises
     ------
     DataError
         If there are no normal modes, modes are complex or cover different nodes, or the units contradict their code.
     """
-    sets = _sets(path, (55, 2414, 164))
+    sets = _read_sets(path, (55, 2414, 164))
     modes = [_mode(path, each) for each in sets if each["type"] != 164 and _is_mode(each)]
     if not modes:
         kinds = sorted({int(each["analysis_type"]) for each in sets if each["type"] != 164})
@@ -114,19 +121,18 @@ def read_universal_modes(path: Path) -> ModesInFile:
         ]
         if scatter:
             raise DataError(
-                f"{path} holds no normal modes, but complex modes, whose phases scatter by up to {max(scatter):.3g} degrees",
-                "an export of real normal modes; below some 10 degrees they hardly differ",
+                f"{path} contains only complex modes, whose phases scatter by up to {max(scatter):.3g} degrees; "
+                "normal modes are needed",
+                "an export of real normal modes, which are similar below some 10 degrees",
             )
         raise DataError(
-            f"{path} holds no normal modes (analysis type 2), but types {', '.join(map(str, kinds)) or 'none'}",
+            f"{path} contains no normal modes (analysis type 2); its types are {', '.join(map(str, kinds)) or 'none'}",
             "an export of real normal modes",
         )
     nodes = modes[0][3]
     for number, mode in enumerate(modes, start=1):
         if not np.array_equal(mode[3], nodes):
-            raise DataError(
-                f"{path}: mode {number} is given at other nodes than mode 1", "one set of nodes for all modes"
-            )
+            raise DataError(f"{path}: mode {number} has other nodes than mode 1", "the same nodes for all modes")
     frequencies = np.array([mode[0] for mode in modes])
     shapes = np.array([mode[4] for mode in modes])
     for what, values in (("frequency", frequencies), ("mode shape", shapes)):
@@ -146,7 +152,7 @@ def read_universal_modes(path: Path) -> ModesInFile:
 
 
 def _phase_scatter(each: dict[str, Any]) -> float:
-    """Return the RMS deviation of the phases of a complex mode from one line through zero, weighted by size [degrees].
+    """Return the RMS deviation of a complex mode's phases from a line through zero, weighted by amplitude [degrees].
 
     The line is the principal axis of the components z in the complex plane, at half the phase of sum(z^2).
     """
@@ -176,25 +182,25 @@ def _mode(path: Path, each: dict[str, Any]) -> tuple[float, float, float, Any, A
         shape = table[:, :3]
         values = each["record12_field2"], each["record12_field4"], each["record12_field5"]
     if shape.shape != (len(nodes), 3):
-        raise DataError(f"{path}: a mode has {shape.shape} components for {len(nodes)} nodes", "the whole file")
-    if np.abs(np.imag(shape)).max(initial=0.0) > _COMPLEX * np.abs(shape).max(initial=0.0):
+        raise DataError(f"{path}: a mode has {shape.shape} components for {len(nodes)} nodes", "the complete file")
+    if np.abs(np.imag(shape)).max(initial=0.0) > _LARGEST_IMAGINARY * np.abs(shape).max(initial=0.0):
         raise DataError(f"{path}: the mode at {float(values[0]):.6g} Hz is complex", "an export of real normal modes")
     frequency, mass, damping = (float(value) for value in values)
     return frequency, mass, damping, nodes, np.real(shape)
 
 
 def _mass_unit(path: Path, sets: list[dict[str, Any]]) -> float | None:
-    """Return the unit of mass of a file [kg], None if it states none."""
+    """Return the unit of mass of a file [kg]; None if it states none."""
     if not sets:
         return None
     length, force, code = float(sets[0]["length"]), float(sets[0]["force"]), int(sets[0]["units_code"])
     if not (1e-9 < length < 1e9 and 1e-9 < force < 1e9):
         raise DataError(f"{path}: set 164 states factors of {length:g} for lengths and {force:g} for forces")
-    if code in _CODES:
-        for what, value, known in zip(("lengths", "forces"), (length, force), _CODES[code], strict=True):
-            if abs(value / known - 1) > 1e-2:
+    if code in _UNIT_CODES:
+        for what, value, expected in zip(("lengths", "forces"), (length, force), _UNIT_CODES[code], strict=True):
+            if abs(value / expected - 1) > 1e-2:
                 raise DataError(
-                    f"{path}: set 164 states a factor of {value:g} for {what}, but its code {code} means {known:g}",
+                    f"{path}: set 164 states a factor of {value:g} for {what}, but its code {code} means {expected:g}",
                     "mass_unit, the unit of mass of the file",
                 )
     return length / force
@@ -208,24 +214,29 @@ def read_functions(path: Path) -> list[Function]:
     path
         An existing file.
 
+    Returns
+    -------
+    list of Function
+        The functions, in the order of the file.
+
     Raises
     ------
     DataError
-        If there is none, one holds another number of points than it states, or values that no measurement has.
+        If there is none, or one has another number of points than it states, or values outside any measurement's range.
     """
     functions = []
-    for number, each in enumerate(_sets(path, (58,)), start=1):
+    for number, each in enumerate(_read_sets(path, (58,)), start=1):
         values = np.asarray(each["data"])
         stated = int(each["num_pts"])
         if values.size != stated:
             raise DataError(
-                f"{path}: function {number} states {stated} points, but holds {values.size}", "the whole file"
+                f"{path}: function {number} states {stated} points, but has {values.size}", "the complete file"
             )
         size = np.abs(values)
         if not np.isfinite(size).all() or size.max(initial=0.0) > 1e30 or 0 < size.max(initial=0.0) < 1e-30:
             raise DataError(
-                f"{path}: function {number} has values that no measurement has, up to {size.max(initial=0.0):.3g}",
-                "the other order of bytes: the header may state the wrong one",
+                f"{path}: function {number} has values up to {size.max(initial=0.0):.3g}, outside any measurement's range",
+                "the other byte order; the header may state the wrong one",
             )
         functions.append(
             Function(
@@ -242,6 +253,6 @@ def read_functions(path: Path) -> list[Function]:
 
 
 def _label(each: dict[str, Any], axis: str) -> str:
-    """Return the unit of an axis; pyuff puts a replacement character for the superscript 2 of other encodings."""
+    """Return the unit of an axis; pyuff replaces the superscript 2 of other encodings by U+FFFD."""
     unit = str(each.get(f"{axis}_axis_units_lab", "")).strip().replace("\ufffd", "²")
     return "" if unit.upper() == "NONE" else unit
