@@ -52,7 +52,7 @@ struct Block : Node {
     std::vector<Doubles<2>> batches;
     std::optional<Doubles<2>> batch_length, displacement, velocity, state, last_time, last_approach_speed,
         last_contact;
-    std::optional<Doubles<3>> ball_place, ball_speed;
+    std::optional<Doubles<3>> relative_position, relative_velocity;
 };
 
 inline std::vector<int> measure_indices(const std::vector<std::string>& names) {
@@ -113,8 +113,8 @@ inline std::optional<Block> sweep(const ProblemNumbers& packed, const std::vecto
     if (motion) {
         block.displacement = part({n, samples}, output.displacement);
         block.velocity = part({n, samples}, output.velocity);
-        block.ball_place = part({n, samples, balls}, output.place);
-        block.ball_speed = part({n, samples, balls}, output.speed);
+        block.relative_position = part({n, samples, balls}, output.place);
+        block.relative_velocity = part({n, samples, balls}, output.speed);
     }
     if (state) block.state = part({n, 2 * (modes + balls)}, output.state);
     if (last > 0) {
@@ -137,8 +137,8 @@ inline void add_sweep(nb::module_& module) {
     define<B>(module, "Block", "Output of the variants of a batch, one row for each.",
               field("status", &B::status), field("measures", &B::measures), field("batches", &B::batches),
               field("batch_length", &B::batch_length), field("displacement", &B::displacement),
-              field("velocity", &B::velocity), field("ball_place", &B::ball_place),
-              field("ball_speed", &B::ball_speed), field("state", &B::state),
+              field("velocity", &B::velocity), field("relative_position", &B::relative_position),
+              field("relative_velocity", &B::relative_velocity), field("state", &B::state),
               field("last_time", &B::last_time), field("last_approach_speed", &B::last_approach_speed),
               field("last_contact", &B::last_contact));
     module.def(

@@ -35,12 +35,12 @@ def test_bouncing_balls_coexist() -> None:
         known = (maps.orbit_period == cycles) & np.isclose(maps.orbit_impacts_per_cycle, 1 / cycles)
         found = maps.isel(orbit=np.flatnonzero(known)).squeeze("orbit")  # one and no more
         strobes = [state(orbit, (begin - orbit.phase) % (2 * math.pi) + 2 * math.pi * k) for k in range(cycles)]
-        heights = found.orbit_ball_place.values[:cycles, 0] + gap
-        rates = found.orbit_ball_speed.values[:cycles, 0]
+        heights = found.orbit_relative_position.values[:cycles, 0] + gap
+        rates = found.orbit_relative_velocity.values[:cycles, 0]
         ours = sorted(zip(heights.tolist(), rates.tolist(), strict=True))
         assert ours == [pytest.approx(exact, abs=1e-8) for exact in sorted(strobes)]
     rest = maps.isel(orbit=np.flatnonzero(maps.orbit_impacts_per_cycle == 0)).squeeze("orbit")
     assert rest.orbit_period == 1
-    assert rest.orbit_ball_place.values[0, 0] + gap == pytest.approx(0, abs=1e-12)
-    assert rest.orbit_ball_speed.values[0, 0] == pytest.approx(0, abs=1e-12)
+    assert rest.orbit_relative_position.values[0, 0] + gap == pytest.approx(0, abs=1e-12)
+    assert rest.orbit_relative_velocity.values[0, 0] == pytest.approx(0, abs=1e-12)
     assert maps.attractor.sel({"damper.velocity": 0}).values[0] == rest.orbit  # the table alone never throws it

@@ -133,7 +133,7 @@ def _draw_strobes(axes: Axes, maps: xr.Dataset, x: _Axis, y: _Axis, palette: Lis
         return
     for kind in range(min(_COLOURED, maps.sizes["orbit"])):
         orbit = maps.isel(orbit=kind, ball=0)
-        place, speed = orbit["orbit_ball_place"].values, orbit["orbit_ball_speed"].values
+        place, speed = orbit["orbit_relative_position"].values, orbit["orbit_relative_velocity"].values
         if not orbit["orbit_impacts_per_cycle"] > 0:
             continue
         start = place / (1.0 if (x if names[0] == "start" else y).unit else maps.attrs["gap"])

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 TEXTS = {
-    "ball_place": "Ball position in cavity",
-    "ball_speed": "Ball speed in cavity",
+    "relative_position": "Ball position in cavity",
+    "relative_velocity": "Ball velocity in cavity",
     "displacement": "Displacement",
     "velocity": "Velocity",
     "approach_speed": "Approach speed",
@@ -41,8 +41,9 @@ def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, 
     maps
         Dataset from `rb.bifurcation`.
     of
-        "ball_place", "ball_speed", "displacement" or "velocity" at the strobes, "approach_speed" or "impact_phase" of the
-        impacts; default the approach speed, or the position of the ball if the dataset has no impacts.
+        At the strobes "relative_position" or "relative_velocity" of a ball, or "displacement" or "velocity" of the
+        structure; of the impacts "approach_speed" or "impact_phase". Default: the approach speed, or the position of the
+        ball if the dataset has no impacts.
     ball
         Index of the ball, for a quantity of balls.
     size
@@ -61,7 +62,7 @@ def plot_bifurcation(maps: xr.Dataset, of: str | None = None, *, ball: int = 0, 
         If the size is unknown.
     """
     known = [name for name in TEXTS if name in maps]
-    of = of or ("approach_speed" if "approach_speed" in known else "ball_place")
+    of = of or ("approach_speed" if "approach_speed" in known else "relative_position")
     if of not in known:
         raise Hint(f"of = {of!r}: the diagram has no such quantity", nearest(of, known))
     values = maps[of]

@@ -63,8 +63,12 @@ class ImpactWork(CaseWork):
             found["velocity"] = (time, "float64", {"units": "m/s", "long_name": "velocity"})
             ball: Extra = (*time, ("ball", balls))
             place = "ball position from its place in the packed, centred row"
-            found["ball_place"] = (ball, "float64", {"units": "m", "long_name": place})
-            found["ball_speed"] = (ball, "float64", {"units": "m/s", "long_name": "ball speed in its cavity"})
+            found["relative_position"] = (ball, "float64", {"units": "m", "long_name": place})
+            found["relative_velocity"] = (
+                ball,
+                "float64",
+                {"units": "m/s", "long_name": "ball velocity relative to the cavity"},
+            )
         if self.last:
             tail: Extra = (("last", self.last),)
             found["last_time"] = (tail, "float64", {"units": "s", "long_name": "time of impact"})

@@ -27,8 +27,8 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) ->
     Parameters
     ----------
     maps
-        Strobes over a grid: `displacement`, `velocity` (..., sample), `ball_place`, `ball_speed` (..., sample, ball), and
-        `impacts`.
+        Strobes over a grid: `displacement`, `velocity` (..., sample), `relative_position`, `relative_velocity`
+        (..., sample, ball), and `impacts`.
     packed
         The variants of the grid.
     period
@@ -45,7 +45,7 @@ def reduced_strobes(maps: xarray.Dataset, packed: _core.Problem, period: Any) ->
     hit = (maps.impacts.values > 0)[..., None]
     parts = [maps.displacement.values / gaps[0][..., None], maps.velocity.values / (gaps[0] * omega)[..., None]]
     for ball, gap in enumerate(gaps):
-        place, speed = maps.ball_place.values[..., ball], maps.ball_speed.values[..., ball]
+        place, speed = maps.relative_position.values[..., ball], maps.relative_velocity.values[..., ball]
         parts += [np.where(hit, place / gap[..., None], 0.0), np.where(hit, speed / (gap * omega)[..., None], 0.0)]
     return np.stack(parts, axis=-1)
 

@@ -36,7 +36,7 @@ def test_mirrored_starts_lead_to_mirrored_motions():
     assert (maps.attractor > 0).all()
     assert sorted(np.round(maps.orbit_impacts_per_cycle.values).tolist()) == [2, 2, 3, 3]
     np.testing.assert_array_equal(maps.attractor, twins.attractor[::-1, ::-1])
-    np.testing.assert_allclose(maps.orbit_ball_speed, -twins.orbit_ball_speed, atol=1e-6)
+    np.testing.assert_allclose(maps.orbit_relative_velocity, -twins.orbit_relative_velocity, atol=1e-6)
     assert float(maps.share.sum()) == pytest.approx(1)
 
 
@@ -47,7 +47,9 @@ def test_starts_end_where_their_attractor_says():
         damper = shaken(start=float(STARTS["damper.start"][i]), velocity=float(STARTS["damper.velocity"][j]))
         run = rb.simulate(damper.model_copy(update={"duration": 21.6}))
         orbit = maps.sel(orbit=int(maps.attractor[i, j]))
-        assert run.arrays.relative_velocity[-1, 0] == pytest.approx(float(orbit.orbit_ball_speed[0, 0]), abs=1e-5)
+        assert run.arrays.relative_velocity[-1, 0] == pytest.approx(
+            float(orbit.orbit_relative_velocity[0, 0]), abs=1e-5
+        )
 
 
 def test_chaos_has_no_attractor():
@@ -119,7 +121,7 @@ def test_example(tmp_path, monkeypatch):
     assert maps.share.values == pytest.approx([0.34, 0.32, 0.22, 0.13], abs=0.02)
     for orbit in maps.orbit.values:
         one = maps.sel(orbit=orbit)
-        start, velocity = float(one.orbit_ball_place[0, 0]) / 1e-3, float(one.orbit_ball_speed[0, 0])
+        start, velocity = float(one.orbit_relative_position[0, 0]) / 1e-3, float(one.orbit_relative_velocity[0, 0])
         near = maps.attractor.sel({"damper.start": start, "damper.velocity": velocity}, method="nearest")
         assert int(near) == orbit
     figure = rb.plot_basins(maps, size="page")

@@ -38,8 +38,8 @@ def test_both_goes_up_and_then_back_down():
     options = {"cycles": (20, 8), "show": "impacts", **QUIET}
     both = rb.bifurcation(shaken(), AMPLITUDE, values, **options)
     assert both.direction.values.tolist() == ["up", "down"]
-    assert both.ball_place.dims == ("direction", AMPLITUDE, "cycle", "ball")
-    assert both.ball_place.shape == (2, 5, 8, 1)
+    assert both.relative_position.dims == ("direction", AMPLITUDE, "cycle", "ball")
+    assert both.relative_position.shape == (2, 5, 8, 1)
     np.testing.assert_array_equal(both[AMPLITUDE], values)
     up = rb.bifurcation(shaken(), AMPLITUDE, values, direction="up", **options)
     for name in up.data_vars:
@@ -48,7 +48,7 @@ def test_both_goes_up_and_then_back_down():
     grid = read_axes(shaken(), {AMPLITUDE: there_and_back})
     work = ContinuationWork.along(shaken(), grid, directions=["up"], cycles=(20, 8), samples=9, motion=True)
     chain = run_work(work, **QUIET)
-    np.testing.assert_array_equal(both.ball_place[1], chain.ball_place.values[0, :4:-1, 1:])
+    np.testing.assert_array_equal(both.relative_position[1], chain.relative_position.values[0, :4:-1, 1:])
 
 
 def test_directions_differ_where_motions_coexist():
@@ -71,7 +71,7 @@ def test_strobes_and_impacts_are_those_of_a_run():
             update={"structure": rb.Shaker(motion=motion), "duration": 0.7, "output": rb.Output(times=list(times))}
         )
     )
-    np.testing.assert_allclose(maps.ball_speed[:, 0], run.arrays.relative_velocity[1:, 0], rtol=1e-8)
+    np.testing.assert_allclose(maps.relative_velocity[:, 0], run.arrays.relative_velocity[1:, 0], rtol=1e-8)
     late = run.arrays.impacts.time >= 0.3
     kept = maps.impact_phase.dropna("impact")
     phase = (2 * np.pi * 10 * run.arrays.impacts.time[late] + 0.3) % (2 * np.pi)
@@ -123,7 +123,9 @@ def test_nothing_bifurcates_without_damper_or_cycle():
 
 
 @pytest.mark.parametrize("size", ["column", "page"])
-@pytest.mark.parametrize("of", [None, "ball_place", "ball_speed", "displacement", "velocity", "impact_phase"])
+@pytest.mark.parametrize(
+    "of", [None, "relative_position", "relative_velocity", "displacement", "velocity", "impact_phase"]
+)
 def test_every_quantity_is_drawn(of, size):
     """Each quantity is drawn, dots for every direction, with nothing off the paper."""
     maps = rb.bifurcation(shaken(), AMPLITUDE, [0.5e-3, 1e-3, 1.5e-3], cycles=(20, 8), show="impacts", **QUIET)
@@ -144,7 +146,7 @@ def test_unknown_quantity_is_refused():
     with pytest.raises(rb.CaseError, match="no such quantity"):
         rb.plot_bifurcation(maps, "approach_speed")
     with pytest.raises(rb.CaseError, match="ball = 1"):
-        rb.plot_bifurcation(maps, "ball_place", ball=1)
+        rb.plot_bifurcation(maps, "relative_position", ball=1)
 
 
 def test_example(tmp_path, monkeypatch):

@@ -71,7 +71,14 @@ def assert_continues(case, path, value, cycles=(3, 2)):
     parts = continue_along(case, path, [value] * 3, measures=["impacts"], cycles=cycles, **options).isel(
         {path: 2, "direction": 0}
     )
-    for name in ("ball_place", "ball_speed", "displacement", "velocity", "impacts", "last_approach_speed"):
+    for name in (
+        "relative_position",
+        "relative_velocity",
+        "displacement",
+        "velocity",
+        "impacts",
+        "last_approach_speed",
+    ):
         np.testing.assert_allclose(parts[name], long[name], rtol=1e-8, atol=1e-9)
     earlier = long.last_time - parts.last_time
     np.testing.assert_allclose(earlier, 0.1 * 2 * (skip + look), rtol=1e-9)
@@ -108,7 +115,7 @@ def test_closed_contact_at_the_end_of_a_cycle():
         motion = rb.Harmonic(amplitude="1 mm", frequency="10 Hz", phase=phase)
         case = shaken(contact=soft).model_copy(update={"structure": rb.Shaker(motion=motion)})
         assert_continues(case, "damper.gap", 0.5e-3)
-        end = sweep(case, {"damper.gap": [0.5e-3]}, [], cycles=(3, 2), motion=True, **QUIET).ball_place[0, -1, 0]
+        end = sweep(case, {"damper.gap": [0.5e-3]}, [], cycles=(3, 2), motion=True, **QUIET).relative_position[0, -1, 0]
         closed += abs(float(end)) > 0.5e-3
     assert closed >= 2
 
@@ -135,7 +142,7 @@ def test_shrinking_gap_keeps_the_ball_inside():
     options = {"cycles": (0, 1), "samples": 2, "motion": True, **QUIET}
     found = continue_along(shaken(method=rb.Newton()), "damper.gap", [1e-3, 1e-5], **options)
     assert (found.status == 0).all()
-    assert float(abs(found.ball_place[0, 1]).max()) <= 1e-5 * (1 + 1e-15)
+    assert float(abs(found.relative_position[0, 1]).max()) <= 1e-5 * (1 + 1e-15)
 
 
 def test_value_that_does_not_finish_leaves_the_state():
@@ -144,9 +151,9 @@ def test_value_that_does_not_finish_leaves_the_state():
     options = {"cycles": (3, 1), "samples": 3, "motion": True, **QUIET}
     found = continue_along(case, "structure.motion.amplitude", [1e-3, 10.0, 1.1e-3], **options)
     assert found.status.values.tolist() == [[0, 1, 0]]
-    assert found.ball_place[0, 1].isnull().all()
+    assert found.relative_position[0, 1].isnull().all()
     without = continue_along(case, "structure.motion.amplitude", [1e-3, 1.1e-3], **options)
-    np.testing.assert_array_equal(found.ball_place[0, 2], without.ball_place[0, 1])
+    np.testing.assert_array_equal(found.relative_position[0, 2], without.relative_position[0, 1])
 
 
 @pytest.mark.parametrize(

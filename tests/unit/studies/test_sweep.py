@@ -139,7 +139,7 @@ def test_motion_and_last_impacts_on_request() -> None:
         {"damper.start": 0}
     )
     assert found.displacement.values == pytest.approx(run.arrays.displacement[:, 0], abs=1e-15)
-    assert found.ball_place.values == pytest.approx(run.arrays.relative_position, abs=1e-15)
+    assert found.relative_position.values == pytest.approx(run.arrays.relative_position, abs=1e-15)
     speeds = found.last_approach_speed.values
     assert np.array_equal(speeds[np.isfinite(speeds)], run.arrays.impacts.approach_speed)
     assert np.isnan(speeds[0])

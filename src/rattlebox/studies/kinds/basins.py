@@ -69,8 +69,8 @@ class Basins(Study):
         detected (chaos, a longer period, a motion not yet steady, or more than 256 attractors), -1 if the run did not
         finish; `period` in cycles, 0 if none was detected; `impacts_per_cycle` and the requested measures. Over `orbit`,
         the attractors: `share` of all initial states, `orbit_period`, `orbit_impacts_per_cycle`; over `strobe` also
-        `orbit_displacement`, `orbit_velocity`, and over `ball` `orbit_ball_place`, `orbit_ball_speed` of the member with
-        the smallest residual, NaN beyond its period.
+        `orbit_displacement`, `orbit_velocity`, and over `ball` `orbit_relative_position`, `orbit_relative_velocity` of the
+        member with the smallest residual, NaN beyond its period.
 
     Raises
     ------
@@ -155,7 +155,7 @@ def _plane(case: Case) -> dict[str, float]:
 def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xarray.Dataset:
     """Add attractors and periods to the runs, and the orbit of each attractor."""
     over = maps.status.dims
-    strobes = ("displacement", "velocity", "ball_place", "ball_speed")
+    strobes = ("displacement", "velocity", "relative_position", "relative_velocity")
     found = (
         maps.drop_dims("strobe")
         .drop_vars("impacts")

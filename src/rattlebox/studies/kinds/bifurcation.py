@@ -78,9 +78,9 @@ class Bifurcation(Study):
     xarray.Dataset
         Over `direction` and the parameter: `status`; `period` in cycles, 0 if it exceeds half of the evaluated cycles or
         does not exist; `impacts_per_cycle` and the requested measures. Also over `cycle`: `displacement` and `velocity`
-        of the point, and over `ball`: `ball_place` and `ball_speed` in the cavity. With show="impacts" over `impact`, the
-        last 8 per evaluated cycle, NaN if there are fewer: `impact_phase` of the load [rad], `approach_speed` and
-        `contact`.
+        of the point, and over `ball`: `relative_position` and `relative_velocity` in the cavity. With show="impacts" over
+        `impact`, the last 8 per evaluated cycle, NaN if there are fewer: `impact_phase` of the load [rad],
+        `approach_speed` and `contact`.
 
     Raises
     ------
@@ -98,7 +98,7 @@ class Bifurcation(Study):
     ...     duration="1 s",
     ... )
     >>> maps = rb.bifurcation(case, "structure.motion.amplitude", rb.linspace("0.5 mm", "2 mm", 5), cycles=(40, 8))
-    >>> maps.ball_place.dims
+    >>> maps.relative_position.dims
     ('direction', 'structure.motion.amplitude', 'cycle', 'ball')
     """
 

@@ -206,7 +206,7 @@ def _bare(task: ImpactWork) -> NDArray[np.float64]:
 
 def _steady(maps: xarray.Dataset, phase: float, samples: int, tolerance: float) -> xarray.Dataset:
     """Return the first harmonic and the period of sampled motions."""
-    z, place = maps.displacement.values, maps.ball_place.values
+    z, place = maps.displacement.values, maps.relative_position.values
     turns = np.exp(-2j * np.pi * np.arange(z.shape[-1] - 1) / samples)
     harmonic = 2j / turns.size * (z[..., :-1] @ turns) * np.exp(-1j * phase)
     place = np.where(maps.impacts_per_cycle.values[..., None, None] > 0, place, 0.0)  # without impacts a ball drifts
