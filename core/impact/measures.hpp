@@ -322,7 +322,7 @@ public:
         return whole < 1 ? 0 : static_cast<std::size_t>(std::floor(whole / std::ceil(whole / most)));
     }
 
-    // Batch k of n; samples that lie beside its limits are included. Empty if the samples are too few.
+    // Batch k of n; the samples next to its limits are included. Empty if the samples are too few.
     std::optional<Observer> batch(std::size_t k, std::size_t n) const {
         if (last() < n) return {};
         const real step = length() / static_cast<real>(last());

@@ -3,8 +3,8 @@
 //
 // When other programs use the cores, each barrier waits for the scheduler. The waiting times of all workers
 // are summed over 20 ms. If the sum reaches the time of all workers but one, the run continues on one thread
-// for a while (core/dem/simulation.hpp, SerialFallback). Measured with 1000 particles on two cores beside
-// eight busy processes: 1.09 times as long without it (quartiles 0.94 to 1.30); with 100 000, or on idle
+// for a while (core/dem/simulation.hpp, SerialFallback). Measured with 1000 particles on two cores shared
+// with eight busy processes: 1.09 times as long without it (quartiles 0.94 to 1.30); with 100 000, or on idle
 // cores, no difference.
 #pragma once
 

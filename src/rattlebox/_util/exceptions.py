@@ -17,7 +17,7 @@ class RattleboxError(Exception):
     complaint
         Error, and what is allowed.
     suggestion
-        What to try; printed on a separate line.
+        Advice; printed on a separate line.
     place
         Location of the value in the part that raises: names of fields, numbers in lists.
     """

@@ -87,7 +87,7 @@ def refuse_particle_options(**options: str | None) -> None:
     Parameters
     ----------
     **options
-        Values by name of the option.
+        Options by name; None if not given.
 
     Raises
     ------

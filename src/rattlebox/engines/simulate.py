@@ -115,8 +115,8 @@ def simulate_many(
     threads
         Number of threads; default one per core. The results are bitwise independent of it.
     progress
-        True for a progress bar after 2 s, False for none, or a function of the numbers of runs done and of all,
-        which stops the runs by returning False.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of runs done and of all; the runs
+        stop if it returns False.
 
     Returns
     -------

@@ -240,7 +240,7 @@ def _read_matrices(path: str) -> tuple[dict[str, Vector], dict[str, Vector]]:
             if array.size != n and array.shape != (3, n):
                 raise DataError(
                     f"{path}: {name} has {array.size} numbers, but there are {n} degrees of freedom",
-                    f"a vector of weights, or points = {{ {name.removeprefix(mark)} = 0 }} beside the file",
+                    f"a vector of weights, or points = {{ {name.removeprefix(mark)} = 0 }} and the file without it",
                 )
             points[name.removeprefix(mark)] = array.ravel() if array.size == n else array
     for name, array in (matrices | points).items():

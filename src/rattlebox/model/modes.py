@@ -34,7 +34,7 @@ class ModalModel:
     attached : frozenset of str
         Names of the points of tuned masses; the others are those of the structure.
     total_mass : float, (3, 3) float or None
-        Mass r^T M r that moves with the base if the structure is rigid [kg]; a matrix where points move in space.
+        Mass r^T M r that moves with the base if the structure is rigid [kg]; a matrix if points move in 3-D.
     """
 
     decay: Vector

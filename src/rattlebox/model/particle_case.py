@@ -71,7 +71,7 @@ def check_particle_case(case: Case) -> None:
             ["dampers"],
         )
     if not isinstance(case.method, Dem):
-        raise Hint(f"{case.method.kind} computes impact dampers, not particles in space", 'kind = "dem"', ["method"])
+        raise Hint(f"{case.method.kind} computes impact dampers only", 'kind = "dem"', ["method"])
     if case.output.times is not None:
         times = case.sample_times()
         even = np.linspace(0.0, case.duration, times.size)

@@ -99,7 +99,7 @@ def _check_structure(case: Case) -> Iterator[str]:
 
 
 def _check_participation(case: Case, modes: ModalModel) -> Iterator[str]:
-    """Warn of a moving base that hardly excites the modes, and of an interface force without truncated modes."""
+    """Warn of a base motion with small participation, and of an interface force without truncated modes."""
     if not case.base or modes.participation is None or not modes.decay.size:
         return
     participation = modes.participation.reshape(modes.decay.size, 1, -1)
@@ -107,13 +107,13 @@ def _check_participation(case: Case, modes: ModalModel) -> Iterator[str]:
     reach = max((float(np.abs(shape * participation).max()) for shape in shapes), default=0.0)
     if reach < _LEAST_PARTICIPATION:
         yield (
-            f"the motion of the base hardly excites the modes: participation times shape is {reach:.2g} at most; at least "
-            f"{_LEAST_PARTICIPATION:g} is usual; try: other modes, points or direction"
+            f"the motion of the base barely excites the modes: participation times shape is at most {reach:.2g}; usual are "
+            f"{_LEAST_PARTICIPATION:g} and more; try: other modes, points or direction"
         )
     if modes.total_mass is None:
         effective = float(np.max(np.sum(np.square(modes.participation), axis=0)))
         yield (
-            f"the force on the base lacks the inertia of the modes that are left out; the modes have {effective:.4g} kg;"
+            f"the force on the base lacks the inertia of truncated modes; the modes of the case have {effective:.4g} kg;"
             " try: total_mass, the mass of the structure"
         )
 

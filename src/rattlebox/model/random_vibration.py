@@ -81,10 +81,10 @@ class Random(Sampled):
     -----
     The signal is a sum of harmonics at the multiples of 1 / duration, whose sine and cosine amplitudes are independent
     Gaussian numbers of variance S(f) / duration (compare Shinozuka and Deodatis 1991). The mean square of one realisation of
-    bandwidth B has a relative standard deviation of about 1 / sqrt(B duration), like that of measured vibration. Straight
-    lines between points at the rate R multiply the amplitude at f by sinc^2(f / R) = (sin(pi f / R) / (pi f / R))^2, by
-    which it is divided here, and add images at k R +- f with sinc^2(k +- f / R) of it: at 16 points a period, less than 4e-5
-    of the power.
+    bandwidth B has a relative standard deviation of about 1 / sqrt(B duration), like that of measured vibration.
+    Linear interpolation at the rate R multiplies the amplitude at f by sinc^2(f / R) = (sin(pi f / R) / (pi f / R))^2; the
+    amplitudes are divided by this factor. It also adds images at k R +- f with sinc^2(k +- f / R) of the amplitude: at 16
+    points per period, less than 4e-5 of the power.
 
     References
     ----------

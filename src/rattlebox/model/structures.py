@@ -491,7 +491,7 @@ class Modal(StructurePart):
         )
 
     def _total_mass(self) -> Any:
-        """Return the total mass [kg], as a matrix where points move in space; None if it is unknown."""
+        """Return the total mass [kg], as a matrix if points move in 3-D; None if it is unknown."""
         if self.total_mass is None:
             return None
         return np.diag(self.total_mass) if isinstance(self.total_mass, list) else self.total_mass

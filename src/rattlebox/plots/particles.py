@@ -98,9 +98,9 @@ def plot_particles(
     Parameters
     ----------
     of
-        A run, whose end is drawn, or its snapshots.
+        A run, of which the final state is drawn, or its snapshots.
     number
-        Which snapshot.
+        Index of the snapshot; negative ones count from the end.
     colour
         "speed", "spin", "radius", "species" or "none".
     view
@@ -151,7 +151,7 @@ def film_particles(
     Parameters
     ----------
     snapshots
-        Of a run.
+        Snapshots of a run.
     out
         File to write, .gif or .mp4.
     rate
@@ -163,8 +163,8 @@ def film_particles(
     renderer
         "pyvista" or "plain"; default PyVista where it is installed.
     progress
-        True for a progress bar after 2 s, False for none, or a function of the numbers of pictures done and of all,
-        which stops the film by returning False.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of pictures done and of all; the
+        film stops if it returns False.
 
     Returns
     -------
@@ -273,7 +273,7 @@ def outline(cavity: Cavity, view: Array = VIEW) -> list[Array]:
     Parameters
     ----------
     cavity
-        What to show: edges of a box, ends and two lines of a cylinder's side, the rim of a sphere.
+        Cavity: a box has edges, a cylinder its ends and two lines of its side, a sphere its outline.
     view
         Directions to the right, up and towards the viewer, (3, 3).
     """
@@ -328,9 +328,9 @@ class _Scene:
         case = tomllib.loads(case_toml)
         cavities = _cavities(case["dampers"])
         self._frames, self._cavities, self._renderer = frames, cavities, renderer
-        told = [(_values(frame, colour), frame.displacement, frame.time) for frame in frames]
-        values = np.concatenate([each for each, _, _ in told])
-        self._moves, self._last = np.array([moves for _, moves, _ in told]), told[-1][2]
+        columns = [(_values(frame, colour), frame.displacement, frame.time) for frame in frames]
+        values = np.concatenate([column for column, _, _ in columns])
+        self._moves, self._last = np.array([moves for _, moves, _ in columns]), columns[-1][2]
         self._scale = scaled(values, _UNITS[colour])
         self._map, self._norm = self._colours(values, len(frames) > 1)
         extents = [self._extent(k) for k in range(len(cavities))]

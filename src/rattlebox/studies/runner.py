@@ -55,8 +55,8 @@ def run_work(
         Folder for the result, which need not exist. It holds the finished blocks at all times, and the same call resumes
         from it.
     progress
-        True for a progress bar after 2 s, False for none, or a function of the numbers of variants done and of all,
-        which stops the study by returning False.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of variants done and of all; the
+        study stops if it returns False.
     block
         Largest number of variants in a block; default that of the work.
 

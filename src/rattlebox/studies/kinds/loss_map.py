@@ -38,8 +38,8 @@ class LossMap(Study):
     """Compute loss and effective mass of a damper on a shaker over amplitude and frequency.
 
     In the first harmonic, the force that drives the damper is its apparent mass m' - i m'' times the acceleration of the
-    cavity. For the structure, m' is an added mass, and pi m'' V^2 is the loss per cycle at the velocity amplitude V. A light
-    damper hardly changes the motion of a heavy structure, so that one map applies to all such structures.
+    cavity. For the structure, m' is an added mass, and pi m'' V^2 is the loss per cycle at the velocity amplitude V. One
+    map applies to all structures whose motion the damper does not change much.
 
     Parameters
     ----------
