@@ -5,6 +5,7 @@
 
 #include "bindings/dem_problem.hpp"
 #include "bindings/jobs.hpp"
+#include "bindings/stepper.hpp"
 #include "dem/simulation.hpp"
 #include "util/archive.hpp"
 
@@ -174,6 +175,7 @@ public:
 
 void add_dem(nb::module_& module) {
     add_dem_problem(module);
+    add_stepper(module);
     nb::class_<Dem>(module, "Dem", "A simulation of particle dampers, which is advanced in portions.")
         .def(nb::init<const DemNumbers&>(), nb::arg("problem"))
         .def("run", &Dem::run, nb::arg("until"), nb::arg("progress") = nb::none(),

@@ -126,6 +126,11 @@ public:
         for (const int e : bed.cavity->wall_pair) wall_mu_.push_back(at(problem.pair_laws, e).friction());
     }
 
+    // Adapts the laws to the time step of the problem.
+    void update_step() {
+        for (ContactLaws* laws : {&pair_, &wall_}) set_step(*laws, problem_);
+    }
+
     bool has_friction() const { return pair_.rough || wall_.rough; }
     bool has_rolling() const { return pair_.rolls || wall_.rolls; }
 

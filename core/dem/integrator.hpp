@@ -31,9 +31,13 @@ struct Verlet {
 
 class Integrator {
     Bed& bed_;
-    real dt_;
+    const Problem& problem_;
     bool spins_, rolls_; // whether contacts have friction, and rolling resistance
     bool far_;           // whether the bed exceeds the caches
+
+    real moved_in_step(real max_speed_squared) const {
+        return problem_.dt * std::sqrt(max_speed_squared) * (1 + 1e-9);
+    }
 
     real twice_rotation_energy(int i) const {
         const Row w = at(bed_.spin, i);
@@ -47,7 +51,7 @@ class Integrator {
     void advance(ForceSums& sums, Chunk& chunk, int until, Row body, Row body_before, bool first) {
         Diagnostics& diagnostics = chunk.diagnostics;
         const bool spins = spins_, rolls = rolls_;
-        const Verlet step(dt_, body, body_before, first);
+        const Verlet step(problem_.dt, body, body_before, first);
         const Row evenly = step.corrected(Row{}, body, body_before),
                   reference_velocity = bed_.reference_velocity;
         Row momentum{}, mass_moment{};
@@ -104,7 +108,7 @@ class Integrator {
         }
         ChunkMotion& motion = at(bed_.chunk_motion, chunk.begin / Bed::chunk_size);
         const bool continues = chunk.stop_reason.status == Status::finished;
-        motion.moved = continues ? dt_ * std::sqrt(max_speed_squared) * (1 + 1e-9) : infinity;
+        motion.moved = continues ? moved_in_step(max_speed_squared) : infinity;
         motion.approach = chunk.approach;
         for (int a = 0; a < 3; ++a) motion.momentum[a] = momentum[a];
         if constexpr (sampled) {
@@ -115,10 +119,34 @@ class Integrator {
     }
 
 public:
-    Integrator(Bed& bed, real dt, bool spins, bool rolls)
-        : bed_(bed), dt_(dt), spins_(spins), rolls_(rolls), far_(bed.particles() > Bed::cached) {}
+    Integrator(Bed& bed, const Problem& problem, bool spins, bool rolls)
+        : bed_(bed), problem_(problem), spins_(spins), rolls_(rolls), far_(bed.particles() > Bed::cached) {}
 
     bool is_far() const { return far_; }
+
+    // Predicts the next step of the particles of a chunk again, which was predicted with another step
+    // dt_before and another acceleration without contacts.
+    void predict_again(Chunk& chunk, real dt_before, Row body_before, Row body) {
+        const Verlet before(dt_before, body_before, body_before, true), step(problem_.dt, body, body, true);
+        real max_speed_squared = 0;
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+            Row &x = at(bed_.position, i), &u = at(bed_.velocity, i);
+            Rates& rates = at(bed_.rates, i);
+            const bool touched = at(bed_.touched, i);
+            const Row a_before = touched ? rates.velocity : body_before,
+                      a = touched ? rates.velocity + (body - body_before) : body;
+            const Row v = u - before.step * a_before, middle = step.half_step(v, a);
+            x = step.drifted(x - before.step * before.half_step(v, a_before), middle);
+            u = step.predicted(v, a);
+            if (touched) {
+                rates.velocity = a;
+                if (spins_) at(bed_.spin, i) += (step.step - before.step) * rates.spin;
+            }
+            const Row moved = middle - bed_.reference_velocity;
+            max_speed_squared = larger(max_speed_squared, dot(moved, moved));
+        }
+        at(bed_.chunk_motion, chunk.begin / Bed::chunk_size).moved = moved_in_step(max_speed_squared);
+    }
 
     void advance(ForceSums& sums, Chunk& chunk, int until, Row body, Row body_before, bool first,
                  bool sampled) {

@@ -42,10 +42,14 @@ struct Problem {
     std::vector<PairLaw> pair_laws;
 };
 
+inline void set_step(ContactLaws& laws, const Problem& problem) {
+    laws.dt = problem.dt, laws.enduring = problem.enduring / problem.dt;
+}
+
 // Returns what all contacts of one list have in common; `pairs` are indices into Problem::pair_laws.
 inline ContactLaws contact_laws_of(const Problem& problem, const std::vector<int>& pairs) {
     ContactLaws k;
-    k.dt = problem.dt, k.enduring = problem.enduring / problem.dt;
+    set_step(k, problem);
     bool first = true, first_rough = true;
     for (const int pair : pairs) {
         const PairLaw& e = problem.pair_laws.at(static_cast<std::size_t>(pair));

@@ -36,6 +36,11 @@ public:
     }
 };
 
+// Work on the structure and its loss up to a step: by load, by load, and by mode.
+struct StructureWork {
+    std::vector<real> load, base, viscous;
+};
+
 class Simulation {
     Problem problem_;
     std::vector<Bed> beds_;
@@ -129,12 +134,17 @@ class Simulation {
                 base_work_.data()};
     }
 
-    void prepare_structure() {
-        modes_ = output_modes_ = problem_.start;
+    void compute_transitions() {
+        mode_transitions_.clear();
         for (const Mode& mode : problem_.modes)
             mode_transitions_.push_back(mode_transition(mode, problem_.dt));
         if (!problem_.coupling.empty())
             transition_ = transition(problem_.modes, problem_.coupling, problem_.dt);
+    }
+
+    void prepare_structure() {
+        modes_ = output_modes_ = problem_.start;
+        compute_transitions();
         propagated_.resize(modes_.size());
         for (const Load& load : problem_.loads) {
             signals_.push_back(load.signal);
@@ -420,7 +430,7 @@ public:
             for (Chunk& chunk : bed.chunks) prepare(chunk.pairs, pair), prepare(chunk.walls, wall);
             neighbours_[b].start(bed);
             const ContactLoop& loop = contact_loops_.emplace_back(bed, problem_, pair, wall);
-            integrators_.emplace_back(bed, problem_.dt, loop.has_friction(), loop.has_rolling());
+            integrators_.emplace_back(bed, problem_, loop.has_friction(), loop.has_rolling());
         }
         partition_.start(beds_);
         for (Bed& bed : beds_) {
@@ -441,12 +451,57 @@ public:
         run_parallel(threads, [&](auto worker) { run(worker, until, stop); });
     }
 
+    // Sets the time step, gravity, and the constant values of all loads from now on. run() has predicted the
+    // next step with the former ones, so it is predicted again from the state at the last step, which must
+    // have been sampled: `work` has the sums up to that sample. `steps` is the number of steps that follow.
+    void change_inputs(real dt, long steps, Row gravity, const std::vector<real>& values,
+                       const StructureWork& work) {
+        const bool began = step_ > 0;
+        bool changed = dt != problem_.dt || gravity[0] != problem_.gravity[0] ||
+                       gravity[1] != problem_.gravity[1] || gravity[2] != problem_.gravity[2];
+        for (std::size_t l = 0; l < values.size(); ++l) changed |= values[l] != signals_[l].amplitude;
+        problem_.steps = problem_.sample_interval = std::max(step_ - 1, 0L) + steps;
+        if (!changed) return;
+        const real dt_before = problem_.dt;
+        problem_.dt = dt, problem_.gravity = gravity;
+        for (std::size_t l = 0; l < values.size(); ++l) signals_[l].amplitude = values[l];
+        compute_transitions();
+        for (ContactLoop& loop : contact_loops_) loop.update_step();
+        if (!began) return;
+        load_work_ = work.load, base_work_ = work.base, viscous_ = work.viscous;
+        modes_ = output_modes_;
+        --step_, --steps_since_;
+        structure().load_values(now());
+        compute_modal_force();
+        Row momentum{};
+        for (const Bed& bed : beds_) momentum += momentum_of(bed);
+        structure().work_on_particles(momentum);
+        const Row body = structure().body_acceleration();
+        for (std::size_t b = 0; b < beds_.size(); ++b) {
+            for (Chunk& c : beds_[b].chunks) integrators_[b].predict_again(c, dt_before, body_before_, body);
+            beds_[b].motion.displacement = beds_[b].output_displacement;
+        }
+        body_before_ = body;
+        advance_structure();
+    }
+
     // Writes or reads all that the next step needs, in a fixed order.
     template <class Archive> void serialize(Archive& archive) {
         archive(step_, body_before_, status_, stopped_cavity_, stop_reason_, rebuilds_, needs_rebuild_,
                 forces_known_at_, steps_since_, modes_, output_modes_, modal_force_, load_work_, base_work_,
                 viscous_);
         for (Bed& bed : beds_) bed.serialize(archive);
+    }
+
+    // Writes or reads what change_inputs() sets; it belongs before the state.
+    template <class Archive> void serialize_inputs(Archive& archive) {
+        archive(problem_.dt, problem_.steps, problem_.sample_interval, problem_.gravity);
+        for (Signal& signal : signals_) archive(signal.amplitude);
+        if constexpr (!Archive::reads) return;
+        if (!(problem_.dt > 0 && problem_.dt < infinity) || problem_.sample_interval < 1)
+            throw std::invalid_argument("the state is damaged");
+        compute_transitions();
+        for (ContactLoop& loop : contact_loops_) loop.update_step();
     }
 
     // Reads a saved state. Throws if it is not a state of this case; the object must not be used after that.

@@ -22,6 +22,11 @@ protected:
     real last_jump_ =
         0; // time of the last jump of a force or its rate, except by contacts that began at rest
 
+    template <class Archive> void serialize(Archive& a) {
+        RunState::serialize(a);
+        a(rest_speed_, largest_impact_speed_, last_jump_);
+    }
+
     // ---- first touch
 
     void begin_contact_at(int c) {

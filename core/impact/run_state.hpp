@@ -23,6 +23,7 @@ protected:
     System system_;
     std::vector<Phase> phase_;
     std::vector<Released> released_;
+    real until_; // time at which the run pauses or ends
     std::size_t next_sample_ = 0;
     bool contact_ended_ = false; // at the current time
     Result result_;
@@ -33,7 +34,7 @@ protected:
     Phase& phase(int c) { return phase_[static_cast<std::size_t>(c)]; }
     bool hard() const { return problem_.settings.method == Method::newton; }
     bool running() const { return result_.status == Status::finished; }
-    real next_stop() const { return std::min(loads_.next_knot(), problem_.settings.duration); }
+    real next_stop() const { return std::min(loads_.next_knot(), until_); }
 
     void fail(Status status, int c = -1, real value = 0) {
         result_.status = status;
@@ -98,12 +99,19 @@ protected:
         if (contact(c).below == wall) force_[damper_of(c)] -= force;
     }
 
+    // Writes or reads all that the next event needs, in a fixed order.
+    template <class Archive> void serialize(Archive& a) {
+        a(state_.t, state_.y, ledger_.load_work, ledger_.base_work, ledger_.viscous, ledger_.normal,
+          ledger_.plastic, phase_, released_, system_.active, system_.stuck, contact_ended_, result_.status,
+          result_.impacts);
+    }
+
 public:
     RunState(const Problem& problem, const std::atomic<bool>* stop)
         : problem_(problem), stop_(stop), loads_(problem.loads), state_(problem), scratch_(problem),
           ledger_(problem), sampled_(problem), flight_(problem), system_(problem),
-          phase_(problem.contacts.size(), Phase::open), result_(problem), stored_(problem.dampers.size()),
-          force_(problem.dampers.size()) {}
+          phase_(problem.contacts.size(), Phase::open), until_(problem.settings.duration), result_(problem),
+          stored_(problem.dampers.size()), force_(problem.dampers.size()) {}
 };
 
 } // namespace rattlebox

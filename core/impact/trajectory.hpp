@@ -9,7 +9,7 @@
 
 namespace rattlebox {
 
-class Trajectory : ClosedContacts {
+class Trajectory : protected ClosedContacts {
     std::vector<char> is_watched_, is_pressing_;
     State flight_end_; // state at the end of a flight
 
@@ -95,22 +95,18 @@ class Trajectory : ClosedContacts {
         return true;
     }
 
-public:
-    Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
-        : ClosedContacts(problem, stop), is_watched_(problem.contacts.size()), flight_end_(problem) {}
-
-    Result run() {
+protected:
+    // Finds the contacts that touch at the start.
+    void find_touching() {
         for (int c = 0; c < problem_.contact_count(); ++c) {
             const Gap g = gap(problem_, contact(c), state_.y.data());
             if (g.value <= 0 && g.rate == 0) phase(c) = Phase::touching;
         }
-        if (sample_due(0)) {
-            ++next_sample_;
-            clear_contact_samples();
-            sampled_ = ledger_;
-            record(0, state_, sampled_);
-        }
-        while (running() && state_.t < problem_.settings.duration) {
+    }
+
+    // Continues until the time `until_`, or until the run stops early.
+    void advance() {
+        while (running() && state_.t < until_) {
             if (state_.t >= loads_.next_knot()) loads_.advance(state_.t);
             if (++result_.counts.events > problem_.settings.max_events)
                 fail(Status::too_many_events);
@@ -122,6 +118,21 @@ public:
                 integrate_closed();
         }
         result_.stopped_at = state_.t;
+    }
+
+public:
+    Trajectory(const Problem& problem, const std::atomic<bool>* stop = nullptr)
+        : ClosedContacts(problem, stop), is_watched_(problem.contacts.size()), flight_end_(problem) {}
+
+    Result run() {
+        find_touching();
+        if (sample_due(0)) {
+            ++next_sample_;
+            clear_contact_samples();
+            sampled_ = ledger_;
+            record(0, state_, sampled_);
+        }
+        advance();
         return std::move(result_);
     }
 };

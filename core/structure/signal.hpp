@@ -1,8 +1,9 @@
-// Time signals of loads and base accelerations: half-sine pulse, harmonic, piecewise-linear record.
+// Time signals of loads and base accelerations: half-sine pulse, harmonic, piecewise-linear record, constant.
 //
 //     half-sine   amplitude sin(pi (t - start) / duration)     start <= t < stop = start + duration
 //     harmonic    amplitude sin(frequency t + phase)           start <= t < stop
 //     record      straight lines through (times, values)       0 outside
+//     constant    amplitude                                    for inputs that change from step to step
 //
 // Between two knots each signal is the sum of a constant, a slope and a sine, so that flights can be
 // integrated exactly.
@@ -57,7 +58,7 @@ struct Piece {
 };
 
 struct Signal {
-    enum class Kind { half_sine, harmonic, record };
+    enum class Kind { half_sine, harmonic, record, constant };
 
     Kind kind = Kind::harmonic;
     real amplitude = 0, frequency = 0, phase = 0; // N or m/s^2, rad/s, rad
@@ -74,6 +75,10 @@ struct Signal {
             p.origin = times[after - 1];
             p.constant = values[after - 1];
             p.slope = (values[after] - values[after - 1]) / (times[after] - times[after - 1]);
+            return p;
+        }
+        if (kind == Kind::constant) {
+            p.constant = amplitude;
             return p;
         }
         if (t < start || t >= stop) return p;
@@ -118,6 +123,7 @@ struct Signal {
             const real* after = std::upper_bound(times.data, last, t);
             return after == last ? infinity : *after;
         }
+        if (kind == Kind::constant) return infinity;
         if (t < start) return start;
         return t < stop ? stop : infinity;
     }

@@ -7,9 +7,12 @@ from rattlebox._util.exceptions import DataError as DataError
 from rattlebox._util.exceptions import MissingDependency as MissingDependency
 from rattlebox._util.exceptions import RattleboxError as RattleboxError
 from rattlebox._util.exceptions import ResourceError as ResourceError
+from rattlebox._util.exceptions import StepError as StepError
 from rattlebox._util.exceptions import StoreError as StoreError
 from rattlebox.engines.simulate import simulate as simulate
 from rattlebox.engines.simulate import simulate_many as simulate_many
+from rattlebox.engines.stepper import Stepper as Stepper
+from rattlebox.engines.stepper import StepResult as StepResult
 from rattlebox.model.beams import Beam as Beam
 from rattlebox.model.case import Case as Case
 from rattlebox.model.cavities import Box as Box

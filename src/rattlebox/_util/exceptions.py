@@ -49,6 +49,10 @@ class ResourceError(RattleboxError, OSError, ValueError):
     """A resource of the machine is missing: memory, disk space, threads, instructions, workers of a cluster."""
 
 
+class StepError(RattleboxError, RuntimeError):
+    """The engine of a stepper stopped, for instance because a particle left its cavity."""
+
+
 class MissingDependency(RattleboxError, ImportError):
     """An optional library is not installed."""
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 import enum
-from typing import Annotated, Self
+from typing import Annotated, Self, overload
 
 import numpy
 import numpy.typing
@@ -1162,6 +1162,75 @@ class StoppedAt(Node):
 
     @staticmethod
     def fields() -> dict[str, Varies]: ...
+
+@overload
+def pack_case(problem: Problem, alone: bool, velocity: Sequence[float], outputs: Sequence[Sequence[float]]) -> bytes:
+    """Return the bytes of a case with impact dampers, for a stepper."""
+
+@overload
+def pack_case(problem: DemProblem, alone: bool, velocity: Sequence[float], outputs: Sequence[Sequence[float]]) -> bytes:
+    """Return the bytes of a case with particle dampers, for a stepper."""
+
+class Stepper:
+    """Dampers that are advanced step by step."""
+
+    def __init__(self, packed: bytes) -> None: ...
+
+    def advance(self, length: float, inputs: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> Status:
+        """
+        Advance by a step with accelerations of the attachment or values of the loads.
+        """
+
+    def advance_to_velocity(self, length: float, velocity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> Status:
+        """Advance by a step at whose end the attachment has this velocity."""
+
+    @property
+    def force(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]:
+        """Mean force by damper [N]."""
+
+    @property
+    def moment(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]:
+        """Mean moment by damper [N m]."""
+
+    @property
+    def work(self) -> float: ...
+
+    @property
+    def loss(self) -> float: ...
+
+    @property
+    def stored(self) -> float: ...
+
+    @property
+    def status(self) -> Status: ...
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def inputs(self) -> int: ...
+
+    @property
+    def components(self) -> int: ...
+
+    @property
+    def velocity(self) -> list[float]:
+        """Of the attachment [m/s]."""
+
+    @property
+    def displacement(self) -> list[float]:
+        """Of the attachment [m]."""
+
+    def set_gravity(self, gravity: Sequence[float]) -> None: ...
+
+    def outputs(self, velocity: bool = False) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]:
+        """Displacements or velocities of the output points."""
+
+    def save(self) -> bytes:
+        """Return the state."""
+
+    def restore(self, state: bytes) -> None:
+        """Continue from a saved state."""
 
 class Dem:
     """A simulation of particle dampers, which is advanced in portions."""

@@ -1,0 +1,191 @@
+// Dampers as a component in the time loop of another program: one exchange of motion and force in each step.
+//
+// A damper alone is driven by the acceleration of its attachment, which is constant in a step. Its engine
+// works in the frame of the attachment. With v and x the velocity and displacement of the attachment, and P
+// and S the sums of m v and m x relative to it, a step of length H from state 0 to state 1 has
+//
+//     mean force on the attachment     F = -(P1 - P0) / H + M (g - a)
+//     mean moment on it                -(L1 - L0) / H + (integral of S) x (g - a) / H
+//     energy stored                    E + P v + M v^2 / 2 - M g x
+//     work of the attachment           W + change of (P v + M v^2 / 2 - M g x)
+//
+// where E is the energy relative to the attachment and W the work of the inertial force -m a on it. The
+// integral of S is that of the cubic polynomial through S and S' = P at both ends. Dampers with their
+// structure are driven by loads; forces then follow from the same balance in the frame of the base.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "stepper/impact_engine.hpp"
+#include "stepper/particle_engine.hpp"
+
+namespace rattlebox {
+
+struct StepResult {
+    std::vector<Components> force, moment; // mean over the step, by damper; N, N m
+    real work = 0, loss = 0;               // of the step, J
+    real stored = 0;                       // at the end of the step, J
+};
+
+class Stepper {
+    std::unique_ptr<StepEngine> engine_;
+    std::uint64_t case_hash_; // of the packed case
+    real time_ = 0;
+    Components velocity_{}, displacement_{}; // of the attachment
+    StepEnd end_;
+    StepResult result_;
+    Status status_ = Status::finished;
+
+    std::size_t axes() const { return static_cast<std::size_t>(engine_->axes()); }
+    bool alone() const { return engine_->component().alone; }
+
+    // Energy of the motion of the attachment, and its part in the work.
+    real carried_energy(const StepEnd& e) const {
+        if (!alone()) return 0;
+        const Components g = engine_->gravity();
+        real sum = 0;
+        for (const DamperSums& d : e.dampers)
+            for (std::size_t a = 0; a < axes(); ++a)
+                sum += d.momentum[a] * velocity_[a] +
+                       d.mass * (0.5 * square(velocity_[a]) - g[a] * displacement_[a]);
+        return sum;
+    }
+
+    void evaluate(const StepEnd& before, real carried_before, real length, const std::vector<real>& inputs) {
+        const Components g = engine_->gravity();
+        Components net = g; // gravity less the acceleration of the frame
+        for (int l = 0; l < engine_->inputs(); ++l)
+            if (engine_->is_base(l))
+                for (std::size_t a = 0; a < axes(); ++a)
+                    net[a] -= inputs[static_cast<std::size_t>(l)] * engine_->input_direction(l)[a];
+        result_.force.assign(end_.dampers.size(), Components{});
+        result_.moment = result_.force;
+        for (std::size_t d = 0; d < end_.dampers.size(); ++d) {
+            const DamperSums &then = before.dampers[d], &now = end_.dampers[d];
+            Components moment{}; // mean of S
+            for (std::size_t a = 0; a < 3; ++a) {
+                result_.force[d][a] = (then.momentum[a] - now.momentum[a]) / length + now.mass * net[a];
+                moment[a] = 0.5 * (then.mass_moment[a] + now.mass_moment[a]) -
+                            length / 12 * (now.momentum[a] - then.momentum[a]);
+            }
+            if (axes() < 3 || !alone()) continue;
+            for (std::size_t a = 0; a < 3; ++a) {
+                const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+                result_.moment[d][a] = (then.angular_momentum[a] - now.angular_momentum[a]) / length +
+                                       moment[b] * net[c] - moment[c] * net[b];
+            }
+        }
+        const real carried = carried_energy(end_);
+        result_.work = end_.work - before.work + carried - carried_before;
+        result_.loss = end_.loss - before.loss;
+        result_.stored = stored_energy();
+    }
+
+    template <class Archive> void serialize(Archive& archive) {
+        archive(time_, velocity_, displacement_, status_, result_.force, result_.moment, result_.work,
+                result_.loss, result_.stored);
+    }
+
+public:
+    Stepper(const std::uint8_t* bytes, std::size_t size) : case_hash_(pack_hash(bytes, size)) {
+        if (packed_engine(bytes, size) == Engine::impact) {
+            PackedCase<Problem> packed;
+            read_case(packed, bytes, size);
+            engine_ = std::make_unique<ImpactEngine>(std::move(packed));
+        } else {
+            PackedCase<dem::Problem> packed;
+            read_case(packed, bytes, size);
+            engine_ = std::make_unique<ParticleEngine>(std::move(packed));
+        }
+        std::copy_n(engine_->component().velocity, 3, velocity_.begin());
+        end_ = engine_->end();
+        result_.force.resize(end_.dampers.size()), result_.moment.resize(end_.dampers.size());
+        result_.stored = stored_energy();
+    }
+
+    bool is_alone() const { return alone(); }
+    int components() const { return engine_->axes(); }
+    int inputs() const { return engine_->inputs(); }
+    int dampers() const { return static_cast<int>(end_.dampers.size()); }
+    int outputs() const { return static_cast<int>(engine_->component().rows.size()); }
+    real time() const { return time_; }
+    Components velocity() const { return velocity_; }         // of the attachment
+    Components displacement() const { return displacement_; } // of the attachment
+    Status status() const { return status_; }
+    const StepResult& result() const { return result_; }
+
+    real stored_energy() const { return end_.kinetic + end_.elastic + end_.potential + carried_energy(end_); }
+
+    // Displacement or velocity of an output point at the end of the step.
+    real output(int i, bool rate) const {
+        const auto& row = engine_->component().rows.at(static_cast<std::size_t>(i));
+        const auto& modes = rate ? end_.velocity : end_.displacement;
+        real sum = 0;
+        for (std::size_t k = 0; k < row.size(); ++k) sum += row[k] * modes[k];
+        return sum;
+    }
+
+    void set_gravity(Components g) { engine_->set_gravity(g); }
+
+    // Advances by a step. `inputs` are the accelerations of the attachment (damper alone) or the values of
+    // the loads, all constant in the step.
+    Status advance(real length, const real* inputs) {
+        if (status_ != Status::finished) return status_;
+        if (!(length > 0 && length < infinity))
+            throw std::invalid_argument("a step must be longer than zero, and finite");
+        const std::vector<real> given(inputs, inputs + engine_->inputs());
+        for (const real value : given)
+            if (!(std::fabs(value) < infinity)) throw std::invalid_argument("an input is not finite");
+        const StepEnd before = end_;
+        const real carried = carried_energy(before);
+        status_ = engine_->advance(length, given.data());
+        time_ += length;
+        if (status_ != Status::finished) return status_;
+        end_ = engine_->end();
+        if (alone())
+            for (std::size_t a = 0; a < axes(); ++a) {
+                displacement_[a] += length * (velocity_[a] + 0.5 * length * given[a]);
+                velocity_[a] += length * given[a];
+            }
+        evaluate(before, carried, length, given);
+        return status_;
+    }
+
+    // Advances by a step at whose end the attachment has the velocity v.
+    Status advance_to_velocity(real length, const real* v) {
+        real acceleration[3] = {};
+        for (std::size_t a = 0; a < axes(); ++a) acceleration[a] = (v[a] - velocity_[a]) / length;
+        const Status status = advance(length, acceleration);
+        for (std::size_t a = 0; a < axes(); ++a) velocity_[a] = v[a]; // without rounding
+        return status;
+    }
+
+    // Returns the state: hash of the packed case, hash of the content, content.
+    std::vector<std::uint8_t> save() {
+        Sizer size;
+        serialize(size);
+        Writer content(size.bytes);
+        serialize(content);
+        engine_->save(content);
+        Writer whole(content.bytes.size() + 16);
+        whole(case_hash_, pack_hash(content.bytes.data(), content.bytes.size()));
+        whole.bytes.insert(whole.bytes.end(), content.bytes.begin(), content.bytes.end());
+        return std::move(whole.bytes);
+    }
+
+    // Continues from a saved state. Throws, without a change, if it is damaged or of another case.
+    void restore(const std::uint8_t* bytes, std::size_t size) {
+        Reader reader(reinterpret_cast<const char*>(bytes), size);
+        std::uint64_t case_hash, content_hash;
+        reader(case_hash, content_hash);
+        if (case_hash != case_hash_) throw std::invalid_argument("the state is of another case");
+        if (content_hash != pack_hash(bytes + 16, size - 16))
+            throw std::invalid_argument("the state is damaged");
+        serialize(reader);
+        engine_->restore(reader);
+        end_ = engine_->end();
+    }
+};
+
+} // namespace rattlebox

@@ -1,0 +1,260 @@
+"""Dampers in the time loop of another program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox._util.exceptions import CaseError, StepError
+from rattlebox.core import _core
+from rattlebox.model.case import Case
+from rattlebox.model.dampers import ImpactDamper
+from rattlebox.model.errors import Hint
+from rattlebox.model.particle_damper import ParticleDamper
+from rattlebox.model.signals import Signal
+from rattlebox.model.structures import Fixed, Shaker
+from rattlebox.model.units import in_si
+from rattlebox.prepare.component import damper_case, pack_component
+
+from .status import describe
+
+
+@dataclass(frozen=True)
+class StepResult:
+    """What a damper did in one step.
+
+    Attributes
+    ----------
+    force
+        Mean force of the damper on the structure: impulse / length of the step [N]. A number for an impact damper alone,
+        (3,) for a particle damper alone; with a structure (dampers,) or (dampers, 3).
+    moment
+        Mean moment on the structure about the attachment [N m], (3,); zero for impact dampers, whose balls move along a line
+        through it. Only for a damper alone.
+    work
+        Work done in the step [J]: by the attachment on the damper, or by the loads on the structure.
+    loss
+        Energy lost in the step [J].
+    stored
+        Energy stored at the end of the step [J]: kinetic, elastic and potential, in the frame of the base.
+    """
+
+    force: Any
+    moment: NDArray[np.float64]
+    work: float
+    loss: float
+    stored: float
+
+
+class Stepper:
+    """A damper, or a structure with dampers, that another program advances step by step.
+
+    Parameters
+    ----------
+    system
+        A damper alone: `advance` takes the motion of its attachment and returns the force on it. Or a case: its loads and
+        base accelerations are the inputs of `advance`, and the motion of its points the outputs. A case with the structure
+        `Fixed` or `Shaker` counts as a damper alone.
+    method
+        Method for a damper alone; default that of `Case`.
+    motion
+        Largest expected motion of the attachment of a particle damper, a signal as in `Shaker`. The softening and the time
+        step are chosen for it.
+    structure_mass
+        Effective mass of the structure at the attachment of an impact damper [kg]; default rigid. The dashpots of the
+        contacts are adjusted to it, as `simulate` does.
+    velocity
+        Initial velocity of the attachment [m/s], a number or three components for particles; default 0. Balls and particles
+        start with their own velocity, whatever that of the attachment.
+
+    Raises
+    ------
+    CaseError
+        If the case is not valid or its method has no stepper.
+
+    See Also
+    --------
+    simulate : Runs a case as a whole, which is more accurate and faster.
+
+    Notes
+    -----
+    The acceleration of the attachment, and each load, is constant in a step. For a smooth motion the error decreases with
+    the square of the step. Contacts continue from one step to the next.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> ball = rb.Sphere(radius="10 mm", material="steel")
+    >>> damper = rb.ImpactDamper(ball=ball, gap="2 mm", contact=rb.Tsuji(restitution=0.6))
+    >>> stepper = rb.Stepper(damper)
+    >>> stepper.advance(0.01, velocity=0.3).force  # the ball does not touch yet
+    0.0
+    >>> stepper.advance(0.02, velocity=0.3).force < 0  # it has hit the trailing wall
+    True
+    """
+
+    def __init__(
+        self,
+        system: Case | ImpactDamper | ParticleDamper,
+        *,
+        method: Any = None,
+        motion: Signal | None = None,
+        structure_mass: Any = None,
+        velocity: Any = 0.0,
+    ) -> None:
+        if isinstance(system, Case):
+            for name, given in (("method", method), ("motion", motion), ("structure_mass", structure_mass)):
+                if given is not None:
+                    raise Hint(
+                        f"{name} belongs to a damper alone; a case has its own", f"Stepper(case.damper, {name}=...)"
+                    )
+            case, alone = system, isinstance(system.structure, Fixed | Shaker)
+        else:
+            case, alone = damper_case(system, method, motion, structure_mass, "1 s"), True
+        start = np.asarray(in_si(velocity, "m/s"), dtype=np.float64)
+        self._packed = pack_component(case, alone=alone, velocity=start)
+        if not alone and start.any():
+            raise Hint("velocity belongs to a damper alone", "the initial velocity of the structure")
+        self._case = case
+        self._core = _core.Stepper(self._packed.data)
+        self._check()
+
+    @property
+    def time(self) -> float:
+        """Time at the end of the last step [s]."""
+        return float(self._core.time)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs: the accelerations of the attachment, or the loads and base accelerations of the case."""
+        return self._packed.inputs
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Names of the points whose motion is an output; none for a damper alone."""
+        return self._packed.outputs
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was chosen for the case, such as its softening."""
+        return self._packed.notes
+
+    def advance(self, to: Any, *, velocity: Any = None, acceleration: Any = None, loads: Any = None) -> StepResult:
+        """Advance to a time.
+
+        Parameters
+        ----------
+        to
+            Time at the end of the step [s]; after the current time.
+        velocity
+            Velocity of the attachment at the end of the step [m/s], for a damper alone: a number, or three components for
+            particles.
+        acceleration
+            Acceleration of the attachment during the step [m/s^2], instead of the velocity.
+        loads
+            Mean value of each load and base acceleration during the step [N], [m/s^2], for a case with a structure.
+
+        Returns
+        -------
+        StepResult
+            Mean force and moment, work, loss, and stored energy.
+
+        Raises
+        ------
+        CaseError
+            If the time is not after the current one, or an input is missing or not finite.
+        StepError
+            If the engine stopped, for instance because a particle left its cavity. The stepper cannot continue; an earlier
+            state can be restored.
+        """
+        length = float(to if isinstance(to, float) else in_si(to, "s")) - self.time
+        if not 0 < length < np.inf:
+            raise Hint(
+                f"to = {to}: the time is {self.time:.6g} s; a step must end after it", f"to = {self.time + 1e-4:.6g}"
+            )
+        given = {"velocity": velocity, "acceleration": acceleration, "loads": loads}
+        chosen = [name for name, value in given.items() if value is not None]
+        allowed = ("velocity", "acceleration") if self._packed.alone else ("loads",)
+        if len(chosen) != 1 or chosen[0] not in allowed:
+            raise Hint(
+                f"a step of this stepper needs {' or '.join(allowed)}, and is given {' and '.join(chosen) or 'nothing'}",
+                f"advance(to, {allowed[0]}=...)",
+            )
+        values = self._inputs(chosen[0], given[chosen[0]])
+        if velocity is None:
+            self._core.advance(length, values)
+        else:
+            self._core.advance_to_velocity(length, values)
+        self._check()
+        return self._result()
+
+    def displacement(self, point: str | None = None) -> Any:
+        """Return the displacement at the end of the last step [m]: of a point, or of the attachment of a damper alone.
+
+        Parameters
+        ----------
+        point
+            Name of a point; None for the only one.
+
+        Returns
+        -------
+        float or (3,) array
+            Three components for particle dampers.
+        """
+        return self._motion(point, velocity=False)
+
+    def velocity(self, point: str | None = None) -> Any:
+        """Return the velocity at the end of the last step [m/s], like `displacement`."""
+        return self._motion(point, velocity=True)
+
+    def save(self) -> bytes:
+        """Return the state. A stepper that restores it continues with the same bits."""
+        return bytes(self._core.save())
+
+    def restore(self, state: bytes) -> None:
+        """Continue from a saved state of the same case.
+
+        Raises
+        ------
+        CaseError
+            If the state is damaged or belongs to another case; the stepper does not change then.
+        """
+        try:
+            self._core.restore(state)
+        except ValueError as error:
+            raise CaseError(f"{error}", "a state that save() of a stepper of the same case returned") from None
+
+    def _inputs(self, name: str, value: Any) -> NDArray[np.float64]:
+        unit = {"velocity": "m/s", "acceleration": "m/s^2"}.get(name)
+        values = np.atleast_1d(np.asarray(value if unit is None else in_si(value, unit), dtype=np.float64))
+        if values.shape != (len(self.inputs),):
+            raise Hint(
+                f"{name} has the shape {values.shape}; a step needs {len(self.inputs)}: {', '.join(self.inputs)}",
+                f"{name} = {'0.1' if len(self.inputs) == 1 else [0.1] * len(self.inputs)}",
+            )
+        if not np.isfinite(values).all():
+            raise Hint(f"{name} = {value}: inputs must be finite", "a shorter step, or another coupling")
+        return np.ascontiguousarray(values)
+
+    def _motion(self, point: str | None, *, velocity: bool) -> Any:
+        if self._packed.alone:
+            values = np.array(self._core.velocity if velocity else self._core.displacement)[: self._packed.axes]
+        else:
+            index = self.points.index(self._case.modes.point(point))
+            values = self._core.outputs(velocity).reshape(-1, self._packed.axes)[index]
+        return float(values[0]) if self._packed.axes == 1 else values
+
+    def _result(self) -> StepResult:
+        force: Any = self._core.force[:, 0] if self._packed.axes == 1 else self._core.force
+        if self._packed.alone:
+            force = float(force[0]) if self._packed.axes == 1 else force[0]
+        return StepResult(force, self._core.moment[0], self._core.work, self._core.loss, self._core.stored)
+
+    def _check(self) -> None:
+        status = self._core.status
+        if status != _core.Status.finished:
+            name, message = describe(status, self.time, "A contact", float("nan"), self._case.method.kind)
+            raise StepError(f"the stepper stopped at t = {self.time:.6g} s ({name}). {message}")

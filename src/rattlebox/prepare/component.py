@@ -1,0 +1,192 @@
+"""Packed cases for steppers: dampers as a component in the time loop of another program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rattlebox.core import _core
+from rattlebox.model.case import Case
+from rattlebox.model.dampers import ImpactDamper
+from rattlebox.model.errors import Hint
+from rattlebox.model.methods import TwoStep
+from rattlebox.model.particle_damper import ParticleDamper
+from rattlebox.model.signals import Signal
+from rattlebox.model.structures import SDOF, Fixed, Shaker
+
+from .pack import pack
+from .particles import pack_particles, prepare
+
+IDLE = _core.Harmonic(amplitude=0.0, frequency=0.0, phase=0.0, start=0.0, stop=0.0)
+"""Signal of an input, whose values come with the steps."""
+
+
+@dataclass(frozen=True)
+class PackedComponent:
+    """A case as a component.
+
+    Attributes
+    ----------
+    data
+        The packed case: the bytes that `core/rattlebox.h` reads.
+    alone
+        Whether it is a damper alone, driven by the motion of its attachment.
+    inputs
+        Names of the inputs: components of the acceleration of the attachment, or the loads of the case.
+    outputs
+        Names of the points whose motion is an output; none for a damper alone.
+    dampers
+        Names of the dampers.
+    axes
+        1 for impact dampers, 3 for particle dampers.
+    notes
+        What was chosen for the case.
+    """
+
+    data: bytes
+    alone: bool
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    dampers: tuple[str, ...]
+    axes: int
+    notes: tuple[str, ...]
+
+
+def damper_case(
+    damper: ImpactDamper | ParticleDamper, method: Any, motion: Signal | None, structure_mass: Any, duration: Any
+) -> Case:
+    """Return the case of a damper alone.
+
+    Parameters
+    ----------
+    damper
+        The damper.
+    method
+        Method of the engine; None for the default.
+    motion
+        Largest expected motion of the attachment, from which the softening and the time step of particles are chosen; None
+        for a short fall under gravity.
+    structure_mass
+        Effective mass of the structure at the attachment [kg], or None for a rigid one. The dashpots of impact dampers are
+        adjusted to it.
+    duration
+        Duration that the step must suit [s].
+
+    Raises
+    ------
+    CaseError
+        If `structure_mass` is given for particles, or together with `motion`.
+    """
+    structure: SDOF | Shaker | Fixed = Fixed() if motion is None else Shaker(motion=motion)
+    if structure_mass is not None:
+        if isinstance(damper, ParticleDamper):
+            raise Hint(
+                "structure_mass adjusts the contacts of impact dampers; particles are light against the structure",
+                "leave it out",
+            )
+        structure = SDOF(mass=structure_mass, stiffness=0)
+    return Case(
+        structure=structure, dampers=(damper,), duration=duration, **({} if method is None else {"method": method})
+    )
+
+
+def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedComponent:
+    """Pack a case for a stepper.
+
+    Parameters
+    ----------
+    case
+        The case. Its loads and base accelerations become inputs.
+    alone
+        Whether only the damper is packed; the structure then only adjusts the laws of the contacts.
+    velocity
+        Initial velocity of the attachment of a damper alone [m/s]: a number, or three components for particles.
+
+    Raises
+    ------
+    CaseError
+        If the case has several dampers and no structure, or its method has no stepper.
+    """
+    if isinstance(case.method, TwoStep):
+        raise Hint("the two-step method has no stepper", "method = EventDriven() or Newton()")
+    if alone and len(case.dampers) != 1:
+        raise Hint(f"a damper alone is needed, but the case has {len(case.dampers)}", "a stepper for each of them")
+    return _particles(case, alone, velocity) if case.particle_dampers else _impact(case, alone, velocity)
+
+
+def _impact(case: Case, alone: bool, velocity: float) -> PackedComponent:
+    problem = pack(case)
+    if alone:
+        nothing = np.zeros(0)
+        (damper,) = problem.dampers
+        problem = problem.replace(
+            mode_decay=nothing,
+            mode_stiffness=nothing,
+            mode_coupling=nothing,
+            mode_displacement=nothing,
+            mode_velocity=nothing,
+            dampers=[damper.replace(shape=nothing, velocity=np.asarray(damper.velocity) - velocity)],
+            loads=[_core.Load(signal=IDLE, shape=nothing, base=True)],
+        )
+    points = () if alone else tuple(name for name in case.modes.shapes if name not in case.modes.spatial)
+    rows = [list(map(float, case.modes.shape(name))) for name in points]
+    data = _core.pack_case(_idle(problem), alone, (float(velocity), 0.0, 0.0), rows)
+    return PackedComponent(
+        data,
+        alone,
+        _inputs(case, alone, 1),
+        points,
+        _names(case),
+        1,
+        (),
+    )
+
+
+def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
+    prepared = prepare(case)
+    problem = pack_particles(prepared)
+    start = np.zeros(3)
+    if alone:
+        start[:] = velocity
+        nothing = np.zeros(0)
+        (cavity,) = problem.cavities
+        problem = problem.replace(
+            mode_decay=nothing,
+            mode_stiffness=nothing,
+            mode_coupling=nothing,
+            mode_displacement=nothing,
+            mode_velocity=nothing,
+            cavities=[cavity.replace(shape=np.zeros((0, 3)), velocity=np.asarray(cavity.velocity) - start)],
+            loads=[_core.Load(signal=IDLE, shape=nothing, base=True)] * 3,
+            load_directions=np.eye(3),
+        )
+    points = () if alone else tuple(case.modes.shapes)
+    line = case.particle_dampers[0].direction  # of points that move along a line
+    rows = [list(map(float, row)) for name in points for row in case.modes.space_shape(name, line).T]
+    data = _core.pack_case(_idle(problem), alone, tuple(start), rows)
+    return PackedComponent(
+        data,
+        alone,
+        _inputs(case, alone, 3),
+        points,
+        _names(case),
+        3,
+        prepared.notes,
+    )
+
+
+def _idle(problem: Any) -> Any:
+    return problem.replace(loads=[load.replace(signal=IDLE) for load in problem.loads])
+
+
+def _names(case: Case) -> tuple[str, ...]:
+    return tuple(damper.label(index) for index, damper in enumerate(case.dampers))
+
+
+def _inputs(case: Case, alone: bool, axes: int) -> tuple[str, ...]:
+    if alone:
+        return ("acceleration",) if axes == 1 else ("acceleration_x", "acceleration_y", "acceleration_z")
+    base = [f"base_{number}" for number, _ in enumerate(case.base_acceleration(), 1)]
+    return (*(f"load_{number}" for number, _ in enumerate(case.loads, 1)), *base)

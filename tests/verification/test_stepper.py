@@ -1,0 +1,371 @@
+"""Steppers against whole runs, balances of momentum and energy, and their own saved states."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+
+FREQUENCY, AMPLITUDE = 20.0, 2e-3
+RATE = 2 * np.pi * FREQUENCY
+MOTION = rb.Harmonic(amplitude=f"{AMPLITUDE} m", frequency=f"{FREQUENCY} Hz")
+TSUJI = rb.Tsuji(restitution=0.6)
+
+
+def ball(**changes: Any) -> rb.ImpactDamper:
+    """A ball with room to fly."""
+    given = {"ball": rb.Sphere(radius="10 mm", material="steel"), "gap": "2 mm", "contact": TSUJI}
+    return rb.ImpactDamper(**{**given, **changes})
+
+
+def box(count: int = 200, **changes: Any) -> rb.ParticleDamper:
+    """A box of balls."""
+    given = {
+        "particles": rb.Particles(material="steel", diameter="6 mm", count=count),
+        "cavity": rb.Box(size=("50 mm", "50 mm", "50 mm")),
+        "contact": rb.Tsuji(restitution=0.75),
+        "softening": 1e3,
+    }
+    return rb.ParticleDamper(**{**given, **changes})
+
+
+def speed(time: float) -> float:
+    """Velocity of the shaker [m/s]."""
+    return AMPLITUDE * RATE * float(np.cos(RATE * time))
+
+
+def run_shaken(damper: Any, duration: float, **changes: Any) -> rb.Run:
+    """Run a damper on the shaker."""
+    return rb.simulate(
+        rb.Case(structure=rb.Shaker(motion=MOTION), damper=damper, duration=duration, **changes), progress=False
+    )
+
+
+# ---- impact dampers
+
+
+def driven_ball(steps: int, duration: float, **options: Any) -> tuple[float, float, float]:
+    """Return the velocity of the ball, the loss, and the residual of the energy over the loss, after steps."""
+    damper = ball(velocity=speed(0))
+    stepper = rb.Stepper(damper, velocity=speed(0), **options)
+    mass, start = float(damper.masses[0]), stepper.advance(1e-9, velocity=speed(1e-9)).stored
+    velocity, work, loss, stored = speed(0), 0.0, 0.0, start
+    for time in 1e-9 + (duration - 1e-9) * np.arange(1, steps + 1) / steps:
+        before = stepper.time
+        result = stepper.advance(time, velocity=speed(time))
+        velocity -= result.force * (stepper.time - before) / mass
+        work, loss, stored = work + result.work, loss + result.loss, result.stored
+    return velocity, loss, (stored - start - work + loss) / loss
+
+
+@pytest.mark.parametrize("method", [rb.EventDriven(), rb.Newton()])
+def test_driven_ball_converges_to_the_whole_run(method: Any) -> None:
+    """Driven by the shaker's velocity, the tenth impact is reached with second order, and the energy balance closes."""
+    times = run_shaken(ball(), 0.3, method=method).impacts["time"].values
+    duration = round(float(times[9] + times[10]) / 2, 6)
+    whole = run_shaken(ball(), duration, method=method)
+    assert whole.impacts.sizes["impact"] == 10
+    expected = float(whole.motion.ball_velocity.values[-1].item()) + speed(duration)
+    loss = float(whole.impacts["energy_lost"].sum())
+    errors = []
+    for steps in (1000, 4000, 16000):
+        velocity, lost, residual = driven_ball(steps, duration, method=method)
+        assert abs(residual) < 1e-10
+        errors.append((abs(velocity - expected), abs(lost / loss - 1)))
+    assert max(errors[-1]) < 1e-6
+    orders = np.log(np.array(errors)[:-1] / np.array(errors)[1:]) / np.log(4)
+    assert (orders > 1.6).all()
+    assert (orders < 2.6).all()
+
+
+def test_own_loop_converges_to_the_whole_run() -> None:
+    """A mass on a spring in a loop of its own, with the ball as a stepper, approaches the coupled run."""
+    structure = rb.SDOF(mass="1 kg", frequency="10 Hz", displacement="5 mm")
+    damper = ball(gap="3 mm")
+    case = rb.Case(structure=structure, damper=ball(gap="3 mm", start="5 mm"), duration="0.25 s")
+    whole = rb.simulate(case, progress=False)
+    assert whole.impacts.sizes["impact"] >= 4
+    stiffness, errors = (2 * np.pi * 10) ** 2, []
+    for steps in (4000, 16000, 64000):
+        stepper = rb.Stepper(damper, structure_mass="1 kg")
+        x, v, force, h = 5e-3, 0.0, 0.0, 0.25 / steps
+        for k in range(1, steps + 1):
+            v += 0.5 * h * (force - stiffness * x)
+            x += h * v
+            force = stepper.advance(k * h, velocity=v).force
+            v += 0.5 * h * (force - stiffness * x)
+        errors.append(abs(x - float(whole.motion.displacement.values[-1].item())))
+    assert errors[-1] < 2e-6
+    assert errors[0] > 3 * errors[-1]
+
+
+def test_a_contact_continues_in_the_next_step() -> None:
+    """With steps much shorter than the contact the impulse adds up to that of the impact."""
+    damper = ball(velocity="0.5 m/s")
+    mass = float(damper.masses[0])
+    stepper, impulse, pushed = rb.Stepper(damper), 0.0, 0
+    for k in range(1, 5001):
+        force = stepper.advance(k * 1e-6, acceleration=0.0).force
+        impulse, pushed = impulse + force * 1e-6, pushed + (abs(force) > 1e-6)
+    assert 20 < pushed < 100
+    assert impulse == pytest.approx(mass * 0.5 * 1.6, rel=1e-6)
+
+
+def test_a_row_with_gravity_rests_on_the_wall() -> None:
+    """At rest on the lower wall, the mean force of a row of balls is its weight."""
+    damper = ball(ball=[rb.Sphere(radius="10 mm", material="steel")] * 3, gravity="9.81 m/s^2")
+    stepper = rb.Stepper(damper)
+    for k in range(1, 40):
+        result = stepper.advance(0.05 * k, acceleration=0.0)
+    assert result.force == pytest.approx(9.81 * float(np.sum(damper.masses)), rel=1e-6)
+
+
+# ---- particle dampers
+
+
+def test_shaken_box_has_the_statistics_of_the_whole_run() -> None:
+    """Loss, force and moment of 200 shaken balls agree with the whole run within their scatter."""
+    damper, periods = box(), 20
+    motion = rb.Harmonic(amplitude="4 mm", frequency="25 Hz")
+    period = 1 / 25
+    whole = rb.simulate(
+        rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration=periods * period), progress=False
+    )
+    energy = np.interp(np.arange(periods + 1) * period, whole.energy.time, whole.energy.losses)
+    per_period = np.diff(energy)[5:]
+    stepper = rb.Stepper(damper, motion=motion)
+    top, h = 4e-3 * 2 * np.pi * 25, period / 100
+    result, losses, forces, moments, work, start = None, [], [], [], 0.0, None
+    for k in range(1, periods * 100 + 1):
+        result = stepper.advance(k * h, velocity=(top * (np.cos(2 * np.pi * 25 * k * h) - 1), 0, 0))
+        start = result.stored - result.work + result.loss if start is None else start
+        work += result.work
+        losses.append(result.loss)
+        forces.append(result.force)
+        moments.append(result.moment)
+    own = np.sum(np.reshape(losses, (periods, 100)), axis=1)[5:]
+    scatter = np.hypot(own.std(), per_period.std()) / np.sqrt(own.size)
+    assert abs(own.mean() - per_period.mean()) < 4 * scatter + 0.02 * per_period.mean()
+    weight = -9.81 * float(whole.motion.particle_mass.sum())
+    assert np.mean(forces[500:], axis=0)[2] == pytest.approx(weight, rel=0.02)
+    late = whole.motion.sel(time=slice(5 * period, None))
+    mean = late.cavity_moment.mean("time").values.ravel()
+    spread = late.cavity_moment.std("time").values.ravel() / np.sqrt(15)
+    assert (np.abs(np.mean(moments[500:], axis=0) - mean) < 4 * spread).all()
+    assert result is not None
+    assert abs(result.stored - start - work + sum(losses)) < 0.01 * sum(losses)
+
+
+def test_momentum_is_kept_in_free_flight() -> None:
+    """Particles that touch nothing exert no force and no moment, however the cavity moves."""
+    positions = [(0, 0, 0), (0.012, 0, 0.003)]
+    damper = box(2, gravity=(0, 0, 0), packing=rb.Positions(positions=positions, velocities=[(0.1, 0, 0), (0, 0.2, 0)]))
+    stepper = rb.Stepper(damper)
+    start = stepper.advance(1e-5, acceleration=(0, 0, 0)).stored
+    time = 1e-5
+    for k, length in enumerate((1e-3, 3.3e-4, 2e-3, 1e-4, 1e-3)):
+        time += length
+        result = stepper.advance(time, acceleration=(30 * (-1) ** k, 5, -4))
+        mass = float(np.sum(damper.contents.mass))
+        assert np.abs(result.force).max() < 1e-9 * mass * 30
+        assert np.abs(result.moment).max() < 1e-12
+        assert result.stored == pytest.approx(start, rel=1e-9)
+
+
+def test_steps_are_only_pauses_while_the_inputs_stay() -> None:
+    """Without a change of the inputs, short steps have the energies of long ones."""
+    one, many = rb.Stepper(box(60), motion=MOTION), rb.Stepper(box(60), motion=MOTION)
+    step = 2e-4
+    whole = [one.advance(10 * step * k, acceleration=(0.0, 0.0, 2.0)) for k in (1, 2)]
+    parts = [many.advance(step * k, acceleration=(0.0, 0.0, 2.0)) for k in range(1, 21)]
+    assert parts[-1].stored == pytest.approx(whole[-1].stored, rel=1e-6)
+    assert sum(part.work for part in parts) == pytest.approx(sum(part.work for part in whole), rel=1e-6)
+
+
+# ---- both
+
+
+def steppers() -> dict[str, rb.Stepper]:
+    """One of each engine, alone and with a structure."""
+    beam = rb.SDOF(mass="1 kg", frequency="15 Hz", damping_ratio=0.01)
+    pulse = rb.HalfSine(amplitude="50 N", duration="10 ms")
+    return {
+        "ball": rb.Stepper(ball()),
+        "hard ball": rb.Stepper(ball(), method=rb.Newton()),
+        "box": rb.Stepper(box(50), motion=MOTION),
+        "structure with ball": rb.Stepper(rb.Case(structure=beam, damper=ball(), load=pulse, duration="1 s")),
+        "structure with box": rb.Stepper(rb.Case(structure=beam, damper=box(50), load=pulse, duration="0.5 s")),
+    }
+
+
+NAMES = ("ball", "hard ball", "box", "structure with ball", "structure with box")
+
+
+def advance(stepper: rb.Stepper, steps: int, seed: Any = 3) -> list[bytes]:
+    """Advance by steps of random lengths with random inputs and return every bit of the results."""
+    random, seen = np.random.default_rng(seed), []
+    for _ in range(steps):
+        to, values = stepper.time + random.uniform(1e-4, 3e-3), random.normal(size=len(stepper.inputs))
+        given = {"loads": 60 * values} if stepper.points else {"acceleration": 60 * values}
+        r = stepper.advance(to, **given)
+        seen.append(np.hstack([np.ravel(r.force), r.moment, r.work, r.loss, r.stored]).tobytes())
+    return seen
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_restored_states_continue_with_the_same_bits(name: str) -> None:
+    """A state that was saved in the middle of contacts continues with the same bits, in the same and in another stepper."""
+    one, other = steppers()[name], steppers()[name]
+    advance(one, 40, seed=1)
+    state = one.save()
+    expected = advance(one, 40)
+    one.restore(state)
+    assert one.save() == state
+    assert advance(one, 40) == expected
+    advance(other, 7, seed=5)
+    other.restore(state)
+    assert advance(other, 40) == expected
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_damaged_and_foreign_states_are_refused(name: str) -> None:
+    """A state that is cut, changed or of another case raises an error, and the stepper continues as if nothing was."""
+    stepper, twin = steppers()[name], steppers()[name]
+    advance(stepper, 5), advance(twin, 5)
+    state = stepper.save()
+    foreign = rb.Stepper(ball(gap="1 mm")).save()
+    for bad in (
+        b"",
+        state[:10],
+        state[:-8],
+        state + b"\0" * 8,
+        state[:40] + bytes([state[40] ^ 1]) + state[41:],
+        foreign,
+    ):
+        with pytest.raises(rb.CaseError):
+            stepper.restore(bad)
+    assert advance(stepper, 5) == advance(twin, 5)
+
+
+@pytest.mark.parametrize("name", ["structure with ball", "structure with box"])
+def test_the_energy_of_a_structure_is_balanced(name: str) -> None:
+    """With a structure, the work of the loads is lost or stored."""
+    stepper, work, loss, start = steppers()[name], 0.0, 0.0, None
+    for k in range(1, 401):
+        r = stepper.advance(2.5e-4 * k, loads=[40.0 * np.sin(90 * 2.5e-4 * k)])
+        start = r.stored - r.work + r.loss if start is None else start
+        work, loss = work + r.work, loss + r.loss
+    assert loss > 0
+    assert abs(r.stored - start - work + loss) < 0.01 * abs(work)
+
+
+def test_a_structure_follows_its_loads_like_the_whole_run() -> None:
+    """A structure with a ball under a load that is constant in steps approaches the run with the smooth load."""
+    load = rb.Harmonic(amplitude="20 N", frequency="9 Hz")
+    structure = rb.SDOF(mass="1 kg", frequency="10 Hz", damping_ratio=0.01)
+    case = rb.Case(structure=structure, damper=ball(gap="1 mm"), load=load, duration="0.3 s")
+    whole = rb.simulate(case, progress=False)
+    expected, errors = float(whole.motion.displacement.values[-1].item()), []
+    for steps in (1500, 6000):
+        stepper, h = rb.Stepper(case), 0.3 / steps
+        for k in range(steps):
+            stepper.advance((k + 1) * h, loads=[20 * np.sin(2 * np.pi * 9 * (k + 0.5) * h)])
+        errors.append(abs(stepper.displacement() - expected))
+    assert errors[1] < errors[0] / 8
+    assert errors[1] < 1e-7
+
+
+def test_several_steppers_do_not_disturb_each_other() -> None:
+    """Steppers that are advanced in turn have the bits of steppers that are advanced alone."""
+    alone = {name: advance(stepper, 10) for name, stepper in steppers().items()}
+    together: dict[str, list[bytes]] = {name: [] for name in NAMES}
+    random = {name: np.random.default_rng(3) for name in NAMES}
+    all_steppers = steppers()
+    for _ in range(10):
+        for name in NAMES:
+            together[name] += advance(all_steppers[name], 1, random[name])
+    assert together == alone
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"to": 0.0, "velocity": 1.0}, "to = "),
+        ({"to": float("nan"), "velocity": 1.0}, "to = "),
+        ({"to": 1e-3}, "velocity or acceleration"),
+        ({"to": 1e-3, "velocity": 1.0, "acceleration": 1.0}, "velocity and acceleration"),
+        ({"to": 1e-3, "loads": [1.0]}, "loads"),
+        ({"to": 1e-3, "velocity": (1.0, 0.0)}, "velocity"),
+        ({"to": 1e-3, "velocity": float("nan")}, "finite"),
+    ],
+)
+def test_wrong_inputs_are_refused(given: Any, named: str) -> None:
+    """A step with wrong inputs raises an error that names them, and changes nothing."""
+    stepper, twin = rb.Stepper(ball()), rb.Stepper(ball())
+    with pytest.raises(rb.CaseError, match=named):
+        stepper.advance(**given)
+    assert advance(stepper, 3) == advance(twin, 3)
+
+
+def test_a_particle_that_leaves_stops_the_stepper() -> None:
+    """A particle that is thrown through the wall stops the stepper, and an earlier state can be restored."""
+    stepper = rb.Stepper(box(20, softening=1e6), motion=MOTION)
+    stepper.advance(1e-3, acceleration=(0, 0, 0))
+    state = stepper.save()
+    with pytest.raises(rb.StepError, match="escaped"):
+        stepper.advance(40e-3, acceleration=(3e5, 0, 0))
+    with pytest.raises(rb.StepError):
+        stepper.advance(1.0, acceleration=(0, 0, 0))
+    stepper.restore(state)
+    stepper.advance(2e-3, acceleration=(0, 0, 0))
+
+
+# ---- the packed case
+
+
+def test_packed_case_is_read_by_an_independent_reader() -> None:
+    """The documented layout, read with `struct` alone, gives the gap, the mass and the law of a ball."""
+    from rattlebox.prepare.component import damper_case, pack_component
+
+    damper = ball(velocity="0.25 m/s", gravity="2 m/s^2")
+    data = pack_component(damper_case(damper, None, None, None, "1 s"), alone=True).data
+    assert data[:8] == b"RATTLEBX"
+    version, engine, size = struct.unpack_from("<3q", data, 8)
+    assert (version, engine, size) == (1, 1, len(data) - 40)
+    hashed = 14695981039346656037
+    for byte in data[40:]:
+        hashed = (hashed ^ byte) * 1099511628211 % 2**64
+    assert struct.unpack_from("<Q", data, 32)[0] == hashed
+    words = iter(struct.iter_unpack("<8s", data[40:]))
+
+    def integer() -> int:
+        return int(struct.unpack("<q", next(words)[0])[0])
+
+    def real() -> float:
+        return float(struct.unpack("<d", next(words)[0])[0])
+
+    assert [integer() for _ in range(3)] == [0, 0, 0]  # modes, coupling, initial state
+    assert [integer() for _ in range(3)] == [1, 0, 1]  # one load: no modes, of the base
+    assert [integer() for _ in range(4)] == [1, 0, 1, 0]  # one damper: its first ball, number of balls, first contact
+    assert real() == pytest.approx(4e-3)  # both gaps
+    assert real() == 2.0
+    assert integer() == 0
+    assert integer() == 2  # contacts: at each wall
+    mass = float(damper.masses[0])
+    for below, above in ((-1, 0), (0, -1)):
+        assert [integer() for _ in range(3)] == [0, below, above]
+        assert real() == pytest.approx(mass)
+        assert integer() == 0  # Hertz with Tsuji's dashpot
+        for _ in range(4):
+            real()
+        assert integer() == 0  # constant restitution
+        assert real() == 0.6
+        for _ in range(1):
+            real()
+    assert [integer(), real()] == [1, pytest.approx(mass)]
+    assert [integer(), real()] == [1, 0.0]
+    assert [integer(), real()] == [1, 0.25]
