@@ -10,8 +10,9 @@
 // yielding curve. Yielding begins where the Hertz curve has the slope S, so that d_y = (2 S / (3 A))^2. Rate
 // independent.
 //
-// C. Thornton, J. Appl. Mech. 64 (1997) 383, eqs 8 to 18, doi:10.1115/1.2787319; C. Thornton, Z. Ning, Powder
-// Technology 99 (1998) 154, doi:10.1016/S0032-5910(98)00099-0.
+// C. Thornton, Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres,
+// J. Appl. Mech. 64 (1997) 383-386, eqs 8 to 18; C. Thornton, Z. Ning, Powder Technology 99 (1998) 154,
+// doi:10.1016/S0032-5910(98)00099-0.
 #pragma once
 
 #include "contact/normal/normal_force.hpp"

@@ -7,7 +7,8 @@
 // V* = V / V_c, V_c = critical speed [m/s], eps_y = S_y / E of the body that yields first [-]. Undefined
 // above V* = 1000.
 //
-// R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 (2010) 217, doi:10.1007/s11071-009-9591-z.
+// R. L. Jackson, I. Green, D. B. Marghitu, Predicting the coefficient of restitution of impacting
+// elastic-perfectly plastic spheres, Nonlinear Dynamics 60 (2010) 217.
 #pragma once
 
 #include "util/field.hpp"

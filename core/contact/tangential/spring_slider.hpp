@@ -10,7 +10,8 @@
 // and the spring force.
 //
 // R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327, doi:10.1115/1.4010702; C. Thornton, S. J.
-// Cummins, P. W. Cleary, Powder Technology 233 (2013) 30, section 3, doi:10.1016/j.powtec.2012.08.012.
+// Cummins, P. W. Cleary, An investigation of the comparative behaviour of alternative contact force models
+// during inelastic collisions, Powder Technology 233 (2013) 30-46, section 3.
 #pragma once
 
 #include "math/rows.hpp"

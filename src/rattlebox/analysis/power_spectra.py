@@ -359,7 +359,7 @@ def miles_rms(frequency: float, damping_ratio: float, density: float) -> float:
 
     References
     ----------
-    J. W. Miles (1954), J. Aeronaut. Sci. 21, 753-762, doi:10.2514/8.3199.
+    J. W. Miles (1954), On structural fatigue under random loading, J. Aeronaut. Sci. 21, 753-762.
 
     Examples
     --------

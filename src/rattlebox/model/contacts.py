@@ -228,7 +228,8 @@ class Thornton(Contact):
 
     References
     ----------
-    C. Thornton, J. Appl. Mech. 64 (1997) 383, doi:10.1115/1.2787319.
+    C. Thornton, Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres, J. Appl. Mech. 64
+    (1997) 383-386.
     """
 
     kind: Literal["thornton"] = "thornton"

@@ -120,7 +120,8 @@ class JacksonGreen(Restitution):
 
     References
     ----------
-    R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 (2010) 217, doi:10.1007/s11071-009-9591-z.
+    R. L. Jackson, I. Green, D. B. Marghitu, Predicting the coefficient of restitution of impacting elastic-perfectly plastic
+    spheres, Nonlinear Dynamics 60 (2010) 217.
     """
 
     kind: Literal["jackson_green"] = "jackson_green"
@@ -179,7 +180,8 @@ class ThorntonRestitution(Restitution):
 
     References
     ----------
-    C. Thornton, J. Appl. Mech. 64 (1997) 383, doi:10.1115/1.2787319.
+    C. Thornton, Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres, J. Appl. Mech. 64
+    (1997) 383-386.
     """
 
     kind: Literal["thornton"] = "thornton"
