@@ -1,6 +1,7 @@
-"""Five storeys in a ground motion: bare, and with a tuned mass, one ball or sixteen balls of the same mass on the top floor.
+"""For structural engineers who compare dampers in an earthquake: storey drifts of a building with three dampers.
 
-The ground motion is synthetic: made for this example in the form of a record of the PEER data base (AT2).
+Five storeys are bare, or have a tuned mass, one ball or sixteen balls of the same mass on the top floor. The ground motion
+is synthetic and has the file format of the PEER database (AT2).
 """
 
 from itertools import pairwise

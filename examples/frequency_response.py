@@ -1,4 +1,7 @@
-"""Two steady motions of one damper at the same load: swept up the ball lies still, swept down it works."""
+"""For users who sweep a test frequency: frequency response of an impact damper, up and down.
+
+Between 28 and 29.7 Hz two steady motions coexist: in the sweep up the ball stays at rest, in the sweep down it works.
+"""
 
 import rattlebox as rb
 
@@ -14,5 +17,8 @@ case = rb.Case(
 response = rb.frequency_response(case, rb.linspace("28 Hz", "31 Hz", 31))
 
 if __name__ == "__main__":
-    print(response)
+    at_29_hz = response.impacts_per_cycle.isel(level=0).sel(frequency=29.0, method="nearest")
+    for direction in ("up", "down"):
+        print(f"{direction}: {float(at_29_hz.sel(direction=direction)):.1f} impacts per cycle at 29 Hz")
+    assert at_29_hz.sel(direction="up") == 0 and at_29_hz.sel(direction="down") > 2
     rb.plot_frequency_response(response).savefig("frequency_response.png")

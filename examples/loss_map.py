@@ -1,4 +1,8 @@
-"""Shake a ball in a cavity at every amplitude and frequency, and draw how much it takes up and how heavy it seems."""
+"""For users who choose a damper for a frequency range: loss and effective mass of a ball over amplitude and frequency.
+
+A ball in a cavity on a shaker is computed for 25 amplitudes and 21 frequencies. At small accelerations the ball moves with
+the cavity and its effective mass is its mass; the largest loss per cycle is 12 m V^2.
+"""
 
 import rattlebox as rb
 
@@ -21,3 +25,5 @@ found = rb.loss_map(
     cycles=(400, 20),
 )
 rb.plot_loss_map(found).savefig("loss_map.png")
+print(f"largest loss per cycle: {float(found.reduced_loss.max()):.1f} m V^2")
+assert 11 < found.reduced_loss.max() < 12.5

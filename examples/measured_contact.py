@@ -1,4 +1,8 @@
-"""Let a steel ball rebound from a rubber pad whose force was measured while loading and unloading."""
+"""For users with a measured contact force: restitution of a steel ball on a rubber pad.
+
+The force of the pad is given as tables over the overlap, one for loading and one for unloading. A warning reports overlaps
+beyond the measured range.
+"""
 
 import numpy as np
 
@@ -12,7 +16,7 @@ PAD = rb.TabulatedNormal(
 
 
 def impact(speed: float) -> rb.Run:
-    """Return a run in which the ball flies to the pad once."""
+    """Return a run in which the ball hits the pad once, at this speed [m/s]."""
     damper = rb.ImpactDamper(
         ball=rb.Sphere(radius="10 mm", material="steel"), gap="1 mm", velocity=speed, contact=PAD, wall="rigid"
     )
@@ -27,7 +31,9 @@ if __name__ == "__main__":
         print(f"{speed} m/s: overlap {1e6 * float(hit.peak_overlap):.0f} um, restitution {restitution:.3f}")
         for note in run.notes:
             print(f"  {note}")
-    # The areas below straight lines through the points give nearly the same for an impact as deep as the measurement.
+    # For an impact as deep as the measurement, the areas below both curves give nearly the same restitution.
     loading = np.trapezoid(PAD.force, PAD.overlap)
     unloading = np.trapezoid(PAD.unloading.force, PAD.unloading.overlap)
-    print(f"from the areas below the measured points: {np.sqrt(unloading / loading):.3f}")
+    by_areas = np.sqrt(unloading / loading)
+    print(f"from the areas below the measured points: {by_areas:.3f}")
+    assert abs(by_areas - restitution) < 0.02

@@ -1,6 +1,6 @@
-"""A panel in random vibration without gravity, bare and with a particle damper in its middle.
+"""For engineers of spacecraft structures: a panel in random vibration, bare and with a particle damper, without gravity.
 
-Its three modes come from a universal file, examples/data/panel.uff, which was computed and not measured.
+The three modes of the panel are read from a universal file, examples/data/panel.uff, which was computed and not measured.
 """
 
 from pathlib import Path

@@ -1,4 +1,7 @@
-"""Shake a box of steel balls at several amplitudes and frequencies, and draw how much it takes up and how heavy it seems."""
+"""For users of particle dampers: loss and effective mass of a box of steel balls over amplitude and frequency.
+
+The map of eight amplitudes and seven frequencies takes two minutes. At 15 m/s^2 the balls are an added mass.
+"""
 
 import rattlebox as rb
 
@@ -19,3 +22,6 @@ CYCLES = {"cycles": (10, 20), "samples": 1 + 20 * 200}
 if __name__ == "__main__":
     study = rb.loss_map(BOX, rb.geomspace(15, 200, 8), rb.geomspace(20, 160, 7), **CYCLES)
     rb.plot_loss_map(study).savefig("shaken_box.png")
+    added = (study.effective_mass / study.particle_mass).values[0]
+    print(f"effective mass at 15 m/s^2: {added.min():.2f} to {added.max():.2f} of the mass of the balls")
+    assert 0.95 < added.min() <= added.max() < 1.05
