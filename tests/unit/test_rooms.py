@@ -10,7 +10,8 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PACKAGE, CORE = ROOT / "src/rattlebox", ROOT / "core"
 ARROWS = {
-    "core/bindings": {"core/impact", "core/dem"},
+    "core/bindings": {"core/stepper", "core/impact", "core/dem"},
+    "core/stepper": {"core/impact", "core/dem"},
     "core/dem": {"core/contact", "core/structure", "core/parallel"},
     "core/impact": {"core/contact", "core/structure"},
     "core/contact": {"core/util"},
