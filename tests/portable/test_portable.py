@@ -87,7 +87,7 @@ def test_web_assembly_gives_the_same_numbers(usual: list[str], tmp_path: Path) -
     middle = next(k for k, line in enumerate(usual) if line.startswith("particles"))
     assert lines[middle:] == usual[middle:]
     assert lines[0] == usual[0]
-    impact, expected = (np.array(" ".join(found[1:middle]).split(), float) for found in (lines, usual))
+    impact, expected = (np.array(" ".join(result[1:middle]).split(), float) for result in (lines, usual))
     np.testing.assert_allclose(impact, expected, rtol=1e-9, atol=1e-12)
 
 

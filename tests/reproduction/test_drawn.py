@@ -120,15 +120,15 @@ def unknown_marks(figure: Figure, data: xr.Dataset) -> list[str]:
     """
     numbers = [data[name] for name in data.variables if data[name].dtype.kind in "iuf"]
     units = {variable.units for variable in numbers}
-    found = []
+    result = []
     for place, axes in enumerate(figure.axes):
         if axes.get_label() == "<colorbar>":
             continue
         scales = [scale(axes, which, units) for which in "xy"]
         for mark in marks(axes):
             if not _known(mark, scales, numbers):
-                found.append(f"axes {place}: {mark.name}")
-    return found
+                result.append(f"axes {place}: {mark.name}")
+    return result
 
 
 def _known(mark: Mark, scales: list[Scale | None], numbers: list[xr.DataArray]) -> bool:
@@ -160,19 +160,19 @@ def _known(mark: Mark, scales: list[Scale | None], numbers: list[xr.DataArray]) 
 
 
 def _within(values: Any, variable: xr.DataArray) -> bool:
-    drawn, known = same(np.asarray(values, dtype=float), variable.values[np.isfinite(variable.values)])
-    return bool(np.isin(drawn, known).all())
+    drawn, expected = same(np.asarray(values, dtype=float), variable.values[np.isfinite(variable.values)])
+    return bool(np.isin(drawn, expected).all())
 
 
 def _mapped(x: np.ndarray, y: np.ndarray, values: Any, variable: xr.DataArray) -> bool:
     """Return whether each point has the value of the table of a variable at its coordinates."""
-    found = []
+    result = []
     for first, second in permutations([variable[dim] for dim in variable.dims if variable[dim].dtype.kind in "if"], 2):
         table = xr.broadcast(first, second, variable)
         ids = [same(drawn, one.values) for drawn, one in zip((x, y, values), table, strict=True)]
         key = [sum(i.astype(object) * 10 ** (12 * k) for k, i in enumerate(part)) for part in zip(*ids, strict=True)]
-        found.append(set(key[0]) <= set(key[1]))
-    return any(found)
+        result.append(set(key[0]) <= set(key[1]))
+    return any(result)
 
 
 def _paired(mark: Mark, x: np.ndarray, first: list[xr.DataArray], y: np.ndarray, second: list[xr.DataArray]) -> bool:

@@ -84,17 +84,17 @@ def shares(computed):
 
 
 @pytest.mark.parametrize(
-    ("model", "known"),
+    ("model", "expected"),
     [
         ("constant restitution", (0.054, 0.015, 0.052)),
         ("elasto-plastic, steel wall", (0.0032, 0.0, 0.0022)),
         ("elasto-plastic, rigid wall", (0.069, 0.027, 0.070)),
     ],
 )
-def test_shares_of_three_starts_at_the_printed_pulse(shares, model, known):
+def test_shares_of_three_starts_at_the_printed_pulse(shares, model, expected):
     """At 5000 N the damper takes the known shares, within the scatter of a chaotic system."""
     lost = shares.impact.sel(model=model, amplitude=5000.0)
-    assert lost.sel(quantile=0.5).values == pytest.approx(known, rel=0.08, abs=1e-4)
+    assert lost.sel(quantile=0.5).values == pytest.approx(expected, rel=0.08, abs=1e-4)
 
 
 def test_centred_ball_rests_under_the_small_pulse(shares):

@@ -12,11 +12,11 @@ def data(computed):
     return computed("hundred_times").data
 
 
-@pytest.mark.parametrize(("model", "known"), [(STEEL, 0.0032 / 0.054), (RIGID, 0.069 / 0.054)])
-def test_printed_yield_stress_gives_the_known_ratio(data, model, known):
+@pytest.mark.parametrize(("model", "expected"), [(STEEL, 0.0032 / 0.054), (RIGID, 0.069 / 0.054)])
+def test_printed_yield_stress_gives_the_known_ratio(data, model, expected):
     """With the printed yield stress the losses in 10 s compare as they are known to."""
     ratio = data.ratio.sel(measure="total", model=model, yield_stress=1030e6, quantile=0.5)
-    assert float(ratio) == pytest.approx(known, rel=0.05)
+    assert float(ratio) == pytest.approx(expected, rel=0.05)
 
 
 def test_one_contact_cannot_lose_a_hundred_times_more(data):

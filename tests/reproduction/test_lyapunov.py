@@ -49,11 +49,11 @@ def test_growth_is_measured_from_its_onset_to_saturation():
     time = np.arange(1, 1501) * 4e-3
     grown = 1e-12 * np.exp(7 * np.clip(time - 1, 0, None))
     rows = np.minimum([grown, 2 * grown, 0.5 * grown], 1e-3)
-    found = lyapunov._separation(time, rows)
-    assert found.exponent == pytest.approx(7, rel=1e-9)
-    assert found.onset == pytest.approx(1 + np.log(100) / 7, abs=5e-3)
-    assert found.determination == pytest.approx(1)
-    assert np.nanmax(found.fit) < lyapunov.SATURATION < found.fit[np.isfinite(found.fit)][-1] * 1.03
+    result = lyapunov._separation(time, rows)
+    assert result.exponent == pytest.approx(7, rel=1e-9)
+    assert result.onset == pytest.approx(1 + np.log(100) / 7, abs=5e-3)
+    assert result.determination == pytest.approx(1)
+    assert np.nanmax(result.fit) < lyapunov.SATURATION < result.fit[np.isfinite(result.fit)][-1] * 1.03
 
 
 def test_neighbours_are_as_far_apart_as_they_start():

@@ -58,23 +58,23 @@ class Page(html.parser.HTMLParser):
 
 def read_back(data, tables):
     """Return the dataset with all values from its CSV files."""
-    found = {}
+    result = {}
     for path in tables:
         with path.open(newline="", encoding="utf-8") as file:
             headers, *rows = csv.reader(file)
         names = [re.sub(r" \[.*\]$", "", header) for header in headers]
         dims = [name for name in names if name in data.dims]
         for name, column in zip(names, zip(*rows, strict=True), strict=True):
-            if name not in data.variables or name in found:
+            if name not in data.variables or name in result:
                 continue
             kind = data[name].dtype
             values = np.array(column) == "True" if kind.kind == "b" else np.array(column).astype(kind)
             values = values.reshape([data.sizes[dim] for dim in dims])
             if name in data.dims:
                 values = np.moveaxis(values, dims.index(name), 0).reshape(data.sizes[name], -1)[:, 0]
-            found[name] = (data[name].dims, values, data[name].attrs)
+            result[name] = (data[name].dims, values, data[name].attrs)
     return xr.Dataset(
-        {name: found[name] for name in data.data_vars}, {name: found[name] for name in data.coords}, data.attrs
+        {name: result[name] for name in data.data_vars}, {name: result[name] for name in data.coords}, data.attrs
     )
 
 

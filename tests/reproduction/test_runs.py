@@ -70,5 +70,5 @@ def test_a_study_of_a_figure_runs_by_itself(tmp_path):
     files = write_runs(named, runs, tmp_path, "cases", "figure_99")["Centred, 5 kN"]
     assert files.study == "cases/figure_99_centred_5_kn_study.toml" and files.varied == ("damper.start",)
     study = read_study(tmp_path / files.study)
-    found = study.run()
-    assert found.impacts.values.tolist() == [simulate(case).impacts.sizes["impact"] for case in runs]
+    result = study.run()
+    assert result.impacts.values.tolist() == [simulate(case).impacts.sizes["impact"] for case in runs]

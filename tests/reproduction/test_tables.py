@@ -49,10 +49,10 @@ def test_tables_read_back_equal(data, tmp_path):
             dims = max((variable.dims for variable in table.variables.values()), key=len)
             expected = data[name].broadcast_like(table).transpose(*dims).values.ravel()
             texts = np.array(column)
-            found = texts == "True" if expected.dtype == bool else texts.astype(expected.dtype)
+            result = texts == "True" if expected.dtype == bool else texts.astype(expected.dtype)
             if expected.dtype.kind == "f":
-                found, expected = found.view(np.int64), expected.view(np.int64)
-            np.testing.assert_array_equal(found, expected)
+                result, expected = result.view(np.int64), expected.view(np.int64)
+            np.testing.assert_array_equal(result, expected)
     assert seen == {*data.variables, "sample"}
 
 

@@ -24,7 +24,7 @@ def test_speed_and_stability_are_those_of_theory(key):
     """Speeds and multipliers of stable and unstable motions are the published ones."""
     ball, restitution, clearance = key
     speed, multiplier = TABLE[key]
-    found = two_impacts(
+    result = two_impacts(
         mass=1.0,
         stiffness=1.0,
         damping=0.02,
@@ -34,19 +34,19 @@ def test_speed_and_stability_are_those_of_theory(key):
         amplitude=1.0,
         frequency=0.5 / pi,
     )
-    assert len(found) == 1
-    assert found[0].multiplier == pytest.approx(multiplier, abs=6e-4)
+    assert len(result) == 1
+    assert result[0].multiplier == pytest.approx(multiplier, abs=6e-4)
     if speed is not None:
-        assert found[0].ball_speed == pytest.approx(speed, abs=6e-6)
+        assert result[0].ball_speed == pytest.approx(speed, abs=6e-6)
 
 
 def test_multiplier_of_the_lyapunov_example():
     """The multiplier that the test of examples/lyapunov.py expects is that of the exact motion."""
     ball = rb.Sphere(radius="14 mm", material="steel").weight
-    found = two_impacts(
+    result = two_impacts(
         mass=1.0, stiffness=40e3, damping=4.0, ball=ball, clearance=2e-3, restitution=0.6, amplitude=5.0, frequency=33.0
     )
-    assert found[0].multiplier == pytest.approx(0.9349517810953712, rel=1e-12)
+    assert result[0].multiplier == pytest.approx(0.9349517810953712, rel=1e-12)
 
 
 def test_weak_load_has_no_such_motion():

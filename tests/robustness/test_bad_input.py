@@ -60,7 +60,7 @@ def test_the_good_case_is_accepted() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "pattern"),
     [
         ('mass = "20 kg"', 'mass = "-20 kg"', ["structure.mass", "greater than zero"]),
         ('mass = "20 kg"', "mass = 0", ["structure.mass", "greater than zero"]),
@@ -115,10 +115,10 @@ def test_the_good_case_is_accepted() -> None:
         ('contact = { kind = "tsuji", restitution = 0.9 }', "", ["contact", 'try: contact = { kind = "tsuji", ... }']),
     ],
 )
-def test_one_wrong_thing_is_named(old: str, new: str, said: list[str]) -> None:
+def test_one_wrong_thing_is_named(old: str, new: str, pattern: list[str]) -> None:
     """The message of one mistake names its place and what is allowed."""
     message = refused(changed(old, new))
-    for words in said:
+    for words in pattern:
         assert words in message
 
 
@@ -138,8 +138,8 @@ def test_one_wrong_thing_is_named(old: str, new: str, said: list[str]) -> None:
 def test_names_that_others_use_are_understood(old: str, new: str, meant: str) -> None:
     """A field by the name it has elsewhere is told by ours, once, without a word on what is missing then."""
     message = refused(changed(old, new))
-    known = " or ".join(repr(name) for name in meant.split())
-    assert message.endswith(f"there is no such field here\n  try: did you mean {known}?")
+    expected = " or ".join(repr(name) for name in meant.split())
+    assert message.endswith(f"there is no such field here\n  try: did you mean {expected}?")
     assert message.count("try:") == 1
 
 
@@ -268,7 +268,7 @@ def test_elasto_plastic_law_of_what_does_not_yield(law: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"M": [[1.0, 0.0], [0.0, 0.0]]}, "M is not positive definite"),
         ({"K": [[1.0, 0.0], [0.0, -1.0]]}, "K is not positive semidefinite"),
@@ -278,11 +278,11 @@ def test_elasto_plastic_law_of_what_does_not_yield(law: Any) -> None:
         ({"C": [[0.0]]}, "C has shape"),
     ],
 )
-def test_matrices_of_no_structure(change: dict[str, Any], said: str) -> None:
+def test_matrices_of_no_structure(change: dict[str, Any], message: str) -> None:
     """Matrices that describe no stable structure are refused with the matrix."""
     zero = [[0.0, 0.0], [0.0, 0.0]]
     good = {"M": np.eye(2), "C": zero, "K": [[2.0, -1.0], [-1.0, 2.0]], "points": {"end": 1}}
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         rb.Matrices(**(good | change))
 
 
@@ -346,7 +346,7 @@ def sweep(**changed: Any) -> rb.SineSweep:
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "message"),
     [
         (lambda: rb.SDOF(20.0, 80e3), "SDOF takes its fields by name: .*mass, stiffness"),
         (lambda: rb.Constant(0.5, e=0.4), "Constant takes its fields by name"),
@@ -382,9 +382,9 @@ def sweep(**changed: Any) -> rb.SineSweep:
         (lambda: rb.simulate_many([], threads=0), "threads = 0: a whole number of at least 1"),
     ],
 )
-def test_mistakes_in_python(make: Callable[[], object], said: str) -> None:
+def test_mistakes_in_python(make: Callable[[], object], message: str) -> None:
     """What is written in Python is refused like what is written in a file, also by the helpers that make records."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         make()
 
 

@@ -316,12 +316,12 @@ ANSWERS = {
 @pytest.mark.parametrize("mistake", ANSWERS)
 def test_the_answer_to_a_mistake(mistake: str, answer: Answer) -> None:
     """Each mistake is answered with file, field and value as they were written, what is allowed, and what to try."""
-    text, said = ANSWERS[mistake]
+    text, pattern = ANSWERS[mistake]
     Path("case.toml").write_text(text, encoding="utf-8")
     code, message = answer("run", "case.toml")
     assert code == 2
     assert message.startswith("error: case.toml:")
-    assert said in message
+    assert pattern in message
     assert "Traceback" not in message
     assert len(message.splitlines()) < 24
     assert not Path("out").exists()
@@ -340,7 +340,7 @@ def test_several_mistakes_fit_one_screen(answer: Answer) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "pattern"),
     [
         (bytes(range(256)), "not text in UTF-8\n  try: a TOML file, saved as UTF-8"),
         (GOOD.encode("utf-16"), "not text in UTF-8"),
@@ -349,12 +349,12 @@ def test_several_mistakes_fit_one_screen(answer: Answer) -> None:
     ],
     ids=["bytes", "utf-16", "picture", "control characters"],
 )
-def test_a_case_file_that_is_not_text(content: bytes, said: str, answer: Answer) -> None:
+def test_a_case_file_that_is_not_text(content: bytes, pattern: str, answer: Answer) -> None:
     """A file of another kind is refused by name, without showing its bytes."""
     Path("case.toml").write_bytes(content)
     code, message = answer("run", "case.toml")
     assert code == 2
-    assert f"error: case.toml: {said}" in message
+    assert f"error: case.toml: {pattern}" in message
     assert message.replace("\n", "").isprintable()
 
 

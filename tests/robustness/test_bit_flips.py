@@ -65,24 +65,29 @@ def content(path: Path) -> Any:
         snapshots = rb.Snapshots(path)
         frames = [{name: np.asarray(value).tobytes() for name, value in vars(frame).items()} for frame in snapshots]
         return snapshots.case_toml, snapshots.numbers, snapshots.planned.tobytes(), frames
-    kept = Checkpoint(path, case()).read()
-    assert kept is not None
-    names = [name for name in dir(kept.records) if not name.startswith("_")]
-    records = {name: value for name in names if isinstance(value := getattr(kept.records, name), np.ndarray)}
+    checkpoint = Checkpoint(path, case()).read()
+    assert checkpoint is not None
+    names = [name for name in dir(checkpoint.records) if not name.startswith("_")]
+    records = {name: value for name in names if isinstance(value := getattr(checkpoint.records, name), np.ndarray)}
     assert records
-    arrays = {**records, "state": kept.state, **{str(k): array for k, array in enumerate(kept.positions)}}
-    return kept.numbers, kept.time, kept.seconds, {name: array.tobytes() for name, array in arrays.items()}
+    arrays = {**records, "state": checkpoint.state, **{str(k): array for k, array in enumerate(checkpoint.positions)}}
+    return (
+        checkpoint.numbers,
+        checkpoint.time,
+        checkpoint.seconds,
+        {name: array.tobytes() for name, array in arrays.items()},
+    )
 
 
 def detected(path: Path, changed: bytes, exact: Any) -> bool:
     """Return whether a changed file is refused with its name; else it must be read as it was."""
     path.write_bytes(changed)
     try:
-        found = content(path)
+        result = content(path)
     except rb.DataError as error:
         message = str(error)
     else:
-        assert found == exact
+        assert result == exact
         return False
     assert path.name in message
     return True
@@ -107,15 +112,15 @@ def test_a_flipped_bit_is_detected_or_harmless(name: str, folder: Path, tmp_path
 
 def numbers_of(path: Path) -> Iterator[tuple[str, int, int]]:
     """Name, place in the file and size of the values of each dataset."""
-    found: list[tuple[str, int, int]] = []
+    result: list[tuple[str, int, int]] = []
     with h5py.File(path) as file:
 
         def add(name: str, item: Any) -> None:
             if isinstance(item, h5py.Dataset) and item.id.get_offset() is not None:
-                found.append((name, item.id.get_offset(), item.id.get_storage_size()))
+                result.append((name, item.id.get_offset(), item.id.get_storage_size()))
 
         file.visititems(add)
-    yield from found
+    yield from result
 
 
 def test_a_flipped_bit_of_any_dataset_of_snapshots_is_detected(folder: Path, tmp_path: Path) -> None:

@@ -92,11 +92,11 @@ def test_no_cut_file_is_accepted(name: str, whole: Path, tmp_path: Path) -> None
     for length in np.linspace(0, len(content) - 1, 25 if name != "a.checkpoint" else 12).astype(int):
         path.write_bytes(content[:length])
         try:
-            found = read(path, tmp_path)
+            result = read(path, tmp_path)
         except (ValueError, OSError):  # CaseError is one
             refused += 1
         else:
-            assert name == "case.toml" or found == exact
+            assert name == "case.toml" or result == exact
     assert refused > (5 if name == "case.toml" else 10)
 
 
@@ -119,10 +119,10 @@ def test_no_changed_file_is_accepted(name: str, whole: Path, tmp_path: Path) -> 
             changed[place : place + 40] = bytes(len(changed[place : place + 40]))
         path.write_bytes(changed)
         try:
-            found = read(path, tmp_path)
+            result = read(path, tmp_path)
         except (ValueError, OSError):
             continue
-        assert name == "run.mat" or found == exact  # version 5 of MAT files has no checksums
+        assert name == "run.mat" or result == exact  # version 5 of MAT files has no checksums
 
 
 def test_a_checkpoint_with_changed_numbers_is_refused(whole: Path, tmp_path: Path) -> None:
@@ -220,9 +220,9 @@ def test_mat_files_of_all_kinds_are_read(options: dict[str, Any], tmp_path: Path
         content |= {"e": np.zeros((0, 3)), "l": np.array([True]), "text": "ünï", "texts": np.array(["ab", "cd"])}
         content |= {"cell": np.array(["x", 1.0, [2, 3]], dtype=object), "s": {"b": [1.0], "deep": {"c": np.ones(2)}}}
     savemat(tmp_path / "a.mat", content, **options)
-    found = read_arrays(tmp_path / "a.mat")
-    assert np.array_equal(found["t"], content["t"]) and np.array_equal(found["M"], np.diag(np.arange(5.0)))
-    assert "format" in options or np.array_equal(found["s.deep.c"], [1, 1])
+    result = read_arrays(tmp_path / "a.mat")
+    assert np.array_equal(result["t"], content["t"]) and np.array_equal(result["M"], np.diag(np.arange(5.0)))
+    assert "format" in options or np.array_equal(result["s.deep.c"], [1, 1])
 
 
 def test_sparse_matrices_with_indices_out_of_bounds_are_refused(tmp_path: Path) -> None:
@@ -257,7 +257,7 @@ def test_commands_on_a_study_with_a_damaged_block(
             shown = capsys.readouterr().out
             assert "complete" not in shown and "not finished" in shown
             assert command(monkeypatch, "plot", "study.zarr") in (0, 2)
-            found = rb.open_study("study.zarr")
-            assert not (np.isnan(found.impact_share.values) & (found.status.values == 0)).any()
+            result = rb.open_study("study.zarr")
+            assert not (np.isnan(result.impact_share.values) & (result.status.values == 0)).any()
             assert command(monkeypatch, "sweep", "study.toml") == 0
             assert rb.open_study("study.zarr").load().equals(exact)

@@ -112,12 +112,12 @@ patient = settings(derandomize=True, max_examples=400, deadline=None, suppress_h
 def places(node: Any) -> list[tuple[Any, Any]]:
     """Return each container of a case file with each of its keys."""
     if isinstance(node, dict):
-        found = [(node, key) for key in node]
+        result = [(node, key) for key in node]
     elif isinstance(node, list):
-        found = [(node, index) for index in range(len(node))]
+        result = [(node, index) for index in range(len(node))]
     else:
         return []
-    return found + [place for container, key in found for place in places(container[key])]
+    return result + [place for container, key in result for place in places(container[key])]
 
 
 @st.composite

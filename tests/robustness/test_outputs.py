@@ -117,9 +117,9 @@ def test_a_full_disk_leaves_no_half_file(size: int, tmp_path: Path) -> None:
     done = with_own_mounts(script)
     assert "ended 2" in done.stdout, done.stdout + done.stderr
     assert "Traceback" not in done.stderr
-    told = done.stderr.splitlines()
-    assert told[-2].startswith(f"error: {disk}/out/") and told[-2].endswith("no space is left on the disk")
-    assert told[-1].startswith("  try: ")
+    errors = done.stderr.splitlines()
+    assert errors[-2].startswith(f"error: {disk}/out/") and errors[-2].endswith("no space is left on the disk")
+    assert errors[-1].startswith("  try: ")
     (copy / "rattlebox.json").unlink(missing_ok=True)
     assert not any(path.name.startswith(".") for path in copy.iterdir())
     check_whole(copy, tmp_path)

@@ -182,7 +182,7 @@ def complaints(case: rb.Case) -> list[str]:
     """Run a case twice and return all that is wrong with what comes back."""
     run, again = rb.simulate(case), rb.simulate(case)
     a = run.arrays
-    found = (
+    result = (
         []
         if run.status in ("finished", "law_domain", "too_many_events", "step_too_small", "not_finite")
         # Steps of the two-step scheme may be too long for a contact, which its energy residual shows.
@@ -190,34 +190,34 @@ def complaints(case: rb.Case) -> list[str]:
         else [run.status]
     )
     if not run.ok and len(run.message) < 40:
-        found.append(f"{run.status} without a word on what to try")
+        result.append(f"{run.status} without a word on what to try")
     if run != again:
-        found.append("a second run differs")
+        result.append("a second run differs")
     if run.status == "too_many_events" and run.counts["events"] < getattr(case.method, "max_events", 0) // 2:
-        found.append("contact steps without events have spent the budget")
+        result.append("contact steps without events have spent the budget")
     if run.status != "not_finite":
-        found += [f"{name} is not finite" for name in strange(a)]
+        result += [f"{name} is not finite" for name in strange(a)]
     elif np.any(np.diff(np.isfinite(a.relative_position).all(axis=1).astype(int)) > 0):
-        found.append("the motion is finite again after it was not")
+        result.append("the motion is finite again after it was not")
     ledger = run.ledger
     energy = float(
         np.max(np.abs(ledger.motion)) + np.max(np.abs(ledger.work)) + np.max(np.abs(ledger.gravity - ledger.gravity[0]))
     )
     if isinstance(case.method, rb.TwoStep):
-        return found
+        return result
     tolerance = getattr(case.method, "tolerance", 1e-12)
     if run.energy_residual > 1e4 * tolerance:
-        found.append(f"energy residual {run.energy_residual:.3g}")
+        result.append(f"energy residual {run.energy_residual:.3g}")
     if np.min(np.diff(ledger.losses), initial=0) < -1e3 * tolerance * energy:
-        found.append(f"losses fall by {-np.min(np.diff(ledger.losses)) / energy:.3g} of the energy")
+        result.append(f"losses fall by {-np.min(np.diff(ledger.losses)) / energy:.3g} of the energy")
     if (
         not case.loads
         and not case.base_acceleration()
         and np.max(np.diff(ledger.total), initial=0) > 1e3 * tolerance * energy
     ):
-        found.append(f"energy rises by {np.max(np.diff(ledger.total)) / energy:.3g} without work")
-    found += escapes(case, run)
-    return found
+        result.append(f"energy rises by {np.max(np.diff(ledger.total)) / energy:.3g} without work")
+    result += escapes(case, run)
+    return result
 
 
 def strange(arrays: RunArrays) -> list[str]:
@@ -239,7 +239,7 @@ def strange(arrays: RunArrays) -> list[str]:
 
 def escapes(case: rb.Case, run: rb.Run) -> list[str]:
     """Contacts that are deeper at a time of the output than the impact log knows."""
-    a, found, first = run.arrays, [], 0
+    a, result, first = run.arrays, [], 0
     for index, damper in enumerate(case.dampers):
         own = slice(first, first + len(damper.balls))
         first = own.stop
@@ -248,10 +248,12 @@ def escapes(case: rb.Case, run: rb.Run) -> list[str]:
         depths = np.column_stack([-half - place[:, 0], place[:, :-1] - place[:, 1:], place[:, -1] - half])
         for contact, depth in enumerate(depths.T):
             logged = a.impacts.peak_overlap[(a.impacts.damper == index) & (a.impacts.contact == contact)]
-            known = np.max(logged, initial=0)
-            if np.max(depth) > 1.001 * known + 1e-10:
-                found.append(f"contact {contact} of {damper.name} is {np.max(depth):.3g} m deep, logged {known:.3g}")
-    return found
+            expected = np.max(logged, initial=0)
+            if np.max(depth) > 1.001 * expected + 1e-10:
+                result.append(
+                    f"contact {contact} of {damper.name} is {np.max(depth):.3g} m deep, logged {expected:.3g}"
+                )
+    return result
 
 
 @settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))

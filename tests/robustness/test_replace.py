@@ -98,9 +98,9 @@ def test_a_finished_run_is_kept_until_the_new_one_is_over(by: int) -> None:
     before = contents()
     assert before.keys() == {MARKER, "run.nc", "run.vtkhdf", "motion.csv", "energy.csv", "particles.csv"}
     stop("long.toml", "--replace", by=by, once=begun)
-    kept = contents()
-    assert {name: kept[name] for name in before} == before
-    assert {*kept} - {*before} <= {".run.checkpoint.lock"}
+    after = contents()
+    assert {name: after[name] for name in before} == before
+    assert {*after} - {*before} <= {".run.checkpoint.lock"}
     shown = subprocess.run(
         [sys.executable, "-m", "rattlebox.cli", "show", "out"], capture_output=True, text=True, check=True
     ).stdout
@@ -108,8 +108,8 @@ def test_a_finished_run_is_kept_until_the_new_one_is_over(by: int) -> None:
     # The earlier case is run again, and says that there is something else.
     done = run("first.toml")
     assert done.returncode == 0 and "started with --replace" in done.stderr
-    said = stop("long.toml", "--replace", by=signal.SIGINT, once=changes(next(Path("out").glob("*/run.checkpoint"))))
-    assert "resuming from out/replacement-" in said
+    message = stop("long.toml", "--replace", by=signal.SIGINT, once=changes(next(Path("out").glob("*/run.checkpoint"))))
+    assert "resuming from out/replacement-" in message
     # A third case takes the place of the first, and the second is kept.
     assert run("second.toml", "--replace").returncode == 0
     assert begun()

@@ -187,8 +187,8 @@ def rebound(mass: float, stiffness: float, loss: float) -> tuple[float, float]:
         force = stiffness * max(y[0], 0.0) ** 1.5 * (1 + 1.5 * loss * y[1])
         return [y[1], -force / mass]
 
-    found = solve_ivp(motion, (0, 1), [0, SPEED], "DOP853", events=ends, rtol=1e-11, atol=1e-16, max_step=1e-5)
-    after = -float(found.y_events[0][-1][1])
+    result = solve_ivp(motion, (0, 1), [0, SPEED], "DOP853", events=ends, rtol=1e-11, atol=1e-16, max_step=1e-5)
+    after = -float(result.y_events[0][-1][1])
     return after, mass * (SPEED + after)
 
 
@@ -216,25 +216,25 @@ def test_the_laws_of_the_page_run_in_both_engines(copy: Path) -> None:
         [sys.executable, "-S", "-c", script], cwd=copy, env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
+    result = json.loads(done.stdout)
 
     mass = 4 / 3 * math.pi * RADIUS**3 * DENSITY
     stiffness = 4 / 3 * (YOUNG / (2 * (1 - POISSON**2))) * math.sqrt(RADIUS)
     after, impulse = rebound(mass, stiffness, 0.2)
     assert after < 0.9 * SPEED
-    assert found["impact"] == pytest.approx(after, rel=1e-8)
-    assert found["hard"] == pytest.approx(after, rel=1e-3)
-    assert found["straight"] == pytest.approx([-after, 0, 0], rel=1e-3)
-    assert found["soft"] == pytest.approx([-after, 0, 0], rel=1e-3)
+    assert result["impact"] == pytest.approx(after, rel=1e-8)
+    assert result["hard"] == pytest.approx(after, rel=1e-3)
+    assert result["straight"] == pytest.approx([-after, 0, 0], rel=1e-3)
+    assert result["soft"] == pytest.approx([-after, 0, 0], rel=1e-3)
     # A sphere that slides all the time loses friction times the normal impulse.
-    assert found["sliding"][0] == pytest.approx(-after, rel=1e-3)
-    assert 0.5 - found["sliding"][1] == pytest.approx(0.02 * impulse / mass, rel=1e-2)
+    assert result["sliding"][0] == pytest.approx(-after, rel=1e-3)
+    assert 0.5 - result["sliding"][1] == pytest.approx(0.02 * impulse / mass, rel=1e-2)
     # Mindlin's stiffness has this ratio for two bodies of one material.
-    assert 0 < found["ratio"][1] < 0.475
-    assert found["ratio"] == pytest.approx(found["mindlin"], rel=1e-9)
-    np.testing.assert_allclose(found["restitution"][1:], 1 - 0.25 * np.power([0.1, 1.0, 32.0], 0.2), rtol=1e-14)
-    assert found["restitution"][0] == 0.95
-    elastic, lossy = found["shares"]
+    assert 0 < result["ratio"][1] < 0.475
+    assert result["ratio"] == pytest.approx(result["mindlin"], rel=1e-9)
+    np.testing.assert_allclose(result["restitution"][1:], 1 - 0.25 * np.power([0.1, 1.0, 32.0], 0.2), rtol=1e-14)
+    assert result["restitution"][0] == 0.95
+    elastic, lossy = result["shares"]
     assert abs(elastic) < 1e-6 < lossy
 
 

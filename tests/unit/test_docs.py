@@ -64,14 +64,14 @@ def examples(page):
 def test_examples_print_what_the_page_says(name, tmp_path, monkeypatch):
     """Run from top to bottom, every example prints the text that follows it."""
     monkeypatch.chdir(tmp_path)
-    found = examples(DOCS / f"{name}.md")
+    result = examples(DOCS / f"{name}.md")
     names = {}
-    for code, said in found:
+    for code, message in result:
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             exec(code, names)
-        assert printed.getvalue() == said
-    assert any(said for _, said in found)
+        assert printed.getvalue() == message
+    assert any(message for _, message in result)
 
 
 def test_examples_of_the_first_page_run(tmp_path, monkeypatch, capsys):
@@ -97,8 +97,8 @@ def test_every_field_of_a_case_is_described():
     public = [getattr(rb, name) for name in rb.__all__]
     assert {part for part in public if isinstance(part, type) and issubclass(part, Part)} <= set(parts)
     for part in parts:
-        told = "".join(each.__doc__ or "" for each in part.__mro__ if issubclass(each, Part))
-        lists = set(re.findall(r"\w+", " ".join(re.findall(r"^    (\w+(?:, \w+)*)$", told, re.MULTILINE))))
+        text = "".join(each.__doc__ or "" for each in part.__mro__ if issubclass(each, Part))
+        lists = set(re.findall(r"\w+", " ".join(re.findall(r"^    (\w+(?:, \w+)*)$", text, re.MULTILINE))))
         assert set(part.model_fields) - {"kind"} <= lists, part.__name__
 
 

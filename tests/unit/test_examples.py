@@ -88,14 +88,14 @@ def test_two_cavities_on_a_beam_both_take_energy() -> None:
 def test_a_shaken_box_rides_along_or_is_thrown() -> None:
     """Below the acceleration of gravity the balls' mass counts in full; thrown slowly they take more than m v^2 a cycle."""
     example = runpy.run_path(str(EXAMPLES / "shaken_box.py"))
-    found = rb.loss_map(example["BOX"], [5.0, 150.0], [30.0], **example["CYCLES"], progress=False).isel(
+    result = rb.loss_map(example["BOX"], [5.0, 150.0], [30.0], **example["CYCLES"], progress=False).isel(
         {"structure.motion.frequency": 0}
     )
-    assert (found.effective_mass[0] / found.particle_mass).item() == pytest.approx(1, abs=0.02)
-    assert found.loss_factor[0].item() == pytest.approx(0, abs=0.02)
-    assert 1 < found.reduced_loss[1].item() < 4  # 4: every ball loses all of twice the speed
-    by_force = np.pi * found.damping_mass[1] / found.particle_mass
-    assert by_force.item() == pytest.approx(found.reduced_loss[1].item(), rel=0.05)
+    assert (result.effective_mass[0] / result.particle_mass).item() == pytest.approx(1, abs=0.02)
+    assert result.loss_factor[0].item() == pytest.approx(0, abs=0.02)
+    assert 1 < result.reduced_loss[1].item() < 4  # 4: every ball loses all of twice the speed
+    by_force = np.pi * result.damping_mass[1] / result.particle_mass
+    assert by_force.item() == pytest.approx(result.reduced_loss[1].item(), rel=0.05)
 
 
 def test_a_measured_contact_gives_back_the_area_below_its_unloading_curve(capsys: pytest.CaptureFixture[str]) -> None:

@@ -36,12 +36,12 @@ def test_headers_include_what_stands_below(file: Path) -> None:
 
 def test_rooms_are_drawn_and_described() -> None:
     """The picture and the table of the architecture page hold all rooms that there are."""
-    found = {file.parent.name for file in PACKAGE.glob("*/*.py")} | {
+    result = {file.parent.name for file in PACKAGE.glob("*/*.py")} | {
         f"core/{d.name}" for d in CORE.iterdir() if d.is_dir()
     }
     drawn = re.findall(r"<text[^>]*>([^<]*)</text>", (ROOT / "docs/_static/rooms.svg").read_text(encoding="utf-8"))
     described = re.findall(
         r"^\| `(.*?)` \|", (ROOT / "docs/developing/architecture.md").read_text(encoding="utf-8"), re.M
     )
-    assert found <= set(drawn)
-    assert found == set(described)
+    assert result <= set(drawn)
+    assert result == set(described)

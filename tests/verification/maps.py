@@ -90,10 +90,10 @@ def thresholds() -> Iterator[Line]:
     """Yield thresholds found by bifurcation diagrams, to 1e-3."""
     for e, n in printed.VIBRATING_TABLE:
         begin, double = shaken.table_bounds(e, n)
-        found = table_thresholds(e, n)
+        result = table_thresholds(e, n)
         name = f"bifurcation: vibrating table, e {e}, {n} cycle{'s' * (n > 1)}"
-        yield Line("maps", f"{name}: begins", begin, found[0], 1e-3 / begin)
-        yield Line("maps", f"{name}: doubles", double, found[1], 1e-3 / double)
+        yield Line("maps", f"{name}: begins", begin, result[0], 1e-3 / begin)
+        yield Line("maps", f"{name}: doubles", double, result[1], 1e-3 / double)
     for e in printed.SLOW_MANIFOLD_THRESHOLD:
         exact = shaken.threshold(e)
         name = f"bifurcation: shaken cavity, e {e}: two impacts a cycle begin"
@@ -105,7 +105,7 @@ def thresholds() -> Iterator[Line]:
 
 def orbit(key: Key, omega: float) -> masri_caughey.Orbit:
     """Return the less unstable of the orbits at a frequency."""
-    return min(masri_caughey.orbits(*key, omega=omega), key=lambda found: max(abs(found.multipliers())))
+    return min(masri_caughey.orbits(*key, omega=omega), key=lambda result: max(abs(result.multipliers())))
 
 
 def growth(key: Key, omega: float) -> float:
@@ -149,9 +149,9 @@ def responses() -> Iterator[Line]:
             name = f"frequency_response: {_named(key)}, frequency {1 + 0.005 * number:g}: peak"
             yield Line("maps", name, float(exact[number]), float(ours[number]), PEAK)
     for key, end, step, skip in LIMITS:
-        limit, found = stability_limit(key, end, step, skip)
+        limit, result = stability_limit(key, end, step, skip)
         side = "upper" if end > 1 else "lower"
-        yield Line("maps", f"frequency_response: {_named(key)}: {side} limit of stability", limit, found, 1.5 * step)
+        yield Line("maps", f"frequency_response: {_named(key)}: {side} limit of stability", limit, result, 1.5 * step)
 
 
 # ---- exponents and designs
@@ -161,21 +161,21 @@ def exponents() -> Iterator[Line]:
     """Yield multipliers of periodic motions, and that of an undamped free oscillator, from Lyapunov exponents."""
     for key in STABLE:
         exact = orbit(key, 1.0)
-        found = rb.lyapunov(cases.impact_damper(exact, 1.0), cycles=(40, 400), progress=False)
+        result = rb.lyapunov(cases.impact_damper(exact, 1.0), cycles=(40, 400), progress=False)
         # The distance of neighbours, 1e-7, is not zero, and rounding is 1e-9 of it.
-        multiplier = math.exp(float(found.exponent) * exact.half_period)
+        multiplier = math.exp(float(result.exponent) * exact.half_period)
         yield Line("maps", f"lyapunov: {_named(key)}: multiplier", math.exp(growth(key, 1.0)), multiplier, 1e-7)
     case = rb.Case(structure=rb.SDOF(mass=2.0, stiffness=800.0, damping_ratio=0.0, displacement=0.01), duration=60.0)
-    found = rb.lyapunov(case, steps=400, progress=False)
+    result = rb.lyapunov(case, steps=400, progress=False)
     # Rounding of the state is 1e-9 of the distance of neighbours, in each of 400 steps of 0.15 s.
-    multiplier = math.exp(float(found.exponent) * 2 * math.pi / 20)
+    multiplier = math.exp(float(result.exponent) * 2 * math.pi / 20)
     yield Line("maps", "lyapunov: undamped free oscillator: multiplier of a period", 1.0, multiplier, 1e-8 / 0.15)
 
 
 def designs() -> Iterator[Line]:
     """Yield the best clearance of collect-and-collide, pi times the amplitude, and its loss, found by a search."""
     for seed in (0, 1):
-        found = rb.design(
+        result = rb.design(
             cases.sticky_load(1.0, 1.0),
             {"damper.gap": ("0.2 m", "4 m")},
             {"reduced_loss": "max"},
@@ -184,11 +184,11 @@ def designs() -> Iterator[Line]:
             seed=seed,
             progress=False,
         )
-        best = rb.Case.from_toml(found.case.item()).dampers[0]
+        best = rb.Case.from_toml(result.case.item()).dampers[0]
         # The loss is flat at its top: 1e-5 of it is some 4e-3 of the clearance.
         name = f"design: collect and collide, seed {seed}"
         yield Line("maps", f"{name}: best clearance over amplitude", math.pi, 2 * best.gap, 5e-3)
-        yield Line("maps", f"{name}: energy a cycle", 4.0, float(found.reduced_loss.max()), 1e-5)
+        yield Line("maps", f"{name}: energy a cycle", 4.0, float(result.reduced_loss.max()), 1e-5)
 
 
 ALL: tuple[Callable[[], Iterator[Line]], ...] = (thresholds, responses, exponents, designs)

@@ -185,9 +185,9 @@ def first_touches(flights: Flights, k: NDArray[np.intp]) -> tuple[Array, NDArray
             middle = 0.5 * (low + high)
             inside = value(hit, middle) > 0
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-        found = 0.5 * (low + high)
-        better = found < time[hit]
-        time[hit[better]], side[hit[better]] = found[better], wall
+        result = 0.5 * (low + high)
+        better = result < time[hit]
+        time[hit[better]], side[hit[better]] = result[better], wall
     return time, side, doubt
 
 
@@ -215,8 +215,8 @@ def compare(modes: int, harmonic: bool, count: int) -> None:
     """Compare the first touches of random flights."""
     flights = random_flights(modes, harmonic, count, seed=100 * modes + harmonic)
     parts = np.array_split(np.arange(count), max(1, count // 250))
-    found = [first_touches(flights, part) for part in parts]
-    time, side, doubt = (np.concatenate(v) for v in zip(*found, strict=True))
+    result = [first_touches(flights, part) for part in parts]
+    time, side, doubt = (np.concatenate(v) for v in zip(*result, strict=True))
     runs = rb.simulate_many([flights.case(k) for k in range(count)], threads=2)
     clear = doubt > CLOSE
     assert clear.mean() > 0.95
@@ -232,8 +232,8 @@ def compare(modes: int, harmonic: bool, count: int) -> None:
     both = clear & hit
     assert np.array_equal(wall[both], side[both])
     # The time of a grazing touch is known to rounding error over its slope, which is the root of the depth of the minimum.
-    known = 1e-9 + 1e-15 / np.sqrt(np.minimum(doubt[both], 1.0)) * 1e3
-    assert np.all(np.abs(ours[both] - time[both]) <= known)
+    expected = 1e-9 + 1e-15 / np.sqrt(np.minimum(doubt[both], 1.0)) * 1e3
+    assert np.all(np.abs(ours[both] - time[both]) <= expected)
 
 
 def test_brute_force_finds_a_known_touch() -> None:

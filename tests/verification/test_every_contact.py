@@ -87,8 +87,8 @@ def lowest(time: Array, value: Array, rate: Array) -> Array:
     root = np.sqrt(np.maximum(c2 * c2 - 3 * c3 * r0, 0))
     q = -(c2 + np.copysign(root, c2))
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.array([q / (3 * c3), r0 / q])
-    s = np.where((found > 0) & (found < 1), found, 0)
+        result = np.array([q / (3 * c3), r0 / q])
+    s = np.where((result > 0) & (result < 1), result, 0)
     return np.minimum(np.minimum(v0, v1), (v0 + s * (r0 + s * (c2 + s * c3))).min(axis=0))
 
 

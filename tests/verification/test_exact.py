@@ -141,8 +141,8 @@ def test_apparent_mass_has_the_printed_values(gamma: float) -> None:
 @pytest.mark.parametrize("key", printed.IMPACT_OSCILLATOR)
 def test_impact_oscillator_has_the_printed_speed(key: tuple[float, float, float, float]) -> None:
     """The speed before impact agrees with the printed seven places, and the motion repeats."""
-    found = impact_oscillator.orbits(*key)
-    fits = [o for o in found if abs(o.speed - printed.IMPACT_OSCILLATOR[key]) < 5.1e-8]
+    result = impact_oscillator.orbits(*key)
+    fits = [o for o in result if abs(o.speed - printed.IMPACT_OSCILLATOR[key]) < 5.1e-8]
     assert len(fits) == 1
     end = fits[0].state(2 * np.pi / fits[0].omega)
     assert end == pytest.approx((fits[0].stop, fits[0].speed), rel=1e-11, abs=1e-11)

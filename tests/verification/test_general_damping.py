@@ -52,10 +52,10 @@ def test_free_motion(damping: Array, method: Any) -> None:
     run = rb.simulate(case)
     assert run.ok, run.message
     exact = np.array([expm(generator(damping) * t) @ START for t in case.output.times])
-    found = run.motion.sel(point="tip")
+    result = run.motion.sel(point="tip")
     bound = 1e-13 if isinstance(method, rb.EventDriven) else 1e-8
-    np.testing.assert_allclose(found.displacement, exact[:, 2], atol=bound * 2e-3)
-    np.testing.assert_allclose(found.velocity, exact[:, 5], atol=bound * 2e-3 * 300)
+    np.testing.assert_allclose(result.displacement, exact[:, 2], atol=bound * 2e-3)
+    np.testing.assert_allclose(result.velocity, exact[:, 5], atol=bound * 2e-3 * 300)
 
 
 def test_forced_motion() -> None:
@@ -292,16 +292,16 @@ def test_studies_vary_a_tuned_mass() -> None:
         output=rb.Output(rate=1000.0),
     )
     axes: dict[str, Any] = {"tuned_mass.frequency": [8.0, 9.5, 11.0], "tuned_mass.mass": [0.1, 0.3, 0.5]}
-    found = rb.sweep(case, axes, ["rms", "viscous_share"])
+    result = rb.sweep(case, axes, ["rms", "viscous_share"])
     for i, frequency in enumerate(axes["tuned_mass.frequency"]):
         for j, mass in enumerate(axes["tuned_mass.mass"]):
             tuned = rb.TunedMass(mass=mass, frequency=frequency, damping_ratio=0.1)
             run = rb.simulate(case.model_copy(update={"tuned_masses": (tuned,)}))
             share = float(run.energy.share.sel(channel="viscous"))
-            assert float(found.viscous_share[i, j]) == pytest.approx(share, rel=1e-9)
+            assert float(result.viscous_share[i, j]) == pytest.approx(share, rel=1e-9)
             z = run.motion.displacement.sel(point="mass").values
             rms = math.sqrt(np.trapezoid(z**2) / (z.size - 1))
-            assert float(found.rms[i, j]) == pytest.approx(rms, rel=1e-4)  # sampled at other times
+            assert float(result.rms[i, j]) == pytest.approx(rms, rel=1e-4)  # sampled at other times
     only = rb.sweep(case, {"tuned_mass.frequency": [8.0, 9.5]}, ["rms"])
     np.testing.assert_allclose(only.rms[0], rb.sweep(case, {"tuned_mass.frequency": [8.0]}, ["rms"]).rms[0])
 

@@ -14,9 +14,9 @@ from .exact import printed, restitution_laws, shaken
 @pytest.mark.parametrize("lines", measures.ALL, ids=lambda f: f.__name__)
 def test_run_has_the_exact_value(lines: Callable[[], Iterator[measures.Line]]) -> None:
     """Every line of the verification table is within its tolerance."""
-    found = list(lines())
-    assert found
-    failed = [f"{line.case}: {line.ours!r}, exact {line.exact!r}" for line in found if not line.within_tolerance]
+    result = list(lines())
+    assert result
+    failed = [f"{line.case}: {line.ours!r}, exact {line.exact!r}" for line in result if not line.within_tolerance]
     assert not failed, "\n".join(failed)
 
 

@@ -32,11 +32,11 @@ def test_bouncing_balls_coexist() -> None:
     maps = rb.basins(case, starts, cycles=(300, 16), tolerance=1e-9, apart=1e-4, progress=False)
     for cycles in (1, 2):
         orbit = shaken.table_orbit(RESTITUTION, GAMMA, cycles)
-        known = (maps.orbit_period == cycles) & np.isclose(maps.orbit_impacts_per_cycle, 1 / cycles)
-        found = maps.isel(orbit=np.flatnonzero(known)).squeeze("orbit")  # one and no more
+        expected = (maps.orbit_period == cycles) & np.isclose(maps.orbit_impacts_per_cycle, 1 / cycles)
+        result = maps.isel(orbit=np.flatnonzero(expected)).squeeze("orbit")  # one and no more
         strobes = [state(orbit, (begin - orbit.phase) % (2 * math.pi) + 2 * math.pi * k) for k in range(cycles)]
-        heights = found.orbit_relative_position.values[:cycles, 0] + gap
-        rates = found.orbit_relative_velocity.values[:cycles, 0]
+        heights = result.orbit_relative_position.values[:cycles, 0] + gap
+        rates = result.orbit_relative_velocity.values[:cycles, 0]
         ours = sorted(zip(heights.tolist(), rates.tolist(), strict=True))
         assert ours == [pytest.approx(exact, abs=1e-8) for exact in sorted(strobes)]
     rest = maps.isel(orbit=np.flatnonzero(maps.orbit_impacts_per_cycle == 0)).squeeze("orbit")

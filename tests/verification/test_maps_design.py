@@ -15,7 +15,7 @@ AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency
 
 def test_trials_have_the_exact_loss() -> None:
     """Every trial below the best clearance has the loss of collect-and-collide."""
-    found = rb.design(
+    result = rb.design(
         cases.sticky_load(1.0, 1.0),
         {"damper.gap": ("0.2 m", "1.5 m")},
         {"reduced_loss": "max"},
@@ -23,8 +23,8 @@ def test_trials_have_the_exact_loss() -> None:
         trials=12,
         progress=False,
     )
-    exact = [shaken.collect_and_collide(1 / (2 * gap)) for gap in found["damper.gap"].values]
-    assert found.reduced_loss.values == pytest.approx(exact, rel=1e-9)
+    exact = [shaken.collect_and_collide(1 / (2 * gap)) for gap in result["damper.gap"].values]
+    assert result.reduced_loss.values == pytest.approx(exact, rel=1e-9)
 
 
 def test_loss_map_of_an_inelastic_ball() -> None:
@@ -33,16 +33,16 @@ def test_loss_map_of_an_inelastic_ball() -> None:
     gammas = np.array(list(printed.APPARENT_MASS))
     # g = 1: at twice the frequency a quarter of the amplitude is the same motion.
     for ratio in (1.0, 2.0):
-        found = rb.loss_map(
+        result = rb.loss_map(
             case, gammas / ratio**2, [ratio / (2 * np.pi)], cycles=(10, 20), samples=20 * 4096 + 1, progress=False
         )
         exact = np.array([shaken.inelastic_ball(gamma).apparent_mass() for gamma in gammas])
-        assert found.effective_mass[:, 0].values == pytest.approx(exact[:, 0], abs=1e-6)
-        assert found.damping_mass[:, 0].values == pytest.approx(exact[:, 1], abs=1e-6)
-        assert found.effective_mass[:, 0].values == pytest.approx(
+        assert result.effective_mass[:, 0].values == pytest.approx(exact[:, 0], abs=1e-6)
+        assert result.damping_mass[:, 0].values == pytest.approx(exact[:, 1], abs=1e-6)
+        assert result.effective_mass[:, 0].values == pytest.approx(
             [m for m, _ in printed.APPARENT_MASS.values()], abs=2e-6
         )
-        assert found.reduced_loss[:, 0].values == pytest.approx(np.pi * exact[:, 1], rel=1e-8)
+        assert result.reduced_loss[:, 0].values == pytest.approx(np.pi * exact[:, 1], rel=1e-8)
 
 
 def test_loss_map_of_two_impacts_a_cycle() -> None:
@@ -51,12 +51,12 @@ def test_loss_map_of_two_impacts_a_cycle() -> None:
     ratios = np.array([1.2, 1.5, 2.0]) * shaken.threshold(e)
     for ratio in ratios.tolist():
         orbit = shaken.two_impacts(e, ratio)
-        found = rb.loss_map(
+        result = rb.loss_map(
             cases.shaken_cavity(orbit, 1.0), [float(orbit.amplitude)], ["1 rad/s"], cycles=(0, 20), progress=False
         )
         exact = (1 - e**2) * orbit.approach**2 / orbit.amplitude**2
-        assert float(found.reduced_loss.item()) == pytest.approx(exact, rel=1e-8)
-        assert float(found.impacts_per_cycle.item()) == 2
+        assert float(result.reduced_loss.item()) == pytest.approx(exact, rel=1e-8)
+        assert float(result.impacts_per_cycle.item()) == 2
 
 
 def struck() -> rb.Case:
@@ -84,15 +84,15 @@ def pulse_indices(low: float, high: float, first: float, last: float) -> tuple[n
 def test_sensitivity_of_the_energy_of_a_pulse() -> None:
     """The work of a short pulse is F^2 / M: the indices of force and mass are exact, that of stiffness is zero."""
     bounds = {"load.amplitude": (2.0, 4.0), "structure.mass": (1.0, 5.0), "structure.stiffness": (100.0, 300.0)}
-    found = rb.sensitivity(struck(), bounds, "work", n=1024, progress=False).isel(measure=0)
+    result = rb.sensitivity(struck(), bounds, "work", n=1024, progress=False).isel(measure=0)
     first, total = pulse_indices(2.0, 4.0, 1.0, 5.0)
     assert first.sum() < 1 < total.sum()
-    assert found.first.values == pytest.approx([*first, 0], abs=0.03)
-    assert found.total.values == pytest.approx([*total, 0], abs=0.03)
-    assert np.all(np.abs(found.first.values[:2] - first) < 2 * found.first_confidence.values[:2])
-    assert np.all(np.abs(found.total.values[:2] - total) < 2 * found.total_confidence.values[:2])
+    assert result.first.values == pytest.approx([*first, 0], abs=0.03)
+    assert result.total.values == pytest.approx([*total, 0], abs=0.03)
+    assert np.all(np.abs(result.first.values[:2] - first) < 2 * result.first_confidence.values[:2])
+    assert np.all(np.abs(result.total.values[:2] - total) < 2 * result.total_confidence.values[:2])
     impulse = 3.0 * 1e-4 * 2 / np.pi  # mean of F^2 is 28/3, of 1/M ln 5 / 4
-    assert float(found["mean"]) == pytest.approx(impulse**2 / 9 * 28 / 3 * np.log(5) / 4 / 2, rel=0.01)
+    assert float(result["mean"]) == pytest.approx(impulse**2 / 9 * 28 / 3 * np.log(5) / 4 / 2, rel=0.01)
 
 
 def test_indices_converge() -> None:
@@ -103,8 +103,8 @@ def test_indices_converge() -> None:
     def off(n: int) -> float:
         errors = []
         for seed in range(4):
-            found = rb.sensitivity(struck(), bounds, "work", n=n, seed=seed, progress=False).isel(measure=0)
-            errors.append(np.concatenate((found.first, found.total)) - exact)
+            result = rb.sensitivity(struck(), bounds, "work", n=n, seed=seed, progress=False).isel(measure=0)
+            errors.append(np.concatenate((result.first, result.total)) - exact)
         return float(np.sqrt(np.mean(np.square(errors))))
 
     assert off(512) < off(32) / 3
@@ -125,6 +125,6 @@ def test_sensitivity_of_a_published_function() -> None:
         output=rb.Output(times=[0.0]),
     )
     bounds = dict.fromkeys(("structure.velocity", "structure.displacement", "damper.velocity"), (-np.pi, np.pi))
-    found = rb.sensitivity(case, bounds, ishigami, n=2048, progress=False).isel(measure=0)
-    assert found.first.values == pytest.approx([0.3139, 0.4424, 0.0], abs=0.01)
-    assert found.total.values == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.01)
+    result = rb.sensitivity(case, bounds, ishigami, n=2048, progress=False).isel(measure=0)
+    assert result.first.values == pytest.approx([0.3139, 0.4424, 0.0], abs=0.01)
+    assert result.total.values == pytest.approx([0.5576, 0.4424, 0.2437], abs=0.01)

@@ -36,17 +36,17 @@ def test_unstable_motions_are_left(key: tuple[float, float, float]) -> None:
 @pytest.mark.parametrize("key", UNSTABLE)
 def test_exponent_of_an_unstable_orbit(key: tuple[float, float, float]) -> None:
     """Before rounding errors grow, the exponent is that of the unstable orbit."""
-    found = rb.lyapunov(cases.impact_damper(orbit(key, 1.0), 1.0), cycles=(0, 24), reach=0.0, progress=False)
-    assert float(found.growth_per_cycle) == pytest.approx(2 * growth(key, 1.0), rel=2e-3)
+    result = rb.lyapunov(cases.impact_damper(orbit(key, 1.0), 1.0), cycles=(0, 24), reach=0.0, progress=False)
+    assert float(result.growth_per_cycle) == pytest.approx(2 * growth(key, 1.0), rel=2e-3)
 
 
 def test_exponent_of_free_oscillators() -> None:
     """A free oscillator has the exponent of its decay."""
     case = rb.Case(structure=rb.SDOF(mass=2.0, stiffness=800.0, damping_ratio=0.0, displacement=0.01), duration=60.0)
     ratios = [0.0, 0.01, 0.3]
-    found = rb.lyapunov(case, {"structure.damping_ratio": ratios}, steps=400, progress=False)
+    result = rb.lyapunov(case, {"structure.damping_ratio": ratios}, steps=400, progress=False)
     # Rounding of the state is 1e-9 of the distance of neighbours, in each of 400 steps of 0.15 s.
-    assert found.exponent.values == pytest.approx([-20.0 * ratio for ratio in ratios], abs=1e-8 / 0.15)
+    assert result.exponent.values == pytest.approx([-20.0 * ratio for ratio in ratios], abs=1e-8 / 0.15)
 
 
 def test_bare_structure_has_its_transfer_function() -> None:

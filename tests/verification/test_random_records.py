@@ -105,9 +105,9 @@ def test_both_engines_move_as_the_signal_says(rate: float | None, parts: dict[st
     driven = (frequency >= LOW) & (frequency <= HIGH)
     spectrum = 2 * coefficient[driven] * response(frequency[driven])
     exact = np.real(np.exp(2j * np.pi * np.outer(run.arrays.time[late], frequency[driven])) @ spectrum)
-    found = run.arrays.displacement[late, 0]
-    assert np.std(found) == pytest.approx(np.std(exact), rel=allowed)
-    assert np.std(found - exact) < 4 * allowed * np.std(exact)
+    result = run.arrays.displacement[late, 0]
+    assert np.std(result) == pytest.approx(np.std(exact), rel=allowed)
+    assert np.std(result - exact) < 4 * allowed * np.std(exact)
     assert not any("straight lines" in note for note in run.notes)
 
 

@@ -50,8 +50,8 @@ def bits(run: Run) -> dict[str, Any]:
     values = vars(run.arrays) | {f"particles.{name}": column for name, column in vars(run.arrays.particles).items()}
     del values["particles"]
     arrays = {name: value.tobytes() if isinstance(value, np.ndarray) else value for name, value in values.items()}
-    told = {"status": run.status, "message": run.message, "notes": run.notes, "diagnostics": dict(run.diagnostics)}
-    return arrays | told | {"counts": counts}
+    texts = {"status": run.status, "message": run.message, "notes": run.notes, "diagnostics": dict(run.diagnostics)}
+    return arrays | texts | {"counts": counts}
 
 
 if __name__ == "__main__":

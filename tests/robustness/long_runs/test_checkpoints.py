@@ -168,7 +168,7 @@ def test_states_are_kept_by_the_clock_of_the_run(
 def test_runs_in_short_pieces_still_hear(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """However many snapshots are asked for, progress is told at each and can stop the run; checkpoints come by the clock."""
     many = case(output=rb.Output(rate="2 kHz", snapshots=500), method=rb.Dem(checkpoint="1 ms"))
-    told: list[int] = []
+    caught: list[int] = []
     kept: list[float] = []
     write = Checkpoint.write
 
@@ -177,7 +177,7 @@ def test_runs_in_short_pieces_still_hear(tmp_path: Path, monkeypatch: pytest.Mon
         kept.append(self.time or 0.0)
 
     def progress(done: int, total: int) -> bool:
-        told.append(done)
+        caught.append(done)
         return done < total / 2
 
     monkeypatch.setattr(Checkpoint, "write", writing)
@@ -186,7 +186,7 @@ def test_runs_in_short_pieces_still_hear(tmp_path: Path, monkeypatch: pytest.Mon
     )
     assert run.status == "interrupted"
     assert run.arrays.time[-1] == pytest.approx(0.025, abs=1e-3)
-    assert len(told) >= 250
+    assert len(caught) >= 250
     assert len(kept) > 3
 
 
@@ -227,10 +227,10 @@ def test_other_runs_are_refused_with_the_differences(tmp_path: Path, monkeypatch
     before = file.read_bytes()
 
     def refused(other: rb.Case) -> str:
-        with pytest.raises(rb.DataError) as told:
+        with pytest.raises(rb.DataError) as caught:
             rb.simulate(other, checkpoint=file)
         assert file.read_bytes() == before
-        return str(told.value)
+        return str(caught.value)
 
     assert refused(short.model_copy(update={"duration": 0.002})) == (
         f"{file} holds another run\n"
@@ -329,14 +329,14 @@ def test_snapshots_that_are_something_else_are_told(tmp_path: Path, monkeypatch:
     whole = files["snapshots"].read_bytes()
 
     def refused() -> str:
-        with pytest.raises(rb.DataError) as told:
+        with pytest.raises(rb.DataError) as caught:
             rb.simulate(case(), **files)
-        return str(told.value)
+        return str(caught.value)
 
     for content in (whole[:5000], b"notes"):
         files["snapshots"].write_bytes(content)
-        said = f"{files['snapshots']} is not an intact HDF5 file\n  try: put the file"
-        assert refused().startswith(said)
+        message = f"{files['snapshots']} is not an intact HDF5 file\n  try: put the file"
+        assert refused().startswith(message)
         assert files["snapshots"].read_bytes() == content
     files["snapshots"].unlink()
     files["snapshots"].mkdir()
@@ -358,9 +358,11 @@ def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(np, "savez", full)
-    with pytest.raises(OSError, match="no space is left on the disk\n  try: free disk space and give the same") as told:
+    with pytest.raises(
+        OSError, match="no space is left on the disk\n  try: free disk space and give the same"
+    ) as caught:
         rb.simulate(case(), **files)
-    assert told.value.filename == str(files["checkpoint"])
+    assert caught.value.filename == str(files["checkpoint"])
     monkeypatch.undo()
     assert files["checkpoint"].read_bytes() == before
     assert {path.name for path in tmp_path.iterdir()} == {"run.checkpoint", "run.vtkhdf"}
@@ -369,20 +371,20 @@ def test_a_full_disk_is_told_and_the_last_checkpoint_goes_on(
 
 @needs_mounts
 @pytest.mark.parametrize(
-    ("mount", "name", "said"),
+    ("mount", "name", "message"),
     [
         *((f"mount -t tmpfs -o size={size}k none {{0}}", name, "no space is left on the disk") for size, name in FULL),
         ("mount -t tmpfs -o ro none {0}", "run.checkpoint", "cannot be written: Read-only file system"),
     ],
     ids=[*(f"{size} kB" for size, _ in FULL), "read-only"],
 )
-def test_real_disks_that_take_no_more(mount: str, name: str, said: str, tmp_path: Path) -> None:
+def test_real_disks_that_take_no_more(mount: str, name: str, message: str, tmp_path: Path) -> None:
     """A file system that is really full or read-only ends the run with that message, and nothing else is said after it."""
     done = with_own_mounts(f"{mount.format(tmp_path)}; {sys.executable} {SCRIPT} {tmp_path} '20 s'")
     assert done.returncode == 1, done.stderr
     assert "Exception ignored" not in done.stderr
     happened, advice = done.stderr.splitlines()[-2:]
-    assert said in happened
+    assert message in happened
     assert str(tmp_path / name) in happened
     assert advice.startswith("  try: ")
 
@@ -418,8 +420,8 @@ def test_a_particle_that_leaves_is_told(tmp_path: Path) -> None:
     assert run.status == "escaped"
     where = "Particle 1, in 'damper', left its cavity at "
     assert run.message.startswith(where)
-    told = run.message.removeprefix(where).split()
-    assert float(told[0]) == pytest.approx(40, rel=0.1)
+    caught = run.message.removeprefix(where).split()
+    assert float(caught[0]) == pytest.approx(40, rel=0.1)
     step = run.diagnostics["step"]
     assert f"{step:.4g} s" in run.message
     assert "t = 0 s" in run.message and file.name in run.message
@@ -548,9 +550,9 @@ def test_the_command_goes_on(number: int, tmp_path: Path) -> None:
     while not (tmp_path / "out/run.checkpoint").exists():
         time.sleep(0.01)
     process.send_signal(number)
-    said = process.communicate()[1]
+    message = process.communicate()[1]
     assert process.returncode == 128 + number
-    assert "out/run.checkpoint" in said
+    assert "out/run.checkpoint" in message
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "resuming from out/run.checkpoint" in done.stderr
@@ -572,11 +574,11 @@ def test_folders_that_are_not_there_are_told(tmp_path: Path) -> None:
 def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
     """A folder in place of a file, and one file for both, are refused before anything is computed."""
     file = tmp_path / "file"
-    for files, said in (
+    for files, message in (
         ({"checkpoint": tmp_path, "snapshots": file}, f"{tmp_path} is a folder; a checkpoint must be a file"),
         ({"checkpoint": file, "snapshots": tmp_path}, f"{tmp_path} is a folder; snapshots must be a file"),
         ({"checkpoint": tmp_path / "." / "file", "snapshots": file}, "both the checkpoint and the snapshots"),
     ):
-        with pytest.raises(rb.DataError, match=re.escape(said)):
+        with pytest.raises(rb.DataError, match=re.escape(message)):
             rb.simulate(case(), **files)
     assert not any(tmp_path.iterdir())

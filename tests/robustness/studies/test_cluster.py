@@ -95,10 +95,10 @@ def test_a_worker_is_killed_in_the_middle(scheduler: Path, tmp_path: Path) -> No
         client.wait_for_workers(2, timeout=30)
         assert set(client.run(os.getpid).values()) == {first.pid, second.pid}
         slow = Logistic(pause=0.02)
-        found = run_work(slow, backend=client, store=tmp_path / "study.zarr", block=3, progress=kill)
+        result = run_work(slow, backend=client, store=tmp_path / "study.zarr", block=3, progress=kill)
         assert first.poll() is not None
         assert len(client.scheduler_info()["workers"]) == 1
-    assert bits(found) == bits(run_work(Logistic()))
+    assert bits(result) == bits(run_work(Logistic()))
 
 
 @pytest.fixture(scope="module")
@@ -113,8 +113,8 @@ def local() -> Iterator[Client]:
 
 def test_a_local_cluster(local: Client) -> None:
     """A cluster of processes gives the bits of this process; blocks are chosen by time, and a fault arrives as it is."""
-    found = run_work(Logistic(), backend=local)
-    assert bits(found) == bits(run_work(Logistic()))
+    result = run_work(Logistic(), backend=local)
+    assert bits(result) == bits(run_work(Logistic()))
     with pytest.raises(ZeroDivisionError, match="a fault in the task"):
         run_work(Logistic(broken=True), backend=local, block=20)
 
@@ -128,9 +128,9 @@ def test_a_measure_of_ones_own(local: Client) -> None:
     """A function of a Run travels to the workers with its study and gives the bits of this process."""
     case = rb.Case.from_file(EXAMPLE)
     axes = {"damper.start": rb.linspace(-0.5, 0.5, 5)}
-    found = rb.sweep(case, axes, [last_speed, "impacts"], backend=local)
+    result = rb.sweep(case, axes, [last_speed, "impacts"], backend=local)
     here = rb.sweep(case, axes, [last_speed, "impacts"])
-    assert bits(found) == bits(here)
+    assert bits(result) == bits(here)
     damper = case.dampers[0].model_copy(update={"start": -0.25})
     assert float(here.last_speed[1]) == last_speed(rb.simulate(case.model_copy(update={"dampers": (damper,)})))
 

@@ -17,9 +17,9 @@ ROOT = Path(__file__).parents[3]
 
 def block(language: str, number: int = 0) -> str:
     """Return what the page shows in a language."""
-    found = re.findall(rf"```{language}\n(.*?)```", (ROOT / "docs" / "how-to" / "cluster.md").read_text(), re.DOTALL)
-    assert len(found) == {"toml": 2}.get(language, 1)
-    return str(found[number])
+    result = re.findall(rf"```{language}\n(.*?)```", (ROOT / "docs" / "how-to" / "cluster.md").read_text(), re.DOTALL)
+    assert len(result) == {"toml": 2}.get(language, 1)
+    return str(result[number])
 
 
 def test_the_study_file() -> None:
@@ -31,9 +31,9 @@ def test_the_study_file() -> None:
 def test_the_map(tmp_path: Path) -> None:
     """The file of a ready map is run, with fewer values."""
     study = study_from_toml(block("toml", 1).replace("count = 41", "count = 5"), folder=ROOT / "examples")
-    found = study.run(store=tmp_path / "study.zarr", progress=False)
-    assert found.sizes["structure.motion.amplitude"] == 5
-    assert not found.status.any()
+    result = study.run(store=tmp_path / "study.zarr", progress=False)
+    assert result.sizes["structure.motion.amplitude"] == 5
+    assert not result.status.any()
 
 
 def test_the_python_script(tmp_path: Path) -> None:
@@ -67,6 +67,6 @@ def test_the_job_script(tmp_path: Path) -> None:
     process = subprocess.Popen(
         ["bash", "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    told, said = process.communicate(timeout=60)  # until all that it started has closed the pipes
-    assert told.endswith("6 variants: 6 finished\nwritten to study.zarr\n"), said
+    output, message = process.communicate(timeout=60)  # until all that it started has closed the pipes
+    assert output.endswith("6 variants: 6 finished\nwritten to study.zarr\n"), message
     assert open_study(tmp_path / "study.zarr").impacts.shape == (2, 3)

@@ -79,15 +79,15 @@ def test_going_on_computes_nothing_twice(tmp_path: Path) -> None:
             raise KeyboardInterrupt
 
     def again() -> list[int]:
-        told: list[int] = []
-        diagram(store=store, progress=lambda n, _: told.append(n))
-        return told
+        counts: list[int] = []
+        diagram(store=store, progress=lambda n, _: counts.append(n))
+        return counts
 
     with pytest.raises(Stopped, match=r"of 120 variants are in .* and the same command resumes"):
         diagram(store=store, progress=press)
     first = progress_of(store).done
-    told = again()
-    assert 0 < told[0] == first and told[-1] == 120
+    counts = again()
+    assert 0 < counts[0] == first and counts[-1] == 120
     assert again() == [120]
 
 
@@ -116,8 +116,8 @@ def test_a_worker_is_killed_on_the_way(tmp_path: Path) -> None:
         Client(scheduler_file=str(file)) as client,
     ):
         client.wait_for_workers(2, timeout=30)
-        found = rb.frequency_response(
+        result = rb.frequency_response(
             case, frequencies, backend=client, store=tmp_path / "study.zarr", progress=kill, **options
         )
         assert first.poll() is not None
-    assert bits(found) == bits(rb.frequency_response(case, frequencies, progress=False, **options))
+    assert bits(result) == bits(rb.frequency_response(case, frequencies, progress=False, **options))

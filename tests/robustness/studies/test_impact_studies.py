@@ -51,12 +51,12 @@ def test_a_killed_study_goes_on(tmp_path: Path) -> None:
     process.wait()
     assert 0 < progress_of(store).done < 2000
     command = [sys.executable, "-m", "rattlebox.cli", "sweep", "study.toml"]
-    told = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
-    assert told == "2,000 variants: 2,000 finished\nwritten to study.zarr\n"
+    output = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert output == "2,000 variants: 2,000 finished\nwritten to study.zarr\n"
     study = read_study(tmp_path / "study.toml")
     whole = study.run(workers=2)
-    found = open_study(store)
-    assert {name: found[name].values.tobytes() for name in found} == {
+    result = open_study(store)
+    assert {name: result[name].values.tobytes() for name in result} == {
         name: whole[name].values.tobytes() for name in whole
     }
 

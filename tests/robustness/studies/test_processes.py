@@ -40,8 +40,8 @@ PROCESS = os.getpid()
 
 def test_processes_give_the_bits_of_threads(tmp_path: Path) -> None:
     """A study on processes, with a store, has the bits of one on threads."""
-    found = run_work(Logistic(), backend="processes", workers=2, store=tmp_path / "study.zarr", progress=False)
-    assert bits(found) == bits(run_work(Logistic(), progress=False))
+    result = run_work(Logistic(), backend="processes", workers=2, store=tmp_path / "study.zarr", progress=False)
+    assert bits(result) == bits(run_work(Logistic(), progress=False))
 
 
 def test_kinds_run_on_processes(tmp_path: Path) -> None:
@@ -51,8 +51,8 @@ def test_kinds_run_on_processes(tmp_path: Path) -> None:
     )
     motion = rb.Harmonic(amplitude="1 mm", frequency="10 Hz")
     case = rb.Case(structure=rb.Shaker(motion=motion), damper=damper, duration="1 s", method=rb.Newton())
-    found = rb.sweep(case, {"damper.gap": [1e-3, 2e-3]}, mean_speed, backend="processes", workers=2, progress=False)
-    assert found.mean_speed.notnull().all()
+    result = rb.sweep(case, {"damper.gap": [1e-3, 2e-3]}, mean_speed, backend="processes", workers=2, progress=False)
+    assert result.mean_speed.notnull().all()
     arguments = case, "damper.gap", [1e-3, 2e-3]
     store = tmp_path / "diagram.zarr"
     there = rb.bifurcation(*arguments, cycles=(20, 8), backend="processes", workers=2, store=store, progress=False)

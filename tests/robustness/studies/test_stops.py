@@ -83,9 +83,9 @@ def test_ctrl_c_in_a_process(tmp_path: Path) -> None:
     process = start(store, pause=0.06)
     wait_for(has_begun(store, 5))
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=20)
+    _, message = process.communicate(timeout=20)
     assert process.returncode != 0
-    assert f"of 60 variants are in {store}, and the same command resumes from there" in said
+    assert f"of 60 variants are in {store}, and the same command resumes from there" in message
     assert 5 <= progress_of(store).done < 60
     assert bits(run_work(Logistic(), store=store)) == bits(run_work(Logistic()))
 

@@ -94,9 +94,9 @@ def test_another_study_is_refused_with_the_differences(tmp_path: Path, monkeypat
     store = tmp_path / "study.zarr"
     before = bits(study(store))
     other = Logistic(case="[damper]\ngap = 0.2\n[load]\namplitude = 5.0\nkind = 'harmonic'\n")
-    with pytest.raises(rb.StoreError) as told:
+    with pytest.raises(rb.StoreError) as caught:
         study(store, other)
-    assert str(told.value) == (
+    assert str(caught.value) == (
         f"{store} holds another study\n"
         "  case.damper.gap: 0.1 there, 0.2 here\n"
         '  case.load.kind: nothing there, "harmonic" here\n'
@@ -179,9 +179,9 @@ def test_a_full_disk_is_told_and_what_is_there_goes_on(tmp_path: Path, monkeypat
         return put(path, value, exclusive)
 
     monkeypatch.setattr(_local, "_put", fill)
-    with pytest.raises(OSError, match="no space is left") as told:
+    with pytest.raises(OSError, match="no space is left") as caught:
         study(tmp_path / "study.zarr")
-    assert told.value.filename == str(tmp_path / "study.zarr")
+    assert caught.value.filename == str(tmp_path / "study.zarr")
     monkeypatch.undo()
     assert 0 < progress_of(tmp_path / "study.zarr").done < 60
     assert bits(study(tmp_path / "study.zarr")) == bits(study())
@@ -189,18 +189,18 @@ def test_a_full_disk_is_told_and_what_is_there_goes_on(tmp_path: Path, monkeypat
 
 @needs_mounts
 @pytest.mark.parametrize(
-    ("mount", "said"),
+    ("mount", "message"),
     [
         ("mount -t tmpfs -o size=112k none {0}", "no space is left on the disk"),
         ("mount -t tmpfs -o ro none {0}", "the study cannot be written: Read-only file system"),
     ],
     ids=["full", "read-only"],
 )
-def test_real_disks_that_take_no_more(mount: str, said: str, tmp_path: Path) -> None:
+def test_real_disks_that_take_no_more(mount: str, message: str, tmp_path: Path) -> None:
     """A file system that is really full or read-only ends the study with that message."""
     script = f"{mount.format(tmp_path)}; {sys.executable} {FAKE} {tmp_path}/study.zarr 0"
     done = with_own_mounts(script)
-    assert f"{said}\n  try: " in done.stderr.splitlines()[-2] + "\n" + done.stderr.splitlines()[-1] + "\n"
+    assert f"{message}\n  try: " in done.stderr.splitlines()[-2] + "\n" + done.stderr.splitlines()[-1] + "\n"
 
 
 def test_a_task_that_fails_is_not_hidden(tmp_path: Path) -> None:

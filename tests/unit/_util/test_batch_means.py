@@ -14,9 +14,9 @@ def test_coverage_of_autoregressive_series(memory):
     rng = np.random.default_rng(11)
     inside, given = 0, 0
     for _ in range(400):
-        found = mean_interval(3 + lfilter([1], [1, -memory], rng.normal(size=6000))[1000:])
-        given += found.is_long_enough
-        inside += found.lower < 3 < found.upper
+        result = mean_interval(3 + lfilter([1], [1, -memory], rng.normal(size=6000))[1000:])
+        given += result.is_long_enough
+        inside += result.lower < 3 < result.upper
     assert given > 390
     assert 0.91 < inside / given < 0.98
 
@@ -25,9 +25,9 @@ def test_a_short_or_drifting_series_has_no_interval():
     """A random walk, a trend and nine samples leave the limits open; the mean is still given."""
     rng = np.random.default_rng(2)
     for series in (np.cumsum(rng.normal(size=300)), np.linspace(0, 1, 500) + 0.01 * rng.normal(size=500), range(9)):
-        found = mean_interval(series)
-        assert not found.is_long_enough and np.isnan(found.half_width)
-        assert found.mean == pytest.approx(np.mean(series))
+        result = mean_interval(series)
+        assert not result.is_long_enough and np.isnan(result.half_width)
+        assert result.mean == pytest.approx(np.mean(series))
 
 
 def test_a_constant_is_exact():
@@ -38,9 +38,9 @@ def test_a_constant_is_exact():
 def test_the_mean_of_a_periodic_series():
     """The interval of a sine over many periods holds zero and is not wider than that of independent samples."""
     series = np.sin(0.3 * np.arange(5000))
-    found = mean_interval(series)
-    assert found.lower < 0 < found.upper
-    assert found.half_width < 2 * 1.96 * series.std() / np.sqrt(series.size) + 0.02
+    result = mean_interval(series)
+    assert result.lower < 0 < result.upper
+    assert result.half_width < 2 * 1.96 * series.std() / np.sqrt(series.size) + 0.02
 
 
 def test_many_series_at_once():
@@ -62,6 +62,6 @@ def test_many_series_at_once():
 def test_the_end_of_a_transient():
     """A trend below 0.1 % of the mean gives the range of ten means; one of 1 % gives no interval."""
     decay = np.exp(-np.arange(200) / 60)
-    found = mean_interval(5 + 2e-3 * decay)
-    assert found.lower < 5.0 < found.upper and found.half_width < 2e-3
+    result = mean_interval(5 + 2e-3 * decay)
+    assert result.lower < 5.0 < result.upper and result.half_width < 2e-3
     assert np.isnan(mean_interval(5 + 5e-2 * decay).half_width)

@@ -155,11 +155,11 @@ def with_progress():
 
 def test_progress_means_the_same_in_all_functions():
     """All long calls take `progress`, with one type and one default."""
-    found = with_progress()
+    result = with_progress()
     studies = {"sweep", "bifurcation", "basins", "frequency_response", "lyapunov", "loss_map", "design", "sensitivity"}
     others = {"simulate", "simulate_many", "compare", "damping_curve", "check_softening", "film_particles"}
-    assert set(found) == studies | others
-    parameters = [inspect.signature(each).parameters["progress"] for each in found.values()]
+    assert set(result) == studies | others
+    parameters = [inspect.signature(each).parameters["progress"] for each in result.values()]
     assert {(p.annotation, p.default, p.kind) for p in parameters} == {
         ("bool | Callable[[int, int], object]", True, inspect.Parameter.KEYWORD_ONLY)
     }
@@ -184,5 +184,5 @@ def test_a_study_is_stopped_by_its_function():
     """A function that returns False stops a study as Ctrl-C does."""
     with pytest.raises(KeyboardInterrupt, match="stopped after"):
         rb.sweep(rb.reference_case(duration=0.1), {"damper.gap": ["1 mm", "2 mm"]}, progress=lambda *_: False)
-    found = rb.compare({"a": rb.reference_case(duration=0.1)}, progress=lambda *_: None)
-    assert found.runs["a"].ok
+    result = rb.compare({"a": rb.reference_case(duration=0.1)}, progress=lambda *_: None)
+    assert result.runs["a"].ok

@@ -12,21 +12,21 @@ TIME = np.linspace(0, 10, 201)
 def test_exact_growth_until_it_saturates():
     """Growth at a known rate is found exactly up to saturation; what follows does not bend the line."""
     separation = np.minimum(1e-9 * np.exp(2.5 * TIME), 1.0)
-    found = lyapunov_exponent(TIME, separation, saturation=1e-2)
-    assert float(found.exponent) == pytest.approx(2.5, rel=1e-12)
-    assert float(found.standard_error) < 1e-12
+    result = lyapunov_exponent(TIME, separation, saturation=1e-2)
+    assert float(result.exponent) == pytest.approx(2.5, rel=1e-12)
+    assert float(result.standard_error) < 1e-12
     end = np.log(1e7) / 2.5
-    np.testing.assert_allclose(found.fit.dropna("time"), 2.5 * TIME[end > TIME], atol=1e-9)
-    np.testing.assert_allclose(found.growth.sel(time=slice(None, end)), 2.5 * TIME[end > TIME], atol=1e-9)
-    assert float(found.growth[-1]) == pytest.approx(np.log(1e9))
+    np.testing.assert_allclose(result.fit.dropna("time"), 2.5 * TIME[end > TIME], atol=1e-9)
+    np.testing.assert_allclose(result.growth.sel(time=slice(None, end)), 2.5 * TIME[end > TIME], atol=1e-9)
+    assert float(result.growth[-1]) == pytest.approx(np.log(1e9))
 
 
 def test_mean_over_pairs_and_its_error():
     """Pairs with rates 1, 2 and 3 have the mean 2 with the standard error of their spread."""
     separations = 1e-6 * np.exp(np.outer([1.0, 2.0, 3.0], TIME - 5.0))
-    found = lyapunov_exponent(TIME - 5.0, separations, saturation=1e30)
-    assert float(found.exponent) == pytest.approx(2.0)
-    assert float(found.standard_error) == pytest.approx(1 / np.sqrt(3))
+    result = lyapunov_exponent(TIME - 5.0, separations, saturation=1e30)
+    assert float(result.exponent) == pytest.approx(2.0)
+    assert float(result.standard_error) == pytest.approx(1 / np.sqrt(3))
 
 
 def test_error_of_a_single_pair():
@@ -36,8 +36,8 @@ def test_error_of_a_single_pair():
         lyapunov_exponent(TIME, np.exp(0.5 * TIME + 0.2 * rng.standard_normal(TIME.size)), saturation=1e9)
         for _ in range(200)
     ]
-    spread = np.std([float(found.exponent) for found in draws])
-    assert np.mean([float(found.standard_error) for found in draws]) == pytest.approx(spread, rel=0.15)
+    spread = np.std([float(result.exponent) for result in draws])
+    assert np.mean([float(result.standard_error) for result in draws]) == pytest.approx(spread, rel=0.15)
 
 
 def test_cat_map():
@@ -51,10 +51,10 @@ def test_cat_map():
         separations.append(np.hypot(*np.minimum(apart, 1 - apart)))
         points, shadows = (np.array([2 * x + y, x + y]) % 1.0 for x, y in (points, shadows))
     exact = np.log((3 + np.sqrt(5)) / 2)
-    found = lyapunov_exponent(np.arange(60.0), np.transpose(separations), saturation=1e-2)
-    assert float(found.exponent) == pytest.approx(exact, rel=0.02)
-    assert found.fit.count() < 25
-    assert found.exponent.attrs == {"units": "1/s", "long_name": "finite-time Lyapunov exponent"}
+    result = lyapunov_exponent(np.arange(60.0), np.transpose(separations), saturation=1e-2)
+    assert float(result.exponent) == pytest.approx(exact, rel=0.02)
+    assert result.fit.count() < 25
+    assert result.exponent.attrs == {"units": "1/s", "long_name": "finite-time Lyapunov exponent"}
     # Without the first few cycles, in which neighbours turn into the growing direction, it is exact.
     turned = lyapunov_exponent(np.arange(55.0), np.transpose(separations)[:, 5:], saturation=1e-2)
     assert float(turned.exponent) == pytest.approx(exact, rel=1e-3)
@@ -69,9 +69,9 @@ def test_logistic_map_scatters_about_the_exact_exponent():
     for _ in range(14):
         separations.append(np.abs(points - shadows))
         points, shadows = 4 * points * (1 - points), 4 * shadows * (1 - shadows)
-    found = lyapunov_exponent(np.arange(14.0), np.transpose(separations), saturation=1e-3)
-    assert float(found.standard_error) < 0.02
-    assert abs(float(found.exponent) - np.log(2)) < 3 * float(found.standard_error)
+    result = lyapunov_exponent(np.arange(14.0), np.transpose(separations), saturation=1e-3)
+    assert float(result.standard_error) < 0.02
+    assert abs(float(result.exponent) - np.log(2)) < 3 * float(result.standard_error)
 
 
 def test_unstable_orbit_of_a_bouncing_ball():
@@ -110,13 +110,13 @@ def test_unstable_orbit_of_a_bouncing_ball():
 
     (x, v), (x_near, v_near) = heights(0.0), heights(1e-7)
     # Three cycles turn the neighbour into the growing direction.
-    found = lyapunov_exponent(cycles[3:], np.hypot(x - x_near, v - v_near)[3:], saturation=1e-3)
-    assert 5 <= found.fit.count() <= 10
-    assert float(found.exponent) == pytest.approx(np.log(abs(multiplier)) / (2 * np.pi), rel=1e-3)
+    result = lyapunov_exponent(cycles[3:], np.hypot(x - x_near, v - v_near)[3:], saturation=1e-3)
+    assert 5 <= result.fit.count() <= 10
+    assert float(result.exponent) == pytest.approx(np.log(abs(multiplier)) / (2 * np.pi), rel=1e-3)
 
 
 @pytest.mark.parametrize(
-    ("separations", "saturation", "said"),
+    ("separations", "saturation", "message"),
     [
         (np.zeros(201), 1.0, "separations .* 0, but must be above zero"),
         (np.ones(201), 0.5, r"only 0 samples .* 0\.5"),
@@ -126,7 +126,7 @@ def test_unstable_orbit_of_a_bouncing_ball():
         (np.full((2, 201), np.nan), 1.0, r"separations\[0\]\[0\] is nan"),
     ],
 )
-def test_bad_separations_are_refused(separations, saturation, said):
+def test_bad_separations_are_refused(separations, saturation, message):
     """Separations that have no logarithm, no room to grow or no matching times are refused."""
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         lyapunov_exponent(TIME, separations, saturation=saturation)

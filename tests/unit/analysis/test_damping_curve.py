@@ -18,11 +18,11 @@ def test_linear_decay(ratio, shift):
     """A linear decay about any rest position has its ratio and frequency at every amplitude that it passes."""
     time = np.arange(0, 8 / (ratio * W0), 1 / (40 * F0))
     damped = W0 * math.sqrt(1 - ratio**2)
-    found = damping_over_amplitude(
+    result = damping_over_amplitude(
         time, shift + np.exp(-ratio * W0 * time) * np.cos(damped * time), np.geomspace(0.01, 0.1, 4)
     )
-    np.testing.assert_allclose(found.damping_ratio, ratio, rtol=2e-4)
-    np.testing.assert_allclose(found.frequency, damped / (2 * math.pi), rtol=2e-4)
+    np.testing.assert_allclose(result.damping_ratio, ratio, rtol=2e-4)
+    np.testing.assert_allclose(result.frequency, damped / (2 * math.pi), rtol=2e-4)
 
 
 def test_coulomb_friction():
@@ -35,15 +35,15 @@ def test_coulomb_friction():
     time = np.arange(0, 20 / F0, 1 / (60 * F0))
     z = solve_ivp(motion, (0, time[-1]), [1.0, 0.0], "LSODA", t_eval=time, rtol=1e-9, atol=1e-12).y[0]
     amplitudes = np.array([0.4, 0.5, 0.6, 0.7])
-    found = damping_over_amplitude(time, z, amplitudes)
-    np.testing.assert_allclose(found.damping_ratio, 2 * friction / (math.pi * amplitudes), rtol=0.03)
+    result = damping_over_amplitude(time, z, amplitudes)
+    np.testing.assert_allclose(result.damping_ratio, 2 * friction / (math.pi * amplitudes), rtol=0.03)
 
 
 def test_amplitudes_that_the_decay_does_not_pass_are_nan():
     """Above the start, below the end, and in the first two cycles nothing is given."""
     time = np.arange(0, 3, 1 / 500)
-    found = damping_over_amplitude(time, np.exp(-0.02 * W0 * time) * np.cos(W0 * time), [0.005, 0.1, 0.4, 0.9, 2.0])
-    assert np.isnan(found.damping_ratio.values).tolist() == [True, False, False, True, True]
+    result = damping_over_amplitude(time, np.exp(-0.02 * W0 * time) * np.cos(W0 * time), [0.005, 0.1, 0.4, 0.9, 2.0])
+    assert np.isnan(result.damping_ratio.values).tolist() == [True, False, False, True, True]
 
 
 @pytest.mark.parametrize("amplitudes", [[0.1], [0.2, 0.1], [0.0, 0.1], [-1.0, 1.0]])

@@ -23,10 +23,10 @@ def free_decay(ratio, time=TIME):
 def test_linear_oscillator(method, ratio):
     """The damping ratio of a linear oscillator, slight to strong, is found at every amplitude, with the amplitude."""
     time = TIME[ratio * OMEGA * TIME < 12]
-    found = damping_ratio(time, free_decay(ratio, time), method=method)
-    np.testing.assert_allclose(found.damping_ratio, ratio, rtol=3e-5, atol=RIPPLE)
-    np.testing.assert_allclose(found.amplitude, np.exp(-ratio * OMEGA * found.time), rtol=5e-5)
-    assert float(found.amplitude[0] / found.amplitude[-1]) > (1.05 if ratio == 1e-4 else 1.7)
+    result = damping_ratio(time, free_decay(ratio, time), method=method)
+    np.testing.assert_allclose(result.damping_ratio, ratio, rtol=3e-5, atol=RIPPLE)
+    np.testing.assert_allclose(result.amplitude, np.exp(-ratio * OMEGA * result.time), rtol=5e-5)
+    assert float(result.amplitude[0] / result.amplitude[-1]) > (1.05 if ratio == 1e-4 else 1.7)
 
 
 @pytest.mark.parametrize(("linear", "quadratic"), [(0.2, 3.0), (0.05, 2.0)])
@@ -49,8 +49,8 @@ def test_damping_that_grows_with_amplitude(linear, quadratic):
 def test_dry_friction(method):
     """An amplitude that falls by the same step every cycle has a damping ratio of step/(2 pi amplitude)."""
     fall = 0.05  # per second
-    found = damping_ratio(TIME, (1 - fall * TIME) * np.cos(OMEGA * TIME), method=method)
-    np.testing.assert_allclose(found.damping_ratio, fall / (OMEGA * found.amplitude), rtol=1e-5, atol=RIPPLE)
+    result = damping_ratio(TIME, (1 - fall * TIME) * np.cos(OMEGA * TIME), method=method)
+    np.testing.assert_allclose(result.damping_ratio, fall / (OMEGA * result.amplitude), rtol=1e-5, atol=RIPPLE)
 
 
 def test_weak_end_does_not_feel_the_strong_start():
@@ -65,9 +65,9 @@ def test_weak_end_does_not_feel_the_strong_start():
 def test_ends_are_trimmed():
     """The envelope loses two cycles at each end, the damping ratio three."""
     step, cycle = TIME[1], 0.1
-    for found, lost in ((decay_envelope(TIME, free_decay(0.01)), 2), (damping_ratio(TIME, free_decay(0.01)), 3)):
-        assert float(found.time[0]) == pytest.approx(lost * cycle, abs=2 * step)
-        assert float(found.time[-1]) == pytest.approx(10.0 - lost * cycle, abs=3 * step)
+    for result, lost in ((decay_envelope(TIME, free_decay(0.01)), 2), (damping_ratio(TIME, free_decay(0.01)), 3)):
+        assert float(result.time[0]) == pytest.approx(lost * cycle, abs=2 * step)
+        assert float(result.time[-1]) == pytest.approx(10.0 - lost * cycle, abs=3 * step)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -75,8 +75,8 @@ def test_noise_and_coarse_sampling(method):
     """Forty samples a cycle with noise of a thousandth still give the damping ratio to some per cent."""
     time = np.arange(0, 5, 1 / 400)
     noise = 1e-3 * np.random.default_rng(1).standard_normal(time.size)
-    found = damping_ratio(time, free_decay(0.01, time) + noise, method=method)
-    strong = found.damping_ratio[found.amplitude > 0.2]
+    result = damping_ratio(time, free_decay(0.01, time) + noise, method=method)
+    strong = result.damping_ratio[result.amplitude > 0.2]
     assert float(strong.mean()) == pytest.approx(0.01, rel=0.02)
 
 
@@ -90,14 +90,14 @@ def test_simulated_oscillator(method):
             output=rb.Output(rate=2000.0),
         )
     )
-    found = damping_ratio(run.motion.time, run.motion.displacement.isel(point=0), method=method)
-    np.testing.assert_allclose(found.damping_ratio, 0.02, rtol=3e-5)
-    assert found.amplitude.attrs["units"] == "m"
-    assert found.damping_ratio.attrs == {"units": "1", "long_name": "damping ratio"}
+    result = damping_ratio(run.motion.time, run.motion.displacement.isel(point=0), method=method)
+    np.testing.assert_allclose(result.damping_ratio, 0.02, rtol=3e-5)
+    assert result.amplitude.attrs["units"] == "m"
+    assert result.damping_ratio.attrs == {"units": "1", "long_name": "damping ratio"}
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    ("values", "message"),
     [
         (free_decay(0.01)[:1000], "cover 5 cycles"),
         (np.zeros(TIME.size), "do not oscillate"),
@@ -105,9 +105,9 @@ def test_simulated_oscillator(method):
         (np.where(TIME == 1.0, np.inf, 0.0), "is inf"),
     ],
 )
-def test_bad_decay_is_refused(values, said):
+def test_bad_decay_is_refused(values, message):
     """A record that is too short, too coarse, still or broken is refused with the reason."""
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         decay_envelope(TIME[: values.size], values)
 
 
@@ -125,6 +125,6 @@ def test_bad_method_and_dead_signal_are_refused():
 def test_decrement_of_few_samples(samples):
     """The decrement of a light damping is right to an eighth where a cycle has but five samples, and better above."""
     time = np.arange(0, 20, 0.1 / samples)
-    found = damping_ratio(time, free_decay(1e-3, time), method="decrement")
-    np.testing.assert_allclose(found.damping_ratio, 1e-3, atol=1e-3 / (8 if samples < 7 else 16))
-    np.testing.assert_allclose(found.amplitude, np.exp(-1e-3 * OMEGA * found.time), rtol=5e-3)
+    result = damping_ratio(time, free_decay(1e-3, time), method="decrement")
+    np.testing.assert_allclose(result.damping_ratio, 1e-3, atol=1e-3 / (8 if samples < 7 else 16))
+    np.testing.assert_allclose(result.amplitude, np.exp(-1e-3 * OMEGA * result.time), rtol=5e-3)

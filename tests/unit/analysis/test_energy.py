@@ -21,7 +21,7 @@ def ball_on_a_structure(**changes):
 
 
 def test_shares_add_up_to_one_and_are_those_of_the_ledger():
-    """The shares of a run add up to one, and each is its loss over the energy put in."""
+    """The shares of a run add up to one; each is its loss over the energy supplied."""
     run = ball_on_a_structure()
     shares = energy_shares(run)
     assert float(shares.sum()) == pytest.approx(1.0, abs=1e-12)
@@ -33,14 +33,14 @@ def test_shares_add_up_to_one_and_are_those_of_the_ledger():
 
 
 def test_shares_of_a_run_without_energy_are_nan():
-    """Where nothing was put in there is nothing to share."""
+    """A run without supplied energy has NaN shares."""
     run = ball_on_a_structure(load=rb.HalfSine(amplitude=0.0, duration=1e-3))
     assert np.isnan(energy_shares(run)).all()
 
 
 @pytest.mark.parametrize("ratio", [0.01, 0.2])
 def test_capacity_of_a_viscous_oscillator(ratio):
-    """Each cycle of a simulated free decay takes 1 - exp(-2 decrement) of the energy it began with."""
+    """Each cycle of a simulated free decay dissipates 1 - exp(-2 decrement) of its initial energy."""
     omega = np.sqrt(80e3 / 20.0)
     cycle = 2 * np.pi / (omega * np.sqrt(1 - ratio**2))
     run = rb.simulate(
@@ -58,34 +58,34 @@ def test_capacity_of_a_viscous_oscillator(ratio):
 
 
 def test_loss_factor_under_a_harmonic_motion():
-    """The loss factor of a dashpot c beside a spring k that store k A^2/2 and take pi c omega A^2 is c omega/k."""
+    """A dashpot c parallel to a spring k stores k A^2/2, dissipates pi c omega A^2 and has the loss factor c omega/k."""
     c, k, omega, amplitude = 3.0, 500.0, 12.0, 0.02
-    found = loss_factor(np.pi * c * omega * amplitude**2, 0.5 * k * amplitude**2)
-    assert found == pytest.approx(c * omega / k)
+    result = loss_factor(np.pi * c * omega * amplitude**2, 0.5 * k * amplitude**2)
+    assert result == pytest.approx(c * omega / k)
 
 
-def test_lists_of_energies_are_taken():
-    """Lists give what arrays of the same numbers give."""
+def test_lists_of_energies_are_accepted():
+    """Lists and arrays of the same numbers give the same result."""
     np.testing.assert_array_equal(specific_damping_capacity([1, 2.0], [2, 8]), [0.5, 0.25])
     np.testing.assert_array_equal(loss_factor([1.0, 2.0], 2), np.array([0.5, 1.0]) / (2 * np.pi))
 
 
 @pytest.mark.parametrize(
-    ("dissipated", "stored", "said"),
+    ("dissipated", "stored", "message"),
     [
         (1.0, 0.0, "stored energy .* 0 J"),
         (1.0, np.array([1.0, -2.0]), "stored energy .* -2 J"),
         (np.nan, 1.0, "must be finite"),
     ],
 )
-def test_bad_energies_are_refused(dissipated, stored, said):
-    """A stored energy that is not above zero, and an energy that is no number, are refused."""
-    with pytest.raises(ValueError, match=said):
+def test_bad_energies_are_refused(dissipated, stored, message):
+    """A stored energy that is not positive and an energy that is NaN are refused."""
+    with pytest.raises(ValueError, match=message):
         loss_factor(dissipated, stored)
 
 
 def driven(time, frequency, mass=0.0, damping=0.0, stiffness=0.0, amplitude=0.2):
-    """Return the force that moves mass, dashpot and spring harmonically, and the velocity."""
+    """Return the force on a mass, dashpot and spring in harmonic motion, and the velocity."""
     phase = 2 * np.pi * frequency * time + 0.7
     omega = 2 * np.pi * frequency
     velocity = amplitude * np.cos(phase)
@@ -97,15 +97,15 @@ def driven(time, frequency, mass=0.0, damping=0.0, stiffness=0.0, amplitude=0.2)
 
 @pytest.mark.parametrize(("mass", "stiffness"), [(1.2, 0.0), (0.0, 900.0), (1.2, 900.0)])
 def test_complex_power_of_mass_dashpot_and_spring(mass, stiffness):
-    """Force and velocity of a mass, a dashpot and a spring give back power, effective mass and loss factor."""
+    """Force and velocity of a mass, a dashpot and a spring give their power, effective mass and loss factor."""
     frequency, damping, amplitude = 8.0, 5.0, 0.2
     omega = 2 * np.pi * frequency
     time = np.arange(0, 2.0, 1e-3)
     force, velocity = driven(time, frequency, mass, damping, stiffness, amplitude)
-    # A weight and overtones take part in no power at this frequency.
+    # A constant force and higher harmonics do not contribute to the power at this frequency.
     force = force + 9.81 + 3.0 * np.cos(3 * omega * time) + 2.0 * np.sin(2 * omega * time)
     effective = mass - stiffness / omega**2
-    # 15 whole cycles and a rest: the rest is left out.
+    # The signal covers 15 whole cycles and a fraction, which is not evaluated.
     power = complex_power(time, force, velocity, frequency=frequency)
     assert power.attrs == {"frequency": frequency, "cycles": 15}
     assert float(power.active_power) == pytest.approx(damping * amplitude**2 / 2, rel=1e-9)
@@ -116,7 +116,7 @@ def test_complex_power_of_mass_dashpot_and_spring(mass, stiffness):
 
 
 def test_complex_power_of_a_simulated_damper():
-    """The power that a damper in periodic motion takes up, times a cycle, is what its impacts lose in the cycle."""
+    """The active power of a damper in periodic motion times the period is the energy lost in impacts per cycle."""
     frequency, amplitude = 10.0, 1e-3
     cycles, samples = 40, 4000
     # Soft, so that each contact lasts many samples.
@@ -145,7 +145,7 @@ def test_complex_power_of_a_simulated_damper():
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"frequency": 0.0}, r"frequency is 0\.0 Hz"),
         ({"frequency": 0.4}, r"covers 0\.8 cycles of 0\.4 Hz"),
@@ -153,10 +153,10 @@ def test_complex_power_of_a_simulated_damper():
         ({"force": np.zeros(5)}, "force has 5 samples, but time has 2001"),
     ],
 )
-def test_bad_power_is_refused(change, said):
-    """A frequency that does not fit and signals that do not match are refused."""
+def test_bad_power_is_refused(change, message):
+    """An invalid frequency and signals of different lengths are refused."""
     time = np.linspace(0, 2.0, 2001)
     force, velocity = driven(time, 8.0, mass=1.0)
     given = {"force": force, "velocity": velocity, "frequency": 8.0} | change
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         complex_power(time, given["force"], given["velocity"], frequency=given["frequency"])

@@ -33,13 +33,13 @@ def resting_ball(rate: float = 400.0) -> rb.Case:
 def test_a_ball_at_rest_in_its_cavity_has_its_own_mass(samples: float) -> None:
     """The effective mass of a ball that rides along is its mass, both ways, whatever the number of samples a cycle."""
     run = rb.simulate(resting_ball(rate=samples * FREQUENCY))
-    found = shaken_cavity(run, frequency=FREQUENCY, after=0.2)
+    result = shaken_cavity(run, frequency=FREQUENCY, after=0.2)
     mass = run.arrays.particle_mass[0]
     np.testing.assert_allclose(
-        found.effective_mass / mass, 1, rtol=4e-5
+        result.effective_mass / mass, 1, rtol=4e-5
     )  # the contact gives way by (omega/omega_0)^2 = 2.7e-5
-    assert found.attrs["velocity_amplitude"] == pytest.approx(SPEED, rel=1e-9)
-    assert abs(float(found.active_power[0])) < 1e-5 * math.pi * FREQUENCY * mass * SPEED**2
+    assert result.attrs["velocity_amplitude"] == pytest.approx(SPEED, rel=1e-9)
+    assert abs(float(result.active_power[0])) < 1e-5 * math.pi * FREQUENCY * mass * SPEED**2
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,7 @@ def test_a_ball_at_rest_in_its_cavity_has_its_own_mass(samples: float) -> None:
 )
 def test_studies_of_particles_give_the_mass_of_a_ball_at_rest(window: dict[str, object]) -> None:
     """Measures of sweeps and maps are those of the exact motion, also where the window begins between samples."""
-    found = rb.sweep(
+    result = rb.sweep(
         resting_ball(),
         {"structure.motion.frequency": [FREQUENCY]},
         ["effective_mass", "damping_mass"],
@@ -55,8 +55,8 @@ def test_studies_of_particles_give_the_mass_of_a_ball_at_rest(window: dict[str, 
         **window,
     )
     mass = 7850 * 4 / 3 * math.pi * 0.005**3
-    assert found.effective_mass.item() == pytest.approx(mass, rel=4e-5)
-    assert abs(found.damping_mass.item()) < 4e-5 * mass
+    assert result.effective_mass.item() == pytest.approx(mass, rel=4e-5)
+    assert abs(result.damping_mass.item()) < 4e-5 * mass
 
 
 @pytest.mark.parametrize("samples", [8.0, 8.3, 40.5])
@@ -67,9 +67,9 @@ def test_complex_power_of_a_mass_and_a_dashpot_is_exact(samples: float) -> None:
     omega = 2 * np.pi * frequency
     velocity = speed * np.cos(omega * time + 0.7)
     force = 9.81 - mass * omega * speed * np.sin(omega * time + 0.7) + damping * velocity
-    found = complex_power(time, force, velocity, frequency=frequency)
-    assert float(found.active_power) == pytest.approx(damping * speed**2 / 2, rel=1e-9)
-    assert float(found.effective_mass) == pytest.approx(mass, rel=1e-9)
+    result = complex_power(time, force, velocity, frequency=frequency)
+    assert float(result.active_power) == pytest.approx(damping * speed**2 / 2, rel=1e-9)
+    assert float(result.effective_mass) == pytest.approx(mass, rel=1e-9)
 
 
 def flying_ball(duration: float, gap: str = "500 mm") -> rb.Case:
@@ -87,7 +87,7 @@ def flying_ball(duration: float, gap: str = "500 mm") -> rb.Case:
 @pytest.mark.parametrize("duration", [1.0, 0.93, 0.37])
 def test_a_ball_in_free_flight_has_no_effective_mass(duration: float) -> None:
     """A ball that no wall pushes has no apparent mass, also where the window holds no whole number of cycles."""
-    found = rb.sweep(
+    result = rb.sweep(
         flying_ball(duration),
         {"damper.velocity": [0.1]},
         ["effective_mass", "damping_mass"],
@@ -97,18 +97,18 @@ def test_a_ball_in_free_flight_has_no_effective_mass(duration: float) -> None:
     )
     mass = 7850 * 4 / 3 * math.pi * 0.01**3
     # The quadrature is of fourth order: 21 samples a cycle, and a flight over ten amplitudes.
-    assert abs(found.effective_mass.item()) < 1e-4 * mass
-    assert abs(found.damping_mass.item()) < 1e-4 * mass
+    assert abs(result.effective_mass.item()) < 1e-4 * mass
+    assert abs(result.damping_mass.item()) < 1e-4 * mass
 
 
 @pytest.mark.parametrize("duration", [2.0, 1.93])
 def test_reduced_loss_refers_to_the_speed_of_the_cavity(duration: float) -> None:
     """Loss a cycle over m V^2 has the exact V of the shaker, also where the window holds no whole number of cycles."""
     case = flying_ball(duration, gap="1 mm")
-    found = rb.sweep(
+    result = rb.sweep(
         case, {"damper.velocity": [0.1]}, ["reduced_loss", "loss_per_cycle"], skip=0.55, samples=301, progress=False
     )
     mass = 7850 * 4 / 3 * math.pi * 0.01**3
-    assert found.loss_per_cycle.item() > 0
-    exact = found.loss_per_cycle.item() / (mass * (2 * math.pi * 10 * 1e-3) ** 2)
-    assert found.reduced_loss.item() == pytest.approx(exact, rel=1e-6)
+    assert result.loss_per_cycle.item() > 0
+    exact = result.loss_per_cycle.item() / (mass * (2 * math.pi * 10 * 1e-3) ** 2)
+    assert result.reduced_loss.item() == pytest.approx(exact, rel=1e-6)

@@ -20,11 +20,11 @@ FRF = (UFF / "frf_58.uff").read_bytes()
 
 def test_a_measured_function_of_a_universal_file() -> None:
     """Values, frequencies and the unit are those of a file that a measuring program wrote."""
-    found = read_frequency_response(UFF / "frf_58.uff")
-    assert found.transfer.attrs["units"] == "m/s^2/N"
-    np.testing.assert_allclose(found.frequency[:3], [0, 0.195313, 0.390626])
-    np.testing.assert_allclose(found.transfer[1], -0.0599924 - 0.055326j, rtol=1e-4)
-    assert found.attrs["warnings"] == []
+    result = read_frequency_response(UFF / "frf_58.uff")
+    assert result.transfer.attrs["units"] == "m/s^2/N"
+    np.testing.assert_allclose(result.frequency[:3], [0, 0.195313, 0.390626])
+    np.testing.assert_allclose(result.transfer[1], -0.0599924 - 0.055326j, rtol=1e-4)
+    assert result.attrs["warnings"] == []
 
 
 def test_the_response_of_a_run_beside_a_measured_one(tmp_path: Path) -> None:
@@ -66,10 +66,10 @@ def test_tables(tmp_path: Path, head: str, row: str, value: complex, unit: str) 
     (tmp_path / "a.csv").write_text(f"{head}\n10{mark}{row}\n20{mark}{row}\n")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = read_frequency_response(tmp_path / "a.csv")
-    np.testing.assert_allclose(found.transfer, [value, value], rtol=1e-12, atol=1e-15)
-    assert found.transfer.attrs["units"] == unit
-    np.testing.assert_allclose(found.frequency, [10, 20])
+        result = read_frequency_response(tmp_path / "a.csv")
+    np.testing.assert_allclose(result.transfer, [value, value], rtol=1e-12, atol=1e-15)
+    assert result.transfer.attrs["units"] == unit
+    np.testing.assert_allclose(result.frequency, [10, 20])
 
 
 def test_an_assumed_unit_is_stated_with_the_peak(tmp_path: Path) -> None:
@@ -77,13 +77,13 @@ def test_an_assumed_unit_is_stated_with_the_peak(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("frequency,magnitude,phase\n10,0.2,-5\n20,1.5,-90\n")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        found = read_frequency_response(tmp_path / "a.csv")
-    assert [str(each.message) for each in caught] == found.attrs["warnings"]
-    assert re.search(r"no unit; SI is assumed: the largest magnitude is 1\.5 .*at 20 Hz", found.attrs["warnings"][0])
-    assert any("degrees are assumed: the largest is 90 deg" in note for note in found.attrs["warnings"])
+        result = read_frequency_response(tmp_path / "a.csv")
+    assert [str(each.message) for each in caught] == result.attrs["warnings"]
+    assert re.search(r"no unit; SI is assumed: the largest magnitude is 1\.5 .*at 20 Hz", result.attrs["warnings"][0])
+    assert any("degrees are assumed: the largest is 90 deg" in note for note in result.attrs["warnings"])
     with pytest.warns(UserWarning, match="degrees"):
         given = read_frequency_response(tmp_path / "a.csv", unit="g_0/N")
-    np.testing.assert_allclose(given.transfer, 9.80665 * found.transfer)
+    np.testing.assert_allclose(given.transfer, 9.80665 * result.transfer)
     bare = FRF.replace("(1/N)*(m/s²)".encode("latin-1"), b"NONE".ljust(12))
     assert bare != FRF
     (tmp_path / "a.uff").write_bytes(bare)
@@ -92,7 +92,7 @@ def test_an_assumed_unit_is_stated_with_the_peak(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "options", "said"),
+    ("name", "content", "options", "message"),
     [
         ("a.csv", b"", {}, "no numbers"),
         ("a.csv", b"f,real,imag\n", {}, "no numbers"),
@@ -114,10 +114,10 @@ def test_an_assumed_unit_is_stated_with_the_peak(tmp_path: Path) -> None:
         ("a.uff", (UFF / "cut_58.uff").read_bytes(), {}, "states 2508876 points, but has 42"),
     ],
 )
-def test_damaged_files(tmp_path: Path, name: str, content: bytes, options: dict[str, Any], said: str) -> None:
+def test_damaged_files(tmp_path: Path, name: str, content: bytes, options: dict[str, Any], message: str) -> None:
     """Empty, cut and mistaken files are refused with the reason."""
     (tmp_path / name).write_bytes(content)
-    with pytest.raises(rb.DataError, match=said):
+    with pytest.raises(rb.DataError, match=message):
         read_frequency_response(tmp_path / name, **options)
 
 
@@ -130,8 +130,8 @@ def test_the_wrong_order_of_bytes(tmp_path: Path) -> None:
     content = b"\n".join(lines)
     path = tmp_path / "b.uff"
     path.write_bytes(content)
-    found = read_frequency_response(path, unit="m/s^2/N")
-    assert found.transfer.size == 250 and abs(found.transfer).max() < 1.1
+    result = read_frequency_response(path, unit="m/s^2/N")
+    assert result.transfer.size == 250 and abs(result.transfer).max() < 1.1
     assert b"58b     1     2" in content
     path.write_bytes(content.replace(b"58b     1     2", b"58b     2     2"))
     with pytest.raises(rb.DataError, match=r"any measurement|cannot be read"):

@@ -46,9 +46,9 @@ def test_a_record_of_any_length_gives_the_time_or_none(decay):
     motion = np.exp(-decay * time) * np.cos(2 * time)
     settled = settling_time(time, motion)
     for stop in range(2000, time.size, 97):  # after a swing to either side
-        found = settling_time(time[:stop], motion[:stop])
-        known = time[stop - 1] > settled + 0.6 * np.pi  # a swing and what decay adds
-        assert found == pytest.approx(settled, rel=1e-12) if known else np.isnan(found) or found == settled
+        result = settling_time(time[:stop], motion[:stop])
+        expected = time[stop - 1] > settled + 0.6 * np.pi  # a swing and what decay adds
+        assert result == pytest.approx(settled, rel=1e-12) if expected else np.isnan(result) or result == settled
 
 
 def test_reductions():
@@ -62,7 +62,7 @@ def test_reductions():
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("call", "message"),
     [
         (lambda: settling_time([0, 1], [1, 0], band=0.0), r"band is 0\.0"),
         (lambda: settling_time([0, 1], [1, 0], reference=-1.0), r"reference is -1\.0"),
@@ -73,7 +73,7 @@ def test_reductions():
         (lambda: rms_reduction([1.0, np.inf], [1.0, 1.0]), r"without\[1\] is inf"),
     ],
 )
-def test_bad_input_is_named(call, said):
+def test_bad_input_is_named(call, message):
     """Bad input is refused with the argument and its value."""
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         call()

@@ -29,30 +29,30 @@ def oscillator(base, frequency, damping_ratio, *, rate=RATE):
 
 def test_the_integral_of_the_density_is_the_variance():
     """White noise of variance 1 at 2 kHz has the density 1/1000 per Hz, with an interval that holds 95 % of the time."""
-    found = power_spectral_density(TIME, NOISE, resolution=5.0)
-    inner = found.sel(frequency=slice(10, 990))
-    assert float(found.density.integrate("frequency")) == pytest.approx(1.0, rel=0.01)
+    result = power_spectral_density(TIME, NOISE, resolution=5.0)
+    inner = result.sel(frequency=slice(10, 990))
+    assert float(result.density.integrate("frequency")) == pytest.approx(1.0, rel=0.01)
     inside = (inner.lower < 1e-3) & (inner.upper > 1e-3)
     assert 0.9 < float(inside.mean()) < 0.99
-    assert found.attrs["resolution"] == 5.0
+    assert result.attrs["resolution"] == 5.0
 
 
 @pytest.mark.parametrize("resolution", [None, 0.5, 20.0])
 def test_the_interval_is_as_wide_as_the_estimate_scatters(resolution):
     """The coefficient of variation over frequencies is that of a chi-squared variable of the stated degrees of freedom."""
-    found = power_spectral_density(TIME, NOISE, resolution=resolution)
-    width = found.attrs["resolution"]
-    inner = found.density.sel(frequency=slice(4 * width, 1000 - 4 * width))
-    expected = math.sqrt(2 / found.attrs["degrees_of_freedom"])
+    result = power_spectral_density(TIME, NOISE, resolution=resolution)
+    width = result.attrs["resolution"]
+    inner = result.density.sel(frequency=slice(4 * width, 1000 - 4 * width))
+    expected = math.sqrt(2 / result.attrs["degrees_of_freedom"])
     assert float(inner.std() / inner.mean()) == pytest.approx(expected, rel=0.35)
 
 
 def test_units_of_densities_and_levels():
     """m/s^2 becomes (m/s^2)^2/Hz and m/s^2 again in bands; a plain array has no unit."""
     signal = xarray.DataArray(NOISE[:4000], dims="time", attrs={"units": "m/s^2"})
-    found = power_spectral_density(TIME[:4000], signal)
-    assert found.density.attrs["units"] == "(m/s^2)^2/Hz"
-    assert band_levels(found.density).attrs["units"] == "m/s^2"
+    result = power_spectral_density(TIME[:4000], signal)
+    assert result.density.attrs["units"] == "(m/s^2)^2/Hz"
+    assert band_levels(result.density).attrs["units"] == "m/s^2"
     assert power_spectral_density(TIME[:4000], NOISE[:4000]).density.attrs["units"] == ""
 
 
@@ -90,23 +90,23 @@ def test_bands_too_narrow_for_the_resolution_are_left_out():
 def test_the_transmissibility_of_an_oscillator():
     """H1 of the absolute acceleration on a noisy base is (1 + 2 i z r) / (1 - r^2 + 2 i z r); its coherence is one."""
     f0, z = 100.0, 0.05
-    found = transmissibility(TIME, NOISE, oscillator(NOISE, f0, z), resolution=0.25).sel(frequency=slice(20, 140))
-    r = found.frequency / f0
+    result = transmissibility(TIME, NOISE, oscillator(NOISE, f0, z), resolution=0.25).sel(frequency=slice(20, 140))
+    r = result.frequency / f0
     exact = (1 + 2j * z * r) / (1 - r**2 + 2j * z * r)
     # The straight lines between samples take sinc^2 from the base from the base and so from the response.
-    exact = exact * np.sinc(found.frequency / RATE) ** 2
-    assert float(abs(found.transfer / exact - 1).max()) < 0.02
-    assert float(found.coherence.min()) > 0.995
+    exact = exact * np.sinc(result.frequency / RATE) ** 2
+    assert float(abs(result.transfer / exact - 1).max()) < 0.02
+    assert float(result.coherence.min()) > 0.995
 
 
 def test_noise_in_the_response_lowers_the_coherence_and_not_the_transfer_function():
     """Half of the response's power is noise: coherence 1/2, the gain stays, its scatter is the stated random error."""
     other = np.random.default_rng(8).normal(size=TIME.size)
-    found = transfer_function(TIME, NOISE, 3 * (NOISE + other), resolution=5.0).sel(frequency=slice(20, 980))
-    assert float(found.coherence.mean()) == pytest.approx(0.5, abs=0.03)
-    assert float(found.transfer.real.mean()) == pytest.approx(3.0, rel=0.01)
-    scatter = float(abs(found.transfer).std()) / 3
-    assert scatter == pytest.approx(float(found.random_error.mean()), rel=0.25)
+    result = transfer_function(TIME, NOISE, 3 * (NOISE + other), resolution=5.0).sel(frequency=slice(20, 980))
+    assert float(result.coherence.mean()) == pytest.approx(0.5, abs=0.03)
+    assert float(result.transfer.real.mean()) == pytest.approx(3.0, rel=0.01)
+    scatter = float(abs(result.transfer).std()) / 3
+    assert scatter == pytest.approx(float(result.random_error.mean()), rel=0.25)
 
 
 def test_miles():

@@ -1,4 +1,4 @@
-"""Portraits, sections and impact counts of motions that are known."""
+"""Phase portraits, Poincare sections and impact counts of motions with exact solutions."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def subharmonic(order, share=0.3, samples=40):
 
 @pytest.mark.parametrize(("order", "points"), [(1, 1), (2, 2), (3, 3)])
 def test_motion_that_repeats_every_n_periods_shows_n_points(order, points):
-    """The section of a periodic motion is one point, that of a doubled one two, that of a tripled one three."""
+    """The section of a motion of period 1, 2 or 3 has as many points."""
     section = poincare_section(subharmonic(order), PERIOD)
     assert section.sizes["time"] == 21
     places = np.round(np.stack([section.position, section.velocity / OMEGA]), 9) + 0.0
@@ -36,7 +36,7 @@ def test_motion_that_repeats_every_n_periods_shows_n_points(order, points):
 
 
 def test_strobes_between_samples_lie_on_the_orbit():
-    """Strobes a fraction of a step away from the samples are interpolated to fourth order, velocities to third."""
+    """Between samples, positions are interpolated to fourth order and velocities to third order."""
     phase = 1.0
     exact = np.sin(phase) + 0.3 * np.sin(phase + 0.5), OMEGA * (np.cos(phase) + 0.3 * np.cos(phase + 0.5))
     errors = {"position": [], "velocity": []}
@@ -53,7 +53,7 @@ def test_strobes_between_samples_lie_on_the_orbit():
 
 
 def test_steady_state_of_a_simulated_oscillator_is_one_point():
-    """A linear structure under a harmonic load ends on the point that its frequency response gives."""
+    """The section of a linear structure under a harmonic load converges to the point of its frequency response."""
     mass, stiffness, damping, force, omega = 1.0, 100.0, 2.0, 3.0, 8.0
     period = 2 * np.pi / omega
     run = rb.simulate(
@@ -71,14 +71,14 @@ def test_steady_state_of_a_simulated_oscillator_is_one_point():
 
 
 def test_strobes_on_first_and_last_time_count():
-    """A run whose ends fall on strobes but for rounding shows both."""
+    """Strobes at the first and the last sample are included, whatever the rounding."""
     time = np.linspace(0.3, 0.3 + 7 * PERIOD, 71)
     section = poincare_section(run_of(time, np.sin(OMEGA * time), OMEGA * np.cos(OMEGA * time)), PERIOD)
     assert section.sizes["time"] == 8
 
 
 def test_portrait_of_ball_and_point():
-    """A ball shows its motion in the cavity, a point that of the structure; units and names are told."""
+    """A portrait of a ball has its motion in the cavity, one of a point that of the structure, with units and names."""
     run = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass=20.0, stiffness=80e3),
@@ -92,7 +92,7 @@ def test_portrait_of_ball_and_point():
     arrays = run.arrays
     portrait = phase_portrait(run)
     assert portrait.attrs["of"] == arrays.balls[0]
-    # Each ball of a row counts from its own place in the packed, centred row.
+    # The position of each ball is relative to its place in the packed, centred row.
     for k, name in enumerate(arrays.balls):
         portrait = phase_portrait(run, name)
         np.testing.assert_array_equal(portrait.position, arrays.relative_position[:, k] - arrays.ball_centre[k])
@@ -108,7 +108,7 @@ def test_portrait_of_ball_and_point():
 
 
 def test_impacts_are_counted_in_their_cycle():
-    """Impacts fall into the cycle that holds them; those outside whole cycles are left out."""
+    """Impacts are counted in their cycle; impacts outside whole cycles are ignored."""
     start = 1.0
     times = start + PERIOD * np.array([-0.2, 0.1, 0.2, 0.9, 2.5, 3.1, 3.2, 3.3, 4.05])
     counts = impacts_per_cycle(times[::-1], PERIOD, start=start, end=start + 4.4 * PERIOD)
@@ -119,7 +119,7 @@ def test_impacts_are_counted_in_their_cycle():
 
 
 def test_impacts_on_a_border_belong_to_the_cycle_that_begins():
-    """One impact on each border, moved by rounding to either side, is one impact in each cycle."""
+    """Impacts at the borders of cycles, shifted by rounding to either side, are one impact in each cycle."""
     period, start = 0.1, 0.3
     borders = start + period * np.arange(1001)
     for times in (borders, np.nextafter(borders, -np.inf), np.nextafter(borders, np.inf)):
@@ -128,12 +128,12 @@ def test_impacts_on_a_border_belong_to_the_cycle_that_begins():
 
 
 def test_no_impacts_is_zero_in_every_cycle():
-    """A run without impacts has cycles without impacts."""
+    """Without impacts each cycle has a count of zero."""
     np.testing.assert_array_equal(impacts_per_cycle([], 1.0, start=0.0, end=3.0), [0, 0, 0])
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (([], 0.0, 0.0, 1.0), "period is 0.0 s"),
         (([], 2.0, 0.0, 1.0), "no whole cycle of 2 s fits"),
@@ -141,15 +141,15 @@ def test_no_impacts_is_zero_in_every_cycle():
         (([], 0.1, 0.0, np.inf), "is inf"),
     ],
 )
-def test_bad_cycles_are_refused(arguments, said):
-    """A period, a span or a time that makes no cycle is refused with its value."""
+def test_bad_cycles_are_refused(arguments, message):
+    """An invalid period, span or time is refused with its value."""
     times, period, start, end = arguments
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         impacts_per_cycle(times, period, start=start, end=end)
 
 
 def test_bad_strobes_are_refused():
-    """A period that is not above zero, or longer than the run, is refused."""
+    """A period that is not positive or is longer than the run is refused."""
     time = np.linspace(0.01, 0.05, 11)
     run = run_of(time, time, time)
     with pytest.raises(ValueError, match=r"period is -1\.0 s"):
@@ -159,7 +159,7 @@ def test_bad_strobes_are_refused():
 
 
 def particle_run(**options):
-    """Return a short run with particles in space."""
+    """Return a short run of a 3-D particle damper."""
     usual = {
         "structure": rb.SDOF(mass=0.1, stiffness=1e4, velocity=0.5),
         "damper": rb.ParticleDamper(
@@ -175,7 +175,7 @@ def particle_run(**options):
 
 
 def test_points_of_runs_with_particles():
-    """With particles in space the points of the structure are shown, the first when none is named."""
+    """The portrait of a run with particles is that of a point of the structure, by default the first."""
     run = particle_run()
     for of in (None, "mass"):
         portrait = phase_portrait(run, of)
@@ -189,7 +189,7 @@ def test_points_of_runs_with_particles():
 
 
 def test_runs_without_a_point_are_refused():
-    """Where nothing but particles moves, that is told."""
+    """A run in which only particles move has no phase portrait."""
     still = particle_run(structure=rb.Fixed())
     nothing = Run(RunArrays(time=np.linspace(0, 1, 5)))
     for run in (nothing,) if still.arrays.points else (nothing, still):
@@ -198,7 +198,7 @@ def test_runs_without_a_point_are_refused():
 
 
 def test_a_run_without_particles_has_no_shaken_cavity():
-    """A run without particles is refused by name."""
+    """A run without particles has no analysis of a shaken cavity."""
     run = subharmonic(1)
     with pytest.raises(
         AttributeError, match=r"this 1-D run .* has no 'particle_mass', which only the dem engine writes"

@@ -33,27 +33,27 @@ def test_half_sine(ratio):
     """The undamped spectrum of a half sine is that of its closed form, during and after the pulse."""
     duration = 0.011
     time, pulse = half_sine(duration, 50_000.0, 0.02)
-    found = shock_response_spectrum(time, pulse, [ratio / duration], damping_ratio=0.0)
-    assert float(found.maximax[0]) == pytest.approx(exact_half_sine(ratio), rel=1e-3)
+    result = shock_response_spectrum(time, pulse, [ratio / duration], damping_ratio=0.0)
+    assert float(result.maximax[0]) == pytest.approx(exact_half_sine(ratio), rel=1e-3)
 
 
 def test_default_frequencies():
     """By default twelve frequencies an octave reach from one period in the record to a tenth of the sampling rate."""
-    found = shock_response_spectrum(*half_sine(0.011, 2000.0, 0.5)).frequency.values
-    assert found[0] == pytest.approx(2.0)
-    np.testing.assert_allclose(found[1:] / found[:-1], 2 ** (1 / 12))
-    assert found[-1] <= 200.0 < found[-1] * 2 ** (1 / 12)
+    result = shock_response_spectrum(*half_sine(0.011, 2000.0, 0.5)).frequency.values
+    assert result[0] == pytest.approx(2.0)
+    np.testing.assert_allclose(result[1:] / result[:-1], 2 ** (1 / 12))
+    assert result[-1] <= 200.0 < result[-1] * 2 ** (1 / 12)
 
 
 def test_limits():
     """A stiff oscillator follows the base, a soft one keeps still: acceleration 1, displacement that of the base."""
     time, pulse = half_sine(0.011, 50_000.0, 0.05)
-    found = shock_response_spectrum(time, pulse, [0.02, 4000.0], damping_ratio=0.05)
-    assert float(found.positive[1]) == pytest.approx(1.0, rel=2e-3)
+    result = shock_response_spectrum(time, pulse, [0.02, 4000.0], damping_ratio=0.05)
+    assert float(result.positive[1]) == pytest.approx(1.0, rel=2e-3)
     # The soft one is thrown with the velocity step 2 T / pi and swings to v / w, less by its damping.
     speed, w = 2 * 0.011 / math.pi, 2 * math.pi * 0.02
     swing = speed / w * math.exp(-0.05 / math.sqrt(1 - 0.05**2) * math.acos(0.05))
-    assert float(found.relative_displacement[0]) == pytest.approx(swing, rel=2e-3)
+    assert float(result.relative_displacement[0]) == pytest.approx(swing, rel=2e-3)
 
 
 def test_a_random_record_against_an_integrator():
@@ -62,7 +62,7 @@ def test_a_random_record_against_an_integrator():
     time = np.arange(200) / 1000.0
     record = rng.normal(size=time.size)
     frequencies = np.array([7.0, 60.0, 310.0])
-    found = shock_response_spectrum(time, record, frequencies, damping_ratio=0.03)
+    result = shock_response_spectrum(time, record, frequencies, damping_ratio=0.03)
     for k, f in enumerate(frequencies):
         w, z = 2 * math.pi * f, 0.03
         end = time[-1] + 1.0 / f
@@ -73,8 +73,8 @@ def test_a_random_record_against_an_integrator():
         fine = np.linspace(0, end, 40_000)
         y = solve_ivp(motion, (0, end), [0, 0], "DOP853", t_eval=fine, rtol=1e-9, atol=1e-14, max_step=5e-4).y
         absolute = -(2 * z * w * y[1] + w * w * y[0])
-        assert float(found.maximax[k]) == pytest.approx(np.abs(absolute).max(), rel=1e-3)
-        assert float(found.relative_displacement[k]) == pytest.approx(np.abs(y[0]).max(), rel=1e-3)
+        assert float(result.maximax[k]) == pytest.approx(np.abs(absolute).max(), rel=1e-3)
+        assert float(result.relative_displacement[k]) == pytest.approx(np.abs(y[0]).max(), rel=1e-3)
 
 
 def test_direction():

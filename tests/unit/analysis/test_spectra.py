@@ -1,4 +1,4 @@
-"""Spectra of signals whose amplitudes are known."""
+"""Amplitude spectra of signals with exact amplitudes."""
 
 import math
 
@@ -20,7 +20,7 @@ def sine(amplitude, frequency, phase=0.3):
     ("window", "allowed"),
     [
         *((name, 1e-13) for name in ("boxcar", "hann", "hamming", "blackman", "nuttall", "blackmanharris", "flattop")),
-        # Windows that are no sum of cosines: the negative frequency leaks a little into the bin.
+        # Windows other than sums of cosines: the negative frequency leaks a little into the bin.
         ("cosine", 2e-5),
         ("bartlett", 1e-13),
         (("kaiser", 14.0), 2e-8),
@@ -28,15 +28,15 @@ def sine(amplitude, frequency, phase=0.3):
     ],
 )
 def test_sine_on_a_bin_reads_its_amplitude(window, allowed):
-    """A sine of 0.3 mm whose frequency lies on a bin reads 0.3 mm through every window."""
+    """A sine of 0.3 mm whose frequency lies on a bin has an amplitude of 0.3 mm with every window."""
     spectrum = amplitude_spectrum(TIME, sine(3e-4, 40.0), window=window)
     assert float(spectrum.sel(frequency=40.0)) == pytest.approx(3e-4, rel=allowed)
     assert float(spectrum.idxmax("frequency")) == 40.0
 
 
 @pytest.mark.parametrize(("window", "scalloping"), [("boxcar", 0.637), ("hann", 0.849), ("flattop", 0.999)])
-def test_sines_between_bins_read_less_by_the_scalloping_loss(window, scalloping):
-    """Two sines midway between bins read what the window's gain half a bin off leaves of them."""
+def test_sines_between_bins_have_the_scalloping_loss(window, scalloping):
+    """The amplitudes of two sines midway between bins are reduced by the window's gain at half a bin."""
     spectrum = amplitude_spectrum(TIME, sine(3e-4, 40.25) + sine(1e-4, 120.25, 1.0), window=window)
     for frequency, amplitude in ((40.25, 3e-4), (120.25, 1e-4)):
         near = spectrum.sel(frequency=slice(frequency - 2, frequency + 2))
@@ -44,7 +44,7 @@ def test_sines_between_bins_read_less_by_the_scalloping_loss(window, scalloping)
 
 
 def test_padding_recovers_an_amplitude_between_bins():
-    """Zeros that place a bin on the frequency recover the amplitude, and do not move the peak."""
+    """Zero padding that places a bin on the frequency gives the exact amplitude and does not shift the peak."""
     spectrum = amplitude_spectrum(TIME, sine(3e-4, 40.25), padding=2)
     assert float(spectrum.frequency[1]) == 0.25
     assert float(spectrum.sel(frequency=40.25)) == pytest.approx(3e-4, rel=1e-6)
@@ -52,7 +52,7 @@ def test_padding_recovers_an_amplitude_between_bins():
 
 @pytest.mark.parametrize("samples", [1000, 999])
 def test_mean_and_highest_frequency_are_not_doubled(samples):
-    """A mean reads its absolute value at zero, and an alternating signal its amplitude at half the sampling rate."""
+    """The values at 0 Hz and at half the sampling rate are the absolute mean and the amplitude of an alternating signal."""
     time = TIME[:samples]
     spectrum = amplitude_spectrum(time, np.full(samples, -2.0), window="boxcar")
     assert float(spectrum[0]) == pytest.approx(2.0, rel=1e-14)
@@ -62,8 +62,8 @@ def test_mean_and_highest_frequency_are_not_doubled(samples):
         assert float(alternating.frequency[-1]) == 250.0
 
 
-def test_result_says_what_it_is():
-    """The unit of the signal, the window and the axis are told; a plain array has no unit to pass on."""
+def test_result_has_units_and_window():
+    """A spectrum has the unit of its signal, none for a plain array, and the name of the window."""
     run = rb.simulate(
         rb.Case(
             structure=rb.SDOF(mass=1.0, stiffness=1.0, damping=0.1, velocity=1.0),
@@ -79,7 +79,7 @@ def test_result_says_what_it_is():
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"window": "hanning-ish"}, "window is 'hanning-ish'.*hann"),
         ({"window": "kaiser"}, "window is 'kaiser'.*parameter"),
@@ -95,8 +95,8 @@ def test_result_says_what_it_is():
         ({"values": np.ones((1000, 2))}, r"shape \(1000, 2\).*one signal"),
     ],
 )
-def test_bad_input_is_named(change, said):
-    """Bad input is refused with the argument, its value and what is allowed."""
+def test_bad_input_is_refused(change, message):
+    """Bad input is refused with the argument, its value and the allowed values."""
     given = {"time": TIME, "values": sine(1.0, 40.0)} | change
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         amplitude_spectrum(given.pop("time"), given.pop("values"), **given)

@@ -1,4 +1,4 @@
-"""Particle dampers run through the whole engine: momentum, weight, ledger, directions, statuses, files."""
+"""Runs of particle dampers: momentum, weight, energy ledger, directions, statuses and files."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def damper(**options: Any) -> rb.ParticleDamper:
 
 
 def simulate(*dampers: rb.ParticleDamper, **options: Any) -> Run:
-    """Run dampers on a structure of 0.1 kg that was kicked."""
+    """Run dampers on a structure of 0.1 kg with an initial velocity."""
     usual: dict[str, Any] = {
         "structure": rb.SDOF(mass=0.1, stiffness=1e4, damping=0.5, velocity=0.5),
         "duration": 0.05,
@@ -53,8 +53,8 @@ def shaker(**motion: Any) -> rb.Shaker:
     return rb.Shaker(motion=rb.Harmonic(**{"amplitude": "3 mm", "frequency": "40 Hz", **motion}))
 
 
-def test_momentum_of_a_free_structure_and_its_particles_stays() -> None:
-    """Without spring, dashpot, gravity and load the momentum of structure and particles together is kept to round-off."""
+def test_total_momentum_of_a_free_structure_and_its_particles_is_constant() -> None:
+    """Without spring, dashpot, gravity and load the total momentum is constant to round-off."""
     run = simulate(damper(gravity=(0, 0, 0)), structure=rb.SDOF(mass=0.1, stiffness=0, velocity=0.5))
     total = 0.1 * run.arrays.velocity[:, 0] + run.arrays.momentum[:, 0, 0]
     assert np.abs(total - 0.05).max() < 1e-12 * 0.05
@@ -62,7 +62,7 @@ def test_momentum_of_a_free_structure_and_its_particles_stays() -> None:
 
 
 def test_the_ledger_closes_better_with_shorter_steps() -> None:
-    """Energy put in is found again by channel and by partner, the better the shorter the steps."""
+    """The losses by channel and by partner add up to the supplied energy, the more exactly the shorter the step."""
     residuals = []
     for fraction in (0.05, 0.0125):
         run = simulate(damper(rolling=0.02), method=rb.Dem(fraction=fraction))
@@ -77,7 +77,7 @@ def test_the_ledger_closes_better_with_shorter_steps() -> None:
 
 
 def test_a_settled_bed_weighs_on_the_floor() -> None:
-    """A bed that has settled rests: contacts persist, hardly anything moves, and the floor carries its weight."""
+    """A settled bed has lasting contacts and almost no kinetic energy, and the floor carries its weight."""
     still = damper(packing=rb.Settled(seed=2), cavity=rb.Cylinder(diameter="20 mm", length="30 mm"))
     run = simulate(still, structure=rb.Fixed(), duration=0.1)
     weight = run.arrays.particle_mass[0] * 9.81
@@ -93,8 +93,8 @@ def test_a_settled_bed_weighs_on_the_floor() -> None:
     [(rb.Cylinder(diameter="20 mm", length="30 mm"), 0.3), (rb.SphericalCavity(diameter="24 mm"), 0.3), (CUBE, 0)],
     ids=["can", "sphere", "cube of six balls"],
 )
-def test_a_settled_bed_lies_from_the_first_step(shape: Any, friction: float) -> None:
-    """A settled bed does not drop when its run begins, also where a row of balls is just as long as the cavity."""
+def test_a_settled_bed_is_at_rest_from_the_first_step(shape: Any, friction: float) -> None:
+    """A settled bed does not drop at the start of a run, even if a row of balls is as long as the cavity."""
     still = damper(packing=rb.Settled(seed=2), cavity=shape, friction=friction, softening=1)
     run = simulate(still, structure=rb.Fixed(), duration=5e-3)
     height = run.motion["centre_of_mass"].sel(axis="z").values.ravel()
@@ -104,7 +104,7 @@ def test_a_settled_bed_lies_from_the_first_step(shape: Any, friction: float) -> 
 
 
 def test_rough_particles_settle() -> None:
-    """Particles that cannot slide come to rest as well, in the bed of those that hardly can."""
+    """Particles with a friction of 3 settle to the same bed as with a friction of 1."""
     from rattlebox.prepare.settle import settle
 
     many = {"particles": balls(200), "cavity": rb.Box(size=("30 mm",) * 3), "packing": rb.Settled(seed=1)}
@@ -112,7 +112,7 @@ def test_rough_particles_settle() -> None:
 
 
 def test_a_large_ball_among_many_small_ones_settles() -> None:
-    """A ball settles among small ones of a sixteenth of its size; none overlap, and all lie from the first step."""
+    """A ball among balls of a sixteenth of its size settles, and the bed is at rest from the first step."""
     kinds = [
         rb.Particles(name=size, material="steel", diameter=size, count=n) for size, n in (("1 mm", 1500), ("16 mm", 1))
     ]
@@ -123,7 +123,7 @@ def test_a_large_ball_among_many_small_ones_settles() -> None:
 
 
 def test_settling_is_reproducible() -> None:
-    """The same seed gives the same bed, another one another, and no two particles overlap."""
+    """A seed fixes the bed, another seed gives another one, and no two particles overlap."""
     from rattlebox.prepare.settle import settle
 
     beds = [settle(damper(packing=rb.Settled(seed=seed))) for seed in (1, 1, 2)]
@@ -138,7 +138,7 @@ def test_settling_is_reproducible() -> None:
     "cavity", [rb.SphericalCavity(diameter="24 mm"), rb.Cylinder(radius="12 mm", length="9 mm", axis="x")]
 )
 def test_one_ball_settles_in_a_round_cavity(cavity: Any, friction: float) -> None:
-    """A ball that rolls, or slides without friction, in a round cavity comes to rest at its lowest point all the same."""
+    """A ball in a round cavity comes to rest at the lowest point, with and without friction."""
     from rattlebox.prepare.settle import settle
 
     (place,) = settle(damper(particles=balls(1), packing=rb.Settled(seed=1), cavity=cavity, friction=friction))
@@ -147,15 +147,15 @@ def test_one_ball_settles_in_a_round_cavity(cavity: Any, friction: float) -> Non
 
 
 def test_bits_do_not_depend_on_threads() -> None:
-    """A run on two threads is the run on one, to the last bit."""
+    """Runs with one thread and with two threads have the same bits."""
     one, two = (simulate(method=rb.Dem(threads=threads), duration=0.02) for threads in (1, 2))
     assert np.array_equal(one.arrays.particles.position, two.arrays.particles.position)
     assert np.array_equal(one.arrays.sliding_loss, two.arrays.sliding_loss)
     assert one.counts["first_touches_particle"] == two.counts["first_touches_particle"]
 
 
-def test_a_point_in_space_moves_as_the_same_point_on_a_line() -> None:
-    """A mode along z given by three components is the same structure as one on a line in a damper along z."""
+def test_a_point_in_3_d_moves_as_the_same_point_on_a_line() -> None:
+    """A mode along z with three components and a 1-D structure with a damper along z have the same motion."""
     load = {"amplitude": "200 N", "duration": "1 ms"}
     line = simulate(damper(direction="z"), structure=rb.SDOF(mass=0.1, stiffness=1e4), load=rb.HalfSine(**load))
     modal = rb.Modal(
@@ -166,7 +166,7 @@ def test_a_point_in_space_moves_as_the_same_point_on_a_line() -> None:
     )
     space = simulate(damper(), structure=modal, load=rb.HalfSine(**load, direction="z"))
     assert space.arrays.points == ("tip x", "tip y", "tip z")
-    before = line.arrays.time < 0.01  # afterwards rounding has grown
+    before = line.arrays.time < 0.01  # later, rounding errors have grown
     np.testing.assert_allclose(
         space.arrays.displacement[before, 2], line.arrays.displacement[before, 0], rtol=1e-6, atol=1e-9
     )
@@ -174,7 +174,7 @@ def test_a_point_in_space_moves_as_the_same_point_on_a_line() -> None:
 
 
 def test_a_base_across_the_structure_moves_particles_only() -> None:
-    """A base that moves across a structure's one direction does not excite it, but shakes what is in its cavity."""
+    """A base motion normal to a structure's direction does not excite it, but shakes the particles in its cavity."""
     run = simulate(
         damper(gravity=(0, 0, 0), friction=0),
         structure=rb.SDOF(mass=1e6, stiffness=1e4),
@@ -186,7 +186,7 @@ def test_a_base_across_the_structure_moves_particles_only() -> None:
 
 
 def test_two_cavities_at_one_point_share_its_motion() -> None:
-    """Two dampers at a point displace together, and each tells its own force, mass and contacts."""
+    """Two dampers at a point have the same displacement, and each has its own mass and particles."""
     run = simulate(damper(), damper(name="second", particles=balls(10)))
     assert run.arrays.dampers == ("damper", "second")
     assert np.array_equal(run.arrays.cavity_displacement[:, 0], run.arrays.cavity_displacement[:, 1])
@@ -195,7 +195,7 @@ def test_two_cavities_at_one_point_share_its_motion() -> None:
 
 
 def test_a_displaced_cavity_takes_its_particles_along() -> None:
-    """Particles of a structure that starts displaced start in its cavity."""
+    """The particles of a structure with an initial displacement start in its cavity."""
     run = simulate(structure=rb.SDOF(mass=0.1, stiffness=1e4, displacement="5 mm"))
     assert run.arrays.cavity_displacement[0, 0, 0] == pytest.approx(5e-3)
     made = damper()
@@ -203,8 +203,8 @@ def test_a_displaced_cavity_takes_its_particles_along() -> None:
     assert run.arrays.centre_of_mass[0, 0] == pytest.approx(centre, abs=1e-12)
 
 
-def test_samples_are_where_they_are_asked_for() -> None:
-    """The step divides the time between samples, so that samples are at their times."""
+def test_samples_are_at_the_requested_times() -> None:
+    """The step divides the time between samples, so that the samples are exactly at their times."""
     run = simulate(output=rb.Output(rate="3 kHz"), duration=0.02)
     assert run.arrays.time == pytest.approx(np.arange(61) / 3000, rel=1e-12)
 
@@ -223,13 +223,13 @@ def test_samples_are_where_they_are_asked_for() -> None:
     ],
 )
 def test_times_even_with_both_ends_are_recorded(duration: float, times: Sequence[float], samples: int) -> None:
-    """Times that are evenly spaced together with 0 and the end are those of the samples, with or without these two."""
+    """Output times that are evenly spaced together with 0 and the end are accepted with or without these two."""
     run = simulate(output=rb.Output(times=times), duration=duration)
     assert run.arrays.time == pytest.approx(np.linspace(0, duration, samples), rel=1e-12)
 
 
 def test_force_on_the_cavity_is_what_changes_momentum() -> None:
-    """The impulse of the cavity on the particles is the change of their momentum, sample by sample."""
+    """Between samples, the impulse of the cavity on the particles equals the change of their momentum."""
     run = simulate(damper(gravity=(0, 0, 0)), output=rb.Output(rate="1 MHz"), duration=0.005)
     assert run.diagnostics["step"] == pytest.approx(1e-6)  # every step is a sample
     force = run.arrays.cavity_force
@@ -240,28 +240,30 @@ def test_force_on_the_cavity_is_what_changes_momentum() -> None:
 
 
 def test_loss_and_mass_of_a_shaken_cavity_in_two_ways() -> None:
-    """Force times velocity and the ledger tell the same loss, momentum and the forces recorded the same mass."""
+    """Force times velocity and the ledger give the same loss; momentum and recorded forces give the same mass."""
     run = simulate(damper(gravity=(0, 0, 0)), structure=shaker(), duration=0.25, output=rb.Output(rate="16 kHz"))
-    found = rb.analysis.shaken_cavity(run, frequency=40, after=0.1)
-    taken, lost = found.active_power.values
-    labelled = rb.analysis.shaken_cavity(run, frequency=found.active_power.sum() * 0 + 40, after=0.1)
-    assert labelled.equals(found)
-    assert found.attrs["cycles"] == 6
-    assert taken == pytest.approx(lost + float(found.stored_power), rel=0.01)
-    assert found.effective_mass[0] == pytest.approx(float(found.effective_mass[1]), rel=0.01)
-    assert float(found.reduced_loss[1]) == pytest.approx(
+    result = rb.analysis.shaken_cavity(run, frequency=40, after=0.1)
+    taken, lost = result.active_power.values
+    labelled = rb.analysis.shaken_cavity(run, frequency=result.active_power.sum() * 0 + 40, after=0.1)
+    assert labelled.equals(result)
+    assert result.attrs["cycles"] == 6
+    assert taken == pytest.approx(lost + float(result.stored_power), rel=0.01)
+    assert result.effective_mass[0] == pytest.approx(float(result.effective_mass[1]), rel=0.01)
+    assert float(result.reduced_loss[1]) == pytest.approx(
         lost / 40 / (run.arrays.particle_mass[0] * (0.003 * 80 * math.pi) ** 2), rel=1e-6
     )
     times = run.arrays.time
-    kept = times >= 0.1 - 1e-9
-    turn = np.exp(-80j * math.pi * times[kept])
+    window = times >= 0.1 - 1e-9
+    turn = np.exp(-80j * math.pi * times[window])
     moved, pushed = (
-        2 / 0.15 * np.trapezoid(values[kept] * turn, times[kept])
+        2 / 0.15 * np.trapezoid(values[window] * turn, times[window])
         for values in (run.arrays.base_velocity[:, 0], -run.arrays.cavity_force[:, 0, 0])
     )
     power = complex(np.conj(pushed) * moved / 2)
     assert power.real == pytest.approx(taken, rel=0.01)
-    assert -2 * power.imag / (80 * math.pi * abs(moved) ** 2) == pytest.approx(float(found.effective_mass[0]), rel=0.01)
+    assert -2 * power.imag / (80 * math.pi * abs(moved) ** 2) == pytest.approx(
+        float(result.effective_mass[0]), rel=0.01
+    )
     with pytest.raises(ValueError, match="damper is one of damper"):
         rb.analysis.shaken_cavity(run, frequency=40, damper="none")
     with pytest.raises(ValueError, match="no whole cycle"):
@@ -275,8 +277,8 @@ def test_loss_and_mass_of_a_shaken_cavity_in_two_ways() -> None:
         rb.analysis.shaken_cavity(coarse, frequency=40)
 
 
-def test_glued_particles_have_their_whole_mass() -> None:
-    """A ball held without play between its walls rides along: effective mass its own, no loss."""
+def test_the_effective_mass_of_a_fixed_ball_is_its_mass() -> None:
+    """The effective mass of a ball between walls without clearance is its own mass, and it dissipates nothing."""
     held = damper(
         particles=rb.Particles(material="steel", diameter="4 mm"),
         packing=rb.Positions(positions=[[0, 0, 0]]),
@@ -286,13 +288,13 @@ def test_glued_particles_have_their_whole_mass() -> None:
         softening=1,
     )
     run = simulate(held, structure=shaker(amplitude="0.1 mm"), duration=0.05, output=rb.Output(rate="20 kHz"))
-    found = rb.analysis.shaken_cavity(run, frequency=40)
-    assert found.effective_mass.values == pytest.approx(np.full(2, run.arrays.particle_mass[0]), rel=0.01)
-    assert np.abs(found.loss_factor.values).max() < 0.01
+    result = rb.analysis.shaken_cavity(run, frequency=40)
+    assert result.effective_mass.values == pytest.approx(np.full(2, run.arrays.particle_mass[0]), rel=0.01)
+    assert np.abs(result.loss_factor.values).max() < 0.01
 
 
-def test_a_particle_that_leaves_is_named() -> None:
-    """A contact far too soft lets a fast particle through: the run ends with its number, time, speed and the step."""
+def test_a_particle_that_leaves_is_reported() -> None:
+    """A fast particle passes a far too soft wall: the run ends and reports the particle, the time and the step."""
     run = simulate(damper(particles=balls(1), velocity=(100, 0, 0), softening=1e6), structure=rb.Fixed(), duration=1e-3)
     assert run.status == "escaped"
     assert run.message.startswith("Particle 0, in 'damper', left its cavity at 9")
@@ -302,7 +304,7 @@ def test_a_particle_that_leaves_is_named() -> None:
 
 @pytest.mark.parametrize(("softening", "advice"), [(1e6, "softening"), (1, "stiffer contact")])
 def test_what_to_try_when_a_particle_leaves(softening: float, advice: str) -> None:
-    """Less softening is proposed where there is some, else a stiffer contact."""
+    """The message proposes less softening or, without softening, a stiffer contact."""
     soft = rb.Linear(stiffness="1 kN/m" if softening > 1 else "1 N/m", restitution=0.7)
     fast = damper(particles=balls(1), contact=soft, friction=0, velocity=(100, 0, 0), softening=softening)
     run = simulate(fast, structure=rb.Fixed(), duration=1e-3)
@@ -311,16 +313,16 @@ def test_what_to_try_when_a_particle_leaves(softening: float, advice: str) -> No
 
 
 def test_a_bed_that_does_not_settle_is_named_as_in_the_file() -> None:
-    """Settling that fails is told of damper.packing where there is one damper, and of dampers[1].packing of the second."""
+    """The error of a failed settling names damper.packing of a single damper and dampers[1].packing of the second."""
     tight = damper(particles=balls(220), packing=rb.Settled())
     for dampers, place in (((tight,), "damper.packing"), ((damper(name="a"), tight), "dampers[1].packing")):
-        with pytest.raises(rb.CaseError) as told:
+        with pytest.raises(rb.CaseError) as caught:
             simulate(*dampers)
-        assert str(told.value).splitlines()[0] == place
+        assert str(caught.value).splitlines()[0] == place
 
 
 def test_laws_are_not_used_beyond_their_domain() -> None:
-    """An impact faster than its restitution law covers ends the run with a status."""
+    """An impact above the speed range of its restitution law ends the run with a status."""
     fast = damper(contact=rb.Tsuji(restitution=rb.JacksonGreen()), velocity=(200, 0, 0), gravity=(0, 0, 0), softening=1)
     run = simulate(fast, structure=rb.Fixed(), duration=1e-3, output=rb.Output())
     assert run.status == "law_domain"
@@ -329,7 +331,7 @@ def test_laws_are_not_used_beyond_their_domain() -> None:
 
 
 def test_an_open_ledger_is_a_status() -> None:
-    """A step as long as may be given, too long for a contact to be followed, ends a run whose energies do not add up."""
+    """With the longest permitted step, too long for the contact, the energies do not add up and the run ends."""
     alone = damper(
         particles=rb.Particles(material="steel", diameter="3 mm"),
         packing=rb.Positions(positions=[[0, 0, 0]], velocities=[[0.1, 0, 0]]),
@@ -350,8 +352,8 @@ def test_an_open_ledger_is_a_status() -> None:
 
 
 @pytest.mark.parametrize("ending", ["zero_force", "zero_overlap"])
-def test_laws_that_give_no_rebound_are_told(ending: str) -> None:
-    """An impact so fast that its extrapolated law gives no rebound ends the run with a status, whichever ending it has."""
+def test_laws_without_rebound_end_the_run(ending: str) -> None:
+    """An impact so fast that the extrapolated law gives no rebound ends the run with a status, for each ending."""
     law = rb.Tsuji(restitution=rb.JacksonGreen(extrapolate=True), ending=ending)
     lead = rb.Particles(material="lead", diameter="4 mm", count=1)
     fast = damper(particles=lead, contact=law, velocity=(20, 0, 0), gravity=(0, 0, 0), softening=1)
@@ -364,7 +366,7 @@ def test_laws_that_give_no_rebound_are_told(ending: str) -> None:
 
 @pytest.mark.parametrize("how", ["ctrl-c", "false"])
 def test_a_stopped_run_keeps_what_it_has(how: str) -> None:
-    """Ctrl-C and a progress that returns False end the run with a status; samples until then are kept."""
+    """Ctrl-C and a progress function that returns False end the run with a status; earlier samples are returned."""
 
     def stop(done: int, total: int) -> bool:
         if how == "ctrl-c":
@@ -378,30 +380,30 @@ def test_a_stopped_run_keeps_what_it_has(how: str) -> None:
 
 
 def test_too_long_a_step_is_refused_before_the_run() -> None:
-    """A step above the bound is refused, with the field and the bound."""
+    """A step above the bound is refused."""
     with pytest.raises(rb.CaseError, match="is too long: the bound is"):
         simulate(method=rb.Dem(dt="1 ms"))
 
 
 @pytest.mark.parametrize("dt", [1e-25, 5e-324])
-def test_a_step_of_which_too_many_are_needed_is_refused(dt: float) -> None:
-    """A step so short that the core cannot count its steps is refused, with the field, the number and what to try."""
-    with pytest.raises(rb.CaseError) as told:
+def test_a_step_that_needs_too_many_steps_is_refused(dt: float) -> None:
+    """A step so short that the core cannot count the steps is refused, with the field, the count and advice."""
+    with pytest.raises(rb.CaseError) as caught:
         simulate(method=rb.Dem(dt=dt))
-    place, said, hint = str(told.value).splitlines()
+    place, message, hint = str(caught.value).splitlines()
     assert (place, hint) == ("method.dt", '  try: dt = "auto"')
-    assert said.startswith(f"  dt = {dt:.3g} s is too short: the run would take ")
-    assert said.endswith(f"e+{'23' if dt == 1e-25 else '322'} steps, and at most 9.22e+18 can be counted")
+    assert message.startswith(f"  dt = {dt:.3g} s is too short: the run would take ")
+    assert message.endswith(f"e+{'23' if dt == 1e-25 else '322'} steps, and at most 9.22e+18 can be counted")
 
 
-def test_an_automatic_step_of_which_too_many_are_needed_is_refused() -> None:
-    """A fraction so small that the core cannot count the steps is told as a fraction."""
+def test_an_automatic_step_that_needs_too_many_steps_is_refused() -> None:
+    """If the automatic step is too short to count, the message advises a larger fraction."""
     with pytest.raises(rb.CaseError, match=r"the automatic dt = .* is too short.*\n  try: a larger fraction"):
         simulate(method=rb.Dem(fraction=1e-25))
 
 
 def test_cases_of_both_kinds_run_side_by_side() -> None:
-    """Runs come back in the order of the cases, whatever is in them."""
+    """Runs of impact dampers and particle dampers are returned in the order of the cases."""
     ball = rb.ImpactDamper(
         ball=rb.Sphere(radius="5 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.9)
     )
@@ -413,7 +415,7 @@ def test_cases_of_both_kinds_run_side_by_side() -> None:
 
 
 def test_a_run_is_the_same_in_a_file(tmp_path: Path) -> None:
-    """A run that is saved reads back equal; CSV and MAT files hold its variables; summaries stand side by side."""
+    """A saved run reads back equal; CSV and MAT files have its variables; the summary lists its losses."""
     from scipy.io import loadmat
 
     run = simulate(duration=0.01)
@@ -426,23 +428,23 @@ def test_a_run_is_the_same_in_a_file(tmp_path: Path) -> None:
     assert run.motion.cavity_force.dims == ("time", "damper", "axis")
     assert run.energy.sliding_loss.sel(partner="wall").attrs["units"] == "J"
     text = str(run.summary())
-    for said in ("lost in sliding", "lost at walls", "particle steps per second", "limited by the contact of steel"):
-        assert said in text
+    for message in ("lost in sliding", "lost at walls", "particle steps per second", "limited by the contact of steel"):
+        assert message in text
     assert run.summary().values["particles"] == 60
     with pytest.raises(AttributeError, match="has no 'impacts': a 3-D run counts its contacts"):
         _ = run.impacts
 
 
-def test_without_contacts_there_are_no_steps_in_them() -> None:
-    """The summary of a particle that nothing moves tells no steps in a contact."""
+def test_the_summary_of_a_run_without_contacts_is_finite() -> None:
+    """The summary of a particle at rest has no infinite number of steps per contact."""
     still = damper(particles=balls(1), gravity=(0, 0, 0))
-    told = str(simulate(still, structure=rb.Fixed(), duration=1e-3, output=rb.Output()).summary())
-    assert "steps in the shortest contact" in told
-    assert "inf" not in told
+    text = str(simulate(still, structure=rb.Fixed(), duration=1e-3, output=rb.Output()).summary())
+    assert "steps in the shortest contact" in text
+    assert "inf" not in text
 
 
 def test_figures_are_drawn() -> None:
-    """Motion and energy of a run with two cavities are drawn with a panel for each cavity."""
+    """The figures of a run with two cavities have a panel for each cavity."""
     run = simulate(damper(), damper(name="second", particles=balls(10)), duration=0.01)
     assert len(run.plot.motion().axes) == 4
     assert len(run.plot.energy(size="page").axes) == 2
@@ -461,7 +463,7 @@ JUST_TOUCHING: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("law", JUST_TOUCHING)
 def test_particles_may_just_touch_at_the_start(law: str) -> None:
-    """Heaps of balls that touch each other and the walls to the last digit move as those a little apart do."""
+    """Balls that touch each other and the walls to the last digit move as balls with a small distance do."""
     rng = np.random.default_rng(1)
     kicks = rng.normal(0, 0.1, (27, 3))
 
@@ -488,8 +490,8 @@ def test_particles_may_just_touch_at_the_start(law: str) -> None:
 
 
 @pytest.mark.parametrize("width", [2e-6, 4e-5, 1.5e-4])
-def test_no_push_of_a_record_is_lost_between_two_steps(width: float) -> None:
-    """Records whose knots lie closer than steps give the structure and the base all of their impulse."""
+def test_no_impulse_of_a_record_is_lost_between_two_steps(width: float) -> None:
+    """Records with knots closer than the step transfer their full impulse to the structure and the base."""
     tops = np.array([1.001e-4, 7.3e-4, 1.9e-3])
     times = np.concatenate([[0.0], (tops[:, None] + width * np.array([-0.5, 0, 0.5])).ravel(), [1.0]])
     signal = {"times": times, "values": [0.0, *[0, 100, 0] * 3, 0]}
@@ -505,8 +507,8 @@ def test_no_push_of_a_record_is_lost_between_two_steps(width: float) -> None:
 
 
 @pytest.mark.parametrize("mass", [1.0, 1e-4, 1e-8])
-def test_a_structure_lighter_than_its_particle_gives_it_back_what_it_should(mass: float) -> None:
-    """The step follows how short an impact on a light structure is: restitution stays, however light it is."""
+def test_restitution_of_an_impact_on_a_light_structure(mass: float) -> None:
+    """The step adapts to the short impacts on a light structure, so that restitution is exact for any mass."""
     one = damper(particles=balls(1), gravity=(0, 0, 0), velocity=(1.0, 0, 0), softening=100)
     free = rb.SDOF(mass=mass, stiffness=0)
     run = simulate(one, structure=free, duration=11e-3, output=rb.Output(rate="2 kHz"))
@@ -516,8 +518,8 @@ def test_a_structure_lighter_than_its_particle_gives_it_back_what_it_should(mass
     assert apart == pytest.approx(0.7, abs=1e-3)
 
 
-def test_particles_that_float_take_up_no_energy_while_the_base_shakes() -> None:
-    """Particles that nothing touches keep their energy as seen from outside, though the base ends at another speed."""
+def test_floating_particles_take_up_no_energy_from_the_base() -> None:
+    """Without contacts the stored power is zero, although the base ends the window at another speed."""
     alone = damper(
         particles=rb.Particles(material="steel", diameter="4 mm"),
         packing=rb.Positions(positions=[[0, 0, 0]], velocities=[[0.01, 0, 0]]),
@@ -526,6 +528,6 @@ def test_particles_that_float_take_up_no_energy_while_the_base_shakes() -> None:
     motion = [rb.Harmonic(amplitude="0.1 mm", frequency=frequency) for frequency in ("40 Hz", "67 Hz")]
     run = simulate(alone, structure=rb.Shaker(motion=motion), duration=0.1)
     assert not run.arrays.contacts.any()
-    found = rb.analysis.shaken_cavity(run, frequency=40)
-    mass, speed = run.arrays.particle_mass[0], found.attrs["velocity_amplitude"]
-    assert abs(float(found.stored_power)) < 1e-4 * mass * speed**2 * 40
+    result = rb.analysis.shaken_cavity(run, frequency=40)
+    mass, speed = run.arrays.particle_mass[0], result.attrs["velocity_amplitude"]
+    assert abs(float(result.stored_power)) < 1e-4 * mass * speed**2 * 40

@@ -1,4 +1,4 @@
-"""The step of particles: contact times are those of the laws, the tightest limit is named, too long a step is refused."""
+"""Time step of 3-D runs: contact durations, limits of the step, refusal of too long a step."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STEEL = rb.materials()["steel"]
 
 
 def contact_time(law: str, values: dict[str, float], speed: float) -> float:
-    """Return how long an undamped contact lasts, from the core."""
+    """Return the duration of an undamped contact, from the core."""
     flags = {"hertz_tsuji": ["zero_overlap"], "linear": ["zero_overlap", "fixed_contact_time"]}.get(law, [])
     return _core.normal_law(law, {**values, **dict.fromkeys(flags, 0.0)}).contact_time(speed)
 
@@ -29,7 +29,7 @@ CUBE = rb.Box(size=("40 mm",) * 3)
 
 
 def case(damper: dict[str, Any] | None = None, **options: Any) -> rb.Case:
-    """Return a case with two kinds of steel balls in a cube that stands still without gravity."""
+    """Return a case with two kinds of steel balls in a fixed cube without gravity."""
     usual: dict[str, Any] = {
         "particles": [
             rb.Particles(material="steel", diameter="4 mm", count=20),
@@ -45,12 +45,12 @@ def case(damper: dict[str, Any] | None = None, **options: Any) -> rb.Case:
 
 
 def tables(of: rb.Case) -> list[Any]:
-    """Return the pairs in each damper of a case."""
+    """Return the contact table of each damper of a case."""
     return [damper.contact_table for damper in of.particle_dampers]
 
 
 def integrated(force: Any, mass: float, speed: float) -> float:
-    """Return how long a body that hits a spring at a speed stays in contact."""
+    """Return the contact duration of a body that hits a spring, from its equation of motion."""
 
     def leaves(_: float, y: Any) -> float:
         return float(y[0])
@@ -62,8 +62,8 @@ def integrated(force: Any, mass: float, speed: float) -> float:
     return float(tries.t_events[0][-1])
 
 
-def test_contact_times_are_those_of_the_motion() -> None:
-    """Hertz and linear contacts last as long as their equation of motion says."""
+def test_contact_durations_are_exact() -> None:
+    """The durations of Hertz and linear contacts agree with the integrated equation of motion."""
     hertz = {"stiffness": 5e9, "mass": 1e-4}
     for speed in (0.01, 1.0, 20.0):
         expected = integrated(lambda d: 5e9 * d**1.5, 1e-4, speed)
@@ -73,8 +73,8 @@ def test_contact_times_are_those_of_the_motion() -> None:
 
 
 @pytest.mark.parametrize("speed", [0.001, 0.1, 1.0, 10.0, 100.0])
-def test_yielding_contacts_are_not_stiffer_than_told(speed: float) -> None:
-    """The time told of a contact that yields is that of its stiffest moment: unloading begins no faster."""
+def test_the_duration_of_a_yielding_contact_is_that_of_its_largest_stiffness(speed: float) -> None:
+    """The duration of a yielding contact follows from its largest stiffness, at the start of unloading."""
     radius, modulus, pressure, mass = 1e-3, 1.1e11, 1.6e9, 1e-4
     stiffness = 4 / 3 * modulus * math.sqrt(radius)
     law = {"stiffness": stiffness, "mass": mass, "radius": radius, "modulus": modulus, "yield_pressure": pressure}
@@ -96,7 +96,7 @@ def test_yielding_contacts_are_not_stiffer_than_told(speed: float) -> None:
 
 
 def test_the_smallest_pair_limits_the_step() -> None:
-    """Of several sizes it is the contact of the smallest that lasts shortest, and the report says so."""
+    """Among several sizes the contact of the smallest particles is the shortest and limits the step."""
     made = case()
     speeds = expected_speeds(made, [np.zeros((0, 3))])
     assert speeds == (1.0,)
@@ -111,7 +111,7 @@ def test_the_smallest_pair_limits_the_step() -> None:
 
 
 def test_slow_contacts_are_limited_by_waves() -> None:
-    """Where contacts are slow, the time of a Rayleigh wave along the smallest particle limits the step."""
+    """With slow contacts the travel time of a Rayleigh wave along the smallest particle limits the step."""
     made = case({"velocity": (1e-6, 0, 0)})
     step = choose_step(made, tables(made), expected_speeds(made, [np.zeros((0, 3))]))
     assert step.limit.what.startswith("Rayleigh wave along fine (diameter 2 mm)")
@@ -121,14 +121,14 @@ def test_slow_contacts_are_limited_by_waves() -> None:
 
 
 def test_a_fast_mode_limits_the_step() -> None:
-    """A structure that swings faster than any contact limits the step by its period."""
+    """A mode with a period shorter than any contact limits the step."""
     made = case({"softening": 1e6}, structure=rb.SDOF(mass=1e-3, stiffness=1e9), duration=1e-3)
-    found = limits(made, tables(made), (1.0,))
-    assert min(found, key=lambda limit: limit.step).what.startswith("period of mode 1")
+    result = limits(made, tables(made), (1.0,))
+    assert min(result, key=lambda limit: limit.step).what.startswith("period of mode 1")
 
 
 def test_too_long_a_step_is_refused_with_its_bound() -> None:
-    """A step beyond the bound is refused, the bound is told, and a step at the bound is accepted."""
+    """A step above the bound is refused with the bound; a step just below it is accepted."""
     made = case()
     shortest = choose_step(made, tables(made), (1.0,)).shortest
     for dt, good in [(1.001 * shortest.bound, False), (0.999 * shortest.bound, True)]:
@@ -141,7 +141,7 @@ def test_too_long_a_step_is_refused_with_its_bound() -> None:
 
 
 def test_strong_dashpots_lower_the_bound() -> None:
-    """A dashpot that is faster than its spring lowers the bound."""
+    """A dashpot with a time constant shorter than the contact lowers the bound."""
     bounds = []
     for e in (0.9, 1e-3):
         made = case({"contact": rb.Tsuji(restitution=e)})
@@ -150,7 +150,7 @@ def test_strong_dashpots_lower_the_bound() -> None:
 
 
 def test_expected_speeds_add_what_moves() -> None:
-    """A shaker's span of velocity and a fall through the cavity add up."""
+    """The velocity range of a shaker and the speed of a fall through the cavity add up."""
     shaken = case(
         {"velocity": (0, 0, 0), "gravity": (0, 0, -9.81)},
         structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="50 Hz", direction="z")),
@@ -159,8 +159,8 @@ def test_expected_speeds_add_what_moves() -> None:
     assert expected_speeds(shaken, [np.zeros((0, 3))])[0] == pytest.approx(expected, rel=1e-4)
 
 
-def test_a_cavity_that_moves_on_is_expected_to_meet_its_particles() -> None:
-    """A cavity whose velocity hardly changes comes to particles at rest with all of it."""
+def test_the_expected_speed_of_a_cavity_at_constant_velocity() -> None:
+    """The expected speed of particles at rest in a cavity with a nearly constant velocity is that velocity."""
     for stiffness in (0.0, 100.0):
         moving = case(
             {"velocity": (0, 0, 0)}, structure=rb.SDOF(mass=10, stiffness=stiffness, velocity=5), duration=0.01
@@ -174,15 +174,15 @@ def test_a_cavity_that_moves_on_is_expected_to_meet_its_particles() -> None:
     ids=lambda load: load.kind,
 )
 def test_too_long_a_step_for_a_load_is_refused(load: Any) -> None:
-    """A step that cannot follow a load is refused, with the bound and the load that it is for."""
+    """A step too long for the time scale of a load is refused, with the bound and the load."""
     made = case({"softening": 1e6}, structure=rb.SDOF(mass=1, stiffness=0), load=load, method=rb.Dem(dt="0.3 ms"))
     with pytest.raises(rb.CaseError, match=r"too long: the bound is 200 µs, for the p"):
         choose_step(made, tables(made), (0.01,))
 
 
 @pytest.mark.parametrize("on", ["shaker", "structure"])
-def test_samples_a_period_apart_hide_no_speed(on: str) -> None:
-    """However rare the samples are, the step is that of the same case with many."""
+def test_the_expected_speed_does_not_depend_on_the_sampling(on: str) -> None:
+    """Samples one period apart give the same expected speed as a high output rate."""
     swing = {"amplitude": (1000, "m/s^2"), "frequency": "50 Hz"}
     where: dict[str, Any] = {
         "shaker": {"structure": rb.Shaker(motion=rb.Harmonic(**swing))},
@@ -199,8 +199,8 @@ def test_samples_a_period_apart_hide_no_speed(on: str) -> None:
     assert rare.speeds == pytest.approx(frequent.speeds, rel=1e-3)
 
 
-def test_each_softening_is_told_once() -> None:
-    """Dampers that are softened alike are told together, others by name; without any the advice is another one."""
+def test_each_softening_is_reported_once() -> None:
+    """Dampers with the same softening share a note, others are named; without softening the advice differs."""
 
     def notes(*softening: float, **laws: Any) -> list[str]:
         parts = [case({"softening": factor, "name": f"d{k}", **laws}).dampers[0] for k, factor in enumerate(softening)]
@@ -218,8 +218,8 @@ def test_each_softening_is_told_once() -> None:
     assert notes(1)[-1].endswith("a stiffer contact")
 
 
-def test_outcomes_are_judged() -> None:
-    """Too few steps in the shortest contact and too large overlaps are told, softening with what it does."""
+def test_warnings_of_short_contacts_and_large_overlaps() -> None:
+    """Too few steps in the shortest contact and too large overlaps are warnings; softening is a note with its effect."""
     made = case({"softening": 100})
     step = choose_step(made, tables(made), (1.0,))
     _, quiet = step_diagnostics(made, tables(made), step, (1e-3,), (1.0,))
@@ -230,14 +230,14 @@ def test_outcomes_are_judged() -> None:
     assert figures["steps_per_contact"] == pytest.approx(step.shortest.duration / step.dt * 100**-0.2, rel=1e-6)
 
 
-def test_samples_that_limit_the_step_are_told() -> None:
-    """Where samples are closer than steps need be, the note names them, and what else would limit; else that alone."""
+def test_a_step_limited_by_samples_is_reported() -> None:
+    """The note names the limit of the step; if the samples limit it, also the limit without them."""
 
     def note(rate: float, dt: str = "auto") -> tuple[float, float, str]:
         made = case(duration=0.01, output=rb.Output(rate=rate), method=rb.Dem(dt=dt))
         step = choose_step(made, tables(made), (1.0,))
-        _, (told,) = step_diagnostics(made, tables(made), step, (1e-3,), (1.0,))
-        return step.dt, step.limit.step, told
+        _, (text,) = step_diagnostics(made, tables(made), step, (1e-3,), (1.0,))
+        return step.dt, step.limit.step, text
 
     _, longest, alone = note(1e4)
     contact = alone.partition(", limited by the ")[2]
@@ -254,7 +254,7 @@ def test_samples_that_limit_the_step_are_told() -> None:
 
 
 def test_the_damper_that_overlaps_too_much_is_named() -> None:
-    """Of several dampers each is judged by its own overlap, speed and softening, and named."""
+    """The warnings of several dampers depend on the overlap, speed and softening of each and name it."""
     parts = [case({"name": name, "softening": factor}).dampers[0] for name, factor in (("box", 1), ("can", 100))]
     made = rb.Case(structure=rb.Fixed(), dampers=parts, duration=0.1)
     step = choose_step(made, tables(made), (1.0, 1.0))
@@ -281,7 +281,7 @@ def test_the_damper_that_overlaps_too_much_is_named() -> None:
 
 @pytest.mark.parametrize("filled", [0.2, 0.55])
 def test_particles_inserted_at_random_do_not_overlap(filled: float) -> None:
-    """Random places are pushed apart until nothing overlaps or sticks out, the same for the same seed."""
+    """Random positions are pushed apart until no particles overlap; a seed fixes the result."""
     cavity = rb.Cylinder(diameter="40 mm", length="30 mm", axis=(0, 1, 1))
     radii = (
         rb.LogNormal(median="4 mm", geometric_standard_deviation=1.2, smallest="3 mm", largest="6 mm").diameters(
@@ -297,14 +297,14 @@ def test_particles_inserted_at_random_do_not_overlap(filled: float) -> None:
     assert np.abs(places.mean(axis=0)).max() < 1e-3
 
 
-def test_what_cannot_be_inserted_is_told() -> None:
-    """Where there is no room, inserting ends with a message."""
+def test_an_overfull_cavity_is_refused() -> None:
+    """If there is no room, insertion raises an error."""
     with pytest.raises(rb.CaseError, match="cannot be inserted at random: they would fill 7"):
         push_apart(CUBE, np.zeros((100, 3)) + np.linspace(0, 1e-3, 300).reshape(100, 3), np.full(100, 4.77e-3), 2e-3)
 
 
-def test_a_wall_weighs_as_much_as_the_structure() -> None:
-    """The contact of a particle with the wall of a light structure lasts as long as the mass of both says."""
+def test_a_wall_has_the_mass_of_the_structure() -> None:
+    """The contact duration at the wall of a light structure follows from the reduced mass of both."""
     weight = 4 / 3 * math.pi * 2e-3**3 * STEEL.density
     for structure in (0.2 * weight, 5 * weight):
         made = case(
@@ -322,7 +322,7 @@ def test_a_wall_weighs_as_much_as_the_structure() -> None:
 
 @pytest.mark.parametrize("speed", [0.1, 2.0])
 def test_friction_springs_lower_the_bound(speed: float) -> None:
-    """A Mindlin spring at the largest overlap of an impact swings a free sphere faster than the contact lasts."""
+    """The oscillation of a free sphere on its Mindlin spring is shorter than the contact and lowers the bound."""
     made = case(
         {"particles": rb.Particles(material="steel", diameter="4 mm", count=2), "friction": rb.Mindlin(coefficient=0.3)}
     )

@@ -29,9 +29,9 @@ def attempt(wanted: dict[str, Any]) -> None:
         insert(damper.cavity, damper.contents.radius, damper.packing.seed)
 
 
-def followed(wanted: dict[str, Any], said: str, way: int) -> dict[str, Any]:
+def followed(wanted: dict[str, Any], message: str, way: int) -> dict[str, Any]:
     """Return what a message advises instead; where it names several ways, the one of that number."""
-    tried = said.rpartition("try: ")[2]
+    tried = message.rpartition("try: ")[2]
     ways: list[dict[str, Any]] = []
     amounts = {
         name: value for name, value in wanted["particles"].items() if name not in ("count", "fill_ratio", "mass")
@@ -45,7 +45,7 @@ def followed(wanted: dict[str, Any], said: str, way: int) -> dict[str, Any]:
         ways.append({"particles": {**amounts, "count": int(most[1])}})
     if filled := re.search(r"a fill ratio of ([\d.]+)", tried):
         ways.append({"particles": {**amounts, "fill_ratio": float(filled[1])}})
-    assert ways, f"nothing to follow in: {said}"
+    assert ways, f"nothing to follow in: {message}"
     return {**wanted, **ways[way % len(ways)]}
 
 

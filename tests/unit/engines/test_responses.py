@@ -34,7 +34,7 @@ def test_forced_oscillator_on_a_moving_base() -> None:
     np.testing.assert_allclose(energy, run.energy.mode_energy, rtol=1e-13)
 
 
-def test_all_motion_of_a_building_stands_on_its_base() -> None:
+def test_the_interface_force_of_a_building_balances_all_inertia() -> None:
     """Storey masses times absolute accelerations, contacts and a tuned mass included, add up to the force on the base."""
     mass, stiffness = np.diag([2.0, 1.0]), 1e4 * np.array([[2.0, -1.0], [-1.0, 1.0]])
     building = rb.Matrices(M=mass, C=[[0, 0], [0, 5]], K=stiffness, points={"first": 0, "second": 1})
@@ -59,7 +59,7 @@ def test_all_motion_of_a_building_stands_on_its_base() -> None:
 
 @pytest.mark.parametrize("base", [(), rb.Harmonic(amplitude=3.0, frequency=20.0, direction="z")])
 def test_three_dimensions(base: Any) -> None:
-    """In 3-D the same holds along each axis, with particles that rattle in the cavity."""
+    """In 3-D the force on the base balances the inertia along each axis, with particles in the cavity."""
     structure = rb.Modal(
         frequencies=[30.0, 40.0],
         damping_ratios=[0.01, 0.02],
@@ -87,8 +87,8 @@ def test_three_dimensions(base: Any) -> None:
     assert float(abs(motion.interface_force.sel(axis="y")).max()) == 0.0
 
 
-def test_a_cavity_that_is_fixed_stands_on_the_base() -> None:
-    """On a fixed structure the particles push the base; without participations the force on the base is not known."""
+def test_the_interface_force_of_a_fixed_cavity() -> None:
+    """The force on the base of a fixed structure is the contact force; without participations it is NaN."""
     damper = rb.ImpactDamper(
         ball=rb.Sphere(radius="5 mm", material="steel"), gap="1 mm", velocity=1.0, contact=rb.Tsuji(restitution=0.6)
     )
@@ -99,28 +99,28 @@ def test_a_cavity_that_is_fixed_stands_on_the_base() -> None:
 
 
 def test_measures_of_acceleration() -> None:
-    """In studies they are means over a sample step, absolute: those of the velocities of a run at the same times."""
+    """Peak and RMS absolute acceleration of a sweep agree with those of a run."""
     case = rb.Case(
         structure=rb.SDOF(mass=M, stiffness=K, damping=C),
         base=rb.Harmonic(amplitude=0.5, frequency=9.0),
         duration=2.0,
         output=rb.Output(rate=1000.0),
     )
-    found = rb.sweep(case, {"base.amplitude": [0.5, 1.0]}, ["peak_acceleration", "rms_acceleration"], skip=1.0)
+    result = rb.sweep(case, {"base.amplitude": [0.5, 1.0]}, ["peak_acceleration", "rms_acceleration"], skip=1.0)
     run = rb.simulate(case)
     late = run.motion.absolute_acceleration.sel(point="mass", time=slice(1.0, 2.0))
-    assert float(found.peak_acceleration[0]) == pytest.approx(float(abs(late).max()), rel=5e-3)
-    assert float(found.rms_acceleration[0]) == pytest.approx(math.sqrt(float((late**2).mean())), rel=5e-3)
-    assert float(found.rms_acceleration[1]) == pytest.approx(2 * float(found.rms_acceleration[0]), rel=1e-9)
+    assert float(result.peak_acceleration[0]) == pytest.approx(float(abs(late).max()), rel=5e-3)
+    assert float(result.rms_acceleration[0]) == pytest.approx(math.sqrt(float((late**2).mean())), rel=5e-3)
+    assert float(result.rms_acceleration[1]) == pytest.approx(2 * float(result.rms_acceleration[0]), rel=1e-9)
 
 
 def test_truncated_modes_follow_the_base() -> None:
-    """Two of twenty modes with the residual mass give the force of the full model, below the truncated frequencies."""
+    """Two of twenty modes with the residual mass give the base force of the full model at low frequencies."""
     motion = rb.HalfSine(amplitude=30.0, duration=0.2)
     full = rb.ShearBuilding(masses=[1000.0] * 20, stiffnesses=[4e7] * 20, damping_ratio=0.02)
     modes = full.modes()
-    kept = {"frequencies": (np.sqrt(modes.stiffness[:2]) / (2 * math.pi)).tolist(), "damping_ratios": [0.02, 0.02]}
-    kept |= {
+    selected = {"frequencies": (np.sqrt(modes.stiffness[:2]) / (2 * math.pi)).tolist(), "damping_ratios": [0.02, 0.02]}
+    selected |= {
         "shapes": {"top": modes.shapes["storey 20"][:2].tolist()},
         "participation": modes.participation[:2].tolist(),
     }
@@ -128,8 +128,8 @@ def test_truncated_modes_follow_the_base() -> None:
     forces = {}
     for name, structure in {
         "full": full,
-        "truncated": rb.Modal(**kept),
-        "corrected": rb.Modal(**kept, total_mass="20 t"),
+        "truncated": rb.Modal(**selected),
+        "corrected": rb.Modal(**selected, total_mass="20 t"),
     }.items():
         run = rb.simulate(rb.Case(structure=structure, base=motion, duration=0.5, output=rb.Output(rate=4000)))
         forces[name] = run.motion.interface_force.interp(time=np.arange(0.0, 0.5, 1e-3))
@@ -140,9 +140,9 @@ def test_truncated_modes_follow_the_base() -> None:
     corrected = float(abs(early["corrected"] - early["full"]).max()) / largest
     assert lacking > 0.05
     assert corrected < 0.01
-    # A slow motion of the base: the structure follows it as a rigid body.
+    # The structure follows a slow base motion as a rigid body.
     slow = rb.Harmonic(amplitude=1.0, frequency=0.05, phase=math.pi / 2)
-    run = rb.simulate(rb.Case(structure=rb.Modal(**kept, total_mass="20 t"), base=slow, duration=60.0))
+    run = rb.simulate(rb.Case(structure=rb.Modal(**selected, total_mass="20 t"), base=slow, duration=60.0))
     late = run.motion.sel(time=slice(40, 60))
     np.testing.assert_allclose(late.interface_force, -20e3 * late.base_acceleration, atol=0.03 * 20e3)
 
@@ -159,16 +159,16 @@ def test_truncated_modes_follow_the_base() -> None:
         (rb.SDOF(mass=3.0, frequency=10.0), 3.0),
     ],
 )
-def test_the_modes_of_built_in_structures_make_up_their_mass(structure: Any, mass: float | None) -> None:
-    """The residual mass falls towards zero with the number of modes, and never below."""
+def test_the_residual_mass_of_built_in_structures(structure: Any, mass: float | None) -> None:
+    """The residual mass of structures with many modes is small and never negative."""
     modes = structure.modes()
     if mass is not None:
         assert modes.total_mass == pytest.approx(mass)
     assert -1e-9 * modes.total_mass <= modes.residual_mass < 0.08 * modes.total_mass
 
 
-def test_a_tuned_mass_adds_to_the_total() -> None:
-    """Beside a tuned mass the residual mass is that of the structure alone."""
+def test_the_residual_mass_with_a_tuned_mass() -> None:
+    """A tuned mass does not change the residual mass."""
     beam = rb.Beam(length="0.4 m", width="30 mm", height="20 mm", material="steel", mode_count=2, damping_ratio=0.01)
     tuned = rb.TunedMass(mass="50 g", frequency="80 Hz", damping_ratio=0.1, point="tip")
     case = rb.Case(structure=beam, tuned_mass=tuned, duration=0.1)
@@ -177,13 +177,13 @@ def test_a_tuned_mass_adds_to_the_total() -> None:
 
 
 def test_a_total_mass_below_the_effective_masses() -> None:
-    """A total mass in the wrong unit is refused."""
+    """A total mass below the effective mass of the modes is refused."""
     with pytest.raises(rb.CaseError, match="more than the total mass"):
         rb.Modal(frequencies=[10], damping_ratios=[0.01], shapes={"a": [1.0]}, participation=[2.0], total_mass="1 kg")
 
 
 def test_base_motions_with_small_participation() -> None:
-    """A warning names participation times shape where the base moves across the modes."""
+    """A base motion that hardly excites the modes gives a warning."""
     for participation, warned in ((1e-5, True), (0.9, False)):
         modal = rb.Modal(frequencies=[10], damping_ratios=[0.01], shapes={"a": [1.0]}, participation=[participation])
         run = rb.simulate(rb.Case(structure=modal, base=rb.HalfSine(amplitude=1.0, duration=0.01), duration=0.1))

@@ -71,9 +71,9 @@ def test_each_damper_is_judged_by_itself() -> None:
 )
 def test_overlaps_beyond_the_range_of_the_law_are_noted(contact: Any, speed: float, noted: int) -> None:
     """Overlaps above 1 % of the radius, 10 % with a linear spring, are noted with their size."""
-    found = notes(rb.Fixed(), None, velocity=speed, contact=contact)
-    assert len(found) == noted
-    assert all("of the radius" in note for note in found)
+    result = notes(rb.Fixed(), None, velocity=speed, contact=contact)
+    assert len(result) == noted
+    assert all("of the radius" in note for note in result)
 
 
 def test_overlaps_are_measured_by_the_smaller_ball() -> None:
@@ -101,25 +101,25 @@ def test_particles_that_never_touch_are_noted(size: Any, noted: int) -> None:
         softening=1000,
     )
     run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration="10 ms"))
-    found = [note for note in run.notes if "touched anything" in note]
-    assert len(found) == noted
-    assert all("relative motion 10.0 mm" in note for note in found)
+    result = [note for note in run.notes if "touched anything" in note]
+    assert len(result) == noted
+    assert all("relative motion 10.0 mm" in note for note in result)
 
 
 @pytest.mark.parametrize(("last", "noted"), [("50 m/s", 0), ("0.5 m/s", 1)])
 def test_impacts_faster_than_a_table_of_restitution_are_noted(last: str, noted: int) -> None:
     """In both engines, once for a damper."""
     contact = rb.Tsuji(restitution=rb.Tabulated(speeds=("0.1 m/s", last), values=(0.9, 0.8)))
-    found = [*notes(contact=contact, velocity=1.0), *particles_at("1 m/s", contact)]
-    assert len([note for note in found if "table of restitution" in note]) == 2 * noted
+    result = [*notes(contact=contact, velocity=1.0), *particles_at("1 m/s", contact)]
+    assert len([note for note in result if "table of restitution" in note]) == 2 * noted
 
 
 @pytest.mark.parametrize("speed", [1.0, 100.0])
 def test_extrapolated_impacts_are_noted(speed: float) -> None:
     """Jackson and Green's law was fitted up to 1000 critical speeds."""
     contact = rb.Tsuji(restitution=rb.JacksonGreen(wall="rigid", extrapolate=True))
-    found = [*notes(contact=contact, velocity=speed), *particles_at(speed, contact)]
-    assert len([note for note in found if "extrapolated" in note]) == 2 * (speed > 50)
+    result = [*notes(contact=contact, velocity=speed), *particles_at(speed, contact)]
+    assert len([note for note in result if "extrapolated" in note]) == 2 * (speed > 50)
 
 
 def particles_at(speed: Any, contact: Any) -> tuple[str, ...]:
@@ -159,5 +159,5 @@ def test_no_silent_extrapolation_in_three_dimensions() -> None:
         )
         run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=damper, duration=1.5e-3 / speed))
         assert run.ok
-        found = [note for note in run.notes if "10.0 µm" in note and "extrapolated" in note]
-        assert len(found) == count, run.notes
+        result = [note for note in run.notes if "10.0 µm" in note and "extrapolated" in note]
+        assert len(result) == count, run.notes

@@ -57,8 +57,8 @@ def test_a_resting_softened_bed_has_both_warnings(softening: float) -> None:
     run = rb.simulate(shaken(5, 180, softening))
     assert run.diagnostics["softening_change"] > MAX_CHANGE
     assert run.diagnostics["enduring_share"] > 0.4
-    found = warnings(run)
-    assert len(found) == 2 and "resonance" in found[0] and "quarter of a period" in found[1]
+    result = warnings(run)
+    assert len(result) == 2 and "resonance" in result[0] and "quarter of a period" in result[1]
 
 
 @pytest.mark.parametrize(("amplitude", "softening"), [(49, 5), (49, 1), (5, 1)])
@@ -80,9 +80,9 @@ def test_each_damper_has_its_own_warnings() -> None:
     case = small(5, 160, 1)
     hard = case.particle_dampers[0].model_copy(update={"name": "hard"})
     soft = hard.model_copy(update={"name": "soft", "softening": 300})
-    found = warnings(rb.simulate(case.model_copy(update={"dampers": (hard, soft)})))
-    assert len(found) == 2
-    assert all("in soft" in note and "in hard" not in note for note in found)
+    result = warnings(rb.simulate(case.model_copy(update={"dampers": (hard, soft)})))
+    assert len(result) == 2
+    assert all("in soft" in note and "in hard" not in note for note in result)
 
 
 def test_the_loss_of_contacts_of_any_age_is_all_loss() -> None:
@@ -111,8 +111,8 @@ def test_the_resonance_is_that_of_a_bed_shaken_gently(softening: float) -> None:
     estimate = bed_resonance(case.particle_dampers[0])
     frequency = estimate / 5
     run = rb.simulate(small(0.05, frequency, softening, cycles=0.08 * frequency + 15, **wide))
-    found = rb.analysis.shaken_cavity(run, frequency=frequency, after=0.08).sel(way="complex power")
-    ratio = float(found.effective_mass) / run.arrays.particle_mass[0]
+    result = rb.analysis.shaken_cavity(run, frequency=frequency, after=0.08).sel(way="complex power")
+    ratio = float(result.effective_mass) / run.arrays.particle_mass[0]
     measured = math.pi * frequency / 2 / math.sqrt(3 * (ratio - 1))
     assert estimate == pytest.approx(measured, rel=0.3)
 
@@ -194,9 +194,9 @@ def test_auto_is_read_from_case_files_and_written() -> None:
 def test_studies_and_loss_maps_mark_softened_variants() -> None:
     """As they do with all other limits."""
     case = small(5, 160, 300, cycles=6)
-    found = rb.loss_map(case, [5.0, 49.0], [20.0, 160.0], cycles=(2, 4), progress=False)
+    result = rb.loss_map(case, [5.0, 49.0], [20.0, 160.0], cycles=(2, 4), progress=False)
     names = list(WARNINGS)
-    soft, enduring = (found.warnings.values & 2 ** names.index(name) > 0 for name in ("soft_bed", "enduring_contacts"))
+    soft, enduring = (result.warnings.values & 2 ** names.index(name) > 0 for name in ("soft_bed", "enduring_contacts"))
     assert soft.tolist() == [[False, True], [False, True]]
     assert enduring[0].all() and not enduring[1, 0]
 

@@ -1,4 +1,4 @@
-"""Modes and matrices of other programs: real files, units, mass normalisation, and files that are damaged."""
+"""Modes and matrices of other programs: real files, units, mass normalisation and damaged files."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ TABLE = f"""{HEAD}, participation x, participation y, participation z
 
 
 def test_modes_of_an_ansys_result() -> None:
-    """The frequencies are those of the file's analysis; the shapes are one column of nodes in three directions."""
+    """The frequencies of an Ansys result are those of the analysis; each point has shapes in three directions."""
     modal = rb.Modal.from_file(RST, points={"a": 100, "b": "100 y", "c": "100 -y"}, damping_ratio=0.01)
-    known = [7366.495, 7366.495, 11504.895, 17285.705, 17285.705, 20137.193]
-    np.testing.assert_allclose(modal.frequencies, known, atol=6e-4)
+    expected = [7366.495, 7366.495, 11504.895, 17285.705, 17285.705, 20137.193]
+    np.testing.assert_allclose(modal.frequencies, expected, atol=6e-4)
     modes = modal.modes()
     np.testing.assert_array_equal(modes.shapes["b"], modes.shapes["a"][:, 1])
     np.testing.assert_array_equal(modes.shapes["c"], -modes.shapes["a"][:, 1])
@@ -43,12 +43,12 @@ def test_modes_of_an_ansys_result() -> None:
 
 
 def test_modes_of_ansys_matrices() -> None:
-    """The modes of K and M are those that Ansys documents, mass-normalised, with exact participation."""
+    """The modes of K and M agree with those that Ansys documents, with consistent participation."""
     modal = rb.Modal.from_file(FULL, points={"a": 100}, mode_count=4, damping_ratio=0)
     np.testing.assert_allclose(modal.frequencies, [1283.200, 1283.200, 5781.975, 6919.399], atol=6e-4)
     many = rb.Modal.from_file(FULL, points={"a": 100}, mode_count=120, damping_ratio=0)
     np.testing.assert_allclose(many.frequencies[:4], modal.frequencies, rtol=1e-9)
-    # The effective masses of all modes come to the mass of the free nodes; 120 of 900 modes leave a part of it.
+    # The effective masses of all modes add up to the mass of the free nodes; 120 of 900 modes have a part of it.
     from ansys.mapdl import reader
 
     file = reader.read_binary(str(FULL))
@@ -63,7 +63,7 @@ def test_modes_of_ansys_matrices() -> None:
 
 
 def test_modes_in_millimetres_and_millinewtons() -> None:
-    """A universal file of a Siemens program: set 164 gives the unit of mass, mN s^2/mm, which is the kilogram."""
+    """In a universal file in mm and mN, data set 164 gives the unit of mass, mN s^2/mm = kg."""
     modal = rb.Modal.from_file(UFF / "modes_mm_mN_2414.uff", points={"a": 9581}, damping_ratio=0.01)
     np.testing.assert_allclose(modal.frequencies, [23383.2, 23384.1, 37317.1, 54308.9, 54313.4])
     np.testing.assert_allclose(modal.modes().shapes["a"][0], [0.156530, 13.1011, -3.2994e-05], rtol=1e-5)
@@ -71,7 +71,7 @@ def test_modes_in_millimetres_and_millinewtons() -> None:
 
 
 def test_modes_of_set_55_need_modal_masses() -> None:
-    """A file whose modal masses are zero has shapes without a scale; with masses it has one."""
+    """A file with modal masses of zero is refused; given modal masses scale its shapes."""
     file = UFF / "normal_modes_55.uff"
     with pytest.raises(rb.DataError, match="mode 1 has a modal mass of 0"):
         rb.Modal.from_file(file, damping_ratio=0.01)
@@ -83,7 +83,7 @@ def test_modes_of_set_55_need_modal_masses() -> None:
 
 
 def test_tables_of_modes(tmp_path: Path) -> None:
-    """Modal masses, damping in per cent and participation of a table become those of mass-normalised modes."""
+    """Modal masses, damping in percent and participation of a table are converted to mass-normalised modes."""
     (tmp_path / "modes.csv").write_text(TABLE)
     modal = rb.Modal.from_file(tmp_path / "modes.csv")
     assert modal.frequencies == [10, 25]
@@ -108,16 +108,16 @@ def test_tables_of_modes(tmp_path: Path) -> None:
         case.replaced({"structure.frequencies[0]": 3})
 
 
-def test_a_table_without_units_is_told(tmp_path: Path) -> None:
-    """Shapes without a unit or a modal mass count as kg^-1/2, and a run says so with the largest."""
+def test_a_table_without_units_gives_a_note(tmp_path: Path) -> None:
+    """Shapes without unit and modal mass are read in kg^-1/2, with a note that gives the largest."""
     (tmp_path / "modes.csv").write_text("frequency,damping,tip\n10,0.01,2\n25,0.01,-3\n")
     case = rb.Case(structure=rb.Modal.from_file(tmp_path / "modes.csv"), duration=1.0)
-    (told,) = [note for note in plausibility_notes(case) if "kg is assumed" in note]
-    assert "the largest mass-normalised shape is 3 kg^-0.5, at tip" in told
+    (text,) = [note for note in plausibility_notes(case) if "kg is assumed" in note]
+    assert "the largest mass-normalised shape is 3 kg^-0.5, at tip" in text
 
 
 def test_toml_tables(tmp_path: Path) -> None:
-    """A TOML table has the fields of Modal, with modal masses if it likes."""
+    """A TOML table has the fields of Modal and, optionally, modal masses."""
     (tmp_path / "modes.toml").write_text(
         'frequencies = ["10 Hz", 25]\ndamping_ratios = [0.01, 0.02]\nmodal_masses = ["4 kg", 1]\n[shapes]\ntip = [2, -1]\n'
     )
@@ -127,7 +127,7 @@ def test_toml_tables(tmp_path: Path) -> None:
 
 
 def test_matrices_in_matrix_market_files(tmp_path: Path) -> None:
-    """K and M in files of their own are the matrices that were written, whole or as one triangle."""
+    """K and M are read from one file each, full or as one triangle."""
     K, M = np.array([[3e4, -1e4], [-1e4, 1e4]]), np.diag([2.0, 1.0])
     scipy.io.mmwrite(tmp_path / "K.mtx", K, symmetry="symmetric")
     scipy.io.mmwrite(tmp_path / "M.mtx", scipy.sparse.coo_array(M))
@@ -145,7 +145,7 @@ def test_matrices_in_matrix_market_files(tmp_path: Path) -> None:
 
 
 def test_records_of_universal_files() -> None:
-    """Time histories in text and in binary become records in the unit that the file states."""
+    """Text and binary time histories are read as records in the unit of the file."""
     binary = rb.Record.from_file(UFF / "time_history_58b.uff")
     assert binary.unit == "m/s^2" and len(binary.times) == 250
     np.testing.assert_allclose(
@@ -160,8 +160,8 @@ def test_records_of_universal_files() -> None:
     assert np.iscomplexobj(read_functions(UFF / "frf_58.uff")[0].values)
 
 
-def changed(content: bytes, old: bytes, new: bytes) -> bytes:
-    """Return a file with other content, which must have been there."""
+def edited(content: bytes, old: bytes, new: bytes) -> bytes:
+    """Replace the first occurrence of `old`, which must exist."""
     assert old in content
     return content.replace(old, new, 1)
 
@@ -173,7 +173,7 @@ MTX = b"%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0
 
 
 def swapped(content: bytes) -> bytes:
-    """Return a file of 4-byte words in the other order of bytes."""
+    """Swap the byte order of 4-byte words."""
     whole = len(content) // 4 * 4
     return np.frombuffer(content[:whole], "<u4").byteswap().tobytes()
 
@@ -196,7 +196,7 @@ DAMAGED: list[tuple[str, str, bytes, str]] = [
     ("empty universal file", "a.uff", b"", "is empty"),
     ("no universal file", "a.uff", b"hello\nworld\n" * 10, "data set of a universal file"),
     ("cut universal file", "a.uff", MODES[: len(MODES) * 2 // 3], "with -1"),
-    ("mis-scaled units", "a.uff", changed(MODES, b"1.00000000000000000D+03", b"1.00000000000000000D-03"),
+    ("mis-scaled units", "a.uff", edited(MODES, b"1.00000000000000000D+03", b"1.00000000000000000D-03"),
      "set 164 states a factor of 0.001 for lengths, but its code 5 means 1000"),
     ("complex mode", "a.uff", (UFF / "complex_mode_55.uff").read_bytes(), r"complex modes.* 6\.46 degrees"),
     ("temperatures", "a.uff", (UFF / "temperatures_2414.uff").read_bytes(), "no normal modes"),
@@ -213,17 +213,17 @@ DAMAGED: list[tuple[str, str, bytes, str]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "content", "said"), [row[1:] for row in DAMAGED], ids=[row[0] for row in DAMAGED])
-def test_damaged_files_of_modes(tmp_path: Path, name: str, content: bytes, said: str) -> None:
-    """Truncated, mis-scaled, swapped, unit-less and empty files are refused with the reason."""
+@pytest.mark.parametrize(("name", "content", "message"), [row[1:] for row in DAMAGED], ids=[row[0] for row in DAMAGED])
+def test_damaged_files_of_modes(tmp_path: Path, name: str, content: bytes, message: str) -> None:
+    """Truncated, mis-scaled, byte-swapped and empty files are refused with the reason."""
     (tmp_path / name).write_bytes(content)
     options: dict[str, Any] = {} if name.endswith(("csv", "toml")) else {"damping_ratio": 0.01, "points": {"a": 9581}}
-    with pytest.raises(rb.RattleboxError, match=said):
+    with pytest.raises(rb.RattleboxError, match=message):
         rb.Modal.from_file(tmp_path / name, **options)
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         (b"", "is empty"),
         (b"1 0\n0 1\n", "does not begin with %%MatrixMarket"),
@@ -234,38 +234,38 @@ def test_damaged_files_of_modes(tmp_path: Path, name: str, content: bytes, said:
         (MTX.replace(b"1 1 1.0", b"1 1 nan"), "not finite"),
     ],
 )
-def test_damaged_matrices(tmp_path: Path, content: bytes, said: str) -> None:
+def test_damaged_matrices(tmp_path: Path, content: bytes, message: str) -> None:
     """Damaged, complex, rectangular and large matrices are refused with the reason."""
     (tmp_path / "M.mtx").write_bytes(MTX)
     (tmp_path / "K.mtx").write_bytes(content)
-    with pytest.raises(rb.RattleboxError, match=said):
+    with pytest.raises(rb.RattleboxError, match=message):
         rb.Matrices(file={"M": str(tmp_path / "M.mtx"), "K": str(tmp_path / "K.mtx")}, points={"tip": 0})
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         (BINARY[: len(BINARY) // 2], "data set of a universal file"),
         ((UFF / "cut_58.uff").read_bytes(), "states 2508876 points, but has 42"),
         (
-            changed(BINARY, b"58b     1     2", b"58b     2     2"),
+            edited(BINARY, b"58b     1     2", b"58b     2     2"),
             "any measurement|cannot be read as a universal file",
         ),
         (
-            changed(BINARY, struct.pack("<d", math.sin(2 * math.pi * 5 * 0.05)), struct.pack("<d", math.nan)),
+            edited(BINARY, struct.pack("<d", math.sin(2 * math.pi * 5 * 0.05)), struct.pack("<d", math.nan)),
             "any measurement",
         ),
     ],
 )
-def test_damaged_measurements(tmp_path: Path, content: bytes, said: str) -> None:
-    """Cut functions, a wrong order of bytes and values that are none are refused."""
+def test_damaged_measurements(tmp_path: Path, content: bytes, message: str) -> None:
+    """Truncated functions, a wrong byte order and NaN are refused."""
     (tmp_path / "a.uff").write_bytes(content)
-    with pytest.raises(rb.DataError, match=said):
+    with pytest.raises(rb.DataError, match=message):
         rb.Record.from_file(tmp_path / "a.uff")
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         ({"points": {"a": 1}}, "states no damping\n  try: damping_ratio"),
         ({"damping_ratio": 0.01}, "has 321 points"),
@@ -277,20 +277,20 @@ def test_damaged_measurements(tmp_path: Path, content: bytes, said: str) -> None
         ({"damping_ratio": 0.01, "damping_ratios": [0.1] * 6, "points": {"a": 1}}, "exclude each other"),
     ],
 )
-def test_what_does_not_fit_the_file(options: dict[str, Any], said: str) -> None:
-    """Fields beside a file that contradict it are refused with what there is."""
-    with pytest.raises(rb.RattleboxError, match=said):
+def test_fields_that_contradict_the_file(options: dict[str, Any], message: str) -> None:
+    """Fields that contradict the file are refused."""
+    with pytest.raises(rb.RattleboxError, match=message):
         rb.Modal.from_file(RST, **options)
 
 
 def test_fields_of_files_need_a_file() -> None:
-    """Points, counts and masses of files are refused where there is none."""
+    """Fields that refer to a file are refused without a file."""
     with pytest.raises(rb.CaseError, match="points are those of a file"):
         rb.Modal(frequencies=[1.0], damping_ratio=0.0, shapes={"tip": [1.0]}, points={"tip": 1})
 
 
-def test_a_base_without_direction_moves_no_point_in_space() -> None:
-    """Base motion of a structure whose points move in space is refused where no damper holds particles; loads are not."""
+def test_a_base_motion_of_a_3_d_point_needs_a_direction() -> None:
+    """Without a particle damper, a structure with 3-D points accepts loads, but no base motion without direction."""
     modal = rb.Modal(frequencies=[10.0], damping_ratio=0.01, shapes={"a": [[1, 0, 0.5]]}, participation=[[1, 0, 0.5]])
     with pytest.raises(rb.CaseError, match="has no direction"):
         rb.Case(structure=modal, base=rb.HalfSine(amplitude="1 g", duration="1 ms"), duration=0.1)
@@ -298,8 +298,8 @@ def test_a_base_without_direction_moves_no_point_in_space() -> None:
     assert rb.simulate(rb.Case(structure=modal, load=load, duration=0.1)).ok
 
 
-def test_the_scatter_of_phases_is_that_of_a_known_mode() -> None:
-    """Components at phases of +-20 degrees about any line, on both sides of zero, scatter by 20 degrees."""
+def test_the_phase_scatter_of_a_complex_mode() -> None:
+    """Components at phases of +-20 degrees about any line, on both sides of zero, have a scatter of 20 degrees."""
     turn = np.exp(0.7j)
     z = turn * np.exp(1j * np.radians([20, -20, 200])), turn * np.exp(1j * np.radians([160, 20, -20])), np.zeros(3)
     assert _phase_scatter({f"r{k + 1}": part for k, part in enumerate(z)}) == pytest.approx(20.0)

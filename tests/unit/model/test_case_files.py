@@ -1,4 +1,4 @@
-"""Case files: what is written reads back equal; the examples and the schema hold."""
+"""Case files: round trips, examples, tables written twice, JSON Schema."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_written_case_reads_back_equal(name: str, tmp_path: Path) -> None:
-    """A case equals itself after a trip through a file, to the last bit."""
+    """A case that is written and read again is equal to the last bit."""
     file = tmp_path / "case.toml"
     CASES[name].to_file(file)
     back = rb.Case.from_file(file)
@@ -76,27 +76,27 @@ def test_a_written_case_reads_back_equal(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("left", CASES)
 @pytest.mark.parametrize("right", CASES)
 def test_cases_are_equal_to_themselves_only(left: str, right: str) -> None:
-    """Cases compare by what they describe, also after their modes have been asked for."""
+    """Cases compare by their fields, whether or not their modes have been computed."""
     assert (CASES[left] == CASES[right]) is (left == right)
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_read_and_read_back(path: Path) -> None:
-    """Each example file is a case that survives a trip through a file."""
+    """Each example file reads as a case that is equal after a round trip."""
     case = rb.Case.from_file(path)
     assert case.name
     assert rb.Case.from_toml(case.to_toml()).to_toml() == case.to_toml()
 
 
 def test_two_start_positions_may_be_lengths() -> None:
-    """Two balls may start at lengths, or at a fraction and a length, from Python and from a file."""
+    """Start positions may be lengths, or a fraction and a length."""
     for start in (["-0.5 mm", "0.2 mm"], [-0.5, "0.2 mm"]):
         damper = rb.ImpactDamper(balls=[BALL, BALL], gap="1 mm", start=start, contact=rb.Tsuji(restitution=0.9))
         np.testing.assert_allclose(damper.positions0, [-5e-4, 2e-4], rtol=1e-14)
 
 
 def test_numbers_of_numpy_are_written_as_numbers() -> None:
-    """NumPy's numbers read back equal, whether they were given at first or put into a copy."""
+    """NumPy scalars are written as plain numbers and read back equal."""
     ball = rb.Sphere(radius=np.float64(5e-3), material="steel")
     damper = rb.ImpactDamper(ball=ball, gap=np.float64(4e-4), start="0.1 mm", contact=rb.Tsuji(alpha=np.float64(0.1)))
     case = rb.Case(structure=rb.Fixed(), damper=damper, duration=np.int64(2))
@@ -108,7 +108,7 @@ def test_numbers_of_numpy_are_written_as_numbers() -> None:
 
 
 def test_materials_of_a_case_file() -> None:
-    """A material of the file's own is used by name for balls and walls."""
+    """A material defined in the case file can be named for balls and walls."""
     case = rb.Case.from_toml(
         'duration = "1 s"\nstructure = { kind = "fixed" }\n'
         '[damper]\ngap = "1 mm"\nwall = "mine"\nball = { radius = "1 mm", material = "mine" }\n'
@@ -121,7 +121,7 @@ def test_materials_of_a_case_file() -> None:
 
 
 def test_one_and_several_may_be_written_alike() -> None:
-    """A load alone and a list of that load describe the same case."""
+    """A single load and a list of one load describe the same case."""
     load = rb.HalfSine(amplitude="1 N", duration="1 ms")
     structure = rb.SDOF(mass=1.0, stiffness=1.0)
     one = rb.Case(structure=structure, load=load, duration=1.0)
@@ -143,32 +143,32 @@ PULSE = 'kind = "half_sine"\nduration = "1 ms"\n'
     ],
 )
 def test_a_table_that_is_written_twice(above: str, table: str, content: str, several: str) -> None:
-    """A part that is described twice is told with its line and how several are written; written so, they are taken."""
+    """A table written twice is refused with its line and the syntax of an array of tables, which is accepted."""
     first = f"{HEAD}{above}[{table}]\n{content}"
-    with pytest.raises(rb.CaseError, match=f"line {len(first.splitlines()) + 1}") as told:
+    with pytest.raises(rb.CaseError, match=f"line {len(first.splitlines()) + 1}") as caught:
         rb.Case.from_toml(f"{first}[{table}]\n{content}")
-    assert f"  [{table}]\n  try: " in str(told.value) and f"[[{several}]]" in str(told.value)
+    assert f"  [{table}]\n  try: " in str(caught.value) and f"[[{several}]]" in str(caught.value)
     case = rb.Case.from_toml(HEAD + above + 2 * f"[[{several}]]\n{content}")
     assert 2 in (len(case.loads), len(case.base), len(case.dampers), *(len(each.balls) for each in case.dampers))
 
 
 def test_a_material_that_is_written_twice() -> None:
-    """Two tables of one material are told with their line, and to give one another name."""
+    """Two tables of one material are refused with the advice to rename one."""
     table = "[materials.base]\ndensity = 7800\n"
     with pytest.raises(rb.CaseError, match="try: another name"):
         rb.Case.from_toml(HEAD + 2 * table)
 
 
 def test_other_tables_that_are_written_twice() -> None:
-    """Of tables of which there is one, and of names with quotation marks, the line is told and nothing else."""
+    """A repeated table that has no array form is refused without advice."""
     for name in ("structure", '"it\'s"'):
-        with pytest.raises(rb.CaseError, match="twice") as told:
+        with pytest.raises(rb.CaseError, match="twice") as caught:
             rb.Case.from_toml(f"[{name}]\na = 1\n[{name}]\n")
-        assert "try" not in str(told.value)
+        assert "try" not in str(caught.value)
 
 
 def test_schema_names_every_field_and_its_units() -> None:
-    """The JSON Schema is JSON, lists the kinds, and tells the unit of a quantity."""
+    """The JSON Schema is valid JSON, lists the kinds and has the unit of a quantity."""
     schema = json.loads(json.dumps(rb.Case.json_schema()))
     mass = schema["$defs"]["SDOF"]["properties"]["mass"]
     assert {option["type"] for option in mass["anyOf"]} == {"number", "string"}
@@ -177,8 +177,8 @@ def test_schema_names_every_field_and_its_units() -> None:
     assert {"SDOF", "Modal", "Matrices", "Fixed", "Shaker"} <= set(schema["$defs"])
 
 
-def test_schema_takes_every_way_to_write_it() -> None:
-    """One instead of several, a number for a restitution and a name for a material are in the JSON Schema too."""
+def test_schema_has_every_accepted_form() -> None:
+    """The JSON Schema accepts one part for a list, a number as restitution and the name of a material."""
     schema = rb.Case.json_schema()
     damper = schema["$defs"]["ImpactDamper"]
     assert {"ball", "balls", "gap", "cavity_length"} <= set(damper["properties"])

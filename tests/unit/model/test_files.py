@@ -1,4 +1,4 @@
-"""Structures and records read from files."""
+"""Structures and records from files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ NUMBERS = (tuple(TIMES), tuple(FORCE))
 
 
 def beam(folder: Path, name: str) -> Path:
-    """Write the three masses to a file of one kind."""
+    """Write the chain of three masses to a file; the name gives the format."""
     path = folder / name
     if path.suffix == ".npz":
         np.savez(path, M=M, C=C, K=K, point_tip=TIP, point_middle=MIDDLE)
@@ -41,7 +41,7 @@ def beam(folder: Path, name: str) -> Path:
 
 @pytest.mark.parametrize("name", ["beam.npz", "beam.mat", "sparse.mat"])
 def test_matrices_of_a_file(tmp_path: Path, name: str) -> None:
-    """Matrices and points from NPZ, MAT and sparse MAT with a struct of points are those that were written."""
+    """Matrices and points are read from NPZ, MAT and sparse MAT with a struct of points."""
     read = rb.Matrices.from_file(beam(tmp_path, name))
     for mine, given in zip(read.matrices(), (M, C, K), strict=True):
         np.testing.assert_array_equal(mine, given)
@@ -49,8 +49,8 @@ def test_matrices_of_a_file(tmp_path: Path, name: str) -> None:
     np.testing.assert_array_equal(read.modes().shape("middle"), DIRECT.modes().shape("middle"))
 
 
-def test_points_beside_the_file(tmp_path: Path) -> None:
-    """Points given beside a file are added to those in it, and win over them."""
+def test_points_in_addition_to_the_file(tmp_path: Path) -> None:
+    """Points given with a file are added to those in it and override them."""
     read = rb.Matrices.from_file(beam(tmp_path, "beam.npz"), points={"foot": 0, "tip": 1})
     assert read.points == {"foot": 0, "tip": 1, "middle": MIDDLE.tolist()}
 
@@ -63,7 +63,7 @@ def test_a_structure_without_damping(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arrays", "options", "said"),
+    ("arrays", "options", "message"),
     [
         ({"M": M, "C": C}, {}, r"beam\.npz holds no K, but M, C"),
         ({"M": np.array("soft")}, {}, r"beam\.npz .*no numbers\n  try: arrays M, C and K"),
@@ -82,15 +82,17 @@ def test_a_structure_without_damping(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_files_of_no_structure(tmp_path: Path, arrays: dict[str, Any], options: dict[str, Any], said: str) -> None:
-    """A file whose matrices describe no structure is refused with its name and what is wrong in it."""
+def test_files_without_a_structure(
+    tmp_path: Path, arrays: dict[str, Any], options: dict[str, Any], message: str
+) -> None:
+    """A file with invalid matrices is refused with its name and the reason."""
     np.savez(tmp_path / "beam.npz", **arrays)
-    with pytest.raises((rb.CaseError, rb.DataError), match=said):
+    with pytest.raises((rb.CaseError, rb.DataError), match=message):
         rb.Matrices.from_file(tmp_path / "beam.npz", **options)
 
 
 def record_file(folder: Path, name: str) -> Path:
-    """Write times, a column that is not asked for, and forces."""
+    """Write times, an unused column and forces."""
     path = folder / name
     other = np.array([7.0, 8.0, 9.0])
     table = np.column_stack([TIMES, other, FORCE])
@@ -109,13 +111,13 @@ def record_file(folder: Path, name: str) -> Path:
 
 @pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.npz", "push.mat"])
 def test_columns_by_name(tmp_path: Path, name: str) -> None:
-    """Columns of CSV and NPY and variables of NPZ and MAT are picked by name."""
+    """Columns of CSV and NPY and variables of NPZ and MAT are selected by name."""
     record = rb.Record.from_file(record_file(tmp_path, name), columns=("t", "force"), unit="N")
     assert (record.times, record.values) == NUMBERS
 
 
 def test_columns_by_number(tmp_path: Path) -> None:
-    """Columns of a table are picked by number, counted from 1, in the order times, values."""
+    """Columns of a table are selected by number, counted from 1, in the order times, values."""
     record = rb.Record.from_file(record_file(tmp_path, "push.csv"), columns=(1, 3), unit="N")
     assert (record.times, record.values) == NUMBERS
     np.save(tmp_path / "swapped.npy", np.column_stack([FORCE, TIMES]))
@@ -124,27 +126,27 @@ def test_columns_by_number(tmp_path: Path) -> None:
 
 
 def test_fields_of_a_matlab_struct(tmp_path: Path) -> None:
-    """Fields of a struct are named with a dot; text beside them is passed over."""
+    """Fields of a struct are named with a dot; text variables are ignored."""
     record = rb.Record.from_file(record_file(tmp_path, "struct.mat"), columns=("run.t", "run.force"), unit="N")
     assert (record.times, record.values) == NUMBERS
 
 
 @pytest.mark.parametrize("name", ["push.csv", "push.npz", "push.mat"])
 def test_a_column_that_is_not_there(tmp_path: Path, name: str) -> None:
-    """A misspelt column is refused with what the file holds and the nearest name."""
+    """A misspelt column is refused with the columns of the file and the nearest name."""
     with pytest.raises(rb.DataError, match=r"(?s)push\.\w+ .*speed.*did you mean 'force'\?"):
         rb.Record.from_file(record_file(tmp_path, name), columns=("t", "forces"), unit="N")
 
 
 @pytest.mark.parametrize("name", ["push.csv", "push.npz", "push.mat"])
-def test_which_columns_must_be_said_among_three(tmp_path: Path, name: str) -> None:
-    """Three columns without a choice are refused with how to choose."""
+def test_three_columns_need_a_choice(tmp_path: Path, name: str) -> None:
+    """Three columns without a choice are refused with an example of one."""
     with pytest.raises(rb.DataError, match=r"(?s)speed.*try: columns = "):
         rb.Record.from_file(record_file(tmp_path, name), unit="N")
 
 
-def test_rows_are_not_taken_for_columns_that_are_asked_for(tmp_path: Path) -> None:
-    """Of an array of two rows columns are columns; it is turned only where none are asked for."""
+def test_arrays_of_two_rows(tmp_path: Path) -> None:
+    """An array of two rows is transposed only without a choice of columns."""
     np.save(tmp_path / "push.npy", [[0, 5, 9], [1, 6, 8]])
     record = rb.Record(file=tmp_path / "push.npy", columns=(1, 2))
     assert (record.times, record.values) == ((0, 1), (5, 6))
@@ -154,14 +156,14 @@ def test_rows_are_not_taken_for_columns_that_are_asked_for(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("name", ["push.npy", "push.npz", "push.mat", "struct.mat"])
 def test_variables_by_number(tmp_path: Path, name: str) -> None:
-    """Variables are picked by number, counted from 1 in the order of the file, which is not that of the alphabet."""
+    """Variables are selected by number, counted from 1 in the order of the file, not of the alphabet."""
     record = rb.Record.from_file(record_file(tmp_path, name), columns=(1, 3), unit="N")
     assert (record.times, record.values) == NUMBERS
 
 
 @pytest.mark.parametrize("name", ["push.npz", "push.mat"])
 def test_two_variables_need_no_choice(tmp_path: Path, name: str) -> None:
-    """Of two variables the first of the file holds times, whatever they are called."""
+    """The first of two variables in a file has the times, whatever their names."""
     if name.endswith("npz"):
         np.savez(tmp_path / name, t=TIMES, a=FORCE)
     else:
@@ -171,22 +173,22 @@ def test_two_variables_need_no_choice(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "columns", "said"),
+    ("text", "columns", "message"),
     [
         ("t,a,a\n0,1,2\n1,2,3\n", ("t", "a"), r"push\.csv has 2 columns 'a'\n  try: its number, 2 or 3"),
         ("t,a\n0,1\n1,2\n", (1, 1), r"times and values are both column 1; it has 1 t, 2 a"),
         ("t,a\n0,1\n1,2\n", ("t", 1), r"times and values are both column 't'"),
     ],
 )
-def test_columns_that_are_not_two(tmp_path: Path, text: str, columns: tuple[Any, Any], said: str) -> None:
-    """A name that two columns have, and one column for both times and values, are refused."""
+def test_ambiguous_columns(tmp_path: Path, text: str, columns: tuple[Any, Any], message: str) -> None:
+    """A name of two columns and one column for both times and values are refused."""
     (tmp_path / "push.csv").write_text(text)
-    with pytest.raises(rb.DataError, match=said):
+    with pytest.raises(rb.DataError, match=message):
         rb.Record(file=tmp_path / "push.csv", columns=columns)
 
 
 @pytest.mark.parametrize(
-    ("arrays", "options", "said"),
+    ("arrays", "options", "message"),
     [
         ({"t": TIMES, "a": FORCE}, {"columns": (1, 3)}, r"has no variable 3; it has 1 t \(3,\), 2 a \(3,\)"),
         ({"t": TIMES, "a": FORCE}, {"columns": (2, 2)}, "times and values are both variable 2"),
@@ -195,10 +197,12 @@ def test_columns_that_are_not_two(tmp_path: Path, text: str, columns: tuple[Any,
         ({"note": "by hand"}, {}, "push.npz .*no numbers"),
     ],
 )
-def test_variables_of_no_record(tmp_path: Path, arrays: dict[str, Any], options: dict[str, Any], said: str) -> None:
-    """Variables that are not there, or are no row of numbers, are refused with what the file holds."""
+def test_variables_without_a_record(
+    tmp_path: Path, arrays: dict[str, Any], options: dict[str, Any], message: str
+) -> None:
+    """Missing variables and variables that are not 1-D numbers are refused with the variables of the file."""
     np.savez(tmp_path / "push.npz", **arrays)
-    with pytest.raises(rb.DataError, match=said):
+    with pytest.raises(rb.DataError, match=message):
         rb.Record(file=tmp_path / "push.npz", **options)
 
 
@@ -214,14 +218,14 @@ def test_variables_of_no_record(tmp_path: Path, arrays: dict[str, Any], options:
     ],
 )
 def test_names_among_other_lines_above_the_data(tmp_path: Path, text: str) -> None:
-    """Names of columns are found below titles and above units, and lines with a number beside text are no data."""
+    """The line of column names is recognised below titles and above units; lines of text and numbers are no data."""
     (tmp_path / "push.csv").write_text(text)
     record = rb.Record(file=tmp_path / "push.csv", columns=("t", "a"))
     assert (record.times, record.values) == ((0, 1), (1, 2))
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("t;f\n0,0;1,5\n1,0;2,5\n", r"line 2: '0,0' is not a number\n  try: a decimal point, not a comma"),
         ("t;f\n0;1,5\n1;2\n2;3\n", r"line 2: '1,5' is not a number\n  try: a decimal point, not a comma"),
@@ -229,16 +233,16 @@ def test_names_among_other_lines_above_the_data(tmp_path: Path, text: str) -> No
         ("t,f\n0,1\n1,2\n2", r"line 4: 1 column, but 2 in line 2\n  try: the whole file: its last line is cut short"),
     ],
 )
-def test_faults_in_the_first_lines_of_data(tmp_path: Path, text: str, said: str) -> None:
-    """Decimal commas and text in the first line of data are told, and not taken for a line above it."""
+def test_faults_in_the_first_lines_of_data(tmp_path: Path, text: str, message: str) -> None:
+    """Decimal commas and text in the first line of data are errors, not part of the header."""
     (tmp_path / "push.csv").write_text(text)
-    with pytest.raises(rb.DataError, match=said):
+    with pytest.raises(rb.DataError, match=message):
         rb.Record(file=tmp_path / "push.csv")
 
 
 @pytest.mark.parametrize("name", ["push.NPY", "push.NPZ", "push.MAT"])
 def test_suffixes_in_capitals(tmp_path: Path, name: str) -> None:
-    """Binary records are recognised whether their suffix is written small or in capitals."""
+    """Suffixes of binary records may be in capitals."""
     record_file(tmp_path, name.lower()).rename(tmp_path / name)
     record = rb.Record(file=tmp_path / name, columns=("t", "force"))
     assert (record.times, record.values) == NUMBERS
@@ -246,7 +250,7 @@ def test_suffixes_in_capitals(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("name", ["BEAM.NPZ", "BEAM.MAT"])
 def test_suffixes_of_structures_in_capitals(tmp_path: Path, name: str) -> None:
-    """Matrices are read from files whose suffix is written in capitals."""
+    """Suffixes of files with matrices may be in capitals."""
     beam(tmp_path, name.lower()).rename(tmp_path / name)
     assert rb.Matrices.from_file(tmp_path / name).points == DIRECT.points
 
@@ -263,8 +267,8 @@ UNITS_ABOVE = {
 
 
 @pytest.mark.parametrize("above", UNITS_ABOVE, ids=str)
-def test_units_above_columns_are_kept_to(tmp_path: Path, above: str) -> None:
-    """Times and values are in the units that are written above them; what is no unit of theirs is part of a name."""
+def test_units_above_columns_are_applied(tmp_path: Path, above: str) -> None:
+    """Times and values have the units in the header; text that is no unit is part of the name."""
     (tmp_path / "push.csv").write_text(f"{above}\n0,1\n2,3\n", encoding="utf-8")
     slower, scale, unit = UNITS_ABOVE[above]
     record = rb.Record(file=tmp_path / "push.csv")
@@ -276,11 +280,11 @@ def test_units_above_columns_are_kept_to(tmp_path: Path, above: str) -> None:
     assert rb.Case.from_toml(case.to_toml()) == case
 
 
-def test_a_scale_and_a_unit_that_are_given_count(tmp_path: Path) -> None:
-    """A scale takes the place of the unit in the file; without one, another kind of quantity is refused."""
+def test_scale_and_unit_of_a_record(tmp_path: Path) -> None:
+    """A given scale overrides the unit of the file; a unit of another quantity is refused without one."""
     (tmp_path / "push.csv").write_text("t (s),a (g)\n0,1\n2,3\n")
-    asked = rb.Record(file=tmp_path / "push.csv", scale=2.5, unit="N")
-    assert (asked.scale, asked.unit, asked.values) == (2.5, "N", (1, 3))
+    scaled = rb.Record(file=tmp_path / "push.csv", scale=2.5, unit="N")
+    assert (scaled.scale, scaled.unit, scaled.values) == (2.5, "N", (1, 3))
     with pytest.raises(rb.CaseError, match=r"unit = 'N'\n  the file has an acceleration in this column, not a force"):
         rb.Record(file=tmp_path / "push.csv", unit="N")
     with pytest.raises(rb.CaseError, match=r"the file states another unit above the column: 'a \(g\)'"):
@@ -290,8 +294,8 @@ def test_a_scale_and_a_unit_that_are_given_count(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.npz", "push.mat"])
-def test_a_record_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-    """A file that may not be opened is refused by its name and the reason."""
+def test_a_record_without_permission_to_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """A file that cannot be opened is refused with its name and the reason."""
     file = record_file(tmp_path, name)
 
     def refuse(*_: Any, **__: Any) -> None:
@@ -305,8 +309,8 @@ def test_a_record_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 @pytest.mark.parametrize("name", ["push.npy", "push.npz", "push.mat"])
-def test_numbers_that_are_none(tmp_path: Path, name: str, bad: float) -> None:
-    """NaN or infinity in a binary record is refused with the file and the row."""
+def test_numbers_that_are_not_finite(tmp_path: Path, name: str, bad: float) -> None:
+    """NaN and infinity in a binary record are refused with the file and the row."""
     values = np.array([0.0, bad, 1.0])
     if name.endswith("npy"):
         np.save(tmp_path / name, np.column_stack([TIMES, values]))
@@ -319,7 +323,7 @@ def test_numbers_that_are_none(tmp_path: Path, name: str, bad: float) -> None:
 
 
 def test_columns_of_unequal_length(tmp_path: Path) -> None:
-    """Times and values of different number are refused with both numbers."""
+    """Times and values of different length are refused with both lengths."""
     np.savez(tmp_path / "push.npz", time=TIMES, value=FORCE[:2])
     with pytest.raises(rb.DataError, match=r"time .*3 numbers.* value 2"):
         rb.Record.from_file(tmp_path / "push.npz", unit="N")
@@ -327,22 +331,22 @@ def test_columns_of_unequal_length(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("part", [rb.Record, rb.Matrices])
 def test_a_mat_file_of_version_7_3(tmp_path: Path, part: type[rb.Record] | type[rb.Matrices]) -> None:
-    """A MAT file of version 7.3, which is HDF5, is refused with the way to save it that works."""
+    """A MAT file of version 7.3, which is HDF5, is refused with the advice to save it with -v7."""
     head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + (0x0200).to_bytes(2, "little") + b"IM"
     (tmp_path / "new.mat").write_bytes(head.ljust(512, b"\0"))
     with pytest.raises(rb.DataError, match=r"(?s)new\.mat.*version 7\.3.*-v7"):
         part.from_file(tmp_path / "new.mat")
 
 
-def test_python_objects_beside_numbers_are_left_alone(tmp_path: Path) -> None:
-    """An array of Python objects in a NPZ file does not keep the numbers beside it from being read."""
+def test_python_objects_in_a_file_are_ignored(tmp_path: Path) -> None:
+    """The numbers of an NPZ file are read although it also has an array of Python objects."""
     np.savez(tmp_path / "beam.npz", M=M, K=K, names=np.array(["foot", None], dtype=object))
     modes = rb.Matrices.from_file(tmp_path / "beam.npz", points={"tip": 2}).modes()
     assert modes.decay.shape == (3,)
 
 
-def test_pickles_are_not_opened(tmp_path: Path) -> None:
-    """A NPY file of Python objects, which could run code when read, is refused."""
+def test_pickles_are_refused(tmp_path: Path) -> None:
+    """An NPY file of Python objects, which could run code when it is read, is refused."""
     np.save(tmp_path / "evil.npy", np.array([{"a": 1}], dtype=object), allow_pickle=True)
     (tmp_path / "bare.npy").write_bytes(pickle.dumps([1.0, 2.0]))
     for name in ("evil.npy", "bare.npy"):
@@ -352,7 +356,7 @@ def test_pickles_are_not_opened(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["none.npz", "none.mat", "none.txt"])
 def test_a_structure_file_that_is_not_there(tmp_path: Path, name: str) -> None:
-    """A missing file of matrices is refused by its name."""
+    """A missing file of matrices is refused with its name."""
     with pytest.raises(rb.DataError, match=name):
         rb.Matrices.from_file(tmp_path / name)
 
@@ -372,8 +376,8 @@ point = "tip"
 """
 
 
-def test_a_case_file_names_files_from_its_own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Relative names in a case file count from its folder, wherever the program runs."""
+def test_paths_in_a_case_file_are_relative_to_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Relative paths in a case file start at its folder, whatever the working directory."""
     (tmp_path / "parts").mkdir()
     beam(tmp_path / "parts", "beam.npz")
     record_file(tmp_path / "parts", "push.csv")
@@ -387,7 +391,7 @@ def test_a_case_file_names_files_from_its_own_folder(tmp_path: Path, monkeypatch
 
 
 def test_files_named_in_a_case_survive_a_round_trip(tmp_path: Path) -> None:
-    """A case that names files writes their names, relative to the new file, and reads back equal."""
+    """A case with files is written with their paths relative to the new file and reads back equal."""
     folder = tmp_path / "parts"
     folder.mkdir()
     structure = rb.Matrices.from_file(beam(folder, "beam.mat"))
@@ -404,7 +408,7 @@ def test_files_named_in_a_case_survive_a_round_trip(tmp_path: Path) -> None:
 
 
 def test_a_case_from_files_runs_like_one_from_numbers(tmp_path: Path) -> None:
-    """Matrices and a record from files give the same bits as the same numbers given directly."""
+    """Matrices and a record from files give the same bits as the same numbers in arrays."""
     push = rb.Record.from_file(record_file(tmp_path, "push.mat"), columns=("t", "force"), point="tip")
     plain = rb.Record(times=TIMES, values=FORCE, point="tip")
     cases = [

@@ -37,7 +37,7 @@ def test_at2_files(tmp_path: Path, head: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [
         ("", "none of the first 0 lines states NPTS and DT"),
         (HEAD, "states NPTS and DT, as an AT2 file does"),
@@ -51,10 +51,10 @@ def test_at2_files(tmp_path: Path, head: str) -> None:
         (HEAD + NEW + rows(np.where(np.arange(23) == 4, np.nan, SAMPLES)), "sample 5 is not finite"),
     ],
 )  # fmt: skip
-def test_damaged_at2_files(tmp_path: Path, content: str, said: str) -> None:
+def test_damaged_at2_files(tmp_path: Path, content: str, message: str) -> None:
     """Empty, cut, unit-less and foreign files are refused with the reason and what to try."""
     (tmp_path / "quake.at2").write_text(content)
-    with pytest.raises(rb.RattleboxError, match=said):
+    with pytest.raises(rb.RattleboxError, match=message):
         rb.Record.from_file(tmp_path / "quake.at2")
 
 
@@ -117,12 +117,12 @@ def test_an_assumed_unit_is_told_with_the_peak(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "bare.txt", SAMPLES)
     record = rb.Record(file=str(tmp_path / "bare.txt"), dt=0.01)
     case = rb.Case(structure=rb.SDOF(mass=1.0, frequency=2.0), base=record, duration=0.2)
-    (found,) = [note for note in plausibility_notes(case) if "states no unit" in note]
-    assert f"{np.abs(SAMPLES).max():.4g} m/s^2" in found
+    (result,) = [note for note in plausibility_notes(case) if "states no unit" in note]
+    assert f"{np.abs(SAMPLES).max():.4g} m/s^2" in result
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         ({"dt": 0}, "must be greater than zero"),
         ({"dt": "1 m"}, "a time"),
@@ -130,10 +130,10 @@ def test_an_assumed_unit_is_told_with_the_peak(tmp_path: Path) -> None:
         ({}, 'two are needed\n  try: dt = "0.01 s"'),
     ],
 )
-def test_what_is_refused_of_one_column(tmp_path: Path, options: dict[str, Any], said: str) -> None:
+def test_what_is_refused_of_one_column(tmp_path: Path, options: dict[str, Any], message: str) -> None:
     """Wrong steps and columns are refused, and a missing step is asked for."""
     np.savetxt(tmp_path / "bare.txt", SAMPLES)
-    with pytest.raises(rb.RattleboxError, match=said):
+    with pytest.raises(rb.RattleboxError, match=message):
         rb.Record(file=str(tmp_path / "bare.txt"), **options)
     with pytest.raises(rb.RattleboxError, match="times or dt, not both"):
         rb.Record(values=[1.0, 2.0], times=[0.0, 1.0], dt=0.1)

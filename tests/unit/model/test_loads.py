@@ -209,9 +209,9 @@ def test_loads_in_sweeps() -> None:
     seeds = rb.sweep(case, {"base.seed": [3, 4]}, measure=["impacts"], progress=False).impacts.values
     assert seeds[0] == len(rb.simulate(case).arrays.impacts)
     tooth = case.replaced({"base": rb.Sawtooth(amplitude="50 g", duration="6 ms")})
-    found = rb.sweep(tooth, {"base.duration": ["6 ms", "3 ms"]}, measure=["largest_approach_speed"], progress=False)
+    result = rb.sweep(tooth, {"base.duration": ["6 ms", "3 ms"]}, measure=["largest_approach_speed"], progress=False)
     alone = rb.simulate(tooth).arrays.impacts.approach_speed.max()
-    assert found.largest_approach_speed.values[0] == pytest.approx(alone, rel=1e-9)
+    assert result.largest_approach_speed.values[0] == pytest.approx(alone, rel=1e-9)
 
 
 def test_polylines_are_what_the_core_reads() -> None:

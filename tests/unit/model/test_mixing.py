@@ -1,4 +1,4 @@
-"""Laws of unlike species are mixed from those that each has among its own kind."""
+"""Mixing rules: laws between unlike species from the laws within each species."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import rattlebox as rb
 
 
 def damper(**options: Any) -> rb.ParticleDamper:
-    """Return a damper of hard and soft balls, with laws of their own among themselves."""
+    """Return a damper of hard and soft balls; soft pairs have their own laws."""
     usual: dict[str, Any] = {
         "particles": [
             rb.Particles(name="hard", material="steel", diameter="4 mm", count=3),
@@ -28,9 +28,9 @@ def damper(**options: Any) -> rb.ParticleDamper:
 
 
 def entry(of: rb.ParticleDamper, *names: str) -> Any:
-    """Return how two species meet, or one and the wall."""
-    (found,) = (entry for entry in of.contact_table.entries if entry.names == names)
-    return found
+    """Return the entry of a contact table for two species, or one species and the wall."""
+    (result,) = (entry for entry in of.contact_table.entries if entry.names == names)
+    return result
 
 
 @pytest.mark.parametrize(
@@ -43,28 +43,28 @@ def entry(of: rb.ParticleDamper, *names: str) -> Any:
         ("larger", 0.9, 0.4, 0.02),
     ],
 )
-def test_unlike_species_meet_with_the_mean(rule: Any, e: float, mu: float, rolls: float) -> None:
-    """Each rule is the mean that it is called, for all coefficients; like pairs and walls keep their laws."""
+def test_coefficients_of_unlike_species(rule: Any, e: float, mu: float, rolls: float) -> None:
+    """Each rule computes the mean of its name for all coefficients; like pairs and walls keep their laws."""
     made = damper(mixing=rule)
     between = entry(made, "hard", "soft")
-    found = (between.contact.restitution.e, between.friction.coefficient, between.rolling.coefficient)
-    assert found == pytest.approx((e, mu, rolls), rel=1e-15)
+    result = (between.contact.restitution.e, between.friction.coefficient, between.rolling.coefficient)
+    assert result == pytest.approx((e, mu, rolls), rel=1e-15)
     for species, among in (("hard", 0.9), ("soft", 0.4)):
         assert entry(made, species, species).contact.restitution.e == among
         assert entry(made, species, "wall").contact.restitution.e == 0.9
 
 
-def test_laws_of_a_pair_come_before_the_mean() -> None:
-    """What is told for a pair holds; the rest of its laws is mixed, and without a rule that of all."""
-    told = rb.PairLaws(between=("soft", "hard"), friction=0.7)
+def test_laws_of_a_pair_override_the_mean() -> None:
+    """The laws of a pair override the mixing rule; its other laws are mixed or, without a rule, the common ones."""
+    pair = rb.PairLaws(between=("soft", "hard"), friction=0.7)
     assert entry(damper(), "hard", "soft").contact.restitution.e == 0.9
-    made = damper(mixing="geometric", pairs=[*damper().pairs, told])
+    made = damper(mixing="geometric", pairs=[*damper().pairs, pair])
     assert entry(made, "hard", "soft").friction.coefficient == 0.7
     assert entry(made, "hard", "soft").contact.restitution.e == pytest.approx(0.6)
 
 
-def test_no_friction_counts_as_a_coefficient_of_zero() -> None:
-    """The mean of no friction at all and of a law is that law with the mean coefficient."""
+def test_no_friction_is_a_coefficient_of_zero() -> None:
+    """The mean of no friction and a law is that law with the mean coefficient."""
     own = [rb.PairLaws(between=("soft", "soft"), friction=rb.Mindlin(0.4, damping=0.5))]
     made = damper(friction=None, rolling=None, pairs=own, mixing="arithmetic")
     assert entry(made, "hard", "soft").friction == rb.Mindlin(0.2, damping=0.5)
@@ -72,11 +72,11 @@ def test_no_friction_counts_as_a_coefficient_of_zero() -> None:
 
 
 def test_laws_that_differ_in_more_than_numbers_are_refused() -> None:
-    """A table and a constant have no mean: the message names both species and what to tell instead."""
+    """A table and a constant have no mean: the message names both species and the table of pairs to add."""
     table = rb.Tsuji(restitution=rb.Tabulated(speeds=[0.1, 1.0], values=[0.9, 0.5]))
     pairs = [rb.PairLaws(between=("soft", "soft"), contact=table)]
-    with pytest.raises(rb.CaseError) as told:
+    with pytest.raises(rb.CaseError) as caught:
         damper(mixing="geometric", pairs=pairs)
-    message = str(told.value)
+    message = str(caught.value)
     assert "mixing" in message and "of contact of hard and of soft differ in more than numbers" in message
     assert 'pairs = [{ between = ["hard", "soft"], contact = ... }]' in message

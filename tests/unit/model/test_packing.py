@@ -1,4 +1,4 @@
-"""Initial packings: lattices, given positions, walls and overlaps."""
+"""Initial packings: lattices, given positions, walls, overlaps."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .particle_dampers import CAVITIES, balls, case, damper
 @pytest.mark.parametrize("name", CAVITIES)
 @pytest.mark.parametrize("count", [1, 7, 300])
 def test_lattices_with_noise_do_not_overlap(name: str, count: int) -> None:
-    """Particles on a lattice with all the noise that is allowed are inside and do not overlap, whatever the cavity."""
+    """Particles on a lattice with the largest noise are inside any cavity and do not overlap."""
     radii = np.linspace(1e-3, 2e-3, count)
     positions = rb.Lattice(noise=1.0, seed=3).place(CAVITIES[name], radii)
     check_packing(CAVITIES[name], positions, radii)
@@ -30,7 +30,7 @@ def test_lattices_with_noise_do_not_overlap(name: str, count: int) -> None:
 
 @pytest.mark.parametrize("name", CAVITIES)
 def test_lattices_use_the_whole_cavity(name: str) -> None:
-    """Many particles are spread evenly, at least to within half a cell of the walls: so says their mean square distance."""
+    """The mean square distance of many particles is that of an even spread up to half a cell from the walls."""
     cavity = CAVITIES[name]
     positions = rb.Lattice().place(cavity, np.full(4000, 2e-4))
     anywhere = np.random.default_rng(0).uniform(-0.04, 0.04, (400_000, 3))
@@ -50,7 +50,7 @@ def test_lattices_use_the_whole_cavity(name: str) -> None:
     ],
 )
 def test_particles_lie_along_the_middle_of_a_narrow_round_cavity(cavity: Any, count: int) -> None:
-    """Where two rows side by side would stick out of a round cavity, there is one."""
+    """A lattice in a round cavity too narrow for two rows has one row."""
     radii = np.full(count, 2e-3)
     check_packing(cavity, rb.Lattice().place(cavity, radii), radii)
 
@@ -60,7 +60,7 @@ def test_particles_lie_along_the_middle_of_a_narrow_round_cavity(cavity: Any, co
     [rb.Box(size=(24, 24, 24)), rb.SphericalCavity(radius=24), rb.Box(size=(24, 24, 5e-3)), rb.Box(size=(0.25,) * 3)],
 )
 def test_few_particles_take_little_memory_in_a_wide_cavity(cavity: Any) -> None:
-    """A lattice is as large as its particles are many, not as the cavity is wide, also where it is wide and flat."""
+    """The memory of a lattice scales with the number of particles, not with the cavity, even in a flat one."""
     radii = np.full(20, 5e-4)
     tracemalloc.start()
     positions = rb.Lattice().place(cavity, radii)
@@ -71,14 +71,14 @@ def test_few_particles_take_little_memory_in_a_wide_cavity(cavity: Any) -> None:
 
 
 def test_a_lattice_reaches_close_packing() -> None:
-    """Where a cubic lattice is full, a face-centred one takes over: 60 % of a large box is no problem."""
+    """A face-centred lattice is used if a cubic one is too loose: it fills 60 % of a large box."""
     radii = np.full(round(0.6 / (4 / 3 * math.pi * 0.02**3)), 0.02)
     cavity = rb.Box(size=(1, 1, 1))
     check_packing(cavity, rb.Lattice().place(cavity, radii), radii)
 
 
 def test_overlaps_among_different_sizes() -> None:
-    """Overlaps between large and small, small and small particles are found, at the least distance."""
+    """Overlaps are detected between particles of any sizes, down to 1e-6 of their distance."""
     cavity, generator = rb.Box(size=(1, 1, 1)), np.random.default_rng(1)
     for first, second in [(0.1, 0.001), (0.001, 0.001), (0.1, 0.1)]:
         radii = np.array([first, second, 0.002])
@@ -94,7 +94,7 @@ def test_overlaps_among_different_sizes() -> None:
 
 
 def test_the_extent_of_round_cavities() -> None:
-    """A sphere is as wide as its diameter in any direction, and a can in any across its axis; a box has a diagonal."""
+    """Extents of a sphere, a cylinder and a box along and across their axes are exact."""
     skew, way = np.array([1.0, 1.0, 1.0]) / np.sqrt(3), np.array([1.0, -1.0, 0.0]) / np.sqrt(2)
     sphere = rb.SphericalCavity(diameter="30 mm")
     assert [sphere.extent(d) for d in (skew, way)] == [0.03, 0.03]
@@ -106,7 +106,7 @@ def test_the_extent_of_round_cavities() -> None:
 
 @pytest.mark.parametrize("name", CAVITIES)
 def test_walls_agree_with_the_depth(name: str) -> None:
-    """Along any line from the centre the depth falls, never faster than the line is long; normals have length one."""
+    """Along any line from the centre the depth decreases with a slope of at most one; normals have unit length."""
     cavity = CAVITIES[name]
     directions = np.random.default_rng(2).standard_normal((50, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
@@ -120,7 +120,7 @@ def test_walls_agree_with_the_depth(name: str) -> None:
 
 @pytest.mark.parametrize("head", ["x,y,z,radius,vz\n", ""])
 def test_positions_from_a_file(head: str, tmp_path: Path) -> None:
-    """Columns are found by name, or by their order; a case names the file instead of its numbers."""
+    """Columns are read by name or by order; the TOML of the case has the file, not its numbers."""
     file = tmp_path / "bed.csv"
     extra = "" if head else ",0,0"
     file.write_text(head + f"0,0,0,0.001{extra},2\n0.01,0,0,0.002{extra},3\n", encoding="utf-8")
@@ -136,14 +136,14 @@ def test_positions_from_a_file(head: str, tmp_path: Path) -> None:
 
 
 def test_positions_from_a_file_with_a_suffix_in_capitals(tmp_path: Path) -> None:
-    """Arrays of positions are read from a file whose suffix is written in capitals."""
+    """The suffix of a file of positions may be in capitals."""
     np.save(tmp_path / "bed.npy", np.array([[0, 0, 0, 1e-3], [0.01, 0, 0, 2e-3]]))
     (tmp_path / "bed.npy").rename(tmp_path / "BED.NPY")
     assert rb.Positions.from_file(tmp_path / "BED.NPY").radii == pytest.approx([1e-3, 2e-3])
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("x,y,z\n0,0,0\n0,0,abc\n", r"bed.csv, line 3: 'abc' is not a number"),
         ("x,y,z\n0,0,0\n0,0\n", r"bed.csv, line 3: 2 columns, but 3 in line 2\n  try: the whole file"),
@@ -160,11 +160,11 @@ def test_positions_from_a_file_with_a_suffix_in_capitals(tmp_path: Path) -> None
         ("x,y,z,radius\n0,0,0,-0.001\n", r"file = .*\n  radii must be greater than zero"),
     ],
 )
-def test_bad_rows_of_positions_are_reported(text: str, said: str, tmp_path: Path) -> None:
-    """A file of positions with a bad row is refused with the line, or the particle, and what is wrong with it."""
+def test_bad_rows_of_positions_are_reported(text: str, message: str, tmp_path: Path) -> None:
+    """A file of positions with a bad row is refused with the line or the particle, and the reason."""
     (tmp_path / "bed.csv").write_text(text, encoding="utf-8")
     size = {} if "radius" in text else {"radius": "1 mm"}
-    with pytest.raises(rb.DataError if said.startswith("bed.csv") else rb.CaseError, match=said):
+    with pytest.raises(rb.DataError if message.startswith("bed.csv") else rb.CaseError, match=message):
         damper(
             particles=rb.Particles(material="steel", **size),
             packing=rb.Positions(file=tmp_path / "bed.csv"),
@@ -172,18 +172,18 @@ def test_bad_rows_of_positions_are_reported(text: str, said: str, tmp_path: Path
 
 
 def test_arrays_of_positions_of_different_lengths_are_reported(tmp_path: Path) -> None:
-    """Arrays of x, y and z that do not go together are told with the file, the field and how long each is."""
+    """Arrays of x, y and z of different lengths are refused with the file, the field and the lengths."""
     np.savez(tmp_path / "p.npz", x=[0, 0.006], y=[0, 0], z=[0.0])
     with pytest.raises(rb.DataError) as caught:
         rb.Positions(file=tmp_path / "p.npz")
-    place, said, hint = str(caught.value).splitlines()
+    place, message, hint = str(caught.value).splitlines()
     assert place.startswith("Positions: file = ")
-    assert said == f"  {tmp_path / 'p.npz'} has arrays of different lengths: x 2, y 2, z 1"
+    assert message == f"  {tmp_path / 'p.npz'} has arrays of different lengths: x 2, y 2, z 1"
     assert hint.startswith("  try: a number for each particle")
 
 
 def test_positions_have_units() -> None:
-    """Rows of positions, radii, velocities and spins take quantities, as text and of pint, and plain numbers in SI."""
+    """Positions, radii, velocities and spins accept text with units, pint quantities and plain numbers in SI."""
     quantity = registry().Quantity
     rows = [["1 mm", 0, "-0.2 cm"], [0.01, "0.02", 0]]
     made = rb.Positions(
@@ -200,7 +200,7 @@ def test_positions_have_units() -> None:
 
 
 def test_one_ball_may_fill_most_of_its_cavity() -> None:
-    """What is too dense for many particles inserted at random is not for one alone."""
+    """The limit on the density of random insertion does not apply to a single particle."""
     alone = damper(
         particles=balls(1, diameter="24 mm"), cavity=rb.SphericalCavity(radius="12.5 mm"), packing=rb.Settled()
     )
@@ -208,7 +208,7 @@ def test_one_ball_may_fill_most_of_its_cavity() -> None:
 
 
 def test_the_number_in_the_message_about_a_lattice_is_possible() -> None:
-    """The number that is told where particles do not fit is one that fits, in cavities of any form."""
+    """If particles do not fit, the message gives a number that fits, in any cavity."""
     for cavity in CAVITIES.values():
         with pytest.raises(rb.CaseError, match="do not fit") as caught:
             damper(particles=balls(2000), cavity=cavity)

@@ -40,7 +40,7 @@ from .particle_dampers import CAVITIES, SIZES, STEEL, balls, case, damper
     ],
 )
 def test_a_written_damper_is_read_back_equal(made: rb.ParticleDamper, tmp_path: Path) -> None:
-    """A case with particles equals itself after a trip through a file, and its method is dem without being told."""
+    """A case with particles is equal after a round trip through a file, and its default method is dem."""
     one = case(made)
     one.to_file(tmp_path / "case.toml")
     back = rb.Case.from_file(tmp_path / "case.toml")
@@ -50,10 +50,10 @@ def test_a_written_damper_is_read_back_equal(made: rb.ParticleDamper, tmp_path: 
 
 
 def test_contacts_without_rebound_are_refused() -> None:
-    """Particles whose restitution is zero are told the field, the value, and what particles may have."""
-    with pytest.raises(rb.CaseError) as told:
+    """A restitution of zero is refused for particles with the field, the value and a value to try."""
+    with pytest.raises(rb.CaseError) as caught:
         damper(contact={"kind": "tsuji", "restitution": 0})
-    place, _, hint = str(told.value).splitlines()
+    place, _, hint = str(caught.value).splitlines()
     assert place == "ParticleDamper: contact.restitution = 0"
     assert hint.startswith("  try: restitution = 1e-6, ")
 
@@ -68,13 +68,13 @@ def test_contacts_without_rebound_are_refused() -> None:
     ],
 )
 def test_sizes_of_zero_have_the_same_message(make: Any) -> None:
-    """Numbers that must not be zero are told in the same words everywhere."""
+    """The message for a zero where a positive number is needed is the same in all parts."""
     with pytest.raises(rb.CaseError, match=r"= 0\n  must be greater than zero$"):
         make()
 
 
 def test_softening_does_not_change_restitution() -> None:
-    """Softer moduli lower stiffness, but dashpots and limiting pressure such that yield speed and damping ratio stay."""
+    """Softening lowers the stiffness, but changes neither the yield speed nor the damping ratio."""
     for contact in (rb.Thornton(), rb.Linear(stiffness="1 MN/m", damping="3 N s/m")):
         values = []
         for factor in (1, 100):
@@ -99,7 +99,7 @@ def test_mindlin_stiffness_of_equal_spheres() -> None:
 
 
 def test_pairs_override_the_laws_of_the_damper() -> None:
-    """A pair has the laws that the table gives it; what the table leaves out, and all other pairs, have the common ones."""
+    """The laws of a pair override the common laws; all other pairs have the common laws."""
     made = damper(
         particles=[balls(10), rb.Particles(material="glass", diameter="3 mm", count=5)],
         pairs=[
@@ -109,8 +109,8 @@ def test_pairs_override_the_laws_of_the_damper() -> None:
         wall_friction=0.1,
     )
     table = made.contact_table
-    found = {e.names: (e.friction.coefficient, e.contact.restitution.e) for e in table.entries if e.friction}
-    assert found == {
+    result = {e.names: (e.friction.coefficient, e.contact.restitution.e) for e in table.entries if e.friction}
+    assert result == {
         ("steel", "steel"): (0.3, 0.9),
         ("steel", "glass"): (0.7, 0.9),
         ("glass", "glass"): (0.3, 0.9),
@@ -122,13 +122,13 @@ def test_pairs_override_the_laws_of_the_damper() -> None:
 
 
 def two_kinds(other: str, **laws: Any) -> rb.ParticleDamper:
-    """Return a damper of steel and glass, in which glass and something else have laws of their own."""
+    """Return a damper of steel and glass with special laws between glass and `other`."""
     glass = rb.Particles(material="glass", radius="1 mm", count=1)
     return damper(particles=[balls(), glass], pairs=[rb.PairLaws(between=("glass", other), **laws)])
 
 
 def test_laws_of_another_kind_at_walls() -> None:
-    """Friction and endings at walls may differ from those among particles, and pairs without friction do not matter."""
+    """Walls may have another kind of friction and ending than particles; pairs without friction are not checked."""
     made = damper(
         wall_contact=rb.Tsuji(restitution=0.5, ending="zero_overlap"), wall_friction=rb.LinearSpring(0.2, stiffness=1e5)
     )
@@ -257,28 +257,28 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("complaint", REFUSED)
-def test_invalid_dampers_are_refused(complaint: str) -> None:
+@pytest.mark.parametrize("message", REFUSED)
+def test_invalid_dampers_are_refused(message: str) -> None:
     """Bad input is refused with its reason."""
-    with pytest.raises(rb.CaseError, match=complaint):
-        REFUSED[complaint]()
+    with pytest.raises(rb.CaseError, match=message):
+        REFUSED[message]()
 
 
 def test_the_kind_of_a_damper_follows_from_its_fields() -> None:
-    """A damper with particles is a particle damper, and complaints name the field and what is near it."""
+    """A damper with particles is read as a particle damper; errors name the field and the nearest word."""
     with pytest.raises(rb.CaseError) as caught:
         rb.Case.from_toml(
             'duration = 1\nstructure = { kind = "fixed" }\n[damper]\ngrvity = [0, 0, 0]\n'
             'particles = { material = "steal", diameter = "4 mm", count = 10 }\n'
             'cavity = { kind = "boks", size = [1, 1, 1] }\ncontact = { kind = "tsuji", restitution = 0.9 }\n'
         )
-    for said in (
+    for message in (
         "damper.particles.material = 'steal'",
         "did you mean 'steel'",
         "damper.cavity.kind = 'boks'",
         "'gravity'",
     ):
-        assert said in str(caught.value)
+        assert message in str(caught.value)
 
 
 BEAM = {
@@ -291,7 +291,7 @@ TIP = [[0.0, 1, 0, 0], [0, 0, 1, 0.5], [0.2, 0, 0, 1]]
 
 
 def test_points_of_matrices_in_3d(tmp_path: Path) -> None:
-    """Three rows of weights make a point that moves along x, y and z, in TOML and in files, as do the modes themselves."""
+    """Three rows of weights define a 3-D point of matrices, in Python, TOML and files, with the motion of its modes."""
     matrices = rb.Matrices(**BEAM, points={"tip": TIP}, influence=[[1, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
     values, vectors = scipy.linalg.eigh(BEAM["K"], BEAM["M"])
     frequencies = np.sqrt(values) / (2 * np.pi)

@@ -14,7 +14,7 @@ from .particle_dampers import SIZES, STEEL, balls, damper
 
 @pytest.mark.parametrize("name", SIZES)
 def test_total_mass(name: str) -> None:
-    """A mass is met to within one particle, with sizes between the limits."""
+    """The total mass is exact to within one particle, with sizes between the limits."""
     filled = damper(particles=rb.Particles(material="steel", distribution=SIZES[name], mass="60 g")).contents
     assert filled.mass.sum() == pytest.approx(0.06, abs=filled.mass.max())
     assert filled.mass == pytest.approx(4 / 3 * math.pi * filled.radius**3 * STEEL.density)
@@ -30,14 +30,14 @@ WIDE = {
 
 
 def test_a_sieve_accepts_percent() -> None:
-    """Shares that pass may be given in per cent, as sieve tables are."""
+    """The passing shares of a sieve may be in percent."""
     assert rb.Sieve(sizes=["2 mm", "3 mm", "5 mm"], passing=["0 %", "30 %", "100 %"]) == SIZES["sieve"]
 
 
 @pytest.mark.parametrize("mass", [5e-3, 50e-3, 0.4])
 @pytest.mark.parametrize("name", WIDE)
 def test_the_mass_of_wide_distributions(name: str, mass: float) -> None:
-    """With one particle more or less the mass would be further from what is asked for, and a fill ratio is the same."""
+    """The number of particles is the one with the mass closest to the requested mass or fill ratio."""
     kind = rb.Particles(material="steel", distribution=WIDE[name], mass=mass)
     number = kind.number(1.0)
     filled = [STEEL.density * math.pi / 6 * np.sum(kind.diameters(number + more) ** 3) for more in (-1, 0, 1)]
@@ -47,13 +47,13 @@ def test_the_mass_of_wide_distributions(name: str, mass: float) -> None:
 
 
 def test_sieve_shares_are_shares_of_mass() -> None:
-    """Of a sieve table, the share of the mass below each mesh is what passes."""
+    """The mass share of the particles below a mesh is the passing share of the sieve table."""
     diameters = SIZES["sieve"].diameters((np.arange(100_000) + 0.5) / 100_000)
     assert np.sum(diameters[diameters < 3e-3] ** 3) / np.sum(diameters**3) == pytest.approx(0.3, abs=1e-3)
 
 
 def test_normal_sizes_have_their_mean_and_deviation() -> None:
-    """A normal distribution that is hardly cut off has its mean and deviation, a log-normal one its median and spread."""
+    """Distributions with wide limits have their mean and deviation, or median and geometric deviation."""
     share = (np.arange(100_000) + 0.5) / 100_000
     normal = rb.NormalSizes(mean=1e-2, deviation=1e-3, smallest=1e-3, largest=2e-2).diameters(share)
     assert (normal.mean(), normal.std()) == (pytest.approx(1e-2), pytest.approx(1e-3, rel=1e-3))
@@ -70,7 +70,7 @@ def test_fill_ratio() -> None:
 
 
 def test_the_label_of_a_material_without_a_name() -> None:
-    """What limits the step of particles whose material has no name is a contact of particles."""
+    """The label of particles is their name or, if their material has no name, 'particles'."""
     stuff = rb.Material(density=2500, young=5e7, poisson=0.25)
     assert rb.Particles(material=stuff, radius="1 mm", count=1).label == "particles"
     assert rb.Particles(name="shot", material=stuff, radius="1 mm", count=1).label == "shot"
@@ -78,7 +78,7 @@ def test_the_label_of_a_material_without_a_name() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 7])
 def test_sizes_of_a_symmetric_distribution_are_symmetric(count: int) -> None:
-    """Few particles of a distribution that is even about its mean lie even about it: at the middles of equal shares."""
+    """The sizes of few particles from a symmetric distribution are symmetric: the middles of equal shares."""
     sizes = rb.NormalSizes(mean="4 mm", deviation="0.5 mm", smallest="2 mm", largest="6 mm")
     diameters = rb.Particles(material="steel", distribution=sizes, count=count).diameters(count)
     assert np.all(np.diff(diameters) > 0)

@@ -36,12 +36,12 @@ BALL = rb.Sphere(radius="5 mm", material="steel")
     ],
 )
 def test_ways_to_write_a_quantity(mass: object) -> None:
-    """Numbers, texts, pairs and pint quantities of the same mass are the same mass."""
+    """Numbers, text, pairs and pint quantities of the same mass are equal."""
     assert rb.SDOF(mass=mass, stiffness=0.0).mass == 20.0
 
 
 def kinds_of(part: type[Part]) -> set[type[Part]]:
-    """Return the parts of a case that a user may write."""
+    """Return the parts that a case file may have."""
     own = {part} if part.__module__.startswith("rattlebox.") and "kind" not in required(part) else set()
     return own.union(*map(kinds_of, part.__subclasses__()))
 
@@ -55,8 +55,8 @@ NEEDED = [(part, name) for part in sorted({rb.Case, *kinds_of(Part)}, key=str) f
 
 
 @pytest.mark.parametrize(("part", "name"), NEEDED)
-def test_a_field_that_is_needed_is_told_with_an_example_that_is_taken(part: type[Part], name: str) -> None:
-    """What the message says to try is TOML, and a value of that field."""
+def test_the_message_for_a_missing_field_has_a_valid_example(part: type[Part], name: str) -> None:
+    """The advice for a missing field is TOML with a valid value of that field."""
     finding = {"type": "missing", "loc": (name,), "input": {}}
     error = ValidationError.from_exception_data(part.__name__, [finding])
     *_, advice = str(translate(error, part.__name__, vocabulary())).partition("try: ")
@@ -70,10 +70,10 @@ def test_a_field_that_is_needed_is_told_with_an_example_that_is_taken(part: type
         part.model_validate(given)
     except ValidationError as refused:
         wrong += refused.errors()
-    assert [found for found in wrong if found["loc"][:1] == (name,)] == []
+    assert [result for result in wrong if result["loc"][:1] == (name,)] == []
 
 
-def test_units_that_only_pint_knows() -> None:
+def test_units_that_pint_converts() -> None:
     """Inches, pounds of force and revolutions per minute are converted."""
     assert rb.Sphere(diameter="1 inch", material="steel").radius == pytest.approx(0.0127, rel=1e-14)
     assert rb.HalfSine(amplitude="1 lbf", duration=1.0).amplitude == pytest.approx(4.4482216152605, rel=1e-14)
@@ -94,14 +94,14 @@ def test_units_that_only_pint_knows() -> None:
     ],
 )
 @pytest.mark.parametrize("value", [True, np.False_])
-def test_true_and_false_are_no_numbers(part: Any, name: str, value: Any) -> None:
-    """True is not read as 1, nor False as 0, where a plain number or a count is asked for."""
+def test_true_and_false_are_refused_as_numbers(part: Any, name: str, value: Any) -> None:
+    """True and False are not accepted as 1 and 0 in fields of numbers."""
     with pytest.raises(rb.CaseError, match=f": {name} = .*\n  a number"):
         part(value)
 
 
-def test_percentages_are_no_angles() -> None:
-    """A ratio with a unit of its own is not read as radians; angles and plain ratios are."""
+def test_percentages_are_refused_as_angles() -> None:
+    """A percentage is refused as an angle; angles with units and plain numbers are accepted."""
     registry = pint.UnitRegistry()
     for phase in ("50 %", registry.Quantity(50, "percent"), "3 ppm"):
         with pytest.raises(rb.CaseError, match=r"an angle .* is needed, not a ratio"):
@@ -110,8 +110,8 @@ def test_percentages_are_no_angles() -> None:
         assert rb.Harmonic(amplitude=1.0, frequency=1.0, phase=phase).phase == pytest.approx(math.pi / 2, rel=1e-15)
 
 
-def test_percentages_are_parts_of_one() -> None:
-    """A plain number may be given in percent, with the same bits as its part of one."""
+def test_percentages_of_plain_numbers() -> None:
+    """A plain number may be given in percent, with the same bits as the fraction."""
     assert rb.Particles(material="steel", radius=0.001, fill_ratio="36%").fill_ratio == 0.36
     assert rb.SDOF(mass=1.0, stiffness=1.0, damping_ratio="1 %").damping_ratio == 0.01
     assert rb.Mindlin("30 %").coefficient == 0.3
@@ -123,15 +123,15 @@ def test_percentages_are_parts_of_one() -> None:
         rb.Tsuji(restitution="120 %")
 
 
-def test_none_is_told_with_its_name() -> None:
-    """None where a number is needed is refused with the name of the field."""
+def test_none_is_refused_with_its_field() -> None:
+    """None in a field of a number is refused with the name of the field."""
     for part in (lambda: rb.Mindlin(None), lambda: rb.TwoStep(dt_flight=None)):
         with pytest.raises(rb.CaseError, match=r": (coefficient|dt_flight) = None\n"):
             part()
 
 
-def test_import_leaves_the_heavy_parts_alone() -> None:
-    """Importing rattlebox and building a case in plain and common units loads none of the heavy libraries."""
+def test_import_loads_no_heavy_libraries() -> None:
+    """Importing rattlebox and building a case with common units loads none of the heavy libraries."""
     heavy = [
         "pint",
         "xarray",
@@ -155,7 +155,7 @@ def test_import_leaves_the_heavy_parts_alone() -> None:
 
 
 def test_modes_of_one_degree_of_freedom() -> None:
-    """One degree of freedom becomes one mode of its own frequency, decay, mass and start."""
+    """One degree of freedom has one mode with its stiffness, decay, mass and initial state."""
     modes = rb.SDOF(mass=4.0, stiffness=36.0, damping=2.0, displacement=0.5, velocity=-1.0).modes()
     assert modes.stiffness == pytest.approx([9.0])
     assert modes.decay == pytest.approx([0.25])
@@ -165,14 +165,14 @@ def test_modes_of_one_degree_of_freedom() -> None:
 
 
 def test_damping_ratio_and_coefficient_agree() -> None:
-    """A damping ratio decays as its coefficient 2 zeta sqrt(K M) does."""
+    """A damping ratio zeta and the coefficient 2 zeta sqrt(K M) have the same decay."""
     ratio = rb.SDOF(mass=4.0, stiffness=36.0, damping_ratio=0.1).modes()
     coefficient = rb.SDOF(mass=4.0, stiffness=36.0, damping=2.4).modes()
     assert ratio.decay == pytest.approx(coefficient.decay, rel=1e-14)
 
 
 def test_matrices_reduce_to_modes() -> None:
-    """A free chain of three masses with Rayleigh damping: one rigid-body mode, exact frequencies, decay and inertia."""
+    """A free chain of three masses with Rayleigh damping has exact frequencies, decay and inertia."""
     K = 100.0 * np.array([[1, -1, 0], [-1, 2, -1], [0, -1, 1]])
     M = 2.0 * np.eye(3)
     modes = rb.Matrices(M=M, C=0.1 * M + 0.002 * K, K=K, points={"end": 2, "mean": [1 / 3] * 3}).modes()
@@ -185,7 +185,7 @@ def test_matrices_reduce_to_modes() -> None:
 
 
 def test_damping_of_a_repeated_frequency() -> None:
-    """Two equal frequencies whose damping is coupled only among themselves count as proportional."""
+    """Damping that couples only modes of equal frequency is treated as proportional."""
     modes = rb.Matrices(
         M=np.eye(2), C=[[0.3, 0.1], [0.1, 0.3]], K=4.0 * np.eye(2), points={"first": 0, "second": 1}
     ).modes()
@@ -193,7 +193,7 @@ def test_damping_of_a_repeated_frequency() -> None:
 
 
 def test_start_of_matrices() -> None:
-    """Initial displacements and velocities of the degrees of freedom come back from the modes."""
+    """The modes reproduce the initial displacements and velocities of the degrees of freedom."""
     modes = rb.Matrices(
         M=np.diag([1.0, 3.0]),
         C=np.zeros((2, 2)),
@@ -207,7 +207,7 @@ def test_start_of_matrices() -> None:
 
 
 def test_motion_of_a_shaker_becomes_acceleration() -> None:
-    """A harmonic displacement accelerates the base by -omega^2 times itself."""
+    """The acceleration of a harmonic displacement is -omega^2 times the displacement."""
     motion = rb.Harmonic(amplitude="2 mm", frequency="10 Hz", phase=0.3)
     case = rb.Case(structure=rb.Shaker(motion=motion), duration=1.0)
     (acceleration,) = case.base_acceleration()
@@ -217,7 +217,7 @@ def test_motion_of_a_shaker_becomes_acceleration() -> None:
 
 
 def test_values_of_signals() -> None:
-    """Pulse, harmonic and record have their values inside their time and none outside."""
+    """Pulse, harmonic and record have their values within their time span and zero outside."""
     t = np.array([-0.5, 0.0, 0.5, 1.0, 2.0])
     np.testing.assert_allclose(rb.HalfSine(amplitude=3.0, duration=1.0).evaluate(t), [0, 0, 3, 0, 0], atol=1e-15)
     np.testing.assert_allclose(
@@ -231,7 +231,7 @@ def test_values_of_signals() -> None:
 
 
 def test_random_record_has_its_density() -> None:
-    """The mean square of a random record is the integral of its density, it covers the run, and its seed fixes it."""
+    """The mean square of a random record is the integral of its density; the seed fixes the record."""
     make = [rb.Random([(10.0, 2e-3), (100.0, 2e-3)], 100.0, 500.0, seed=s) for s in (1, 1, 2)]
     values = np.array(make[0].values)
     assert make[0] == make[1]
@@ -242,14 +242,14 @@ def test_random_record_has_its_density() -> None:
 
 @pytest.mark.parametrize(("duration", "rate"), [(0.333, 1000), (0.3, 1000), (0.07, 1000), (0.29, 1000), (1 / 3, 3000)])
 def test_random_record_covers_its_duration(duration: float, rate: float) -> None:
-    """A random record lasts to its duration or to the first point after it, whatever rounding makes of their number."""
+    """A random record ends at its duration or at the first sample after it, whatever the rounding."""
     record = rb.Random([(10.0, 1.0), (50.0, 1.0)], duration, rate)
     assert len(record.times) == 1 + math.ceil(round(duration * rate, 9))
     rb.Case(structure=rb.SDOF(mass=1.0, stiffness=1.0), load=record, duration=duration)
 
 
 def test_random_vibration_takes_units() -> None:
-    """Random vibration is the same from quantities with units and from numbers in SI."""
+    """Random accepts quantities with units and numbers in SI."""
     psd = [(10.0, 1.0), (50.0, 1.0)]
     assert rb.Random(psd, "500 ms", "1 kHz") == rb.Random(psd, 0.5, 1000.0)
 
@@ -272,7 +272,7 @@ BOX = rb.ParticleDamper(
     ],
 )
 def test_a_record_may_miss_the_ends_by_rounding(parts: dict[str, Any], late: float) -> None:
-    """A record whose added up times end just before the run, or begin just after 0, drives it as one that covers it."""
+    """A record whose accumulated times miss the start or the end of the run by rounding is accepted."""
     times = np.cumsum([late] + [0.1] * 10)
     assert times[-1] < 1.0
     first, second = (
@@ -293,16 +293,16 @@ def test_a_record_may_miss_the_ends_by_rounding(parts: dict[str, Any], late: flo
 
 
 @pytest.mark.parametrize(
-    ("times", "said"),
+    ("times", "message"),
     [
         ([0.0, 0.5], r"covers 0 s to 0.5 s, the run 0 to 1 s\n  try: duration = \"0.5 s\", or a longer record"),
         ([0.5, 2.0], r"covers 0.5 s to 2 s, the run 0 to 1 s\n  try: a record that begins at 0 s"),
         ([0.0, 1 - 1e-8], r"covers 0 s to 0.99999999 s, the run 0 to 1 s"),
     ],
 )
-def test_a_record_that_misses_a_part_of_the_run(times: list[float], said: str) -> None:
-    """A record that ends early is refused with a duration that it covers, one that begins late with that."""
-    with pytest.raises(rb.CaseError, match=said):
+def test_a_record_that_misses_a_part_of_the_run(times: list[float], message: str) -> None:
+    """A record that does not cover the run is refused with its span and advice."""
+    with pytest.raises(rb.CaseError, match=message):
         rb.Case(
             structure=rb.SDOF(mass=1.0, stiffness=1.0), load=rb.Record(times=times, values=[0.0, 1.0]), duration=1.0
         )
@@ -310,7 +310,7 @@ def test_a_record_that_misses_a_part_of_the_run(times: list[float], said: str) -
 
 @pytest.mark.parametrize("name", ["push.csv", "push.npy", "push.mat"])
 def test_record_files(tmp_path: Path, name: str) -> None:
-    """A record read from CSV, NPY or MAT holds the numbers that were written."""
+    """Records are read from CSV, NPY and MAT files."""
     from scipy.io import savemat
 
     table = np.array([[0.0, 1.0], [0.5, 1 / 3], [2.0, -4.0]])
@@ -327,7 +327,7 @@ def test_record_files(tmp_path: Path, name: str) -> None:
 
 
 def test_row_of_balls() -> None:
-    """Centres of a packed row touch each other and are centred; clearance and masses follow."""
+    """The balls of a packed row touch and are centred; clearance and masses are exact."""
     balls = [rb.Sphere(radius=r, material="steel") for r in (1e-3, 2e-3, 3e-3)]
     damper = rb.ImpactDamper(balls=balls, cavity_length="14 mm", start=[-1, 0, 0.5], contact=rb.Tsuji(restitution=0.9))
     np.testing.assert_allclose(damper.centres, [-5e-3, -2e-3, 3e-3], rtol=1e-12)
@@ -337,7 +337,7 @@ def test_row_of_balls() -> None:
 
 
 def test_pairs_of_a_row() -> None:
-    """A row has one contact more than balls, in order, with the effective mass and radius of each."""
+    """A row of n balls has n + 1 contacts in order, each with its effective mass, radius and modulus."""
     case = rb.Case(
         structure=rb.SDOF(mass=2.0, stiffness=1.0),
         damper=rb.ImpactDamper(
@@ -358,7 +358,7 @@ def test_pairs_of_a_row() -> None:
 
 
 def test_every_material_is_physical_and_has_a_source() -> None:
-    """The library holds the promised materials, each with a source, brittle ones without a yield stress."""
+    """The library has the documented materials, each with a source; brittle materials have no yield stress."""
     library = rb.materials()
     assert {"steel", "stainless_steel", "tungsten_carbide", "lead", "brass", "aluminium"} <= set(library)
     assert {"glass", "alumina", "pmma", "nylon"} <= set(library)
@@ -370,14 +370,14 @@ def test_every_material_is_physical_and_has_a_source() -> None:
 
 
 def test_library_agrees_with_its_sources() -> None:
-    """Lead and alumina have the numbers that the tables named as their sources print."""
+    """The values of lead and alumina are those of the tables named as their sources."""
     lead, alumina = rb.materials()["lead"], rb.materials()["alumina"]
     assert (lead.density, lead.young, lead.poisson, lead.yield_stress) == (11340.0, 13.5e9, 0.44, 7e6)
     assert (alumina.density, alumina.young, alumina.poisson) == (3984.0, 416e9, 0.231)
 
 
-def test_a_ball_that_was_weighed_and_timed() -> None:
-    """A coated ball described by its weight and the time of one contact has them: no modulus of its material enters."""
+def test_a_ball_with_measured_mass_and_contact_time() -> None:
+    """A ball with a given mass and contact time has them whatever the modulus of its material."""
     for material in ("steel", "nylon"):
         ball = rb.Sphere(diameter="24 mm", material=material, mass="36 g")
         damper = rb.ImpactDamper(
@@ -392,8 +392,8 @@ def test_a_ball_that_was_weighed_and_timed() -> None:
         assert impact.separation_speed[0] / impact.approach_speed[0] == pytest.approx(0.45, rel=1e-9)
 
 
-def test_parts_do_not_change() -> None:
-    """A part of a case cannot be assigned to, nor copied with a field that there is not; the message tells another way."""
+def test_parts_are_immutable() -> None:
+    """Fields of a part cannot be assigned, and a copy with an unknown field is refused; both messages give advice."""
     with pytest.raises(rb.CaseError, match=r"^radius: a Sphere .*\n  try: .*case\.replaced"):
         BALL.radius = 1.0  # type: ignore[misc]
     with pytest.raises(rb.CaseError, match=r"Case has no field 'damper'\n  try: did you mean 'dampers'"):
@@ -401,7 +401,7 @@ def test_parts_do_not_change() -> None:
 
 
 def test_a_case_with_other_values_is_another_case() -> None:
-    """Values are put in by path, as they are written; the case itself stays, and what does not fit is refused."""
+    """`Case.replaced` sets values by path in a copy; the original does not change, and invalid values are refused."""
     damper = rb.ImpactDamper(ball=BALL, gap="1 mm", contact=rb.Tsuji(restitution=0.9))
     case = rb.Case(structure=rb.SDOF(mass=1, stiffness=4e3, damping=1), damper=damper, duration=1)
     other = case.replaced({"damper.gap": "2 mm", "duration": "2 s", "structure.damping_ratio": "1 %"})
@@ -411,19 +411,19 @@ def test_a_case_with_other_values_is_another_case() -> None:
         case.replaced({"damper.gap": "2 kg"})
 
 
-def test_a_changed_copy_forgets_what_was_computed() -> None:
-    """The modes of a copy with another structure are those of that structure; the original keeps its own."""
+def test_a_copy_recomputes_its_modes() -> None:
+    """A copy with another structure has the modes of that structure; the original has its own."""
     case = rb.Case(structure=rb.SDOF(mass=1.0, stiffness=4.0), duration=1.0)
     copy = case.model_copy(update={"structure": rb.SDOF(mass=1.0, stiffness=9.0)})
     assert (case.modes.stiffness, copy.modes.stiffness, case.model_copy().modes.stiffness) == (4.0, 9.0, 4.0)
 
 
 @pytest.mark.parametrize("seed", [-1, 2**63, 99999999999999999999])
-def test_seeds_that_no_file_holds_are_refused(seed: int) -> None:
-    """A seed that the file of a run cannot hold is refused before the run; the largest that it holds is not."""
+def test_seeds_beyond_64_bits_are_refused(seed: int) -> None:
+    """A seed outside the range of a 64-bit signed integer is refused; the largest one is accepted."""
     options = {"structure": rb.SDOF(mass=1, stiffness=1), "duration": 1}
     assert rb.Case(**options, seed=2**63 - 1).seed == 2**63 - 1
-    with pytest.raises(rb.CaseError) as told:
+    with pytest.raises(rb.CaseError) as caught:
         rb.Case(**options, seed=seed)
     limit = "must be at least 0" if seed < 0 else "must be at most 9.22337e+18"
-    assert str(told.value).splitlines() == [f"Case: seed = {seed}", f"  {limit}"]
+    assert str(caught.value).splitlines() == [f"Case: seed = {seed}", f"  {limit}"]

@@ -70,9 +70,9 @@ def test_friction_in_per_cent_is_noted(friction, count):
         softening=1000,
     )
     run = rb.simulate(rb.Case(structure=rb.Fixed(), damper=grains, duration="1 ms"))
-    found = [note for note in run.notes if "friction" in note]
-    assert len(found) == count
-    assert all(note.startswith("warning:") and "damper is 40;" in note and "40 % is 0.4" in note for note in found)
+    result = [note for note in run.notes if "friction" in note]
+    assert len(result) == count
+    assert all(note.startswith("warning:") and "damper is 40;" in note and "40 % is 0.4" in note for note in result)
 
 
 def test_notes_of_impacts_are_kept_and_shown(tmp_path):
@@ -87,9 +87,9 @@ def test_notes_of_impacts_are_kept_and_shown(tmp_path):
 @pytest.mark.parametrize(("ratio", "noted"), [(0.02, 0), ("2 %", 0), (0.49, 0), (0.5, 1), (1, 1), (2, 1)])
 def test_overdamped_structures_are_noted(ratio, noted):
     """A damping ratio of 1, meant as 1 %, is noted; usual ones, and a free body with a dashpot, are not."""
-    found = notes(rb.SDOF(mass=20, stiffness=8e4, damping_ratio=ratio))
-    assert len(found) == noted
-    assert all("2 % is 0.02" in note and f"{ratio:g}" in note for note in found)
+    result = notes(rb.SDOF(mass=20, stiffness=8e4, damping_ratio=ratio))
+    assert len(result) == noted
+    assert all("2 % is 0.02" in note and f"{ratio:g}" in note for note in result)
     assert notes(rb.SDOF(mass=20, stiffness=0, damping=10)) == ()
 
 
@@ -109,9 +109,9 @@ def test_few_samples_in_a_period_are_noted(rate, count):
     """A run warns of a chosen rate of less than four samples in a period of the fastest load or the lowest mode."""
     load = rb.Harmonic(amplitude="1 N", frequency="50 Hz")
     case = rb.Case(structure=rb.SDOF(mass=20, stiffness=8e4), load=load, duration=1, output=rb.Output(rate=rate))
-    found = plausibility_notes(case)
-    assert len(found) == count
-    assert all("output.rate is 199 Hz, 3.98 samples in a period of load, at 50 Hz," in note for note in found)
+    result = plausibility_notes(case)
+    assert len(result) == count
+    assert all("output.rate is 199 Hz, 3.98 samples in a period of load, at 50 Hz," in note for note in result)
     slow = rb.Case(structure=rb.SDOF(mass=20, stiffness=8e4), duration=1, output=rb.Output(rate=40))
     (note,) = plausibility_notes(slow)
     assert "the structure's lowest mode, at 10.07 Hz," in note
@@ -136,9 +136,9 @@ def test_absurd_materials_are_noted(young, density, words):
     )
     for each in (damper, grains):
         case = rb.Case(structure=rb.Fixed(), damper=each, duration=1)
-        found = plausibility_notes(case)
-        assert len(found) == bool(words)
-        assert all(word in note for note in found for word in ("warning: ", "damper", *words))
+        result = plausibility_notes(case)
+        assert len(result) == bool(words)
+        assert all(word in note for note in result for word in ("warning: ", "damper", *words))
 
 
 def grains(**changes):
@@ -159,12 +159,12 @@ def of(damper, **changes):
 
 def test_a_base_across_the_structure_is_noted():
     """A base that moves at right angles to the only direction of the structure is noted; one along it, or askew, is not."""
-    found = {
+    result = {
         direction: of(grains(), base=rb.Harmonic(amplitude=1, frequency=16, direction=direction))
         for direction in ("x", (1, 0, 1), "z")
     }
-    assert found["x"] == found[(1, 0, 1)] == of(grains(), base=rb.Harmonic(amplitude=1, frequency=16)) == ()
-    (note,) = found["z"]
+    assert result["x"] == result[(1, 0, 1)] == of(grains(), base=rb.Harmonic(amplitude=1, frequency=16)) == ()
+    (note,) = result["z"]
     assert note.startswith("warning: base moves along z") and "along x, the direction of damper" in note
     assert of(grains(direction="z"), base=rb.Harmonic(amplitude=1, frequency=16, direction="z")) == ()
 
@@ -178,6 +178,8 @@ def test_a_cavity_in_metres_is_noted():
 def test_a_record_in_milliseconds_is_noted():
     """A record that is more than a hundred times as long as the run is noted, a shorter one is not."""
     for length, count in ((0.2, 0), (10.0, 0), (600.0, 1)):
-        found = of(grains(), load=rb.Record(times=[0, length], values=[0, 1], unit="N"))
-        assert len(found) == count
-    assert found[0].startswith("warning: load is a record of 600 s") and "0.1 s" in found[0] and "seconds" in found[0]
+        result = of(grains(), load=rb.Record(times=[0, length], values=[0, 1], unit="N"))
+        assert len(result) == count
+    assert (
+        result[0].startswith("warning: load is a record of 600 s") and "0.1 s" in result[0] and "seconds" in result[0]
+    )

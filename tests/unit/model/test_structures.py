@@ -78,7 +78,7 @@ def test_beams_are_those_of_finite_elements(ends: str, mu: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("ends", "known"),
+    ("ends", "expected"),
     [
         ("clamped-free", [1.87510406871196, 4.69409113297417, 7.85475743823761]),
         ("clamped-clamped", [4.73004074486270, 7.85320462409584, 10.9956078380017]),
@@ -88,12 +88,12 @@ def test_beams_are_those_of_finite_elements(ends: str, mu: float) -> None:
         ("pinned-pinned", [math.pi, 2 * math.pi, 3 * math.pi]),
     ],
 )
-def test_wave_numbers_of_handbooks(ends: Any, known: list[float]) -> None:
+def test_wave_numbers_of_handbooks(ends: Any, expected: list[float]) -> None:
     """Beta L of the first modes are those of tables, and those of high modes are the asymptotic ones."""
-    found = wave_numbers(ends, 100)
-    np.testing.assert_allclose(found[:3], known, rtol=1e-13)
+    result = wave_numbers(ends, 100)
+    np.testing.assert_allclose(result[:3], expected, rtol=1e-13)
     phase = {"clamped-free": -0.5, "clamped-clamped": 0.5, "free-free": 0.5, "pinned-pinned": 0.0}.get(ends, 0.25)
-    np.testing.assert_allclose(found[20:], (np.arange(21, 101) + phase) * math.pi, rtol=1e-14)
+    np.testing.assert_allclose(result[20:], (np.arange(21, 101) + phase) * math.pi, rtol=1e-14)
 
 
 def test_a_heavy_tip_mass_is_a_mass_on_a_spring() -> None:
@@ -150,9 +150,9 @@ def test_stubby_beams_are_warned_of() -> None:
     slender = {"length": "1 m", "ends": "pinned-pinned", "material": "steel", "width": "20 mm", "height": "20 mm"}
     assert not list(rb.Beam(**slender, mode_count=4).warnings())
     stubby = rb.Beam(**slender | {"height": "100 mm"}, mode_count=4)
-    (said,) = stubby.warnings()
+    (message,) = stubby.warnings()
     case = rb.Case(structure=stubby, duration=1.0)
-    assert any(said in note for note in plausibility_notes(case))
+    assert any(message in note for note in plausibility_notes(case))
     # Timoshenko's pinned beam: exact frequencies of the first mode that is warned of
     steel, k = rb.materials()["steel"], 3 * math.pi
     kappa = 10 * (1 + steel.poisson) / (12 + 11 * steel.poisson)
@@ -165,7 +165,7 @@ def test_stubby_beams_are_warned_of() -> None:
     squared = (-b - math.sqrt(b * b - 4 * a * c)) / (2 * a)
     lower = 1 - math.sqrt(squared) / (2 * math.pi) / stubby.frequencies[2]
     assert lower == pytest.approx(0.13, abs=0.03)
-    assert "mode 2" in said or "mode 3" in said
+    assert "mode 2" in message or "mode 3" in message
 
 
 def test_plates_have_the_modes_of_kirchhoff() -> None:
@@ -192,9 +192,9 @@ def test_plates_have_the_modes_of_kirchhoff() -> None:
     # All modes with up to 11 half waves along each edge: each edge takes (8 / pi^2) (1 + 1/9 + ... + 1/121) of the mass.
     along = 8 / math.pi**2 * np.sum(1 / np.arange(1.0, 12.0, 2) ** 2)
     square = rb.Plate(length=1.0, width=1.0, bending_stiffness=1.0, mass_per_area=6.0, mode_count=120)
-    kept = np.max(square.half_waves, axis=1) <= 11
-    assert kept.sum() == pytest.approx(121, abs=25)
-    assert np.sum(square.modes().participation[kept] ** 2) == pytest.approx(6 * along**2, rel=2e-3)
+    low = np.max(square.half_waves, axis=1) <= 11
+    assert low.sum() == pytest.approx(121, abs=25)
+    assert np.sum(square.modes().participation[low] ** 2) == pytest.approx(6 * along**2, rel=2e-3)
 
 
 @pytest.mark.parametrize("n", [1, 2, 5, 40])
@@ -309,9 +309,9 @@ def test_structures_in_sweeps() -> None:
         structure=beam, load=rb.HalfSine(amplitude="500 N", duration="1 ms", point="tip"), damper=ball, duration="10 ms"
     )
     axes = {"structure.length": ["0.2 m", "0.3 m"], "structure.tip_mass": ["0 g", "50 g"]}
-    found = rb.sweep(case, axes, measure=["largest_approach_speed"], progress=False)
+    result = rb.sweep(case, axes, measure=["largest_approach_speed"], progress=False)
     alone = rb.simulate(case.replaced({"structure.length": "0.2 m", "structure.tip_mass": "50 g"}))
-    speeds = found.largest_approach_speed
+    speeds = result.largest_approach_speed
     assert speeds.dims == tuple(axes)
     assert speeds.values[0, 1] == pytest.approx(alone.arrays.impacts.approach_speed.max(), rel=1e-9)
     assert len(np.unique(speeds.values)) == 4
@@ -328,7 +328,7 @@ def test_structures_in_sweeps() -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "message"),
     [
         (lambda: rb.Beam(length=1.0), "material and a cross-section"),
         (lambda: rb.Beam(length=1.0, material="steel"), "diameter or height is needed"),
@@ -351,7 +351,7 @@ def test_structures_in_sweeps() -> None:
         (lambda: rb.Beam(length=1.0, material="steel", diameter=0.1, damping_ratio=[0.1]), "1 number, but 4 modes"),
     ],
 )
-def test_what_is_refused(make: Any, said: str) -> None:
+def test_what_is_refused(make: Any, message: str) -> None:
     """Structures that do not fit together are refused with the reason."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         make()

@@ -119,7 +119,7 @@ def test_units_of_densities(given: dict[str, Any], factor: float, unit: str | No
 
 
 @pytest.mark.parametrize(
-    ("psd", "options", "said"),
+    ("psd", "options", "message"),
     [
         ([(10, 1), (20, 1)], {"unit": "furlong"}, r"unit = 'furlong'\n  'furlong' is not a unit"),
         (
@@ -141,9 +141,9 @@ def test_units_of_densities(given: dict[str, Any], factor: float, unit: str | No
         ("psd.csv", {}, "unknown name of a density"),
     ],
 )
-def test_wrong_units_of_densities(psd: Any, options: dict[str, Any], said: str) -> None:
+def test_wrong_units_of_densities(psd: Any, options: dict[str, Any], message: str) -> None:
     """Units that are none of a density, or contradict each other, are refused with what to write."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         rb.Random(psd, 1.0, **options)
 
 

@@ -265,8 +265,8 @@ def test_the_command_draws_what_is_in_a_folder(
     assert Path("a.gif").read_bytes().startswith(b"GIF89a")
     Path("bare").mkdir()
     Path("bare/run.nc").write_bytes((folder / "run.nc").read_bytes())
-    said = "error: bare/run.vtkhdf does not exist\n  try: output.snapshots in the case\n"
-    assert answer(monkeypatch, capsys, "bare", "-o", "b.gif") == (2, "", said)
+    message = "error: bare/run.vtkhdf does not exist\n  try: output.snapshots in the case\n"
+    assert answer(monkeypatch, capsys, "bare", "-o", "b.gif") == (2, "", message)
 
 
 @pytest.mark.parametrize("name", ["film.gif", "film.mp4"])
@@ -299,7 +299,7 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (["run.nc", "-o", "a.gif"], "a film needs the snapshots in run.vtkhdf\n  try: run.vtkhdf"),
         (["run.nc", "--number", "1"], "--number 1: run.nc has no snapshots\n  try: run.vtkhdf"),
@@ -333,13 +333,13 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
     ],
 )
 def test_wrong_arguments_are_told(
-    options: list[str], said: str, run: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    options: list[str], message: str, run: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """What does not fit is told with what does."""
     monkeypatch.chdir(run[1].parent)
-    code, _, told = answer(monkeypatch, capsys, *options)
+    code, _, error = answer(monkeypatch, capsys, *options)
     assert code == 2
-    assert said in told
+    assert message in error
 
 
 def test_films_without_the_extra_are_told(
@@ -347,8 +347,8 @@ def test_films_without_the_extra_are_told(
 ) -> None:
     """Without imageio-ffmpeg the command says how to get it, and what works without."""
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    code, _, told = answer(monkeypatch, capsys, run[1], "-o", tmp_path / "a.mp4")
-    assert (code, told) == (
+    code, _, error = answer(monkeypatch, capsys, run[1], "-o", tmp_path / "a.mp4")
+    assert (code, error) == (
         2,
         "error: imageio_ffmpeg is required and not installed\n"
         "  try: python -m pip install 'rattlebox[3d]', or a name that ends in .gif\n",
@@ -376,6 +376,6 @@ def test_the_command_tells_of_damaged_files(
     content = run[1].read_bytes()
     for name, size in (("run.nc", None), ("torn.nc", 5000), ("torn.vtkhdf", 5000)):
         (tmp_path / name).write_bytes(content[:size])
-        code, _, told = answer(monkeypatch, capsys, tmp_path / name, "-o", tmp_path / "a.png")
+        code, _, error = answer(monkeypatch, capsys, tmp_path / name, "-o", tmp_path / "a.png")
         assert code == 2
-        assert told.startswith(f"error: {tmp_path / name} {'holds snapshots' if size is None else 'is not a'}")
+        assert error.startswith(f"error: {tmp_path / name} {'holds snapshots' if size is None else 'is not a'}")

@@ -71,7 +71,7 @@ def make_run(
     lost = np.zeros(len(rows))
     log: list[tuple[float, ...]] = []
     names = ("z", "v", "s", "u", "e", "work", "viscous", "lost", "force")
-    kept: dict[str, list[object]] = {name: [] for name in names}
+    samples: dict[str, list[object]] = {name: [] for name in names}
 
     def touch(now: float, damper: int, contact: int, left: int | None, right: int | None) -> None:
         masses = [structure.mass if i is None else BALL_MASS for i in (left, right)]
@@ -99,7 +99,7 @@ def make_run(
         if n % inner == 0:
             places = structure.z, structure.v, s.copy(), u.copy(), structure.energy
             for name, value in zip(names, (*places, work, viscous, lost.copy(), force), strict=True):
-                kept[name].append(value)
+                samples[name].append(value)
         done, gone = structure.advance(force)
         work, viscous = work + done, viscous + gone
         s += u * step
@@ -116,8 +116,8 @@ def make_run(
                 touch(now, damper, count, row[-1], None)
             first += count
 
-    z, v = np.array(kept["z"]), np.array(kept["v"])
-    s_all, u_all = (np.array(kept[name]).reshape(times, balls) for name in "su")
+    z, v = np.array(samples["z"]), np.array(samples["v"])
+    s_all, u_all = (np.array(samples[name]).reshape(times, balls) for name in "su")
     columns = list(np.array(log).reshape(-1, 10).T)
     labels = (f"damper{d + 1}/{k + 1}" for d, count in enumerate(rows) for k in range(count))
     return Run(
@@ -136,13 +136,13 @@ def make_run(
             ball_velocity=u_all,
             relative_position=s_all + centre - z[:, None],
             relative_velocity=u_all - v[:, None],
-            load=np.zeros((times, 0)) if fixed else np.array(kept["force"])[:, None],
+            load=np.zeros((times, 0)) if fixed else np.array(samples["force"])[:, None],
             mode_frequency=np.zeros(0) if fixed else np.array([sqrt(STIFFNESS / MASS) / (2 * pi)]),
-            mode_energy=np.zeros((times, 0)) if fixed else np.array(kept["e"])[:, None],
+            mode_energy=np.zeros((times, 0)) if fixed else np.array(samples["e"])[:, None],
             ball_energy=0.5 * BALL_MASS * u_all**2,
-            load_work=np.array(kept["work"]),
-            viscous_loss=np.array(kept["viscous"]),
-            normal_loss=np.array(kept["lost"]).reshape(times, len(rows)),
+            load_work=np.array(samples["work"]),
+            viscous_loss=np.array(samples["viscous"]),
+            normal_loss=np.array(samples["lost"]).reshape(times, len(rows)),
             impacts={
                 "damper": columns[0].astype(int),
                 "contact": columns[1].astype(int),

@@ -53,9 +53,9 @@ def test_long_case_is_kept(run: Run, tmp_path: Path) -> None:
 
 
 def _visit(file: h5py.File) -> list[tuple[str, Any]]:
-    found: list[tuple[str, Any]] = []
-    file.visititems(lambda name, item: found.append((name, item)))
-    return found
+    result: list[tuple[str, Any]] = []
+    file.visititems(lambda name, item: result.append((name, item)))
+    return result
 
 
 def test_only_plain_types(any_run: Run, tmp_path: Path) -> None:
@@ -100,14 +100,14 @@ def test_counts_and_figures_tell_what_they_are(name: str, tmp_path: Path) -> Non
     """Of each number in the groups beside the datasets a file says the unit and, in words of its own, the meaning."""
     case = rb.Case.from_file(EXAMPLES / f"{name}.toml").model_copy(update={"duration": 2e-3})
     with h5netcdf.File(rb.simulate(case).save(tmp_path / "run.nc"), "r") as file:
-        told = [
+        rows = [
             item
             for group in ("counts", "diagnostics")
             if group in file.groups
             for item in file.groups[group].variables.items()
         ]
-        assert len(told) > 6
-        for variable, item in told:
+        assert len(rows) > 6
+        for variable, item in rows:
             assert "units" in item.attrs, variable
             assert item.attrs["long_name"] not in ("", variable)
 
@@ -158,7 +158,7 @@ def test_damage_is_told(run: Run, tmp_path: Path) -> None:
     path = run.save(tmp_path / "run.nc")
     content = path.read_bytes()
     rng = np.random.default_rng(0)
-    told: list[str] = []
+    rows: list[str] = []
     for _ in range(60):
         damaged = bytearray(content)
         damaged[rng.integers(len(content))] ^= 1 << int(rng.integers(8))
@@ -166,13 +166,13 @@ def test_damage_is_told(run: Run, tmp_path: Path) -> None:
         try:
             there = load(path)
         except ValueError as error:
-            told.append(str(error))
+            rows.append(str(error))
             continue
         assert there.case_toml == run.case_toml
         for name in ("time", "displacement", "velocity", "ball_position", "ball_velocity", "viscous_loss"):
             np.testing.assert_array_equal(getattr(there.arrays, name), getattr(run.arrays, name))
-    assert len(told) > 30
-    assert all("run.nc" in message for message in told)
+    assert len(rows) > 30
+    assert all("run.nc" in message for message in rows)
 
 
 def test_checksums_tell_numbers_that_were_changed(run: Run, tmp_path: Path) -> None:
@@ -218,10 +218,10 @@ def test_damaged_files_are_named(run: Run, tmp_path: Path) -> None:
     """A file that is cut off, or lacks a part, is told with its name."""
     whole = run.save(tmp_path / "whole.nc").read_bytes()
     damaged = tmp_path / "damaged.nc"
-    said = r"damaged\.nc is not an intact netCDF-4 file"
+    message = r"damaged\.nc is not an intact netCDF-4 file"
     for size in (0, 100, 5000, len(whole) - 1000):
         damaged.write_bytes(whole[:size])
-        with pytest.raises(rb.DataError, match=said):
+        with pytest.raises(rb.DataError, match=message):
             load(damaged)
     for lost in ("motion", "impacts/time", "case"):
         damaged.write_bytes(whole)

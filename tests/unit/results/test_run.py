@@ -146,11 +146,11 @@ def test_import_is_light() -> None:
 def test_figures_that_a_run_lacks_are_answered_with_those_it_has(run: Run) -> None:
     """A figure of another kind of run, or of none, is refused with the names of those that there are."""
     beads = Run(RunArrays(time=TIME, engine="dem"))
-    for plots, name, known in (
+    for plots, name, expected in (
         (beads.plot, "impacts", "energy, motion, particles, phase_portrait"),
         (run.plot, "particles", "energy, impacts, motion, phase_portrait"),
     ):
-        with pytest.raises(AttributeError, match=f"^this run has no figure '{name}'; it has {known}$"):
+        with pytest.raises(AttributeError, match=f"^this run has no figure '{name}'; it has {expected}$"):
             getattr(plots, name)()
         assert not hasattr(plots, name)
     assert copy.copy(run.plot).energy().axes

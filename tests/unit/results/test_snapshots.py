@@ -45,21 +45,21 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Any:
 def test_snapshots_are_where_the_run_was(written: Any) -> None:
     """Times, centres of mass, displacements and the last places and velocities are those of the run."""
     run, path = written
-    found = Snapshots(path)
-    assert len(found) == 11
-    np.testing.assert_allclose(found.times, np.linspace(0, 0.02, 11), atol=run.diagnostics["step"])
-    for frame, place in zip(found, np.searchsorted(run.arrays.time, found.times - 1e-9), strict=True):
+    result = Snapshots(path)
+    assert len(result) == 11
+    np.testing.assert_allclose(result.times, np.linspace(0, 0.02, 11), atol=run.diagnostics["step"])
+    for frame, place in zip(result, np.searchsorted(run.arrays.time, result.times - 1e-9), strict=True):
         np.testing.assert_allclose(frame.displacement, run.arrays.cavity_displacement[place], atol=1e-15)
         for d in range(2):
             here = frame.cavity == d
             centre = frame.mass[here] @ frame.position[here] / frame.mass[here].sum() - frame.displacement[d]
             np.testing.assert_allclose(centre, run.arrays.centre_of_mass[place, d], atol=1e-9)
-    last = found[-1]
+    last = result[-1]
     np.testing.assert_array_equal(last.velocity, run.arrays.particles.velocity)
     np.testing.assert_allclose(
         last.position - last.displacement[last.cavity], run.arrays.particles.position, atol=1e-15
     )
-    assert found.case_toml == run.case_toml
+    assert result.case_toml == run.case_toml
 
 
 def test_contact_force_of_a_stack(tmp_path: Path) -> None:
@@ -132,13 +132,13 @@ def test_vtk_reads_what_was_written(written: Any) -> None:
     from vtkmodules.vtkIOHDF import vtkHDFReader
 
     _, path = written
-    found = Snapshots(path)
+    result = Snapshots(path)
     reader = vtkHDFReader()
     assert reader.CanReadFile(str(path))
     reader.SetFileName(str(path))
     reader.UpdateInformation()
     assert reader.GetNumberOfSteps() == 11
-    for step, frame in enumerate(found):
+    for step, frame in enumerate(result):
         reader.SetStep(step)
         reader.Update()
         assert reader.GetTimeValue() == frame.time
@@ -166,15 +166,15 @@ def test_all_room_on_disk_is_taken_at_once(steps: int, count: int, cavities: int
     file = SnapshotFile(
         tmp_path / "run.vtkhdf", np.arange(steps), np.zeros((cavities, 3)), fixed, walls, text, "numbers"
     )
-    asked: list[int] = []
+    sizes: list[int] = []
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(
             "rattlebox.results.snapshots.reserve_space",
-            lambda path, size: (asked.append(size), reserve_space(path, size)),
+            lambda path, size: (sizes.append(size), reserve_space(path, size)),
         )
         file.create()
     size = (tmp_path / "run.vtkhdf").stat().st_size
-    assert asked[1] == size <= asked[0] < size + 100_000
+    assert sizes[1] == size <= sizes[0] < size + 100_000
     if hasattr(os, "posix_fallocate"):
         assert 512 * (tmp_path / "run.vtkhdf").stat().st_blocks >= size
 
@@ -183,16 +183,16 @@ def test_times_are_chosen(tmp_path: Path) -> None:
     """Snapshots are taken at the steps nearest to the times that are given, each once."""
     times = [0.0, 0.005, 0.00500001, 0.02 * (1 + 1e-15)]
     run = rb.simulate(case(snapshots=times), snapshots=tmp_path / "run.vtkhdf")
-    found = Snapshots(tmp_path / "run.vtkhdf")
-    assert len(found) == 3
-    assert abs(found.times - [0, 0.005, 0.02]).max() <= run.diagnostics["step"] / 2
+    result = Snapshots(tmp_path / "run.vtkhdf")
+    assert len(result) == 3
+    assert abs(result.times - [0, 0.005, 0.02]).max() <= run.diagnostics["step"] / 2
 
 
 def test_times_after_the_end_are_refused() -> None:
     """A snapshot that would be taken after the end of the run is told with both times."""
-    with pytest.raises(rb.CaseError) as told:
+    with pytest.raises(rb.CaseError) as caught:
         case(snapshots=["5 ms", "30 ms", "1 s"])
-    assert str(told.value).splitlines() == [
+    assert str(caught.value).splitlines() == [
         "Case: output.snapshots = (0.005, 0.03, 1.0)",
         "  the snapshot at 0.03 s is after the end of the run at 0.02 s",
         "  try: times up to the end, or a longer duration",
@@ -214,13 +214,13 @@ def test_snapshots_do_not_change_the_run(written: Any) -> None:
     np.testing.assert_array_equal(plain.arrays.particles.position, run.arrays.particles.position)
 
 
-@pytest.mark.parametrize(("content", "said"), [(None, "there is no file"), (b"notes", "is not an intact HDF5 file")])
-def test_other_files_are_refused(content: bytes | None, said: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("content", "message"), [(None, "there is no file"), (b"notes", "is not an intact HDF5 file")])
+def test_other_files_are_refused(content: bytes | None, message: str, tmp_path: Path) -> None:
     """A file that is missing or something else is told."""
     path = tmp_path / "run.vtkhdf"
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(rb.DataError, match=said):
+    with pytest.raises(rb.DataError, match=message):
         Snapshots(path)
     with pytest.raises(rb.DataError, match="is a folder, not a file"):
         Snapshots(tmp_path)
@@ -242,15 +242,15 @@ def test_files_of_other_things_are_kept(written: Any, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "message"),
     [
         ("run.csv", "a .vtkhdf file is written, not a .csv file\n  try: run.vtkhdf"),
         ("no/run.vtkhdf", "there is no folder"),
     ],
 )
-def test_places_where_no_snapshots_can_be_are_told(tmp_path: Path, name: str, said: str) -> None:
+def test_places_where_no_snapshots_can_be_are_told(tmp_path: Path, name: str, message: str) -> None:
     """Files of another kind and in folders that are not there are refused before the run."""
-    with pytest.raises((rb.CaseError, OSError), match=said):
+    with pytest.raises((rb.CaseError, OSError), match=message):
         rb.simulate(case(snapshots=2), snapshots=tmp_path / name)
     assert not any(tmp_path.iterdir())
 
@@ -273,7 +273,7 @@ def test_several_snapshots_at_once(written: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "said"),
+    ("value", "message"),
     [
         (1, "at least two snapshots are needed"),
         (True, "a number of snapshots"),
@@ -281,9 +281,9 @@ def test_several_snapshots_at_once(written: Any) -> None:
         ([-1.0], "negative"),
     ],
 )
-def test_wrong_choices_are_told(value: Any, said: str) -> None:
+def test_wrong_choices_are_told(value: Any, message: str) -> None:
     """A choice of snapshots that makes no sense is refused."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         rb.Output(snapshots=value)
 
 
@@ -302,8 +302,8 @@ def test_more_snapshots_than_steps_are_refused(tmp_path: Path) -> None:
         method=rb.Dem(dt=1e-7),
     )
     path = tmp_path / "run.vtkhdf"
-    said = r"output\.snapshots\n  5 is more than the 3 steps of the run\n  try: snapshots = 4"
-    with pytest.raises(rb.CaseError, match=said):
+    message = r"output\.snapshots\n  5 is more than the 3 steps of the run\n  try: snapshots = 4"
+    with pytest.raises(rb.CaseError, match=message):
         rb.simulate(case, snapshots=path)
     assert not path.exists()
 

@@ -102,8 +102,8 @@ def test_points_that_stand_still_are_left_out(peaks: tuple[float, ...], shown: l
     run = _swinging(*peaks)
     summary = run.summary()
     names = [f"p{k}" for k in range(len(peaks))]
-    for told in ("peak displacement", "RMS displacement"):
-        assert [name for name in names if f"{told}, {name}" in str(summary)] == shown
+    for label in ("peak displacement", "RMS displacement"):
+        assert [name for name in names if f"{label}, {name}" in str(summary)] == shown
     assert all(f"peak_displacement[{name}]" in summary.values for name in names)
     legend = run.plot.motion().axes[0].get_legend()
     assert legend is not None
@@ -184,11 +184,11 @@ def test_an_energy_error_is_reported() -> None:
         ),
         duration="0.1 s",
     )
-    for step, said in {"1 us": False, "30 us": True}.items():
+    for step, message in {"1 us": False, "30 us": True}.items():
         method = rb.TwoStep(dt_contact=step, dt_flight=step)
         run = rb.simulate(case.model_copy(update={"method": method}))
-        assert run.ok is not said, (step, run.energy_residual)
-        assert (run.message in str(run.summary())) is said
+        assert run.ok is not message, (step, run.energy_residual)
+        assert (run.message in str(run.summary())) is message
 
 
 def test_numbers_beyond_all_warn_of_nothing() -> None:

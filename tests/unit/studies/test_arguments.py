@@ -123,8 +123,8 @@ def test_what_is_no_parameter_is_told() -> None:
 def test_counts_of_numpy_are_counts(tmp_path: Path) -> None:
     """Counts may come from NumPy, also where a store keeps them."""
     counts = {"cycles": np.array([1, 2]), "samples": np.int64(5), "last": np.int32(2)}
-    found = rb.sweep(shaken(), {"damper.gap": ["1 mm"]}, ["peak"], store=tmp_path / "s.zarr", **counts)
-    assert (found.status == 0).all()
+    result = rb.sweep(shaken(), {"damper.gap": ["1 mm"]}, ["peak"], store=tmp_path / "s.zarr", **counts)
+    assert (result.status == 0).all()
 
 
 def test_one_measure_needs_no_list() -> None:

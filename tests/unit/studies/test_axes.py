@@ -404,7 +404,7 @@ def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> No
 
 
 @pytest.mark.parametrize(
-    ("axes", "said"),
+    ("axes", "pattern"),
     [
         ({}, ["nothing varies", "damper.gap"]),
         (5, ["5 is not a mapping"]),
@@ -471,10 +471,10 @@ def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> No
         ([rb.replicas({"duration": 1}, 2), rb.replicas({"damper.start": 0.1}, 2)], ["two dimensions", "'replica'"]),
     ],
 )
-def test_bad_axes_are_refused_with_the_place_and_a_reason(case: rb.Case, axes: Any, said: list[str]) -> None:
+def test_bad_axes_are_refused_with_the_place_and_a_reason(case: rb.Case, axes: Any, pattern: list[str]) -> None:
     """Each wrong axis is told at once: the path, the value, what is allowed."""
     message = refused(case, axes)
-    for word in said:
+    for word in pattern:
         assert word in message, message
 
 
@@ -511,7 +511,7 @@ def test_ends_may_be_written_differently(ends: tuple[Any, Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "message"),
     [
         (lambda: rb.linspace(0, 1, 0), "count = 0"),
         (lambda: rb.geomspace(1, 2, 2.5), "count = 2.5"),  # type: ignore[arg-type]
@@ -531,7 +531,7 @@ def test_ends_may_be_written_differently(ends: tuple[Any, Any]) -> None:
         (lambda: rb.replicas({"a": 1}, True), "count = True"),
     ],
 )
-def test_bad_arguments_are_refused_at_once(make: Any, said: str) -> None:
+def test_bad_arguments_are_refused_at_once(make: Any, message: str) -> None:
     """What is wrong without a case is told before there is one."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         make()

@@ -90,7 +90,7 @@ def test_unfinished_runs_are_told_apart():
 
 
 @pytest.mark.parametrize(
-    ("starts", "options", "said"),
+    ("starts", "options", "message"),
     [
         ({"damper.begin": [0.0]}, {}, "there is no 'begin'"),
         (STARTS, {"tolerance": 2}, "tolerance = 2"),
@@ -99,9 +99,9 @@ def test_unfinished_runs_are_told_apart():
         ({"damper.start": [0.0, 1.5]}, {}, "damper.start"),
     ],
 )
-def test_what_does_not_fit_is_told(starts, options, said):
+def test_what_does_not_fit_is_told(starts, options, message):
     """Bad arguments are told before anything runs."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         rb.basins(shaken(), starts, **{"cycles": (3, 4), **options})
 
 

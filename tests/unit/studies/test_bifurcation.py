@@ -73,9 +73,9 @@ def test_strobes_and_impacts_are_those_of_a_run():
     )
     np.testing.assert_allclose(maps.relative_velocity[:, 0], run.arrays.relative_velocity[1:, 0], rtol=1e-8)
     late = run.arrays.impacts.time >= 0.3
-    kept = maps.impact_phase.dropna("impact")
+    phases = maps.impact_phase.dropna("impact")
     phase = (2 * np.pi * 10 * run.arrays.impacts.time[late] + 0.3) % (2 * np.pi)
-    np.testing.assert_allclose(kept, phase, rtol=1e-8)
+    np.testing.assert_allclose(phases, phase, rtol=1e-8)
     np.testing.assert_allclose(maps.approach_speed.dropna("impact"), run.arrays.impacts.approach_speed[late], rtol=1e-8)
 
 
@@ -90,7 +90,7 @@ def test_names_can_be_compared_fresh():
 
 
 @pytest.mark.parametrize(
-    ("path", "values", "options", "said"),
+    ("path", "values", "options", "message"),
     [
         (AMPLITUDE, [1e-3, 1e-3], {}, "strictly rising"),
         (AMPLITUDE, [2e-3, 1e-3], {}, "strictly rising"),
@@ -102,9 +102,9 @@ def test_names_can_be_compared_fresh():
         (AMPLITUDE, [1e-3], {"tolerance": 0}, "tolerance = 0"),
     ],
 )
-def test_what_cannot_be_followed_is_told(path, values, options, said):
+def test_what_cannot_be_followed_is_told(path, values, options, message):
     """Bad arguments are told before anything runs."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         rb.bifurcation(shaken(), path, values, **{"cycles": (3, 2), **options})
 
 

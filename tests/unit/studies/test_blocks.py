@@ -15,15 +15,15 @@ def test_blocks_are_boxes_and_ranges_and_cover_all_variants(shape: list[int], si
     """Every variant is in one block, which is no larger than asked, a box of the grid and a range of numbers."""
     blocks = Blocks.of(shape, size)
     numbers = np.arange(math.prod(shape)).reshape(shape)
-    found: list[int] = []
+    result: list[int] = []
     for block in range(len(blocks)):
         start, stop = blocks.range(block)
         assert stop - start <= size
         assert numbers[blocks.region(block)].shape == blocks.sides(block)
         assert numbers[blocks.region(block)].ravel().tolist() == list(range(start, stop))
-        found += range(start, stop)
+        result += range(start, stop)
         assert blocks.variants(np.arange(len(blocks)) == block) == stop - start
-    assert found == list(range(math.prod(shape)))
+    assert result == list(range(math.prod(shape)))
 
 
 def test_blocks_are_even() -> None:

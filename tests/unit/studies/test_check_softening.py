@@ -29,47 +29,47 @@ def case(amplitude: float, frequency: float, **changes: Any) -> rb.Case:
 
 def test_a_change_is_found_where_the_bed_stays_on_the_floor() -> None:
     """There the loss grows with softening."""
-    found = rb.check_softening(
+    result = rb.check_softening(
         case(12, 160), ["reduced_loss", "effective_mass"], cycles=(8, 16), packings=3, progress=False
     )
-    assert found.softening.values.tolist() == [300, 75, 18.75]
-    assert bool(found.reduced_loss_changed[0]) and not bool(found.reduced_loss_changed[-1])
-    assert float(found.reduced_loss_change[0]) > 3 * float(found.reduced_loss_change_error[0]) > 0
-    assert np.allclose(found.reduced_loss_change, found.reduced_loss - found.reduced_loss[-1])
-    assert found.effective_mass.attrs["units"] == found.effective_mass_change.attrs["units"] == "kg"
+    assert result.softening.values.tolist() == [300, 75, 18.75]
+    assert bool(result.reduced_loss_changed[0]) and not bool(result.reduced_loss_changed[-1])
+    assert float(result.reduced_loss_change[0]) > 3 * float(result.reduced_loss_change_error[0]) > 0
+    assert np.allclose(result.reduced_loss_change, result.reduced_loss - result.reduced_loss[-1])
+    assert result.effective_mass.attrs["units"] == result.effective_mass_change.attrs["units"] == "kg"
 
 
 def test_the_measure_that_is_taken_by_default_shows_the_change() -> None:
     """The share of the energy does not: on a shaker it is near 1 whatever is lost."""
-    found = rb.check_softening(case(5, 160), packings=4, progress=False)
-    assert bool(found.impact_loss_changed[0]) and not bool(found.impact_loss_kept[0])
+    result = rb.check_softening(case(5, 160), packings=4, progress=False)
+    assert bool(result.impact_loss_changed[0]) and not bool(result.impact_loss_kept[0])
 
 
 def test_what_the_runs_do_not_decide_is_neither_changed_nor_kept() -> None:
     """Two packings of a short run scatter by more than the tolerance."""
-    found = rb.check_softening(case(5, 160), packings=2, softenings=(300, 18.75), progress=False)
-    assert not bool(found.impact_loss_changed[0]) and not bool(found.impact_loss_kept[0])
+    result = rb.check_softening(case(5, 160), packings=2, softenings=(300, 18.75), progress=False)
+    assert not bool(result.impact_loss_changed[0]) and not bool(result.impact_loss_kept[0])
 
 
 def test_none_is_found_where_the_bed_is_thrown() -> None:
     """At a level of five and a low frequency, with little softening."""
-    found = rb.check_softening(
+    result = rb.check_softening(
         case(50, 60, softening=20), "reduced_loss", cycles=(8, 24), packings=4, softenings=(20, 2), progress=False
     )
-    assert not found.reduced_loss_changed.any()
-    assert 0 < float(found.reduced_loss_error[0]) < 0.1
+    assert not result.reduced_loss_changed.any()
+    assert 0 < float(result.reduced_loss_error[0]) < 0.1
 
 
 def test_several_dampers_are_softened_together() -> None:
     """In the ratio of their softenings, the largest as given, none below 1."""
     one = case(30, 80, softening=100).particle_dampers[0].model_copy(update={"name": "one"})
     both = case(30, 80).model_copy(update={"dampers": (one, one.model_copy(update={"name": "two", "softening": 4.0}))})
-    found = rb.check_softening(both, "impact_share", packings=2, softenings=(100, 10), cycles=(1, 2), progress=False)
-    assert np.isfinite(found.impact_share).all()
+    result = rb.check_softening(both, "impact_share", packings=2, softenings=(100, 10), cycles=(1, 2), progress=False)
+    assert np.isfinite(result.impact_share).all()
 
 
 @pytest.mark.parametrize(
-    ("changes", "options", "said"),
+    ("changes", "options", "message"),
     [
         ({"softening": 1}, {}, "the softening is 1"),
         ({}, {"softenings": (10,)}, "two softenings"),
@@ -86,7 +86,7 @@ def test_several_dampers_are_softened_together() -> None:
         ),
     ],
 )
-def test_what_does_not_fit_is_refused(changes: dict[str, Any], options: dict[str, Any], said: str) -> None:
+def test_what_does_not_fit_is_refused(changes: dict[str, Any], options: dict[str, Any], message: str) -> None:
     """With what to do instead."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         rb.check_softening(case(12, 160, **changes), **{"cycles": (1, 1), "progress": False, **options})

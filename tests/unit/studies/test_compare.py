@@ -24,16 +24,16 @@ def case(**options: Any) -> rb.Case:
 def test_compare_simulates_cases_and_takes_runs() -> None:
     """Reductions are those of the values; a run that was simulated before gives the same column."""
     tuned = case(tuned_mass=rb.TunedMass.den_hartog(STRUCTURE, mass="1 kg"))
-    found = rb.compare({"bare": case(), "tuned": tuned, "again": rb.simulate(tuned)})
-    bare, one, again = (found.values[name] for name in ("bare", "tuned", "again"))
+    result = rb.compare({"bare": case(), "tuned": tuned, "again": rb.simulate(tuned)})
+    bare, one, again = (result.values[name] for name in ("bare", "tuned", "again"))
     assert one["rms_displacement[mass]"] == again["rms_displacement[mass]"]
     assert one["rms_reduction[mass]"] == pytest.approx(
         1 - one["rms_displacement[mass]"] / bare["rms_displacement[mass]"]
     )
     assert one["peak_reduction[mass]"] > 0.8 and "rms_reduction[mass]" not in bare
-    assert list(found.runs) == ["bare", "tuned", "again"]
-    assert "TMD" not in str(found) and "tuned" in str(found)
-    assert rb.plot_comparison(found.runs).axes
+    assert list(result.runs) == ["bare", "tuned", "again"]
+    assert "TMD" not in str(result) and "tuned" in str(result)
+    assert rb.plot_comparison(result.runs).axes
 
 
 def test_steady_values_carry_an_interval() -> None:

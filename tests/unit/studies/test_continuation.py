@@ -140,24 +140,24 @@ def test_chains_are_independent():
 def test_shrinking_gap_keeps_the_ball_inside():
     """A ball beyond the wall of a smaller cavity is moved to the wall."""
     options = {"cycles": (0, 1), "samples": 2, "motion": True, **QUIET}
-    found = continue_along(shaken(method=rb.Newton()), "damper.gap", [1e-3, 1e-5], **options)
-    assert (found.status == 0).all()
-    assert float(abs(found.relative_position[0, 1]).max()) <= 1e-5 * (1 + 1e-15)
+    result = continue_along(shaken(method=rb.Newton()), "damper.gap", [1e-3, 1e-5], **options)
+    assert (result.status == 0).all()
+    assert float(abs(result.relative_position[0, 1]).max()) <= 1e-5 * (1 + 1e-15)
 
 
 def test_value_that_does_not_finish_leaves_the_state():
     """A value beyond the domain of a law has its status, and the next run starts from the state before."""
     case = shaken(contact=rb.Tsuji(restitution=rb.JacksonGreen(yield_stress="100 MPa")))
     options = {"cycles": (3, 1), "samples": 3, "motion": True, **QUIET}
-    found = continue_along(case, "structure.motion.amplitude", [1e-3, 10.0, 1.1e-3], **options)
-    assert found.status.values.tolist() == [[0, 1, 0]]
-    assert found.relative_position[0, 1].isnull().all()
+    result = continue_along(case, "structure.motion.amplitude", [1e-3, 10.0, 1.1e-3], **options)
+    assert result.status.values.tolist() == [[0, 1, 0]]
+    assert result.relative_position[0, 1].isnull().all()
     without = continue_along(case, "structure.motion.amplitude", [1e-3, 1.1e-3], **options)
-    np.testing.assert_array_equal(found.relative_position[0, 2], without.relative_position[0, 1])
+    np.testing.assert_array_equal(result.relative_position[0, 2], without.relative_position[0, 1])
 
 
 @pytest.mark.parametrize(
-    ("path", "options", "said"),
+    ("path", "options", "message"),
     [
         ("damper.start", {}, "damper.start is an initial value"),
         ("damper.gap", {"measures": ["impact"]}, "did you mean 'impacts'"),
@@ -165,9 +165,9 @@ def test_value_that_does_not_finish_leaves_the_state():
         ("damper.gaps", {}, "did you mean 'gap'"),
     ],
 )
-def test_invalid_arguments(path, options, said):
+def test_invalid_arguments(path, options, message):
     """Bad arguments raise before anything runs."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         continue_along(shaken(), path, [0.5e-3, 0.6e-3], **{"cycles": (3, 1), **options})
 
 

@@ -29,11 +29,11 @@ def test_a_linear_damper(way: Any, structure: Any) -> None:
         mass=0.01 / modes.shape(point)[0] ** 2, frequency=0.3 * frequency, damping_ratio=1.0, point=point
     )
     case = rb.Case(structure=structure, tuned_mass=tuned, duration=40 / frequency)
-    found = rb.damping_curve(case, LEVELS, way=way, packings=1, point=point)
+    result = rb.damping_curve(case, LEVELS, way=way, packings=1, point=point)
     impedance = 0.09 + 0.6j  # stiffness of the tuned mass over m w^2
     added = -0.01 / 2 * (impedance / (impedance - 1)).imag
-    np.testing.assert_allclose(found.damping_ratio, 0.02 + added, rtol=0.01)
-    np.testing.assert_allclose(found.bare, 0.02)
+    np.testing.assert_allclose(result.damping_ratio, 0.02 + added, rtol=0.01)
+    np.testing.assert_allclose(result.bare, 0.02)
 
 
 def ball_case(**options: Any) -> rb.Case:
@@ -56,18 +56,18 @@ def test_one_ball_by_three_ways(restitution: float) -> None:
     )
     case = rb.Case(structure=rb.SDOF(mass=30, frequency=50, damping_ratio=0.001), damper=damper, duration="6 s")
     levels = [2.5e-4, 3.2e-4, 4e-4]
-    found = {way: rb.damping_curve(case, levels, way=way, packings=4) for way in ("decay", "energy", "shaking")}
-    decay = found["decay"]
+    result = {way: rb.damping_curve(case, levels, way=way, packings=4) for way in ("decay", "energy", "shaking")}
+    decay = result["decay"]
     assert np.all(decay.damping_ratio > 0.0012)
-    for other in (found["energy"], found["shaking"]):
+    for other in (result["energy"], result["shaking"]):
         allowed = (decay.upper - decay.lower + other.upper - other.lower) / 2 + 0.01 * decay.damping_ratio
         np.testing.assert_array_less(abs(other.damping_ratio - decay.damping_ratio), allowed)
 
 
 def test_too_small_a_motion_is_only_the_structures() -> None:
     """Where the ball does not reach its walls, the damping is that of the structure."""
-    found = rb.damping_curve(ball_case(), [1e-5, 2e-5, 4e-5], packings=3)
-    np.testing.assert_allclose(found.damping_ratio[:1], 0.005, rtol=0.05)
+    result = rb.damping_curve(ball_case(), [1e-5, 2e-5, 4e-5], packings=3)
+    np.testing.assert_allclose(result.damping_ratio[:1], 0.005, rtol=0.05)
 
 
 def test_particles() -> None:
@@ -85,21 +85,21 @@ def test_particles() -> None:
         duration="1 s",
     )
     levels = [4e-4, 6e-4, 8e-4]
-    found = rb.damping_curve(case, levels, packings=2)
-    assert float(found.damping_ratio.max()) > 0.01
-    assert found.damping_ratios.sizes == {"packing": 2, "amplitude": 3}
-    assert np.all(found.lower <= found.damping_ratio)
+    result = rb.damping_curve(case, levels, packings=2)
+    assert float(result.damping_ratio.max()) > 0.01
+    assert result.damping_ratios.sizes == {"packing": 2, "amplitude": 3}
+    assert np.all(result.lower <= result.damping_ratio)
     soft = rb.damping_curve(case.model_copy(update={"duration": 0.3}), [4e-5, 6e-5], packings=1).attrs["warnings"]
     assert any("softening" in warning or "resonance" in warning for warning in soft), soft
-    assert found.damping_ratio.attrs["units"] == "1" and found.amplitude.attrs["units"] == "m"
+    assert result.damping_ratio.attrs["units"] == "1" and result.amplitude.attrs["units"] == "m"
 
 
 def test_a_start_that_is_not_random_has_no_scatter() -> None:
     """Amplitudes that the decay does not pass are NaN; one packing has no interval."""
     case = rb.Case(structure=rb.SDOF(mass=3, frequency=50, damping_ratio=0.02), duration="0.3 s")
-    found = rb.damping_curve(case, [1e-5, 5e-4, 1e-3], packings=1)
-    assert np.isnan(found.damping_ratio[0]) and np.isfinite(found.damping_ratio[2])
-    assert np.isnan(found.lower).all()
+    result = rb.damping_curve(case, [1e-5, 5e-4, 1e-3], packings=1)
+    assert np.isnan(result.damping_ratio[0]) and np.isfinite(result.damping_ratio[2])
+    assert np.isnan(result.lower).all()
 
 
 @pytest.mark.parametrize(
@@ -141,17 +141,17 @@ def test_a_mode_is_told_from_others_that_impacts_excite() -> None:
         ball=rb.Sphere(radius="8 mm", material="steel"), gap="50 um", contact=rb.Tsuji(restitution=0.5)
     )
     case = rb.Case(structure=structure, damper=damper, duration="1 s")
-    found = rb.damping_curve(case, [2e-4, 3e-4, 4e-4], mode=2, packings=1)
-    np.testing.assert_allclose(found.damping_ratio, 0.02, rtol=0.25)
-    assert not found.attrs["warnings"]
+    result = rb.damping_curve(case, [2e-4, 3e-4, 4e-4], mode=2, packings=1)
+    np.testing.assert_allclose(result.damping_ratio, 0.02, rtol=0.25)
+    assert not result.attrs["warnings"]
 
 
 def test_a_heavy_damper_that_changes_the_motion_is_warned_of() -> None:
     """A tuned mass as heavy as the structure shifts the frequency, which the curve says."""
     structure = rb.SDOF(mass=3, frequency=50, damping_ratio=0.005)
     tuned = rb.TunedMass(mass=3, frequency=50, damping_ratio=0.02)
-    found = rb.damping_curve(rb.Case(structure=structure, tuned_mass=tuned, duration="2 s"), LEVELS, packings=1)
-    assert any("Hz" in warning for warning in found.attrs["warnings"])
+    result = rb.damping_curve(rb.Case(structure=structure, tuned_mass=tuned, duration="2 s"), LEVELS, packings=1)
+    assert any("Hz" in warning for warning in result.attrs["warnings"])
 
 
 @pytest.mark.parametrize("way", ["decay", "shaking"])

@@ -54,7 +54,7 @@ def searched(**changes: Any) -> xr.Dataset:
 
 def test_objective_is_the_worst_of_all_members() -> None:
     """What a trial is told is the worst, mean or median of a sweep over levels and starts of its case."""
-    found = rb.design(
+    result = rb.design(
         struck(),
         {GAP: ("0.1 mm", "2 mm")},
         {"impact_share": "max"},
@@ -64,60 +64,60 @@ def test_objective_is_the_worst_of_all_members() -> None:
         progress=False,
     )
     for trial in range(2):
-        gap = float(found[GAP][trial])
+        gap = float(result[GAP][trial])
         axes = {"load.amplitude": ["2 kN", "5 kN"], "damper.start": [-1, 0.5], GAP: [gap]}
         members = rb.sweep(struck(), axes, "impact_share", progress=False)
-        assert float(found.impact_share[trial]) == float(members.impact_share.min())
+        assert float(result.impact_share[trial]) == float(members.impact_share.min())
 
 
 @pytest.mark.parametrize(("robust", "of"), [("mean", np.mean), ("median", np.median), ("worst", np.max)])
 def test_robust(robust: Any, of: Any) -> None:
     """Mean, median and worst are those of the members."""
-    found = rb.design(struck(), {GAP: ("0.4 mm", "1 mm")}, "rms", starts=3, robust=robust, trials=1, progress=False)
-    gap = float(found[GAP][0])
+    result = rb.design(struck(), {GAP: ("0.4 mm", "1 mm")}, "rms", starts=3, robust=robust, trials=1, progress=False)
+    gap = float(result[GAP][0])
     members = rb.sweep(struck(), {"damper.start": [-1.0, 0.0, 1.0], GAP: [gap]}, "rms", progress=False)
-    assert float(found.rms[0]) == of(members.rms.values.ravel())
+    assert float(result.rms[0]) == of(members.rms.values.ravel())
 
 
 def test_front_beats_all_others() -> None:
     """No allowed trial is better than one on the front in everything, and each other is beaten by one."""
-    found = searched()
-    allowed = found.isel(trial=found.feasible.values)
-    best = found.isel(trial=found.front.values)
+    result = searched()
+    allowed = result.isel(trial=result.feasible.values)
+    best = result.isel(trial=result.front.values)
     both = np.array([allowed.added_mass, -allowed.impact_share]).T
     for values in np.array([best.added_mass, -best.impact_share]).T:
         assert not ((both <= values).all(axis=1) & (both < values).any(axis=1)).any()
-    assert set(found.front.values) <= set(allowed.trial.values)
+    assert set(result.front.values) <= set(allowed.trial.values)
     assert (np.diff(best.added_mass) > 0).all()
-    assert best.sizes["trial"] == found.sizes["front"] >= 2
+    assert best.sizes["trial"] == result.sizes["front"] >= 2
 
 
 def test_best_case_is_the_trial() -> None:
     """The case file of a trial on the front has its parameters, its mass and its objective."""
-    found = searched(objective="impact_share", trials=8)
-    case = rb.Case.from_toml(found.case.item())
-    best = found.isel(trial=int(found.front.item()))
-    assert float(best.impact_share) == np.nanmin(found.impact_share)
+    result = searched(objective="impact_share", trials=8)
+    case = rb.Case.from_toml(result.case.item())
+    best = result.isel(trial=int(result.front.item()))
+    assert float(best.impact_share) == np.nanmin(result.impact_share)
     assert case.dampers[0].gap == float(best[GAP])
     assert case.dampers[0].balls[0].weight == float(best.added_mass)
 
 
 def test_mass_limit_holds() -> None:
     """Trials over the limit are not run, and none of them is the best; those within are found soon."""
-    found = searched()
-    heavy = found.added_mass > 1.0
+    result = searched()
+    heavy = result.added_mass > 1.0
     assert heavy.any()
-    assert not found.feasible.values[heavy].any()
-    assert np.isnan(found.impact_share.values[heavy]).all()
-    assert found.feasible.values[12:].mean() > found.feasible.values[:12].mean() - 0.2
+    assert not result.feasible.values[heavy].any()
+    assert np.isnan(result.impact_share.values[heavy]).all()
+    assert result.feasible.values[12:].mean() > result.feasible.values[:12].mean() - 0.2
 
 
 def test_runs_without_a_value_rule_a_trial_out() -> None:
     """A trial one of whose runs never settles counts as not allowed, with the share of such runs."""
-    found = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
-    assert not found.feasible.any()
-    assert (found.missing == 1).all()
-    assert found.sizes["front"] == 0
+    result = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
+    assert not result.feasible.any()
+    assert (result.missing == 1).all()
+    assert result.sizes["front"] == 0
 
 
 def test_choices_and_misfits() -> None:
@@ -127,21 +127,21 @@ def test_choices_and_misfits() -> None:
         "damper.ball.diameter": ["20 mm", "30 mm", "40 mm"],
         "damper.cavity_length": ["25 mm", "42 mm"],
     }
-    found = rb.design(struck(), parameters, "rms", trials=20, progress=False)
-    assert set(found["damper.ball.material"].values) == {"steel", "brass"}
-    assert set(found["damper.ball.diameter"].values) <= {0.02, 0.03, 0.04}
-    misfit = (found["damper.ball.diameter"] > found["damper.cavity_length"]).values
+    result = rb.design(struck(), parameters, "rms", trials=20, progress=False)
+    assert set(result["damper.ball.material"].values) == {"steel", "brass"}
+    assert set(result["damper.ball.diameter"].values) <= {0.02, 0.03, 0.04}
+    misfit = (result["damper.ball.diameter"] > result["damper.cavity_length"]).values
     assert misfit.any()
-    assert (found.feasible.values == ~misfit).all()
-    assert (found.missing.values[misfit] == 1).all()
+    assert (result.feasible.values == ~misfit).all()
+    assert (result.missing.values[misfit] == 1).all()
 
 
 def test_the_duration_may_be_searched() -> None:
     """A trial runs as long as its parameters say: impacts are those of a sweep over the same durations."""
-    found = rb.design(struck(), {"duration": ("0.05 s", "0.5 s")}, "impacts", trials=3, progress=False)
-    swept = rb.sweep(struck(), {"duration": found.duration.values}, "impacts", progress=False)
-    assert (found.impacts.values == swept.impacts.values).all()
-    assert len(set(found.impacts.values)) > 1
+    result = rb.design(struck(), {"duration": ("0.05 s", "0.5 s")}, "impacts", trials=3, progress=False)
+    swept = rb.sweep(struck(), {"duration": result.duration.values}, "impacts", progress=False)
+    assert (result.impacts.values == swept.impacts.values).all()
+    assert len(set(result.impacts.values)) > 1
 
 
 def test_own_measure() -> None:
@@ -150,10 +150,10 @@ def test_own_measure() -> None:
     def last_place(run: Any) -> float:
         return float(abs(run.arrays.displacement[-1, 0]))
 
-    found = rb.design(struck(), {GAP: ("0.1 mm", "2 mm")}, last_place, trials=2, progress=False)
-    gap = float(found[GAP][0])
+    result = rb.design(struck(), {GAP: ("0.1 mm", "2 mm")}, last_place, trials=2, progress=False)
+    gap = float(result[GAP][0])
     run = rb.simulate(struck(damper=struck().dampers[0].model_copy(update={"gap": gap})))
-    assert float(found.last_place[0]) == pytest.approx(last_place(run))
+    assert float(result.last_place[0]) == pytest.approx(last_place(run))
 
 
 def test_same_seed_same_trials() -> None:
@@ -177,9 +177,9 @@ def test_a_stop_changes_nothing(tmp_path: Path) -> None:
     assert count_trials(store) == 11
     with journal.open("ab") as file:
         file.write(b'{"op_code":4,"wor')
-    told: list[int] = []
-    assert searched(store=store, progress=lambda done, total: told.append(done)).identical(searched())
-    assert told[0] == 11 and told[-1] == 24
+    counts: list[int] = []
+    assert searched(store=store, progress=lambda done, total: counts.append(done)).identical(searched())
+    assert counts[0] == 11 and counts[-1] == 24
     assert searched(trials=5, store=store).identical(searched(trials=5))
 
 
@@ -240,15 +240,15 @@ def test_another_study_is_refused(tmp_path: Path) -> None:
 
 def test_a_store_opens_as_what_was_found(tmp_path: Path) -> None:
     """What is on disk is what the search returned, the case files of the best trials too."""
-    found = searched(trials=6, store=tmp_path / "design")
+    result = searched(trials=6, store=tmp_path / "design")
     there = rb.open_study(tmp_path / "design").load()
-    xr.testing.assert_equal(there, found)
-    assert there.attrs == found.attrs
-    assert list(there) == list(found)
+    xr.testing.assert_equal(there, result)
+    assert there.attrs == result.attrs
+    assert list(there) == list(result)
 
 
 @pytest.mark.parametrize(
-    ("parameters", "options", "said"),
+    ("parameters", "options", "message"),
     [
         ({"damper.gapp": (1e-4, 1e-3)}, {}, "did you mean 'gap'"),
         ({GAP: (1e-3, 1e-4)}, {}, "smaller than the second"),
@@ -277,11 +277,11 @@ def test_a_store_opens_as_what_was_found(tmp_path: Path) -> None:
         ({RADIUS: (0.01, 0.02), "damper.ball.diameter": (0.01, 0.02)}, {}, "exclude each other"),
     ],
 )
-def test_clear_refusals(parameters: Any, options: dict[str, Any], said: str) -> None:
+def test_clear_refusals(parameters: Any, options: dict[str, Any], message: str) -> None:
     """What does not fit is refused before any trial, with what to try."""
     with pytest.raises(rb.CaseError) as caught:
         rb.design(struck(), parameters, progress=False, **options)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_without_optuna(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -305,29 +305,29 @@ def test_optuna_is_silent(capfd: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize("objective", ["impact_share", ["added_mass", "impact_share"]])
 def test_plot(objective: Any, size: Any, tmp_path: Path) -> None:
     """Searches for one and for several objectives are drawn without a warning, with the best trials marked."""
-    found = searched(objective=objective, trials=12)
-    figure = rb.plot_design(found, size=size)
+    result = searched(objective=objective, trials=12)
+    figure = rb.plot_design(result, size=size)
     figure.savefig(tmp_path / "design.png")
     assert len(figure.axes) == 3
     marked = figure.axes[1].get_lines()[-1]
-    assert len(np.asarray(marked.get_xdata())) == found.sizes["front"]
+    assert len(np.asarray(marked.get_xdata())) == result.sizes["front"]
 
 
 def test_plot_tells_why_a_trial_does_not_count() -> None:
     """Trials whose runs have no value are told apart from those that are too heavy, and trials are whole numbers."""
     nothing = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
     limited = searched(objective="impact_share")
-    for found, told in ((nothing, "no value (3)"), (limited, f"too heavy ({int((~limited.feasible).sum())})")):
-        axes = rb.plot_design(found).axes[0]
-        assert axes.get_legend_handles_labels()[1][2:] == [told]
+    for result, counts in ((nothing, "no value (3)"), (limited, f"too heavy ({int((~limited.feasible).sum())})")):
+        axes = rb.plot_design(result).axes[0]
+        assert axes.get_legend_handles_labels()[1][2:] == [counts]
         assert all(tick == int(tick) for tick in axes.get_xticks())
 
 
 def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In the example, heavier balls settle sooner, and the heaviest in less than half the time of the structure alone."""
     monkeypatch.chdir(tmp_path)
-    found = runpy.run_path(str(EXAMPLE))["found"]
-    best = found.isel(trial=found.front.values)
+    result = runpy.run_path(str(EXAMPLE))["found"]
+    best = result.isel(trial=result.front.values)
     assert (np.diff(best.settling_time) < 0).all()
     bare = 3 * 2 * 20 / 25.3  # ln 20 time constants of the envelope
     assert float(best.settling_time[0]) < bare

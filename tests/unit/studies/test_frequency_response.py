@@ -102,7 +102,7 @@ def test_a_run_that_fails_is_told():
 
 
 @pytest.mark.parametrize(
-    ("changes", "options", "said"),
+    ("changes", "options", "message"),
     [
         ({}, {"direction": "left"}, "must be 'up', 'down', 'both' or 'fresh'"),
         ({}, {"samples": 3}, "at least 8"),
@@ -116,8 +116,8 @@ def test_a_run_that_fails_is_told():
         ({}, {"measure": ["impact"]}, "impacts"),
     ],
 )
-def test_bad_input_is_answered(changes, options, said):
+def test_bad_input_is_answered(changes, options, message):
     """What does not fit is told with what would."""
     with pytest.raises(rb.CaseError) as error:
         rb.frequency_response(case(**changes), **{"frequencies": [30.0, 31.0], **QUICK, **options})
-    assert said in str(error.value)
+    assert message in str(error.value)

@@ -33,16 +33,16 @@ def ball(**changes):
 
 def test_the_intervals_of_chaotic_motion_hold_the_mean():
     """Of 60 runs from other starts, about 95 % of the intervals hold the mean of all."""
-    found = rb.sweep(ball(), {"damper.start": rb.linspace(-0.9, 0.9, 60)}, STEADY, cycles=(100, 192), progress=False)
+    result = rb.sweep(ball(), {"damper.start": rb.linspace(-0.9, 0.9, 60)}, STEADY, cycles=(100, 192), progress=False)
     for name in STEADY:
-        half = found[f"{name}_interval"]
+        half = result[f"{name}_interval"]
         assert np.isfinite(half).mean() > 0.85, name
-        value = found[name].where(np.isfinite(half), drop=True)
-        inside = abs(value - found[name].mean()) < half
+        value = result[name].where(np.isfinite(half), drop=True)
+        inside = abs(value - result[name].mean()) < half
         assert 0.85 < float(inside.mean()) <= 1.0, name
-        assert half.attrs["units"] == found[name].attrs["units"]
+        assert half.attrs["units"] == result[name].attrs["units"]
         # Not narrower than the scatter of the runs; wider where neighbouring cycles make up for each other.
-        assert 0.7 < float(half.median()) / (1.96 * float(found[name].std())) < 5, name
+        assert 0.7 < float(half.median()) / (1.96 * float(result[name].std())) < 5, name
 
 
 def test_periodic_motion_has_a_narrow_interval():
@@ -59,8 +59,8 @@ def test_periodic_motion_has_a_narrow_interval():
 def test_a_free_decay_has_no_interval():
     """Measures of what is not driven for good, and peaks, carry none."""
     free = ball(load=None, structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", velocity="1 m/s"))
-    found = rb.sweep(free, {"damper.gap": ["1 mm"]}, ["rms", "peak"], progress=False)
-    assert set(found.data_vars) == {"status", "rms", "peak"}
+    result = rb.sweep(free, {"damper.gap": ["1 mm"]}, ["rms", "peak"], progress=False)
+    assert set(result.data_vars) == {"status", "rms", "peak"}
     driven = rb.sweep(ball(), {"damper.gap": ["1 mm"]}, ["rms", "peak"], cycles=(20, 20), progress=False)
     assert set(driven.data_vars) == {"status", "rms", "peak", "rms_interval"}
 
@@ -69,19 +69,19 @@ def test_intervals_do_not_change_what_is_measured():
     """Losses at the ends of cycles are those at the ends of the window, and the store returns the intervals."""
     axes = {"load.frequency": rb.linspace("27 Hz", "36 Hz", 5)}
     coarse = rb.sweep(ball(), axes, ["loss_per_cycle"], cycles=(50, 64), samples=2, progress=False)
-    found = rb.sweep(ball(), axes, ["loss_per_cycle"], cycles=(50, 64), progress=False)
-    assert coarse.loss_per_cycle.identical(found.loss_per_cycle)
+    result = rb.sweep(ball(), axes, ["loss_per_cycle"], cycles=(50, 64), progress=False)
+    assert coarse.loss_per_cycle.identical(result.loss_per_cycle)
     assert np.isnan(coarse.loss_per_cycle_interval).all()
 
 
 def test_intervals_in_stores_and_responses(tmp_path):
     """A store returns intervals and the warning; a frequency response followed up and down has them, too."""
-    found = rb.sweep(
+    result = rb.sweep(
         ball(), {"damper.gap": ["1 mm", "2 mm"]}, ["rms"], cycles=(5, 12), store=tmp_path / "s.zarr", progress=False
     )
     again = rb.open_study(tmp_path / "s.zarr")
-    assert again.rms_interval.load().identical(found.rms_interval.load())
-    assert again.attrs.get("too_short") == found.attrs.get("too_short")
+    assert again.rms_interval.load().identical(result.rms_interval.load())
+    assert again.attrs.get("too_short") == result.attrs.get("too_short")
     again.load().to_netcdf(tmp_path / "s.nc")
     response = rb.frequency_response(ball(), rb.linspace("28 Hz", "35 Hz", 4), cycles=(60, 32), progress=False)
     assert response.rms_interval.dims == response.rms.dims
@@ -99,8 +99,8 @@ def test_random_vibration():
             duration=length,
         )
         axes = {"base.seed": list(range(1, 13))}
-        found = rb.sweep(case, axes, ["rms"], skip="2 s", samples=20_001, progress=False)
-        medians.append(float(found.rms_interval.median() / found.rms.mean()))
+        result = rb.sweep(case, axes, ["rms"], skip="2 s", samples=20_001, progress=False)
+        medians.append(float(result.rms_interval.median() / result.rms.mean()))
     assert medians[1] / medians[0] == pytest.approx(0.5, abs=0.15)
     assert 0.01 < medians[1] < 0.1
 
@@ -121,23 +121,23 @@ def test_particles_on_a_shaker():
     )
     axes = {"damper.packing.seed": [1, 2, 3, 4, 5, 6]}
     names = ["loss_per_cycle", "reduced_loss", "loss_factor", "impact_loss"]
-    found = rb.sweep(case, axes, names, cycles=(5, 60), progress=False)
+    result = rb.sweep(case, axes, names, cycles=(5, 60), progress=False)
     for name in names:
-        half = found[f"{name}_interval"]
+        half = result[f"{name}_interval"]
         assert np.isfinite(half).mean() > 0.6, name
-        assert 0.3 < float(half.median()) / (1.96 * float(found[name].std())) < 4, name
+        assert 0.3 < float(half.median()) / (1.96 * float(result[name].std())) < 4, name
     short = rb.sweep(case, {"damper.packing.seed": [1]}, names, cycles=(5, 6), progress=False)
     assert np.isnan(short.loss_per_cycle_interval).all() and "loss_per_cycle" in short.attrs["too_short"]
 
 
 def test_a_line_lies_in_its_interval():
     """The figure of a measure over one axis has a band as high as the interval."""
-    found = rb.sweep(
+    result = rb.sweep(
         ball(), {"load.frequency": ["28 Hz", "28.1 Hz", "28.2 Hz"]}, ["rms"], cycles=(100, 192), progress=False
     )
-    (band,) = rb.plot_map(found).axes[0].collections
+    (band,) = rb.plot_map(result).axes[0].collections
     heights = [
         np.ptp(part[part[:, 0] == x, 1]) for part in [band.get_paths()[0].vertices] for x in np.unique(part[:, 0])
     ]
-    shown = 2 * found.rms_interval.values
+    shown = 2 * result.rms_interval.values
     assert np.array(heights) / np.array(heights).max() == pytest.approx(shown / shown.max(), abs=1e-6)

@@ -32,42 +32,42 @@ def shaken(**changes: Any) -> rb.Case:
 
 
 @pytest.fixture(scope="module")
-def found() -> Any:
+def result() -> Any:
     """Return a small map."""
     return rb.loss_map(shaken(), ["0.5 mm", "1 mm", "2 mm"], ["10 Hz", "20 Hz"], cycles=(40, 20), progress=False)
 
 
-def test_loss_and_masses_agree(found: Any) -> None:
+def test_loss_and_masses_agree(result: Any) -> None:
     """The loss from the impacts is that from the force on the cavity, and both are those of the loss factor."""
-    assert (found.status == 0).all()
+    assert (result.status == 0).all()
     mass = 7850 * 4 / 3 * np.pi * 0.01**3
-    assert float(found.particle_mass) == pytest.approx(mass)
-    by_force = np.pi * found.damping_mass / mass
-    assert found.reduced_loss[:2].values == pytest.approx(by_force[:2].values, rel=1e-3)
+    assert float(result.particle_mass) == pytest.approx(mass)
+    by_force = np.pi * result.damping_mass / mass
+    assert result.reduced_loss[:2].values == pytest.approx(by_force[:2].values, rel=1e-3)
     # A motion that does not repeat ends with another energy than it began with.
-    assert found.reduced_loss.values == pytest.approx(by_force.values, rel=1 / 20)
-    assert found.loss_factor.values == pytest.approx(np.abs(found.damping_mass / found.effective_mass).values)
-    speed = 2 * np.pi * found[FREQUENCY] * found[AMPLITUDE]
-    assert (found.reduced_loss * mass * speed**2).values == pytest.approx(found.loss_per_cycle.values)
+    assert result.reduced_loss.values == pytest.approx(by_force.values, rel=1 / 20)
+    assert result.loss_factor.values == pytest.approx(np.abs(result.damping_mass / result.effective_mass).values)
+    speed = 2 * np.pi * result[FREQUENCY] * result[AMPLITUDE]
+    assert (result.reduced_loss * mass * speed**2).values == pytest.approx(result.loss_per_cycle.values)
 
 
-def test_map_is_a_sweep(found: Any) -> None:
+def test_map_is_a_sweep(result: Any) -> None:
     """Each number is that of a sweep at that amplitude and frequency, in the unit of the case's motion."""
-    assert found.loss_factor.dims == (AMPLITUDE, FREQUENCY)
-    assert found[AMPLITUDE].attrs["units"] == "m"
+    assert result.loss_factor.dims == (AMPLITUDE, FREQUENCY)
+    assert result[AMPLITUDE].attrs["units"] == "m"
     one = rb.sweep(
         shaken(), {AMPLITUDE: ["2 mm"], FREQUENCY: ["20 Hz"]}, "effective_mass", cycles=(40, 20), progress=False
     )
-    assert float(one.effective_mass.item()) == float(found.effective_mass[2, 1])
+    assert float(one.effective_mass.item()) == float(result.effective_mass[2, 1])
     faster = shaken(structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 m/s^2", frequency="10 Hz")))
     by_acceleration = rb.loss_map(faster, ["10 m/s^2"], ["10 Hz"], cycles=(2, 2), progress=False)
     assert by_acceleration[AMPLITUDE].attrs["units"] == "m/s^2"
 
 
 @pytest.mark.parametrize("size", ["column", "page", "slide"])
-def test_plot(found: Any, size: Any, tmp_path: Path) -> None:
+def test_plot(result: Any, size: Any, tmp_path: Path) -> None:
     """Three panels are drawn in every size, without a warning; the mass is over that of the particles."""
-    figure = rb.plot_loss_map(found, size=size)
+    figure = rb.plot_loss_map(result, size=size)
     figure.savefig(tmp_path / "map.png")
     bars = [axes.get_ylabel() for axes in figure.axes[3:]]
     assert [bar.split("$")[0].strip() for bar in bars] == ["Loss factor", "Effective mass", "Loss per cycle"]
@@ -75,7 +75,7 @@ def test_plot(found: Any, size: Any, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "amplitudes", "said"),
+    ("changes", "amplitudes", "message"),
     [
         ({"structure": rb.Fixed()}, ["1 mm"], "a shaker with one harmonic motion"),
         ({"damper": []}, ["1 mm"], "a case with a damper"),
@@ -85,9 +85,9 @@ def test_plot(found: Any, size: Any, tmp_path: Path) -> None:
         ({}, ["-1 mm", "0 mm", 1e400], r"amplitudes: structure.motion.amplitude\[2\] = inf\n.*finite"),
     ],
 )
-def test_clear_refusals(changes: dict[str, Any], amplitudes: Any, said: str) -> None:
+def test_clear_refusals(changes: dict[str, Any], amplitudes: Any, message: str) -> None:
     """A case without a shaker or a damper, or amplitudes in another unit or of nothing, are refused with what to try."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         rb.loss_map(shaken(**changes), amplitudes, ["10 Hz"])
 
 
@@ -98,10 +98,10 @@ def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     and gravity is up to a tenth of the shaker's acceleration.
     """
     monkeypatch.chdir(tmp_path)
-    found = runpy.run_path(str(EXAMPLE))["found"]
-    slow = found.isel({FREQUENCY: 0, AMPLITUDE: -1})
+    result = runpy.run_path(str(EXAMPLE))["found"]
+    slow = result.isel({FREQUENCY: 0, AMPLITUDE: -1})
     assert float(slow.effective_mass / slow.particle_mass) == pytest.approx(1, abs=0.02)
-    ridge = found.isel(found.reduced_loss.argmax([AMPLITUDE])).sel({FREQUENCY: slice(80, 200)})
+    ridge = result.isel(result.reduced_loss.argmax([AMPLITUDE])).sel({FREQUENCY: slice(80, 200)})
     travel = ridge[AMPLITUDE] / (2 * np.pi * ridge[FREQUENCY]) ** 2
     phase = np.arctan2(2, 4 * np.pi) - np.arccos(2e-3 / (travel * np.hypot(4 * np.pi, 2)))
     np.testing.assert_allclose(ridge.reduced_loss, 16 * np.cos(phase) ** 2, rtol=0.01)
@@ -118,12 +118,12 @@ def test_one_frequency_or_amplitude_is_drawn_as_lines(
     amplitudes: list[str], frequencies: list[str], along: str, size: Any
 ) -> None:
     """Lines over the axis that has several values hold the numbers of the map; the single value is named above them."""
-    found = rb.loss_map(shaken(), amplitudes, frequencies, cycles=(40, 20), progress=False)
-    figure = rb.plot_loss_map(found, size=size)
+    result = rb.loss_map(shaken(), amplitudes, frequencies, cycles=(40, 20), progress=False)
+    figure = rb.plot_loss_map(result, size=size)
     figure.draw_without_rendering()
     assert along in figure.axes[-1].get_xlabel()
-    mass_ratio = found.effective_mass / found.particle_mass
-    for panel, values in zip(figure.axes, (found.loss_factor, mass_ratio, found.reduced_loss), strict=True):
+    mass_ratio = result.effective_mass / result.particle_mass
+    for panel, values in zip(figure.axes, (result.loss_factor, mass_ratio, result.reduced_loss), strict=True):
         assert panel.lines[0].get_ydata() == pytest.approx(values.values.ravel())
     title = figure.get_suptitle()
     assert ("10 Hz" if along == "mm" else "1 mm") in title

@@ -49,10 +49,10 @@ def inelastic(restitution):
 
 def test_example():
     """The last windows of order hold the motion with two impacts a cycle, with its exact multiplier; chaos comes first."""
-    found = runpy.run_path(str(EXAMPLE))["study"].growth_per_cycle
+    result = runpy.run_path(str(EXAMPLE))["study"].growth_per_cycle
     half_cycle = 0.9349517810953712  # exact multiplier at 33 Hz by the solution of Masri and Caughey (1966)
-    assert float(found[-1]) == pytest.approx(2 * math.log(half_cycle), rel=1e-4)
-    assert (found[:2] > 0.5).all()
+    assert float(result[-1]) == pytest.approx(2 * math.log(half_cycle), rel=1e-4)
+    assert (result[:2] > 0.5).all()
 
 
 def test_variants_know_nothing_of_each_other():
@@ -69,12 +69,12 @@ def test_variants_know_nothing_of_each_other():
 def test_study_on_disk(tmp_path):
     """With a store the result is the same, and is there when asked for again."""
     axes = {"load.frequency": [29.0, 33.0]}
-    kept = rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **QUICK).load()
+    stored = rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **QUICK).load()
     again = rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **QUICK).load()
     here = rb.lyapunov(case(), axes, **QUICK)
-    for found in (kept, again):
-        assert (found.exponent.values == here.exponent.values).all()
-        assert (found.running_exponent.values == here.running_exponent.values).all()
+    for result in (stored, again):
+        assert (result.exponent.values == here.exponent.values).all()
+        assert (result.running_exponent.values == here.running_exponent.values).all()
     alone = rb.lyapunov(case(), store=tmp_path / "alone.zarr", **QUICK).load()
     assert alone.equals(rb.lyapunov(case(), **QUICK))
     assert alone.exponent.dims == ()
@@ -84,11 +84,11 @@ def test_study_on_disk(tmp_path):
 
 def test_units_and_names():
     """Each variable says what it is, the exponent is the growth over the cycle, and the last average is it."""
-    found = rb.lyapunov(case(), {"load.frequency": [30.0, 33.0]}, **QUICK)
-    assert all({"units", "long_name"} <= set(v.attrs) for n, v in found.items() if n != "status")
-    assert found.growth_per_cycle.values == pytest.approx(found.exponent.values / [30.0, 33.0])
-    assert (found.running_exponent[:, -1] == found.exponent).all()
-    assert found.cycle.values == pytest.approx(np.arange(1, 61))
+    result = rb.lyapunov(case(), {"load.frequency": [30.0, 33.0]}, **QUICK)
+    assert all({"units", "long_name"} <= set(v.attrs) for n, v in result.items() if n != "status")
+    assert result.growth_per_cycle.values == pytest.approx(result.exponent.values / [30.0, 33.0])
+    assert (result.running_exponent[:, -1] == result.exponent).all()
+    assert result.cycle.values == pytest.approx(np.arange(1, 61))
 
 
 def test_the_phase_of_the_strobe_does_not_matter():
@@ -100,19 +100,19 @@ def test_the_phase_of_the_strobe_does_not_matter():
     )
     turned = {"load.phase": np.linspace(0, math.pi, 9)[:-1]}  # a contact lasts a sixteenth of half a cycle
     soft = case(damper=damper, method=rb.EventDriven(), load=rb.Harmonic(amplitude="5 N", frequency="33 Hz"))
-    found = rb.lyapunov(soft, turned, cycles=(200, 200), pairs=2, progress=False)
+    result = rb.lyapunov(soft, turned, cycles=(200, 200), pairs=2, progress=False)
     impacts = rb.sweep(soft, turned, ["impacts_per_cycle"], cycles=(200, 200), progress=False)
     assert impacts.impacts_per_cycle.values == pytest.approx(2.0)
-    assert float(found.growth_per_cycle[0]) < -0.05
-    assert np.ptp(found.growth_per_cycle.values) < 1e-4
+    assert float(result.growth_per_cycle[0]) < -0.05
+    assert np.ptp(result.growth_per_cycle.values) < 1e-4
 
 
 def test_motions_that_stick_forget_everything():
     """A ball that comes to rest on a shaker leaves it at the same moment whatever it did before: -inf."""
-    found = rb.lyapunov(inelastic(0.0), **QUICK)
-    assert float(found.exponent) == -math.inf
-    assert np.isneginf(found.running_exponent).all()
-    assert np.isnan(found.standard_error)
+    result = rb.lyapunov(inelastic(0.0), **QUICK)
+    assert float(result.exponent) == -math.inf
+    assert np.isneginf(result.running_exponent).all()
+    assert np.isnan(result.standard_error)
     assert float(rb.lyapunov(inelastic(0.85), **QUICK).exponent) > 1
 
 
@@ -134,8 +134,8 @@ def test_chaos_agrees_with_pairs_left_to_themselves():
             )
             for z, v, y, w in zip(*states, strict=True)
         ]
-        found = [run.arrays for run in rb.simulate_many(cases)]
-        parts = [(b.displacement, b.velocity / 200, b.ball_position, b.ball_velocity / 200) for b in found]
+        result = [run.arrays for run in rb.simulate_many(cases)]
+        parts = [(b.displacement, b.velocity / 200, b.ball_position, b.ball_velocity / 200) for b in result]
         return np.array([np.hstack(part) for part in parts])
 
     apart = np.linalg.norm(motions(1e-12) - motions(0.0), axis=2)
@@ -147,7 +147,7 @@ def test_chaos_agrees_with_pairs_left_to_themselves():
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         ({"pairs": 0}, "pairs = 0"),
         ({"steps": 1}, "steps = 1"),
@@ -158,9 +158,9 @@ def test_chaos_agrees_with_pairs_left_to_themselves():
         ({"axes": {"duration": [1.0, 2.0]}, "cycles": None}, "duration"),
     ],
 )
-def test_bad_input_is_answered(options, said):
+def test_bad_input_is_answered(options, message):
     """What does not fit is told with what would, before anything runs."""
-    with pytest.raises(rb.CaseError, match=said):
+    with pytest.raises(rb.CaseError, match=message):
         rb.lyapunov(case(), **{**QUICK, **options})
 
 

@@ -68,12 +68,12 @@ def test_variants_are_runs() -> None:
         "peak_velocity",
         "settling_time",
     ]
-    found = rb.sweep(struck(), axes, [*names, turned], workers=2, progress=False)
-    assert (found.status == 0).all()
-    assert found.peak.attrs["units"] == "m"
+    result = rb.sweep(struck(), axes, [*names, turned], workers=2, progress=False)
+    assert (result.status == 0).all()
+    assert result.peak.attrs["units"] == "m"
     for i, restitution in enumerate([0.5, 0.9]):
         alone = rb.simulate(struck(damper=box(direction="z", contact=rb.Tsuji(restitution=restitution))))
-        one = found.isel({"damper.contact.restitution": i, "structure.velocity": 1})
+        one = result.isel({"damper.contact.restitution": i, "structure.velocity": 1})
         assert float(one.turned) == turned(alone)
         assert float(one.motion_share) == alone.ledger.shares["motion"]
         assert float(one.impact_share) == pytest.approx(sum(alone.ledger.partner_share), rel=1e-12)
@@ -83,7 +83,7 @@ def test_variants_are_runs() -> None:
         settled = rb.analysis.settling_time(alone.arrays.time, alone.arrays.displacement[:, 0])
         assert float(one.settling_time) == settled < 0.08
     again = rb.sweep(struck(), axes, [*names, turned], workers=1, progress=False)
-    assert again.equals(found)
+    assert again.equals(result)
 
 
 @pytest.mark.parametrize("samples", [128, 200, 333])
@@ -91,23 +91,23 @@ def test_windows_hold_whole_cycles(samples: int) -> None:
     """However many samples are asked for, measures look at just the cycles that are."""
 
     def in_two_cycles(run: Run) -> float:
-        found = shaken_cavity(run, frequency=50.0, after=0.02 - 1e-12)
-        assert found.attrs["cycles"] == 2
-        return float(found.effective_mass[0])
+        result = shaken_cavity(run, frequency=50.0, after=0.02 - 1e-12)
+        assert result.attrs["cycles"] == 2
+        return float(result.effective_mass[0])
 
-    found = rb.sweep(
+    result = rb.sweep(
         shaken(), {FREQUENCY: ["50 Hz"]}, ["effective_mass", in_two_cycles], cycles=(1, 2), samples=samples
     )
-    assert found.effective_mass.item() == pytest.approx(found.in_two_cycles.item(), rel=1e-9)
+    assert result.effective_mass.item() == pytest.approx(result.in_two_cycles.item(), rel=1e-9)
 
 
 def test_friction_is_a_number_along_an_axis() -> None:
     """Friction that is given as a number is one in axes and random designs, with the runs that its coefficient gives."""
     spread = rb.linspace(0.1, 0.5, 3)
-    found = rb.sweep(shaken(), {"damper.friction": spread}, "impact_loss")
+    result = rb.sweep(shaken(), {"damper.friction": spread}, "impact_loss")
     same = rb.sweep(shaken(), {"damper.friction.coefficient": spread}, "impact_loss")
-    np.testing.assert_allclose(found["damper.friction"], [0.1, 0.3, 0.5], rtol=1e-15)
-    np.testing.assert_array_equal(found.impact_loss, same.impact_loss)
+    np.testing.assert_allclose(result["damper.friction"], [0.1, 0.3, 0.5], rtol=1e-15)
+    np.testing.assert_array_equal(result.impact_loss, same.impact_loss)
     bounds = rb.random_design({"damper.friction": (0.1, 0.5), "damper.rolling": (0.01, 0.02)}, 4, seed=1)
     drawn = rb.sweep(shaken(dampers=[box(rolling=0.01)]), bounds, "impact_loss")
     assert len({*drawn["damper.friction"].values.tolist()}) == len({*drawn["damper.rolling"].values.tolist()}) == 4
@@ -134,17 +134,17 @@ def test_too_few_samples_for_the_first_harmonic_are_refused(window: Any) -> None
     """Samples from which no first harmonic is known are refused where it is asked for, and taken where it is not."""
     with pytest.raises(rb.CaseError, match=r"too few for loss_factor, which requires 8\n  try: more"):
         rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, ["loss_per_cycle", "loss_factor"], progress=False, **window)
-    found = rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, "loss_per_cycle", progress=False, **window)
-    assert np.isfinite(found.loss_per_cycle).all()
+    result = rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, "loss_per_cycle", progress=False, **window)
+    assert np.isfinite(result.loss_per_cycle).all()
 
 
 def test_samples_are_those_of_each_variant() -> None:
     """Samples that are too few for the case itself, but not for its variants, are enough."""
     case = shaken(output=rb.Output(rate=300))
     slow = {"structure.motion.frequency": [20.0, 30.0, 50.0]}
-    found = rb.sweep(case, slow, ["loss_factor"], progress=False)
-    assert found.status.values.tolist() == [0, 0, 9]
-    assert "6 samples per cycle are too few for loss_factor" in found.attrs["refused"]
+    result = rb.sweep(case, slow, ["loss_factor"], progress=False)
+    assert result.status.values.tolist() == [0, 0, 9]
+    assert "6 samples per cycle are too few for loss_factor" in result.attrs["refused"]
 
 
 def test_a_cavity_that_stands_still_has_no_cycles() -> None:
@@ -175,7 +175,7 @@ def test_what_has_not_begun_has_no_cycles() -> None:
 
 def test_windows_leave_out_what_is_before() -> None:
     """Work, losses and shares count from the begin of the window, whose ledger closes by itself."""
-    found = rb.sweep(
+    result = rb.sweep(
         struck(),
         {"structure.damping": [0.0, 100.0]},
         ["viscous_loss", "impact_loss", "motion_share", "energy_residual", "peak"],
@@ -186,30 +186,30 @@ def test_windows_leave_out_what_is_before() -> None:
     case = struck(output=rb.Output(rate=100 / 0.05))
     arrays, ledger = (run := rb.simulate(case)).arrays, run.ledger
     first = np.searchsorted(arrays.time, 0.03 - 1e-12)
-    assert float(found.viscous_loss) == pytest.approx(arrays.viscous_loss[-1] - arrays.viscous_loss[first], rel=1e-12)
+    assert float(result.viscous_loss) == pytest.approx(arrays.viscous_loss[-1] - arrays.viscous_loss[first], rel=1e-12)
     lost = ledger.contact_loss[-1] - ledger.contact_loss[first]
-    assert float(found.impact_loss) == pytest.approx(lost, rel=1e-12)
+    assert float(result.impact_loss) == pytest.approx(lost, rel=1e-12)
     fallen = ledger.gravity[first] - ledger.gravity[-1]
     share = ledger.motion[-1] / (ledger.motion[first] + ledger.work[-1] - ledger.work[first] + fallen)
-    assert float(found.motion_share) == pytest.approx(share, rel=1e-12)
-    assert float(found.energy_residual) < 1e-3
-    assert float(found.peak) == np.abs(arrays.displacement[first:]).max()
+    assert float(result.motion_share) == pytest.approx(share, rel=1e-12)
+    assert float(result.energy_residual) < 1e-3
+    assert float(result.peak) == np.abs(arrays.displacement[first:]).max()
 
 
 def test_loss_maps_hold_what_the_analysis_finds() -> None:
     """A loss map of particles has masses, loss factor and loss of the analysis of each run."""
-    found = rb.loss_map(
+    result = rb.loss_map(
         shaken(), [(20, "m/s^2"), (90, "m/s^2")], [40.0, 60.0], cycles=(2, 4), samples=401, progress=False
     )
-    assert found.loss_factor.dims == (AMPLITUDE, FREQUENCY)
-    assert (found.status == 0).all()
-    assert "impacts_per_cycle" not in found
+    assert result.loss_factor.dims == (AMPLITUDE, FREQUENCY)
+    assert (result.status == 0).all()
+    assert "impacts_per_cycle" not in result
     mass = 12 * 7850 * np.pi / 6 * 0.005**3
-    assert float(found.particle_mass) == pytest.approx(mass)
+    assert float(result.particle_mass) == pytest.approx(mass)
     motion = rb.Harmonic(amplitude=(90, "m/s^2"), frequency=60, direction="z")
     case = shaken(structure=rb.Shaker(motion=motion), duration=6 / 60, output=rb.Output(rate=100 * 60))
     alone = rb.analysis.shaken_cavity(rb.simulate(case), frequency=60, after=2 / 60)
-    one = found.isel({AMPLITUDE: 1, FREQUENCY: 1})
+    one = result.isel({AMPLITUDE: 1, FREQUENCY: 1})
     by_force, by_energy = alone.sel(way="complex power"), alone.sel(way="energy")
     assert float(one.effective_mass) == pytest.approx(float(by_force.effective_mass), rel=1e-9)
     assert float(one.loss_factor) == pytest.approx(abs(float(by_force.loss_factor)), rel=1e-9)
@@ -242,20 +242,20 @@ def test_a_stop_loses_no_finished_run(tmp_path: Path, monkeypatch: pytest.Monkey
     monkeypatch.setattr(
         particle_work, "simulate_dem", lambda case, **options: (ran.append(case), simulate(case, **options))[1]
     )
-    found = rb.sweep(struck(), axes, "impact_share", store=store, workers=1, progress=False)
+    result = rb.sweep(struck(), axes, "impact_share", store=store, workers=1, progress=False)
     assert len(ran) == 2
     whole = rb.sweep(struck(), axes, "impact_share", progress=False)
-    assert found.impact_share.values.tobytes() == whole.impact_share.values.tobytes()
+    assert result.impact_share.values.tobytes() == whole.impact_share.values.tobytes()
     assert len(set(whole.impact_share.values)) == 4
 
 
 def test_corners_that_cannot_be_run_have_a_status() -> None:
     """A variant whose given step is too long is refused by itself; the others are run."""
     case = struck(method=rb.Dem(dt="40 us"))
-    found = rb.sweep(case, {"damper.softening": [1e5, 1.0]}, "impact_share", progress=False)
-    assert found.status.values.tolist() == [0, found.status.attrs["flag_meanings"].split().index("refused")]
-    assert np.isfinite(found.impact_share.values).tolist() == [True, False]
-    why = found.attrs["refused"].splitlines()
+    result = rb.sweep(case, {"damper.softening": [1e5, 1.0]}, "impact_share", progress=False)
+    assert result.status.values.tolist() == [0, result.status.attrs["flag_meanings"].split().index("refused")]
+    assert np.isfinite(result.impact_share.values).tolist() == [True, False]
+    why = result.attrs["refused"].splitlines()
     assert why[0] == "damper.softening = 1" and "40.0 µs is too long" in why[2]
 
 
@@ -263,30 +263,30 @@ def test_stores_keep_why_a_variant_is_refused(tmp_path: Path) -> None:
     """A study that is read from disk has the reason of a refusal, as the one that was returned, also when it ran before."""
     case, axes = struck(method=rb.Dem(dt="40 us")), {"damper.softening": [1e5, 1.0]}
     store = tmp_path / "study.zarr"
-    found = rb.sweep(case, axes, store=store, progress=False)
-    assert found.attrs["refused"]
-    assert rb.open_study(store).attrs["refused"] == found.attrs["refused"]
-    assert rb.sweep(case, axes, store=store, progress=False).attrs["refused"] == found.attrs["refused"]
+    result = rb.sweep(case, axes, store=store, progress=False)
+    assert result.attrs["refused"]
+    assert rb.open_study(store).attrs["refused"] == result.attrs["refused"]
+    assert rb.sweep(case, axes, store=store, progress=False).attrs["refused"] == result.attrs["refused"]
 
 
 def test_runs_that_leave_their_bounds_are_marked() -> None:
     """Each run's flags are its own warnings: overlaps that are too deep, contacts of too few steps."""
     cases = {"damper.softening": [1.0, 1e5], "method.dt": ["0.1 us", "2 us"]}
-    found = rb.sweep(struck(method=rb.Dem(dt="0.1 us"), duration="5 ms"), cases, "impact_share", progress=False)
-    about = found.warnings.attrs
+    result = rb.sweep(struck(method=rb.Dem(dt="0.1 us"), duration="5 ms"), cases, "impact_share", progress=False)
+    about = result.warnings.attrs
     flags = dict(zip(about["flag_meanings"].split(), about["flag_masks"], strict=True))
-    assert found.status.values.tolist() == [[0, 0], [0, 0]] and "refused" not in found.attrs
+    assert result.status.values.tolist() == [[0, 0], [0, 0]] and "refused" not in result.attrs
     for at in np.ndindex(2, 2):
         values = {
-            "damper.softening": found["damper.softening"].values[at[0]],
-            "method.dt": found["method.dt"].values[at[1]],
+            "damper.softening": result["damper.softening"].values[at[0]],
+            "method.dt": result["method.dt"].values[at[1]],
         }
         notes = " ".join(rb.simulate(struck(duration="5 ms").replaced(values)).notes)
-        bits = int(found.warnings.values[at])
+        bits = int(result.warnings.values[at])
         assert bool(bits & flags["few_steps"]) == ("steps in the shortest contact" in notes)
         assert bool(bits & flags["deep_overlap"]) == ("overlaps reach" in notes)
-    assert np.unique(found.warnings.values & flags["few_steps"]).size == 2
-    assert np.unique(found.warnings.values & flags["deep_overlap"]).size == 2
+    assert np.unique(result.warnings.values & flags["few_steps"]).size == 2
+    assert np.unique(result.warnings.values & flags["deep_overlap"]).size == 2
 
 
 REFUSED = {
@@ -317,9 +317,9 @@ def test_stops_are_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     case = shaken(duration="1000 s", dampers=[box(packing=rb.Settled(seed=9))])
     task = particle_work.ParticleWork(case, read_axes(case, {AMPLITUDE: [60.0]}), ["work"])
     assert task.run(0, 1, cancelled=lambda: True) is None
-    asked: list[bool] = []
+    calls: list[bool] = []
     monkeypatch.setattr(particle_work, "settle_all", lambda case, proceed: True)
-    assert task.run(0, 1, cancelled=lambda: (asked.append(True), len(asked) > 3)[1]) is None
+    assert task.run(0, 1, cancelled=lambda: (calls.append(True), len(calls) > 3)[1]) is None
 
 
 def test_beds_are_settled_once(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -34,10 +34,10 @@ def struck(**changes: Any) -> rb.Case:
 def test_points_are_those_of_a_sweep() -> None:
     """Mean and variance are those of the runs, and a parameter without influence has no index."""
     bounds = BOUNDS | {"structure.velocity": (0.0, 1e-12)}
-    found = rb.sensitivity(struck(), bounds, "impact_share", 64, progress=False)
-    assert found.total.sel(measure="impact_share", parameter="structure.velocity") < 1e-3
-    assert 0 < float(found["mean"][0]) < 1
-    assert (found.total.sel(parameter=list(BOUNDS)) > 0.05).all()
+    result = rb.sensitivity(struck(), bounds, "impact_share", 64, progress=False)
+    assert result.total.sel(measure="impact_share", parameter="structure.velocity") < 1e-3
+    assert 0 < float(result["mean"][0]) < 1
+    assert (result.total.sel(parameter=list(BOUNDS)) > 0.05).all()
 
 
 def test_same_seed_same_indices() -> None:
@@ -53,28 +53,28 @@ def test_same_seed_same_indices() -> None:
 def test_several_measures_names_and_logarithms() -> None:
     """Measures have a row each; choices and logarithmic ranges are parameters, too."""
     bounds = BOUNDS | {"damper.ball.material": ["steel", "brass", "glass"]}
-    found = rb.sensitivity(struck(), bounds, ["peak_contact_force", "impacts"], 16, log=["damper.gap"], progress=False)
-    assert found.total.dims == ("measure", "parameter")
-    assert found.measure.values.tolist() == ["peak_contact_force", "impacts"]
-    assert found.parameter.values.tolist() == list(bounds)
-    assert (found.left_out == 0).all()
+    result = rb.sensitivity(struck(), bounds, ["peak_contact_force", "impacts"], 16, log=["damper.gap"], progress=False)
+    assert result.total.dims == ("measure", "parameter")
+    assert result.measure.values.tolist() == ["peak_contact_force", "impacts"]
+    assert result.parameter.values.tolist() == list(bounds)
+    assert (result.left_out == 0).all()
 
 
 def test_means_over_starts() -> None:
     """With starts, each point is the mean over them: the mean of all is that of as many sweeps."""
-    found = rb.sensitivity(struck(), BOUNDS, "impacts", 8, starts=[-1, 1], progress=False)
+    result = rb.sensitivity(struck(), BOUNDS, "impacts", 8, starts=[-1, 1], progress=False)
     single = [rb.sensitivity(struck(), BOUNDS, "impacts", 8, starts=[s, s], progress=False)["mean"] for s in (-1, 1)]
-    assert float(found["mean"][0]) == pytest.approx(np.mean(single))
+    assert float(result["mean"][0]) == pytest.approx(np.mean(single))
 
 
 def test_goes_on_from_a_store(tmp_path: Path) -> None:
     """With a store the runs are on disk, and the same call takes them from there."""
     store = tmp_path / "study.zarr"
     first = rb.sensitivity(struck(), BOUNDS, n=8, store=store, progress=False)
-    told: list[int] = []
-    again = rb.sensitivity(struck(), BOUNDS, n=8, store=store, progress=lambda done, total: told.append(done))
+    counts: list[int] = []
+    again = rb.sensitivity(struck(), BOUNDS, n=8, store=store, progress=lambda done, total: counts.append(done))
     assert first.equals(again)
-    assert told == [32]
+    assert counts == [32]
     with pytest.raises(rb.StoreError, match="another study"):
         rb.sensitivity(struck(), BOUNDS, n=8, seed=1, store=store)
 
@@ -93,15 +93,15 @@ def test_points_without_a_value_are_left_out() -> None:
     status = np.zeros(128)
     status[5] = 2
     values[77] = np.nan
-    found = _indices(runs(values, status), ["a", "b"], 32, 0.95, 0)
-    assert int(found.left_out[0]) == 2
-    assert np.isfinite(found.total).all()
+    result = _indices(runs(values, status), ["a", "b"], 32, 0.95, 0)
+    assert int(result.left_out[0]) == 2
+    assert np.isfinite(result.total).all()
     with pytest.raises(rb.CaseError, match="32 of 32 base points have a run without a value"):
         _indices(runs(values, 1), ["a", "b"], 32, 0.95, 0)
 
 
 @pytest.mark.parametrize(
-    ("bounds", "options", "said"),
+    ("bounds", "options", "message"),
     [
         ({"damper.gapp": (1e-4, 1e-3)}, {}, "did you mean 'gap'"),
         ({"damper.gap": ("1 mm", "0.1 mm")}, {}, "the first value must be the smaller one"),
@@ -115,11 +115,11 @@ def test_points_without_a_value_are_left_out() -> None:
         ({}, {}, "paths to bounds or choices"),
     ],
 )
-def test_clear_refusals(bounds: Any, options: dict[str, Any], said: str) -> None:
+def test_clear_refusals(bounds: Any, options: dict[str, Any], message: str) -> None:
     """What does not fit is refused with what to try, and so is what gives no indices."""
     with pytest.raises(rb.CaseError) as caught:
         rb.sensitivity(struck(), bounds, **({"n": 8, "progress": False} | options))
-    assert said in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_without_salib(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -136,25 +136,25 @@ def test_without_salib(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("size", ["column", "page", "slide"])
 def test_plot(size: Any, tmp_path: Path) -> None:
     """Bars have the lengths of the indices, the most important parameter on top, and are saved without a warning."""
-    found = rb.sensitivity(struck(), BOUNDS, ["impacts", "rms"], 16, progress=False)
-    figure = rb.plot_sensitivity(found, size=size)
+    result = rb.sensitivity(struck(), BOUNDS, ["impacts", "rms"], 16, progress=False)
+    figure = rb.plot_sensitivity(result, size=size)
     figure.savefig(tmp_path / "bars.png")
     axes = figure.axes[0]
     lengths = [patch.get_width() for patch in axes.patches]
-    order = np.argsort(found.total.mean("measure").values)
-    expected = [*found.first.values[0, order], *found.total.values[0, order]]
+    order = np.argsort(result.total.mean("measure").values)
+    expected = [*result.first.values[0, order], *result.total.values[0, order]]
     assert lengths == pytest.approx(expected)
-    assert [text.get_text() for text in axes.get_yticklabels()] == list(found.parameter.values[order])
+    assert [text.get_text() for text in axes.get_yticklabels()] == list(result.parameter.values[order])
 
 
 def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In the example, the start decides nothing of the share taken up, but some of the largest force."""
     monkeypatch.chdir(tmp_path)
-    found = runpy.run_path(str(EXAMPLE))["found"]
-    start = found.total.sel(parameter="damper.start")
+    result = runpy.run_path(str(EXAMPLE))["found"]
+    start = result.total.sel(parameter="damper.start")
     assert float(start.sel(measure="impact_share")) < 0.01
     assert float(start.sel(measure="peak_contact_force")) == pytest.approx(0.085, abs=0.05)
-    shares = found.first.sel(measure="impact_share")
+    shares = result.first.sel(measure="impact_share")
     assert float(shares.sum()) == pytest.approx(1, abs=0.1)
     assert str(shares.idxmax().item()) == "damper.contact.restitution"
     assert (tmp_path / "sensitivity.png").stat().st_size > 5000

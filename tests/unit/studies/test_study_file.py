@@ -151,7 +151,7 @@ def test_files_are_seen_from_the_folder_of_the_study(tmp_path: Path, monkeypatch
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "pattern"),
     [
         ("", ["case", "this field is needed"]),
         ("x", ["not TOML"]),
@@ -215,10 +215,10 @@ def test_files_are_seen_from_the_folder_of_the_study(tmp_path: Path, monkeypatch
         (BALL + '[replicas]\ncount = 4\nreach = "1 um"', ["replicas.reach = '1 um'", "a table is needed"]),
     ],
 )
-def test_bad_study_files_are_refused_with_the_place_and_a_reason(content: str, said: list[str]) -> None:
+def test_bad_study_files_are_refused_with_the_place_and_a_reason(content: str, pattern: list[str]) -> None:
     """Each wrong study file is told at once: the file, the field, the value, what is allowed."""
     message = refused(content)
-    for word in said:
+    for word in pattern:
         assert word in message, message
 
 

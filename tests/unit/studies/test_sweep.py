@@ -73,12 +73,12 @@ def test_settling_is_that_of_the_analysis_however_short_the_window() -> None:
     """Where a window ends as the motion passes through the band, neither the core nor the analysis calls it settled."""
     case = rb.Case(structure=rb.SDOF(mass=1, stiffness=400, damping=1, velocity="1 m/s"), duration=20.0)
     ends = np.linspace(0.5, 8, 60)
-    found = rb.sweep(case, {"duration": ends}, "settling_time", samples=301).settling_time.values
-    for end, settled in zip(ends, found, strict=True):
+    result = rb.sweep(case, {"duration": ends}, "settling_time", samples=301).settling_time.values
+    for end, settled in zip(ends, result, strict=True):
         run = rb.simulate(case.replaced({"duration": end, "output": rb.Output(rate=300 / end)}))
         alone = analysis.settling_time(run.arrays.time, run.arrays.displacement[:, 0])
         assert settled == pytest.approx(alone, rel=1e-9, nan_ok=True)
-    assert 10 < np.isnan(found).sum() < 50
+    assert 10 < np.isnan(result).sum() < 50
 
 
 def test_all_measures_of_the_core_are_told() -> None:
@@ -103,9 +103,11 @@ def test_the_first_harmonic_has_the_samples_that_it_needs() -> None:
     case, axes = shaken(duration=100.0), {"structure.motion[0].frequency": [10.0, 20.0]}
     for options, least in (({"skip": 10.0}, 36_001), ({"cycles": (10, 90)}, 64 * 90 + 1)):
         usual = rb.sweep(case, axes, ["effective_mass", "loss_factor"], **options)
-        asked = rb.sweep(case, axes, ["effective_mass", "loss_factor"], samples=least, **options)
+        explicit = rb.sweep(case, axes, ["effective_mass", "loss_factor"], samples=least, **options)
         assert np.isfinite(usual.loss_factor).all()
-        assert (usual.effective_mass == asked.effective_mass).all() and (usual.loss_factor == asked.loss_factor).all()
+        assert (usual.effective_mass == explicit.effective_mass).all() and (
+            usual.loss_factor == explicit.loss_factor
+        ).all()
         with pytest.raises(rb.CaseError, match=r"\d samples per cycle are too few for effective_mass"):
             rb.sweep(case, axes, ["impacts", "effective_mass"], samples=500, **options)
 
@@ -114,33 +116,35 @@ def test_cyclic_measures_refer_to_the_window() -> None:
     """With cycles the run lasts as many as are skipped and looked at, whatever the frequency."""
     case = shaken()
     axes = {"structure.motion[0].frequency": [5.0, 10.0, 20.0]}
-    found = rb.sweep(case, axes, ["impacts_per_cycle", "loss_per_cycle", "reduced_loss"], cycles=(40, 10))
+    result = rb.sweep(case, axes, ["impacts_per_cycle", "loss_per_cycle", "reduced_loss"], cycles=(40, 10))
     # Hard impacts know no time: all frequencies are the same motion.
-    assert np.ptp(found.impacts_per_cycle.values) == 0
-    assert found.impacts_per_cycle[0] > 0
-    assert found.reduced_loss.values == pytest.approx(float(found.reduced_loss[0]), rel=1e-9)
-    assert found.loss_per_cycle.values == pytest.approx(float(found.loss_per_cycle[0]) * np.array([1, 4, 16]), rel=1e-9)
+    assert np.ptp(result.impacts_per_cycle.values) == 0
+    assert result.impacts_per_cycle[0] > 0
+    assert result.reduced_loss.values == pytest.approx(float(result.reduced_loss[0]), rel=1e-9)
+    assert result.loss_per_cycle.values == pytest.approx(
+        float(result.loss_per_cycle[0]) * np.array([1, 4, 16]), rel=1e-9
+    )
 
 
 def test_skip_leaves_the_beginning_out() -> None:
     """Impacts and losses before `skip` do not count."""
     case = rb.reference_case(duration=2.0, output=rb.Output(times=[0.5, 2.0]))
     run = rb.simulate(case)
-    found = rb.sweep(case, {"damper.gap": [case.dampers[0].gap]}, ["impacts", "impact_loss"], skip="0.5 s")
-    assert float(found.impacts[0]) == (run.arrays.impacts.time >= 0.5).sum()
-    assert float(found.impact_loss[0]) == pytest.approx(np.diff(run.ledger.channels["normal"])[-1], rel=1e-10)
+    result = rb.sweep(case, {"damper.gap": [case.dampers[0].gap]}, ["impacts", "impact_loss"], skip="0.5 s")
+    assert float(result.impacts[0]) == (run.arrays.impacts.time >= 0.5).sum()
+    assert float(result.impact_loss[0]) == pytest.approx(np.diff(run.ledger.channels["normal"])[-1], rel=1e-10)
 
 
 def test_motion_and_last_impacts_on_request() -> None:
     """Samples of the motion and the last impacts are those of the run; fewer impacts are padded at the front."""
     case = rb.reference_case(duration=0.2, output=rb.Output(times=np.linspace(0, 0.2, 41).tolist()))
     run = rb.simulate(case)
-    found = rb.sweep(case, {"damper.start": [0.0]}, ["impacts"], motion=True, samples=41, last=1000).isel(
+    result = rb.sweep(case, {"damper.start": [0.0]}, ["impacts"], motion=True, samples=41, last=1000).isel(
         {"damper.start": 0}
     )
-    assert found.displacement.values == pytest.approx(run.arrays.displacement[:, 0], abs=1e-15)
-    assert found.relative_position.values == pytest.approx(run.arrays.relative_position, abs=1e-15)
-    speeds = found.last_approach_speed.values
+    assert result.displacement.values == pytest.approx(run.arrays.displacement[:, 0], abs=1e-15)
+    assert result.relative_position.values == pytest.approx(run.arrays.relative_position, abs=1e-15)
+    speeds = result.last_approach_speed.values
     assert np.array_equal(speeds[np.isfinite(speeds)], run.arrays.impacts.approach_speed)
     assert np.isnan(speeds[0])
 
@@ -152,9 +156,9 @@ def test_own_measures_are_functions_of_a_run() -> None:
         return float(run.arrays.impacts.approach_speed[2])
 
     case = rb.reference_case(duration=0.3)
-    found = rb.sweep(case, {"damper.start": rb.linspace(-0.5, 0.5, 5)}, [third_speed], last=1000)
-    logged = [row[np.isfinite(row)][2] for row in found.last_approach_speed.values]
-    assert found.third_speed.values.tolist() == logged
+    result = rb.sweep(case, {"damper.start": rb.linspace(-0.5, 0.5, 5)}, [third_speed], last=1000)
+    logged = [row[np.isfinite(row)][2] for row in result.last_approach_speed.values]
+    assert result.third_speed.values.tolist() == logged
 
 
 def test_threads_and_neighbours_change_no_bit() -> None:
@@ -171,17 +175,17 @@ def test_threads_and_neighbours_change_no_bit() -> None:
 def test_a_member_that_fails_carries_its_status() -> None:
     """Where a law is left, the variant says so and has no numbers; the others have theirs."""
     law = rb.Tsuji(restitution=rb.JacksonGreen(yield_stress="20 MPa"))
-    found = rb.sweep(
+    result = rb.sweep(
         rb.reference_case(law, duration=0.2), {"load.amplitude": ["10 N", "5 kN"]}, ["impacts", "impact_share"]
     )
-    names = found.status.attrs["flag_meanings"].split()
-    assert names[int(found.status[0])] == "finished"
-    assert names[int(found.status[1])] == "law_domain"
-    assert np.isnan(found.impacts.values).tolist() == [False, True]
+    names = result.status.attrs["flag_meanings"].split()
+    assert names[int(result.status[0])] == "finished"
+    assert names[int(result.status[1])] == "law_domain"
+    assert np.isnan(result.impacts.values).tolist() == [False, True]
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"measure": ["impact_shares"]}, "impact_share"),
         ({"measure": [3]}, "function"),
@@ -196,9 +200,9 @@ def test_a_member_that_fails_carries_its_status() -> None:
         ({"backend": "gpu"}, "is not a backend"),
     ],
 )
-def test_what_does_not_fit_is_told_before_anything_runs(options: dict[str, Any], told: str) -> None:
+def test_what_does_not_fit_is_told_before_anything_runs(options: dict[str, Any], message: str) -> None:
     """Unknown measures, windows outside the run and cycles without a load are refused with a hint."""
-    with pytest.raises(rb.CaseError, match=told):
+    with pytest.raises(rb.CaseError, match=message):
         rb.sweep(rb.reference_case(duration=1.0), {"damper.gap": ["1 mm"]}, **options)
 
 
@@ -209,8 +213,8 @@ def test_function_that_gives_no_number_is_told(value: Any) -> None:
     def loudness(run: Any) -> Any:
         return value if run.ledger.work[-1] > 1e-3 else 0.0
 
-    said = f"measure loudness: the function returned {type(value).__name__} for variant 1"
-    with pytest.raises(rb.CaseError, match=said):
+    message = f"measure loudness: the function returned {type(value).__name__} for variant 1"
+    with pytest.raises(rb.CaseError, match=message):
         rb.sweep(rb.reference_case(duration=0.1), {"load.amplitude": [0.1, 5e3]}, loudness)
 
 

@@ -335,13 +335,13 @@ def inelastic_ball() -> Iterator[Line]:
     for gamma in printed.APPARENT_MASS:
         exact = shaken.inelastic_ball(gamma).apparent_mass()
         result, frequency, amplitude = shaken_ball(gamma)
-        found = shaken_cavity(result, frequency=frequency, after=1 / frequency)
+        results = shaken_cavity(result, frequency=frequency, after=1 / frequency)
         mass = result.arrays.particles.mass[0]
         unit = math.pi * mass * (2 * math.pi * frequency * amplitude) ** 2
-        power, ledger = (float(loss) / unit for loss in found.loss_per_cycle)
+        power, ledger = (float(loss) / unit for loss in results.loss_per_cycle)
         # What is left of the speed, e = 0.1, bears e^2 = 1 % of the energy.
         name = f"inelastic ball on a shaker, Gamma {gamma}"
-        yield Line("dem", f"{name}: m'", exact[0], float(found.effective_mass[0]) / mass, 2e-3)
+        yield Line("dem", f"{name}: m'", exact[0], float(results.effective_mass[0]) / mass, 2e-3)
         yield Line("dem", f"{name}: m''", exact[1], power, 1e-2)
         yield Line("dem", f"{name}: m'' from the ledger", exact[1], ledger, 1e-2)
 

@@ -79,13 +79,13 @@ def end(dem: Any) -> bytes:
 @pytest.mark.parametrize("law", LAWS)
 def test_threads_give_the_same_bits(law: str) -> None:
     """One, two, three and five threads compute the same bits: samples, state, contacts and counts."""
-    told = []
+    bits = []
     for threads in (1, 2, 3, 5):
         dem, last = cases.dem_of(shaken(law, duration=0.005), threads)
         dem.run(last)
         assert dem.status == 0
-        told.append(flat(dem.records()) + end(dem))
-    assert len(told[0]) > 1000 and len(set(told)) == 1
+        bits.append(flat(dem.records()) + end(dem))
+    assert len(bits[0]) > 1000 and len(set(bits)) == 1
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -96,12 +96,12 @@ def test_restart_gives_the_same_bits(law: str) -> None:
     for until in (7, 7, last // 3, last // 2):
         whole.run(until)
     assert sum(len(whole.contacts(k).first) for k in range(2)) > 10
-    kept, told = whole.save(), end(whole)
+    state, bits = whole.save(), end(whole)
     early = whole.records()
     whole.run(last)
     again, _ = cases.dem_of(case, threads=2)
-    again.restore(kept)
-    assert end(again) == told
+    again.restore(state)
+    assert end(again) == bits
     again.run(last)
     assert end(again) == end(whole)
     assert flat(again.records()) == flat(whole.records())
@@ -126,7 +126,7 @@ def test_very_different_sizes_give_the_same_bits() -> None:
         duration=0.008,
         output=rb.Output(rate=2000.0),
     )
-    told = []
+    bits = []
     for threads in (1, 2, 3):
         dem, last = cases.dem_of(case, threads)
         dem.run(last // 2)
@@ -136,26 +136,26 @@ def test_very_different_sizes_give_the_same_bits() -> None:
         for each in (dem, again):
             each.run(last)
             assert each.status == 0
-            told.append(flat(each.records()) + flat(each.state()) + flat(each.contacts(0)))
+            bits.append(flat(each.records()) + flat(each.state()) + flat(each.contacts(0)))
     assert dem.counts().rebuilds > 3 and len(dem.contacts(0).first) > 100
-    assert len(set(told)) == 1
+    assert len(set(bits)) == 1
 
 
 @pytest.mark.skipif(CORES == 0, reason="cores of a process can be chosen on Linux only")
 def test_threads_on_one_core_give_the_same_bits() -> None:
     """Threads that share a single core yield it to each other, compute the same bits, and do not leave the core."""
     before = os.sched_getaffinity(0)
-    told = []
+    bits = []
     try:
         os.sched_setaffinity(0, {min(before)})
         for threads in (1, 3):
             dem, last = cases.dem_of(shaken("Hertz", duration=0.005), threads)
             dem.run(last)
             assert os.sched_getaffinity(0) == {min(before)}
-            told.append(flat(dem.records()) + end(dem))
+            bits.append(flat(dem.records()) + end(dem))
     finally:
         os.sched_setaffinity(0, before)
-    assert len(set(told)) == 1
+    assert len(set(bits)) == 1
 
 
 def large_bed(count: int, edge: float, *, mass: float, duration: float, rate: float) -> Any:
@@ -182,9 +182,9 @@ def test_large_beds_give_the_same_bits() -> None:
     case = large_bed(count, 0.11, mass=5.0, duration=0.008, rate=1000.0)
     one, last = cases.dem_of(case)
     one.run(last // 2)
-    kept = one.save()
+    state = one.save()
     two, _ = cases.dem_of(case, threads=2)
-    two.restore(kept)
+    two.restore(state)
     for dem in (one, two):
         dem.run(last)
         assert dem.status == 0

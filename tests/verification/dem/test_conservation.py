@@ -62,17 +62,17 @@ def test_particles_alone_keep_both_momenta(law: str) -> None:
     contents = case.dampers[0].contents
     dem, last = cases.dem_of(case)
     dem.run(0)
-    (before, turning), kept = momenta(cases.particles_start(case), contents), []
+    (before, turning), shares = momenta(cases.particles_start(case), contents), []
     for k in range(1, 9):
         dem.run(last * k // 8)
         after, turned = momenta(dem.state().cavities[0], contents)
         scale = np.abs(before).sum(), np.abs(turning).sum()
         assert np.abs(after.sum(axis=0) - before.sum(axis=0)).max() < 1e-13 * scale[0]
         assert np.abs(turned.sum(axis=0) - turning.sum(axis=0)).max() < 1e-13 * scale[1]
-        kept.append(np.abs(after - before).sum() / scale[0])
+        shares.append(np.abs(after - before).sum() / scale[0])
     touches = dem.counts().first_touches[0]
     assert touches[0] > 200 and touches[1] == 0
-    assert kept[-1] > 0.1
+    assert shares[-1] > 0.1
 
 
 MASS = 0.3

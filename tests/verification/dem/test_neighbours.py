@@ -76,20 +76,20 @@ def follow(case: Any, checks: int = 40) -> dict[str, int]:
         assert dem.status == 0
         now, raw = dem.state().cavities[0], dem.records()
         moved = raw.q[-1] @ cavity_shape(case)
-        found = brute.look(now.position - moved, contents.radius, walls, inside, wall, 1e-12)
+        result = brute.look(now.position - moved, contents.radius, walls, inside, wall, 1e-12)
         listed = dem.contacts(0)
         there = {(min(i, j), max(i, j)) for i, j in zip(listed.first.tolist(), listed.second.tolist(), strict=True)}
         assert len(there) == len(listed.first)
-        assert found.pairs <= there <= found.pairs | found.doubtful
+        assert result.pairs <= there <= result.pairs | result.doubtful
         force = np.zeros((n, 3))
         np.add.at(force, listed.first, listed.force)
         between = listed.second < n
         np.subtract.at(force, listed.second[between], listed.force[between])
         # Rounding of positions is about 1e-10 of an overlap of micrometres.
-        scale = np.abs(found.force).max() + 1e-30
-        assert np.abs(force - found.force).max() < 1e-8 * scale
-        assert np.abs(raw.force[-1, 0] - found.on_cavity).max() < 1e-8 * scale
-        assert np.abs(raw.moment[-1, 0] - found.moment).max() < 1e-8 * scale * 0.05
+        scale = np.abs(result.force).max() + 1e-30
+        assert np.abs(force - result.force).max() < 1e-8 * scale
+        assert np.abs(raw.force[-1, 0] - result.on_cavity).max() < 1e-8 * scale
+        assert np.abs(raw.moment[-1, 0] - result.moment).max() < 1e-8 * scale * 0.05
         assert raw.contacts[-1, 0].sum() == len(there)
         seen |= there
     return {

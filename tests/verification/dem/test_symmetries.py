@@ -202,6 +202,6 @@ def test_other_units_give_the_same_run(law: str, exact: bool) -> None:
         assert np.abs(a - b).max() < CHAOS * np.abs(a).max(), name
     a, b = one.arrays, other.arrays
     lost = b.sliding_loss[-1].sum() + b.normal_loss[-1].sum() + b.plastic_loss[-1].sum()
-    known = a.sliding_loss[-1].sum() + a.normal_loss[-1].sum() + a.plastic_loss[-1].sum()
-    assert lost / (mass * speed**2) == pytest.approx(known, rel=1e-6)
+    expected = a.sliding_loss[-1].sum() + a.normal_loss[-1].sum() + a.plastic_loss[-1].sum()
+    assert lost / (mass * speed**2) == pytest.approx(expected, rel=1e-6)
     assert one.counts["first_touches_particle"] == other.counts["first_touches_particle"] > 40

@@ -162,7 +162,7 @@ SOFTENED: dict[str, Any] = {
 def test_softening_has_the_reported_effects(law: str) -> None:
     """Softened a hundredfold, a contact has the reported duration and overlap, and the same restitution."""
     ball, speed = Ball(3e-3), 0.5
-    found = []
+    results = []
     for softening in (1.0, 100.0):
         time = cases.contact_time(ball, None, speed) * softening**0.4
         case = cases.head_on(
@@ -182,10 +182,10 @@ def test_softening_has_the_reported_effects(law: str) -> None:
             dem.run(step)
             touching += dem.contacts(0).first.size > 0
         overlap = result.diagnostics["largest_overlap"]
-        found.append((touching * case.method.dt, overlap, cases.rebound(result)))
-    (time, overlap, rebound), (longer, larger, after) = found
-    told = re.search(r"last ([\d.]+) times as long, and overlap ([\d.]+) times as much", result.notes[1])
-    assert told is not None
-    assert longer / time == pytest.approx(float(told[1]), rel=0.01)
-    assert larger / overlap == pytest.approx(float(told[2]), rel=0.002)
+        results.append((touching * case.method.dt, overlap, cases.rebound(result)))
+    (time, overlap, rebound), (longer, larger, after) = results
+    match = re.search(r"last ([\d.]+) times as long, and overlap ([\d.]+) times as much", result.notes[1])
+    assert match is not None
+    assert longer / time == pytest.approx(float(match[1]), rel=0.01)
+    assert larger / overlap == pytest.approx(float(match[2]), rel=0.002)
     assert after == pytest.approx(rebound, rel=1e-4)

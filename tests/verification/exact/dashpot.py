@@ -79,5 +79,5 @@ def linear_peak_force(zeta: float) -> float:
         decay = math.exp(-zeta / s * phase)
         return decay * (math.sin(phase) / s + 2 * zeta * (math.cos(phase) - zeta / s * math.sin(phase)))
 
-    found = minimize_scalar(lambda p: -force(p), bounds=(0.0, math.pi), method="bounded", options={"xatol": 1e-12})
-    return max(force(float(found.x)), 2 * zeta)
+    result = minimize_scalar(lambda p: -force(p), bounds=(0.0, math.pi), method="bounded", options={"xatol": 1e-12})
+    return max(force(float(result.x)), 2 * zeta)

@@ -44,10 +44,10 @@ def orbits(zeta: float, omega: float, stop: float, restitution: float) -> list[S
     g = np.linalg.solve(transition(zeta, period) - np.eye(2), [0.0, 1 + restitution])
     p, q, r = stop, -g[0], -restitution - g[1]
     size = amplitude(zeta, omega)
-    found = []
+    result = []
     for v in roots(q * q + (r / omega) ** 2, 2 * p * q, p * p - size * size):
         phase = math.atan2(-r * v / omega, p + q * v) + lag(zeta, omega)
         orbit = StopOrbit(zeta, omega, stop, restitution, v, phase)
         if v > 0 and orbit.admissible():
-            found.append(orbit)
-    return found
+            result.append(orbit)
+    return result

@@ -122,11 +122,11 @@ def orbits(
     # Steady part at t = 0: displacement p + q w, velocity r w.
     p, q, r = -0.5 * clearance, -0.5 * half - g[0], after - g[1]
     size = amplitude(zeta, omega)
-    found = []
+    result = []
     for w in roots(q * q + (r / omega) ** 2, 2 * p * q, p * p - size * size):
         phase = math.atan2(p + q * w, r * w / omega) + lag(zeta, omega)
         position = -0.5 * half * w - 0.5 * clearance
         orbit = Orbit(mu, e, clearance, zeta, omega, w, position, before * w, after * w, phase)
         if orbit.speed < orbit.after and orbit.admissible():
-            found.append(orbit)
-    return found
+            result.append(orbit)
+    return result
