@@ -91,7 +91,7 @@ def test_killed_while_files_are_written(runs: Path, tmp_path: Path) -> None:
         while not (tmp_path / "ready").exists():
             assert process.poll() is None and time.monotonic() < until
             time.sleep(0.01)
-        time.sleep(chance.uniform(0.1, 2.5))
+        time.sleep(chance.uniform(0.1, 1.0))
         process.send_signal(signal.SIGKILL)
         process.wait()
         seen += check_whole(tmp_path / "out", runs)

@@ -12,6 +12,8 @@ from rattlebox.model.base import Part
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
+# Tests of the studies and of the engines hold for fewer cycles what these pages compute for 6 s and more.
+SLOW_PAGES = ("how-to/loss_map", "how-to/lyapunov", "how-to/particle_output")
 PAGES = (
     "how-to/analysis",
     "how-to/basins",
@@ -19,12 +21,9 @@ PAGES = (
     "how-to/design",
     "how-to/frequency_response",
     "how-to/loads",
-    "how-to/loss_map",
-    "how-to/lyapunov",
     "how-to/matlab",
     "how-to/notebooks",
     "how-to/paraview",
-    "how-to/particle_output",
     "how-to/results",
     "how-to/sensitivity",
     "how-to/softening",
@@ -34,6 +33,7 @@ PAGES = (
     "tutorials/building",
     "tutorials/panel",
     "tutorials/particle_dampers",
+    *(pytest.param(page, marks=pytest.mark.slow) for page in SLOW_PAGES),
 )
 FIELDS = DOCS / "reference" / "case_file.md"
 

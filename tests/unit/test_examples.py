@@ -85,10 +85,12 @@ def test_two_cavities_on_a_beam_both_take_energy() -> None:
     assert run.arrays.particle_mass[1] == pytest.approx(0.04, rel=0.02)
 
 
-def test_a_shaken_box_rides_along_or_is_thrown() -> None:
+@pytest.mark.parametrize("cycles", [(2, 4), pytest.param((10, 20), marks=pytest.mark.slow)])
+def test_a_shaken_box_rides_along_or_is_thrown(cycles: tuple[int, int]) -> None:
     """Below the acceleration of gravity the balls' mass counts in full; thrown slowly they take more than m v^2 a cycle."""
-    example = runpy.run_path(str(EXAMPLES / "shaken_box.py"))
-    result = rb.loss_map(example["BOX"], [5.0, 150.0], [30.0], **example["CYCLES"], progress=False).isel(
+    box = runpy.run_path(str(EXAMPLES / "shaken_box.py"))["BOX"]
+    samples = 1 + 200 * cycles[1]
+    result = rb.loss_map(box, [5.0, 150.0], [30.0], cycles=cycles, samples=samples, progress=False).isel(
         {"structure.motion.frequency": 0}
     )
     assert (result.effective_mass[0] / result.particle_mass).item() == pytest.approx(1, abs=0.02)
@@ -134,7 +136,9 @@ def test_loads_of_standards_give_the_responses_of_formulas() -> None:
     assert example["gain_in_sweep"]() == pytest.approx(25, rel=0.03)
 
 
-@pytest.mark.parametrize("name", ["boring_bar", "panel", "building"])
+@pytest.mark.parametrize(
+    "name", ["building", *(pytest.param(name, marks=pytest.mark.slow) for name in ("boring_bar", "panel"))]
+)
 def test_tutorials_print_the_numbers_of_their_page(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

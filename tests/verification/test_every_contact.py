@@ -153,12 +153,12 @@ def check(seeds: Iterable[int]) -> Counter[str]:
     return seen
 
 
-def test_every_contact_of_two_hundred_cases_is_logged() -> None:
+def test_every_contact_of_sixty_cases_is_logged() -> None:
     """In rows of balls in several cavities the contacts on a fine grid are those of the log."""
-    seen = check([*range(200), *HARD])
-    assert seen["contacts"] > 10_000
-    assert seen["while another is closed"] > 5_000
-    assert seen["near misses"] > 1_000
+    seen = check([*range(60), *HARD])
+    assert seen["contacts"] > 3000
+    assert seen["while another is closed"] > 1500
+    assert seen["near misses"] > 300
 
 
 @pytest.mark.slow

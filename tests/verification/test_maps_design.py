@@ -110,6 +110,7 @@ def test_indices_converge() -> None:
     assert off(512) < off(32) / 3
 
 
+@pytest.mark.slow
 def test_sensitivity_of_a_published_function() -> None:
     """The indices of sin x + 7 sin^2 y + 0.1 z^4 sin x over -pi to pi are found, z having a total index only."""
 
