@@ -57,7 +57,7 @@ class Measures(Catalogue[Measure]):
 
 _MEASURES: dict[str, Measure] = {
     "impacts": Measure("1", "impacts", average="total"),
-    "impacts_per_cycle": Measure("1", "impacts a cycle", cyclic=True, average="mean"),
+    "impacts_per_cycle": Measure("1", "impacts per cycle", cyclic=True, average="mean"),
     "peak_contact_force": Measure("N", "peak contact force"),
     "peak_overlap": Measure("m", "largest overlap"),
     "largest_approach_speed": Measure("m/s", "largest approach speed"),
@@ -79,7 +79,7 @@ _MEASURES: dict[str, Measure] = {
         "m/s^2", "RMS absolute acceleration, mean over a sample step", samples=True, average="root mean square"
     ),
     "settling_time": Measure("s", "settling time to 5 % of the peak", samples=True),
-    "loss_per_cycle": Measure("J", "loss in the damper a cycle", cyclic=True, average="mean"),
+    "loss_per_cycle": Measure("J", "loss in the damper per cycle", cyclic=True, average="mean"),
     "reduced_loss": Measure("1", "loss a cycle over m V^2", samples=True, cyclic=True, average="mean"),
     "effective_mass": Measure("kg", "effective mass", samples=True, cyclic=True, average="mean"),
     "damping_mass": Measure("kg", "imaginary part of the apparent mass", samples=True, cyclic=True, average="mean"),

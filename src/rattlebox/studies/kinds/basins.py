@@ -170,7 +170,7 @@ def _with_orbits(maps: xarray.Dataset, label: Any, period: Any, best: Any) -> xa
     own = {
         "share": (share, "share of all starts"),
         "orbit_period": (lasts, "cycles after which the orbit repeats"),
-        "orbit_impacts_per_cycle": (maps.impacts_per_cycle.values.ravel()[best], "impacts a cycle"),
+        "orbit_impacts_per_cycle": (maps.impacts_per_cycle.values.ravel()[best], "impacts per cycle"),
     }
     for name, (values, text) in own.items():
         found[name] = "orbit", values, {"units": "1", "long_name": text}
