@@ -10,7 +10,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from typing import Any
 
 Progress = bool | Callable[[int, int], object]
-"""True for a bar, False for none, or a function of the number done and of all, which stops the call by returning False."""
+"""True for a bar, False for none, or a function of the numbers done and of all; the call stops if it returns False."""
 
 _DELAY = 2.0  # s
 _REDRAWN = 0.1  # s

@@ -50,14 +50,14 @@ def simulate(
     snapshots
         File (.vtkhdf) for the particles at the times of `Output(snapshots=...)`, for ParaView. Particle runs only.
     progress
-        True for a progress bar after 2 s, False for none, or a function of the numbers of steps done and of all (1-D: of
-        runs), which stops the run by returning False.
+        True for a progress bar after 2 s, False for none, or a function of the numbers of steps (1-D: of runs) done and of
+        all; the run stops if it returns False.
 
     Returns
     -------
     Run
-        Motion, energy ledger, impacts or particles, and a status. A run that cannot be finished has a status and a
-        message and holds the results up to that time; it raises no exception.
+        Motion, energy ledger, impacts or particles, and a status. A run that cannot be finished raises no exception: it
+        has a status, a message and the results up to that time.
 
     Raises
     ------

@@ -77,10 +77,14 @@ class Case(Part):
         Acceleration of the base: one signal, several, or none.
     duration
         Length of the run [s].
-    method, output
-        Numerical method, default EventDriven, or Dem with particle dampers; and the times of the output.
-    name, seed
-        Labels that are stored with the result; a run itself has no random numbers. A seed is an integer from 0 to 2^63 - 1.
+    method
+        Numerical method; default EventDriven, or Dem with particle dampers.
+    output
+        Times of the output.
+    name
+        Label that is stored with the result.
+    seed
+        Label that is stored with the result, an integer from 0 to 2^63 - 1. A run itself uses no random numbers.
 
     Raises
     ------

@@ -98,12 +98,12 @@ class Ledger:
 
     @cached_property
     def supplied(self) -> FloatArray:
-        """Energy supplied until t: energy of motion at the start, work of load and base, and work of gravity."""
+        """Energy supplied until t, the sum of the initial energy of motion and the work of load, base and gravity."""
         return np.asarray(self.motion[0] + self.work + (self.gravity[0] - self.gravity))
 
     @cached_property
     def residual(self) -> FloatArray:
-        """E(t) - E(0) - W(t) + losses(t): zero in exact arithmetic."""
+        """Imbalance E(t) - E(0) - W(t) + losses(t), zero in exact arithmetic."""
         with np.errstate(invalid="ignore"):  # a solution that became non-finite
             return np.asarray(self.total - self.total[0] - self.work + self.losses)
 

@@ -98,7 +98,7 @@ class Record:
 
     @property
     def groups(self) -> tuple[str, ...]:
-        """Names of the datasets that the run has: `motion`, `energy`, and `impacts` (1-D) or `particles` (3-D)."""
+        """Names of the datasets of the run, `motion`, `energy`, and `impacts` (1-D) or `particles` (3-D)."""
         return tuple(groups(self.arrays.engine))
 
     @cached_property

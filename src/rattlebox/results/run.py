@@ -37,7 +37,7 @@ class Run(Record):
 
     @cached_property
     def energy(self) -> xarray.Dataset:
-        """The energy ledger at the output times: energies, work, losses, residual and final shares [J]."""
+        """Energy ledger at the output times, with energies, work, losses, residual [J] and final shares."""
         return self._dataset("energy")
 
     @cached_property
@@ -86,7 +86,7 @@ class Run(Record):
 
     @property
     def plot(self) -> Plots:
-        """Figures of this run: `motion`, `energy`, `phase_portrait`, and `impacts` (1-D) or `particles` (3-D)."""
+        """Figures of this run, `motion`, `energy`, `phase_portrait`, and `impacts` (1-D) or `particles` (3-D)."""
         import_module("rattlebox.plots")  # registers the figures; results must not import plots statically
         return Plots(self)
 
