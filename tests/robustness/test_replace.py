@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
@@ -15,6 +18,7 @@ import rattlebox as rb
 from rattlebox._util.owned_folder import MARKER
 from rattlebox.cli import folder as folders
 from rattlebox.cli.commands import app
+from rattlebox.cli.main import main
 from rattlebox.results.snapshots import Snapshots
 
 IMPACT = """
@@ -54,19 +58,31 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         Path(f"{name}.toml").write_text(text)
 
 
-def command(*arguments: str) -> list[str]:
-    """The command as a user gives it."""
-    return [sys.executable, "-m", "rattlebox.cli", "run", *arguments, "-o", "out", "--no-figures"]
+OPTIONS = ("-o", "out", "--no-figures")
+
+
+def rattlebox(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run the command in this process."""
+    out, errors = io.StringIO(), io.StringIO()
+    with (
+        patch.object(sys, "argv", ["rattlebox", *arguments]),
+        redirect_stdout(out),
+        redirect_stderr(errors),
+        pytest.raises(SystemExit) as end,
+    ):
+        main()
+    return subprocess.CompletedProcess(arguments, int(end.value.code or 0), out.getvalue(), errors.getvalue())
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Give the command."""
-    return subprocess.run(command(*arguments), capture_output=True, text=True, check=False, timeout=120)
+    """Run a case into the folder."""
+    return rattlebox("run", *arguments, *OPTIONS)
 
 
 def stop(*arguments: str, by: int, once: Callable[[], object]) -> str:
-    """Give the command, stop it once something is there, and return what it said."""
-    process = subprocess.Popen(command(*arguments), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    """Start the command in a process, stop it when a condition holds, and return its standard error."""
+    command = [sys.executable, "-m", "rattlebox.cli", "run", *arguments, *OPTIONS]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
     until = time.monotonic() + 60
     while not once():
         assert process.poll() is None and time.monotonic() < until
@@ -101,10 +117,7 @@ def test_a_finished_run_is_kept_until_the_new_one_is_over(by: int) -> None:
     after = contents()
     assert {name: after[name] for name in before} == before
     assert {*after} - {*before} <= {".run.checkpoint.lock"}
-    shown = subprocess.run(
-        [sys.executable, "-m", "rattlebox.cli", "show", "out"], capture_output=True, text=True, check=True
-    ).stdout
-    assert "an unfinished run that replaces this one" in shown
+    assert "an unfinished run that replaces this one" in rattlebox("show", "out").stdout
     # The earlier case is run again, and says that there is something else.
     done = run("first.toml")
     assert done.returncode == 0 and "started with --replace" in done.stderr
@@ -170,10 +183,7 @@ def test_files_of_a_user_are_not_replaced(name: str) -> None:
     mine.write_text("mine")
     case = "first.toml" if name in ("run.vtkhdf", "run.checkpoint") else "impact.toml"
     for options in ([], ["--replace"]):
-        arguments = ["run", case, "-o", "out", "--csv", "--mat", *options]
-        done = subprocess.run(
-            [sys.executable, "-m", "rattlebox.cli", *arguments], capture_output=True, text=True, check=False
-        )
+        done = rattlebox("run", case, "-o", "out", "--csv", "--mat", *options)
         assert done.returncode == 2 and str(mine) in done.stderr and "\n  try: " in done.stderr
         assert mine.read_text() == "mine"
 
@@ -193,11 +203,10 @@ def test_a_result_that_was_edited_is_not_replaced() -> None:
 
 def test_the_demonstration_replaces_its_own_files_only() -> None:
     """The folder of the demonstration may be used again; a user's file in it is refused before anything is computed."""
-    demo = [sys.executable, "-m", "rattlebox.cli", "demo", "-o", "out"]
     for _ in range(2):
-        assert subprocess.run(demo, capture_output=True, check=False).returncode == 0
+        assert rattlebox("demo", "-o", "out").returncode == 0
     Path("out/demo.png").write_text("mine")
-    done = subprocess.run(demo, capture_output=True, text=True, check=False)
+    done = rattlebox("demo", "-o", "out")
     assert done.returncode == 2 and "out/demo.png was not written by this command" in done.stderr
     assert Path("out/demo.png").read_text() == "mine"
 

@@ -8,7 +8,9 @@ from . import maps
 from .measures import Line
 
 
-@pytest.mark.parametrize("lines", maps.ALL, ids=lambda f: f.__name__)
+@pytest.mark.parametrize(
+    "lines", [pytest.param(f, id=f.__name__, marks=pytest.mark.slow if f is maps.limits else ()) for f in maps.ALL]
+)
 def test_map_finds_the_exact_value(lines: Callable[[], Iterator[Line]]) -> None:
     """Thresholds, amplitudes, limits, multipliers and best designs are within their tolerances."""
     failed = [f"{line.case}: {line.ours!r}, exact {line.exact!r}" for line in lines() if not line.within_tolerance]

@@ -140,7 +140,7 @@ def of_sizes(cavity: Any, sizes: dict[str, int], speed: float) -> Any:
 )
 def test_nothing_is_missed_among_a_few_large_and_many_small(cavity: str, sizes: dict[str, int]) -> None:
     """The same with fine cells for the small spheres and coarse levels for the large ones."""
-    seen = follow(of_sizes(CAVITIES[cavity], sizes, 2.0), checks=25)
+    seen = follow(of_sizes(CAVITIES[cavity], sizes, 2.0), checks=10)
     assert seen["pairs"] > 300 and seen["walls"] > 200 and seen["builds"] > 3
 
 
