@@ -65,7 +65,7 @@ def mean_interval(values: ArrayLike) -> Interval:
 
     References
     ----------
-    G. S. Fishman (1978), Management Science 24, 510-521, doi:10.1287/mnsc.24.5.510.
+    G. S. Fishman (1978), Grouping observations in digital simulation, Management Science 24, 510-521.
 
     Examples
     --------

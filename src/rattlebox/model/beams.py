@@ -81,7 +81,7 @@ class Beam(DampedModes):
 
     References
     ----------
-    S. S. Rao (2007): Vibration of Continuous Systems, Wiley, chapter 11, doi:10.1002/9780470117866.
+    S. S. Rao (2007): Vibration of Continuous Systems, Wiley, chapter 11.
 
     G. R. Cowper (1966): The shear coefficient in Timoshenko's beam theory. Journal of Applied Mechanics 33, 335-340,
     doi:10.1115/1.3625046.
