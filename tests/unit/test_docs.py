@@ -1,4 +1,4 @@
-"""The examples of the pages print what the pages say."""
+"""Documentation pages: examples, public names, fields, search terms."""
 
 import contextlib
 import io
@@ -55,14 +55,14 @@ SEARCHES = (
 
 
 def examples(page):
-    """Return pairs of code and what the page says that it prints."""
+    """Return pairs of code and the output on the page."""
     pattern = r"^```python\n(.*?)^```$(?:\n\n```text\n(.*?)^```$)?"
     return re.findall(pattern, page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_examples_print_what_the_page_says(name, tmp_path, monkeypatch):
-    """Run from top to bottom, every example prints the text that follows it."""
+def test_examples_print_the_output_on_the_page(name, tmp_path, monkeypatch):
+    """Every example of a page, run in order, prints the text that follows it."""
     monkeypatch.chdir(tmp_path)
     result = examples(DOCS / f"{name}.md")
     names = {}
@@ -75,7 +75,7 @@ def test_examples_print_what_the_page_says(name, tmp_path, monkeypatch):
 
 
 def test_examples_of_the_first_page_run(tmp_path, monkeypatch, capsys):
-    """The examples of the first page run from top to bottom; what they print tells times that differ."""
+    """The examples of the first page run; their output has computing times and is not compared."""
     monkeypatch.chdir(tmp_path)
     names = {}
     for code, _ in examples(DOCS / "tutorials" / "start.md"):
@@ -84,14 +84,14 @@ def test_examples_of_the_first_page_run(tmp_path, monkeypatch, capsys):
 
 
 def test_every_public_name_has_a_page():
-    """Each name of the package is on the page of the API, of the fields of a case, or of analysis."""
+    """Each public name is on the page of the API, of the fields of a case, or of analysis."""
     names = ("reference/api", "reference/case_file", "how-to/analysis")
     pages = "".join((DOCS / f"{name}.md").read_text(encoding="utf-8") for name in names)
     assert [name for name in rb.__all__ if not re.search(rf"\b{name}\b", pages)] == []
 
 
 def test_every_field_of_a_case_is_described():
-    """What the page of fields shows of a part, its docstring, names all its fields in the list of parameters."""
+    """The docstring of each part, which the page of fields includes, lists all its fields."""
     shown = re.findall(r"autoclass:: rattlebox\.(\w+)$", FIELDS.read_text(encoding="utf-8"), re.MULTILINE)
     parts = [getattr(rb, name) for name in shown]
     public = [getattr(rb, name) for name in rb.__all__]
@@ -103,7 +103,7 @@ def test_every_field_of_a_case_is_described():
 
 
 def test_cases_on_the_page_of_fields_run(tmp_path):
-    """The case files that the page shows are whole, and run to their end."""
+    """The case files on the page of fields are complete and run."""
     files = re.findall(r"^```toml\n(.*?)^```$", FIELDS.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
     assert len(files) == 3
     for number, content in enumerate(files):
@@ -113,7 +113,7 @@ def test_cases_on_the_page_of_fields_run(tmp_path):
 
 
 def test_tour_names_files_that_exist():
-    """Every file of the sources that the tour names is there."""
+    """Every source file named in the tour exists."""
     named = re.findall(r"`((?:src|core)/\S+)`", (DOCS / "developing" / "tour.md").read_text(encoding="utf-8"))
     assert len(named) > 20
     assert [name for name in named if not (ROOT / name).exists()] == []
@@ -121,7 +121,7 @@ def test_tour_names_files_that_exist():
 
 @pytest.mark.parametrize("words", SEARCHES)
 def test_a_search_finds_a_title_or_a_first_paragraph(words):
-    """What users often search for is in the title or in the first paragraph of a page."""
+    """Common search terms are in the title or first paragraph of a page."""
     pages = (path.read_text(encoding="utf-8") for path in DOCS.rglob("*.md"))
     beginnings = (" ".join(" ".join(page.split("\n\n")[:2]).split()) for page in pages)
     assert any(words.lower() in beginning.lower() for beginning in beginnings)

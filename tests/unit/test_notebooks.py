@@ -1,4 +1,4 @@
-"""What notebooks display, and what the interpreter prints."""
+"""Displays in notebooks and representations in the interpreter."""
 
 import copy
 import inspect
@@ -17,7 +17,7 @@ TIME = np.linspace(0.0, 2.0, 20_001)
 
 @pytest.fixture(scope="module")
 def recorded():
-    """Return a case with a record of 2 s, whose name and points would be tags."""
+    """Return a case with a record of 2 s and with HTML tags in its name and point."""
     return rb.Case(
         name="<b>bold</b>",
         structure=rb.Modal(frequencies=["10 Hz"], damping_ratio=0.01, shapes={"<i>tip</i>": [0.2]}),
@@ -28,7 +28,7 @@ def recorded():
 
 @pytest.fixture(scope="module")
 def run(recorded):
-    """Return its run."""
+    """Return the run of the case."""
     return rb.simulate(recorded)
 
 
@@ -49,7 +49,7 @@ class _Balanced(HTMLParser):
 
 
 def parsed(thing):
-    """Parse what a notebook displays of a thing; it is well formed, sets no colours, and contains only known tags."""
+    """Parse the HTML of an object, which must be well formed, without colours and with a few tags only."""
     html = thing._repr_html_()
     reader = _Balanced()
     reader.feed(html)
@@ -61,7 +61,7 @@ def parsed(thing):
 
 
 def test_a_long_record_is_shortened(recorded):
-    """The file of the case has 800 kB; a notebook shows at most 10 kB, and says how long the record is."""
+    """The case has 800 kB of TOML; its display has at most 10 kB and the length of the record."""
     assert len(recorded.to_toml()) > 500_000
     assert len(recorded._repr_html_()) < 10_000
     assert "... 20001 in all" in parsed(recorded).text
@@ -70,7 +70,7 @@ def test_a_long_record_is_shortened(recorded):
 
 
 def test_a_case_of_very_many_points_is_cut():
-    """A case whose shortened file is still long is cut, with the number of characters that are left out."""
+    """A display that is too long without its records is cut, with the number of omitted characters."""
     shapes = {f"point {k} <{'x' * 250}>": [0.2] for k in range(60)}
     structure = rb.Modal(frequencies=[10], damping_ratio=0.01, shapes=shapes)
     many = rb.Case(structure=structure, duration=1)
@@ -79,14 +79,14 @@ def test_a_case_of_very_many_points_is_cut():
 
 
 def test_names_are_shown_literally(recorded, run):
-    """Names with tags are shown as they are, in cases, runs, summaries and comparisons."""
+    """HTML tags in names are escaped in cases, runs, summaries and comparisons."""
     assert "<b>bold</b>" in parsed(recorded).text
     assert "<b>bold</b>" in parsed(run).text
     assert "<u>" in parsed(compare({"<u>": run, "b": run}, title="<s>")).text
 
 
 def test_run_and_summary(run):
-    """A run shows how it ended, its case, its method, and the table of its summary with units and notes."""
+    """The display of a run has its status, case, method and the table of its summary with units and notes."""
     shown = parsed(run).text
     for words in ("finished", "Modal", "1 Record", "event_driven", "peak displacement", "µm"):
         assert words in shown
@@ -97,13 +97,13 @@ def test_run_and_summary(run):
 
 
 def test_a_run_whose_case_cannot_be_read_is_shown(run, tmp_path):
-    """A run from a file whose case names a file that is gone is displayed with the reason."""
+    """The display of a run whose case refers to a missing file has the reason."""
     orphan = type(run)(run.arrays, '[structure]\nkind = "modal"\nfile = "gone.csv"\n')
     assert "gone.csv" in parsed(orphan).text
 
 
 def test_materials_and_measures():
-    """The library and the measures are tables with units; they stay dictionaries that can be copied and pickled."""
+    """Materials and measures are displayed as tables with units and can be copied and pickled as dictionaries."""
     shown = parsed(rb.materials()).text
     assert "7850 kg/m^3" in shown and "200 GPa" in shown and "1030 MPa" in shown
     shown = parsed(rb.MEASURES).text
@@ -114,7 +114,7 @@ def test_materials_and_measures():
 
 
 def test_representations_are_short(recorded, run):
-    """Cases and runs print one line; the parts of a case print what was set, as a call."""
+    """The repr of cases and runs is one line; that of parts is a call with the fields that were set."""
     for thing in (recorded, run):
         assert len(repr(thing).splitlines()) == 1 and len(repr(thing)) < 200
     damper = rb.ImpactDamper(ball=rb.Sphere(radius=0.01, material="steel"), gap=0.1, contact=rb.Tsuji(alpha=0.1))
@@ -123,7 +123,7 @@ def test_representations_are_short(recorded, run):
 
 
 def test_variants_that_differ_late_in_a_list_are_different():
-    """Two records that differ in their last values only are computed apart, although both print alike."""
+    """Two records with the same repr that differ in their last values are different variants."""
     case = rb.Case(structure=rb.SDOF(mass=1, stiffness=100), loads=[], duration=1, output=rb.Output(rate=100))
     damper = rb.ImpactDamper(ball=rb.Sphere(radius=0.01, material="steel"), gap=0.1, contact=rb.Tsuji(alpha=0.1))
     times = np.linspace(0.0, 1.0, 101)
@@ -143,7 +143,7 @@ def public_callables():
 
 @pytest.mark.parametrize(("name", "thing"), [(n, t) for n, t in public_callables() if callable(t)])
 def test_signatures_are_readable(name, thing):
-    """Every parameter of a public callable has a type that is short and names nothing private."""
+    """Every parameter of a public callable has a short type without private names."""
     for parameter in inspect.signature(thing).parameters.values():
         if parameter.name == "self":
             continue
@@ -153,8 +153,8 @@ def test_signatures_are_readable(name, thing):
         assert not re.search(r"\b_\w|Annotated|Validator| at 0x|PydanticUndefined|typing\.", text), text
 
 
-def test_signatures_of_parts_name_what_calls_take():
-    """The signature of a part has the names that calls use, also the singular ones, and text beside quantities."""
+def test_signatures_of_parts_have_the_names_of_calls():
+    """The signature of a part has the accepted names, also the singular ones, and quantities accept text."""
     parameters = inspect.signature(rb.ImpactDamper).parameters
     assert str(parameters["gap"]) == "gap: float | str | None = None"
     assert str(parameters["ball"]) == "ball: Sphere | None = None" and "kind" not in parameters

@@ -1,4 +1,4 @@
-"""Pictures and films of particles: what is seen, where, and without PyVista too."""
+"""Pictures and films of particles, drawn with and without PyVista."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ RED, BLUE = [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]
 
 @cache
 def renders() -> bool:
-    """Whether PyVista is here and can draw without a screen; where it cannot, it may end the process."""
+    """Return whether PyVista is installed and can draw off screen, tested in another process because it may crash."""
     script = "import pyvista as p; a = p.Plotter(off_screen=True); a.add_mesh(p.Sphere()); a.screenshot()"
     return subprocess.run([sys.executable, "-c", script], capture_output=True, timeout=120, check=False).returncode == 0
 
 
 @pytest.fixture(params=["plain", "pyvista"])
 def renderer(request: pytest.FixtureRequest) -> Any:
-    """Both ways to draw."""
+    """Return each of the two renderers."""
     if request.param == "pyvista" and not renders():
         pytest.skip("PyVista is not here or cannot draw: python -m pip install 'rattlebox[3d]', and a Mesa library")
     return request.param
@@ -45,7 +45,7 @@ def picture(places: Any, radii: Any, colours: Any, renderer: Any) -> Any:
 
 
 def test_a_sphere_is_a_disc_of_its_size_and_place(renderer: Any) -> None:
-    """A sphere covers a disc of its radius at its place, lit from the upper left, on a transparent ground."""
+    """A sphere covers a disc of its radius at its position, lit from the upper left, on a transparent background."""
     drawn = picture([[1.0, 0.25, 0.0]], [0.5], [RED], renderer)
     assert drawn.shape == (200, 400, 4)
     cover = drawn[..., 3] / 255.0
@@ -57,16 +57,16 @@ def test_a_sphere_is_a_disc_of_its_size_and_place(renderer: Any) -> None:
     assert drawn[75, 300, 1] < 30
 
 
-def test_the_nearer_sphere_is_seen(renderer: Any) -> None:
-    """Of two spheres in line the one that is nearer hides the other, in whatever order they are drawn."""
+def test_the_nearer_sphere_is_visible(renderer: Any) -> None:
+    """The nearer of two spheres hides the other, in any order of drawing."""
     for order in ([0, 1], [1, 0]):
         places, colours = np.array([[0, 0, 1.0], [0, 0, -1.0]])[order], np.array([RED, BLUE])[order]
         middle = picture(places, [0.5, 0.5], colours, renderer)[100, 200]
         assert middle[0] > 100 > middle[2]
 
 
-def test_both_ways_show_the_same() -> None:
-    """PyVista and the plain way cover the same pixels with nearly the same colours."""
+def test_both_renderers_agree() -> None:
+    """PyVista and the plain renderer cover the same pixels with nearly the same colours."""
     if not renders():
         pytest.skip("PyVista is not here or cannot draw: python -m pip install 'rattlebox[3d]', and a Mesa library")
     generator = np.random.default_rng(1)
@@ -88,7 +88,7 @@ def test_both_ways_show_the_same() -> None:
     ],
 )
 def test_outlines_lie_on_the_walls(cavity: Cavity, lines: int) -> None:
-    """Every line of an outline lies on a wall, and what is shown is as large as the cavity."""
+    """Every line of an outline lies on a wall of the cavity."""
     drawn = outline(cavity)
     assert len(drawn) == lines
     for line in drawn:
@@ -119,7 +119,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 def test_a_figure_has_a_panel_for_each_cavity(run: Any) -> None:
-    """Panels tell the cavity and the time, one colour bar tells the speed, and balls are inside the outline."""
+    """Each panel has its cavity and time as title, a colour bar shows the speed, and balls are inside the outline."""
     for of in (run[0], rb.Snapshots(run[1])):
         figure = plot_particles(of, size="column", renderer="plain")
         *panels, bar = figure.axes
@@ -139,8 +139,8 @@ def test_a_figure_has_a_panel_for_each_cavity(run: Any) -> None:
 
 
 @pytest.mark.parametrize("shaken", ["base", "shaker"])
-def test_speeds_in_a_shaken_box_are_told_to_be_relative(shaken: str, tmp_path: Path) -> None:
-    """Where the base moves, the colour bar says that speeds are relative to it."""
+def test_speeds_in_a_shaken_box_are_relative(shaken: str, tmp_path: Path) -> None:
+    """With base motion, the label of the colour bar states that speeds are relative to the base."""
     push = rb.Harmonic(amplitude="1 mm", frequency="30 Hz")
     damper = rb.ParticleDamper(
         particles=rb.Particles(material="glass", diameter="4 mm", count=5),
@@ -162,7 +162,7 @@ def test_speeds_in_a_shaken_box_are_told_to_be_relative(shaken: str, tmp_path: P
 
 
 def test_films_have_a_picture_for_each_snapshot(run: Any, tmp_path: Path) -> None:
-    """A GIF has as many pictures as there are snapshots, and they differ."""
+    """A GIF has a different picture for each snapshot."""
     path = film_particles(rb.Snapshots(run[1]), tmp_path / "film.gif", rate=10, renderer="plain")
     with Image.open(path) as film:
         assert film.n_frames == 5 and film.size == (1280, 720)
@@ -196,7 +196,7 @@ def test_colours_and_views(run: Any) -> None:
 
 
 def test_the_wall_is_filled_and_moves(run: Any) -> None:
-    """Behind the particles each cavity is filled as far as its outline; the fill moves with the cavity."""
+    """Each cavity is filled up to its outline, and the fill moves with the cavity."""
     scene = _Scene(rb.Snapshots(run[1]), run[0].case_toml, "slide", "plain", 60.0, view="front", shape=0.5625)
     frames = list(rb.Snapshots(run[1]))
     for number in (0, 2):
@@ -207,14 +207,14 @@ def test_the_wall_is_filled_and_moves(run: Any) -> None:
 
 
 @pytest.mark.parametrize("pixels", [(1281, 720), (100, 100), (1280,), "1280x720"])
-def test_sizes_that_films_cannot_have_are_refused(pixels: Any, run: Any, tmp_path: Path) -> None:
-    """Width and height are even numbers, as video codecs need them."""
+def test_odd_sizes_of_films_are_refused(pixels: Any, run: Any, tmp_path: Path) -> None:
+    """Width and height must be even numbers, as video codecs require."""
     with pytest.raises(ValueError, match="even numbers"):
         film_particles(rb.Snapshots(run[1]), tmp_path / "film.gif", pixels=pixels)
 
 
 def test_films_for_talks(run: Any, tmp_path: Path) -> None:
-    """An MP4 is written where imageio-ffmpeg is installed."""
+    """An MP4 is written if imageio-ffmpeg is installed."""
     pytest.importorskip("imageio_ffmpeg", reason="no imageio-ffmpeg: python -m pip install 'rattlebox[3d]'")
     path = film_particles(rb.Snapshots(run[1]), tmp_path / "film.mp4", renderer="plain")
     assert path.read_bytes()[4:8] == b"ftyp"
@@ -223,7 +223,7 @@ def test_films_for_talks(run: Any, tmp_path: Path) -> None:
 def answer(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: object
 ) -> tuple[int | str | None, str, str]:
-    """Run the command plot; return its exit code, what it prints, and what it says."""
+    """Run `rattlebox plot`; return its exit code, standard output and standard error."""
     monkeypatch.setattr(sys, "argv", ["rattlebox", "plot", *map(str, arguments)])
     with pytest.raises(SystemExit) as stop:
         main()
@@ -233,7 +233,7 @@ def answer(
 def test_the_command_draws_and_films(
     run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The command draws a run or a snapshot, films snapshots, and without PyVista says how to get it."""
+    """The command draws a run or a snapshot, films snapshots, and without PyVista prints how to install it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("rattlebox.plots.spheres.find_spec", lambda name: None)
     get = "drawn without PyVista, which uses the graphics card: python -m pip install 'rattlebox[3d]'\n"
@@ -251,10 +251,10 @@ def test_the_command_draws_and_films(
         assert made.size == (320, 180)
 
 
-def test_the_command_draws_what_is_in_a_folder(
+def test_the_command_draws_the_files_of_a_folder(
     run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The folder of a run is drawn as run.nc is, and filmed as run.vtkhdf is; where that is not there it is told."""
+    """For a folder, the command draws run.nc and films run.vtkhdf; a missing run.vtkhdf is an error."""
     monkeypatch.chdir(tmp_path)
     folder = run[1].parent
     for file, options in (("run.nc", ["--kind", "energy"]), ("run.vtkhdf", ["--number", 1])):
@@ -271,7 +271,7 @@ def test_the_command_draws_what_is_in_a_folder(
 
 @pytest.mark.parametrize("name", ["film.gif", "film.mp4"])
 @pytest.mark.parametrize("pictures", [0, 3])
-def test_films_that_are_stopped_leave_the_earlier_ones(
+def test_an_interrupted_film_does_not_replace_the_earlier_one(
     name: str,
     pictures: int,
     run: Any,
@@ -279,7 +279,7 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Ctrl-C in any picture of a film is told in one line, and the file is as it was before."""
+    """Ctrl-C during a film prints one line and does not change an existing file."""
     if name.endswith("mp4"):
         pytest.importorskip("imageio_ffmpeg", reason="no imageio-ffmpeg: python -m pip install 'rattlebox[3d]'")
     drawn, show = 0, _Scene.show
@@ -332,20 +332,20 @@ def test_films_that_are_stopped_leave_the_earlier_ones(
         ([".", "--kind", "impacts"], "--kind impacts: this run has no such figure\n  known: energy, motion, particles"),
     ],
 )
-def test_wrong_arguments_are_told(
+def test_wrong_arguments_are_refused(
     options: list[str], message: str, run: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What does not fit is told with what does."""
+    """Arguments that do not fit the file are refused with the allowed ones."""
     monkeypatch.chdir(run[1].parent)
     code, _, error = answer(monkeypatch, capsys, *options)
     assert code == 2
     assert message in error
 
 
-def test_films_without_the_extra_are_told(
+def test_films_need_the_extra(
     run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without imageio-ffmpeg the command says how to get it, and what works without."""
+    """Without imageio-ffmpeg the command prints how to install it and which suffix works without."""
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     code, _, error = answer(monkeypatch, capsys, run[1], "-o", tmp_path / "a.mp4")
     assert (code, error) == (
@@ -355,8 +355,8 @@ def test_films_without_the_extra_are_told(
     )
 
 
-def test_runs_without_particles_are_told(run: Any, tmp_path: Path) -> None:
-    """What has no particles to draw, or no snapshots to film, is refused as what it is."""
+def test_runs_without_particles_are_refused(run: Any, tmp_path: Path) -> None:
+    """Objects without particles to draw or without snapshots to film are refused."""
     plain = rb.simulate(rb.Case(structure=rb.SDOF(mass=1, stiffness=1, velocity=1), duration=1))
     with pytest.raises(AttributeError, match="has no 'particles'"):
         plot_particles(plain)
@@ -369,10 +369,10 @@ def test_runs_without_particles_are_told(run: Any, tmp_path: Path) -> None:
             film_particles(of, tmp_path / "a.gif")
 
 
-def test_the_command_tells_of_damaged_files(
+def test_damaged_files_are_refused(
     run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Snapshots under the name of a run, and files that are torn, are told without a traceback."""
+    """Snapshots under the name of a run and truncated files are refused without a traceback."""
     content = run[1].read_bytes()
     for name, size in (("run.nc", None), ("torn.nc", 5000), ("torn.vtkhdf", 5000)):
         (tmp_path / name).write_bytes(content[:size])

@@ -1,7 +1,7 @@
-"""Runs made by a few lines of Python: an exactly propagated oscillator with hard impacts.
+"""Runs computed in plain Python: an exactly propagated oscillator with hard impacts.
 
-The load is constant within a step, so that its work is exact; each impact conserves momentum and loses what
-its restitution says. Contact durations, overlaps and forces are those of an undamped Hertz contact with the
+The load is constant within a step, so that its work is exact; each impact conserves momentum and dissipates energy
+by its restitution. Contact durations, overlaps and forces are those of an undamped Hertz contact with the
 same approach speed.
 """
 
@@ -20,7 +20,7 @@ PROVENANCE = Provenance("0.1.0", "hand-made", 7, "2030-01-02T03:04:05+00:00", "L
 
 
 class _Structure:
-    """One mode under a force that is constant in a step, or a wall that does not move."""
+    """One mode under a force that is constant within a step, or a fixed wall."""
 
     def __init__(self, step: float, fixed: bool) -> None:
         self.fixed, self.z, self.v = fixed, 0.0, 0.0
@@ -31,7 +31,7 @@ class _Structure:
         self.step_matrix = (d * (c + a / w * s), d * s / w, -d * k / w * s, d * (c - a / w * s))
 
     def advance(self, force: float) -> tuple[float, float]:
-        """Move on by one step; return the work of the force and the viscous loss."""
+        """Advance by one step; return the work of the force and the viscous loss."""
         if self.fixed:
             return 0.0, 0.0
         before, rest, start = self.energy, force / STIFFNESS, self.z
@@ -59,7 +59,7 @@ def make_run(
     status: str = "finished",
     message: str = "",
 ) -> Run:
-    """Run with a damper for each entry of `rows`, which tells the number of its balls."""
+    """Return a run with one damper for each entry of `rows`, its number of balls."""
     inner = 20
     step = duration / max(times - 1, 1) / inner
     structure = _Structure(step, fixed)

@@ -1,4 +1,4 @@
-"""Files: netCDF that every reader knows, MATLAB, CSV; nothing is lost."""
+"""Files of runs: netCDF, MATLAB and CSV without loss of information."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 def test_round_trip_is_exact(any_run: Run, tmp_path: Path) -> None:
-    """A saved run of any kind comes back equal in every bit and text."""
+    """A saved run of any kind is equal in every bit and text when it is loaded."""
     path = any_run.save(tmp_path / "run.nc")
     again = load(path)
     assert again == any_run
@@ -31,7 +31,7 @@ def test_round_trip_is_exact(any_run: Run, tmp_path: Path) -> None:
 
 
 def test_round_trip_of_odd_values(tmp_path: Path) -> None:
-    """Denormals, NaN, infinities, negative zeros, empty and non-ASCII texts survive."""
+    """Denormals, NaN, infinities, negative zeros, empty and non-ASCII texts are stored exactly."""
     odd = np.array([5e-324, np.nan, np.inf, -np.inf, -0.0, 0.1 + 0.2])
     arrays = RunArrays(
         time=np.arange(6.0),
@@ -45,8 +45,8 @@ def test_round_trip_of_odd_values(tmp_path: Path) -> None:
     assert np.signbit(again.arrays.displacement[4, 0])
 
 
-def test_long_case_is_kept(run: Run, tmp_path: Path) -> None:
-    """A case file longer than an attribute may be (64 kB) is kept."""
+def test_long_case_is_stored(run: Run, tmp_path: Path) -> None:
+    """A case file above the size limit of an attribute (64 kB) is stored."""
     case = "times = [" + ", ".join(map(repr, np.linspace(0, 1, 9000).tolist())) + "]\n"
     assert len(case) > 2**16
     assert load(Run(run.arrays, case).save(tmp_path / "long.nc")).case_toml == case
@@ -59,7 +59,7 @@ def _visit(file: h5py.File) -> list[tuple[str, Any]]:
 
 
 def test_only_plain_types(any_run: Run, tmp_path: Path) -> None:
-    """The file holds plain numbers and fixed characters: no bool, enum, compound, or ragged text."""
+    """The file has plain numbers and fixed-length characters only: no bool, enum, compound or ragged text."""
     path = any_run.save(tmp_path / "run.nc")
     with h5py.File(path) as file:
         for name, item in [("/", file), *_visit(file)]:
@@ -79,8 +79,8 @@ def test_only_plain_types(any_run: Run, tmp_path: Path) -> None:
                 assert item.compression in (None, "gzip"), name
 
 
-def test_strict_netcdf_reader_finds_everything(run: Run, tmp_path: Path) -> None:
-    """A strict netCDF-4 reader finds dimensions, units and meanings of every variable."""
+def test_strict_netcdf_reader_reads_everything(run: Run, tmp_path: Path) -> None:
+    """A strict netCDF-4 reader reads dimensions, units and long names of every variable."""
     path = run.save(tmp_path / "run.nc")
     with h5netcdf.File(path, "r", invalid_netcdf=False) as file:
         motion = file.groups["motion"]
@@ -96,8 +96,8 @@ def test_strict_netcdf_reader_finds_everything(run: Run, tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("name", ["steel_ball", "steel_balls_in_a_box"])
-def test_counts_and_figures_tell_what_they_are(name: str, tmp_path: Path) -> None:
-    """Of each number in the groups beside the datasets a file says the unit and, in words of its own, the meaning."""
+def test_counts_and_diagnostics_have_units_and_long_names(name: str, tmp_path: Path) -> None:
+    """Each number in the groups of counts and diagnostics has a unit and a long name."""
     case = rb.Case.from_file(EXAMPLES / f"{name}.toml").model_copy(update={"duration": 2e-3})
     with h5netcdf.File(rb.simulate(case).save(tmp_path / "run.nc"), "r") as file:
         rows = [
@@ -113,7 +113,7 @@ def test_counts_and_figures_tell_what_they_are(name: str, tmp_path: Path) -> Non
 
 
 def test_derived_energies_are_in_the_file(run: Run, tmp_path: Path) -> None:
-    """Sums of the ledger are stored for readers that do not know how to make them."""
+    """Derived sums of the energy ledger are stored in the file."""
     path = run.save(tmp_path / "run.nc")
     with h5py.File(path) as file:
         np.testing.assert_array_equal(file["energy/residual"], run.ledger.residual)
@@ -133,7 +133,7 @@ def test_xarray_opens_the_file(two_dampers: Run, tmp_path: Path) -> None:
 
 
 def test_save_is_all_or_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """When writing fails halfway, the older file is untouched and no rest remains."""
+    """If writing fails halfway, the older file is unchanged and no temporary file remains."""
     path = run.save(tmp_path / "run.nc")
     before = path.read_bytes()
 
@@ -148,17 +148,17 @@ def test_save_is_all_or_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_saving_into_no_folder(run: Run, tmp_path: Path) -> None:
-    """A missing folder is named."""
+    """Saving into a missing folder raises an error."""
     with pytest.raises(rb.DataError, match="no folder"):
         run.save(tmp_path / "missing" / "run.nc")
 
 
-def test_damage_is_told(run: Run, tmp_path: Path) -> None:
-    """A bit that flips in a file, wherever it is, is told, or changes nothing of what is large enough to have a checksum."""
+def test_damage_is_detected(run: Run, tmp_path: Path) -> None:
+    """A flipped bit anywhere in a file raises an error or does not change any array with a checksum."""
     path = run.save(tmp_path / "run.nc")
     content = path.read_bytes()
     rng = np.random.default_rng(0)
-    rows: list[str] = []
+    messages: list[str] = []
     for _ in range(60):
         damaged = bytearray(content)
         damaged[rng.integers(len(content))] ^= 1 << int(rng.integers(8))
@@ -166,17 +166,17 @@ def test_damage_is_told(run: Run, tmp_path: Path) -> None:
         try:
             there = load(path)
         except ValueError as error:
-            rows.append(str(error))
+            messages.append(str(error))
             continue
         assert there.case_toml == run.case_toml
         for name in ("time", "displacement", "velocity", "ball_position", "ball_velocity", "viscous_loss"):
             np.testing.assert_array_equal(getattr(there.arrays, name), getattr(run.arrays, name))
-    assert len(rows) > 30
-    assert all("run.nc" in message for message in rows)
+    assert len(messages) > 30
+    assert all("run.nc" in message for message in messages)
 
 
-def test_checksums_tell_numbers_that_were_changed(run: Run, tmp_path: Path) -> None:
-    """A block whose numbers were changed, though it unpacks without fault, is refused: its checksum is another one."""
+def test_checksums_detect_changed_numbers(run: Run, tmp_path: Path) -> None:
+    """A block with changed numbers that unpacks without error is refused because of its checksum."""
     path = run.save(tmp_path / "run.nc")
     with h5py.File(path, "r+") as file:
         stored = file["motion/displacement"]
@@ -191,7 +191,7 @@ def test_checksums_tell_numbers_that_were_changed(run: Run, tmp_path: Path) -> N
 
 
 def test_loading_something_else(tmp_path: Path) -> None:
-    """A missing file, a folder, a text, a foreign netCDF file and one of a later version are each refused by name."""
+    """A missing file, a folder, text, a foreign netCDF file and a later format are refused with the name."""
     with pytest.raises(rb.DataError, match="is a folder, not a file"):
         load(tmp_path)
     with pytest.raises(rb.DataError, match=r"there is no file .*none\.nc"):
@@ -214,8 +214,8 @@ def test_loading_something_else(tmp_path: Path) -> None:
         load(later)
 
 
-def test_damaged_files_are_named(run: Run, tmp_path: Path) -> None:
-    """A file that is cut off, or lacks a part, is told with its name."""
+def test_damaged_files_are_refused(run: Run, tmp_path: Path) -> None:
+    """A truncated file and a file without a required part are refused with the name."""
     whole = run.save(tmp_path / "whole.nc").read_bytes()
     damaged = tmp_path / "damaged.nc"
     message = r"damaged\.nc is not an intact netCDF-4 file"
@@ -232,8 +232,8 @@ def test_damaged_files_are_named(run: Run, tmp_path: Path) -> None:
             load(damaged)
 
 
-def test_a_file_that_must_not_be_read(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The system's own reason is told where a file must not be read."""
+def test_a_file_without_permission_to_read(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The error for an unreadable file has the reason that the operating system gives."""
     path = run.save(tmp_path / "run.nc")
 
     def forbidden(self: Path, *_: object) -> None:
@@ -247,7 +247,7 @@ def test_a_file_that_must_not_be_read(run: Run, tmp_path: Path, monkeypatch: pyt
 
 
 def test_matlab_file_that_cannot_be_written(run: Run, tmp_path: Path) -> None:
-    """A missing folder and a folder in the place of the file are told as when a run is saved."""
+    """A missing folder and a folder of the same name raise the same errors for netCDF and MATLAB files."""
     (tmp_path / "folder").mkdir()
     for write, name in ((run.save, "run.nc"), (run.to_mat, "run.mat")):
         with pytest.raises(rb.DataError, match=rf"{name} cannot be written: there is no folder .*missing"):
@@ -268,14 +268,14 @@ def test_matlab_file_that_cannot_be_written(run: Run, tmp_path: Path) -> None:
 def test_names_of_other_kinds_of_files_are_refused(
     run: Run, tmp_path: Path, writer: str, name: str, other: str
 ) -> None:
-    """A file whose name says that it holds another format is not written, and the right name is told."""
+    """A file name with the suffix of another format is refused with the right name."""
     with pytest.raises(rb.DataError, match=rf"{name}: a .* is written, not a {name[3:].lower()} file\n  try: {other}"):
         getattr(run, writer)(tmp_path / name)
     assert not any(tmp_path.iterdir())
 
 
 def test_matlab_round_trip(any_run: Run, tmp_path: Path) -> None:
-    """A MATLAB file holds every variable unchanged, in structs with units."""
+    """A MATLAB file has every variable unchanged, in structs with units."""
     from scipy.io import loadmat
 
     content = loadmat(any_run.to_mat(tmp_path / "run.mat"), simplify_cells=False)
@@ -303,7 +303,7 @@ def _read(path: Path) -> tuple[list[str], np.ndarray]:
 
 
 def test_csv_keeps_every_digit(any_run: Run, tmp_path: Path) -> None:
-    """Numbers read from the CSV files equal those of the run exactly, under headers with units."""
+    """The numbers in the CSV files are exactly those of the run, under headers with units."""
     files = any_run.to_csv(tmp_path / "new" / "folder")
     assert [path.name for path in files] == ["motion.csv", "energy.csv", "impacts.csv"]
     header, table = _read(files[0])
@@ -326,14 +326,14 @@ def test_csv_keeps_every_digit(any_run: Run, tmp_path: Path) -> None:
 
 
 def test_csv_of_names_with_commas(run: Run, tmp_path: Path) -> None:
-    """A point whose name holds a comma and quotes keeps one column."""
+    """A point with a comma and quotes in its name has one column."""
     named = Run(run.arrays.replaced(points=('tip, "left"',)))
     header, _ = _read(named.to_csv(tmp_path)[0])
     assert 'displacement tip, "left" [m]' in header
 
 
 def test_csv_needs_a_folder(run: Run, tmp_path: Path) -> None:
-    """A file in the place of the folder is named, and kept."""
+    """A file with the name of the output folder is an error and is not changed."""
     (tmp_path / "notes").write_text("mine")
     with pytest.raises(rb.DataError, match="notes is a file; "):
         run.to_csv(tmp_path / "notes")

@@ -1,4 +1,4 @@
-"""The run as a whole: ledger, datasets, lazy imports."""
+"""The class Run: energy ledger, datasets, status, lazy imports."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _column(*values: float) -> np.ndarray:
 
 
 def _open_ledger(**changes: object) -> Run:
-    """Ledger with 1 J at the start and 4 J of work, of which 0.5 J is missing in the middle."""
+    """Return a run with 1 J at the start and 4 J of work, with 0.5 J missing in the middle."""
     arrays = RunArrays(
         time=TIME,
         dampers=("d",),
@@ -37,26 +37,26 @@ def _open_ledger(**changes: object) -> Run:
 
 
 def test_energy_residual_of_an_open_ledger() -> None:
-    """A ledger that misses half a joule of eight says so."""
+    """The residual of a ledger is the missing energy over the energy supplied."""
     run = _open_ledger()
     np.testing.assert_array_equal(run.ledger.residual, [0.0, -0.5, 0.0])
     assert run.energy_residual == 0.5 / (5.0 + 2.0 + 1.0)
 
 
 def test_shares_of_a_ledger() -> None:
-    """Shares refer to what was supplied by the end, 3 J here, and add up to one."""
+    """Shares refer to the energy supplied by the end, here 3 J, and add up to one."""
     shares = _open_ledger().ledger.shares
     assert shares == {"viscous": 1.25 / 3, "normal": 0.5 / 3, "plastic": 0.5 / 3, "motion": 0.75 / 3}
 
 
-def test_ledger_tells_itself_in_a_line() -> None:
-    """A ledger that is printed says how much was supplied, where it went, and how well the sum closes."""
+def test_repr_of_a_ledger() -> None:
+    """The repr of a ledger has the supplied energy, the shares and the residual."""
     shares = "viscous 41.67 %, normal 16.67 %, plastic 16.67 %, motion 25.00 %"
     assert repr(_open_ledger().ledger) == f"<Ledger 3.000 J supplied: {shares}; energy residual 6.2e-02>"
 
 
 def test_zero_of_gravity_does_not_matter() -> None:
-    """The energy residual and shares of a falling ball do not depend on the height from which it is counted."""
+    """The energy residual and shares of a falling ball do not depend on the zero of its height."""
     falling = {
         "load_work": np.zeros(3), "base_work": np.zeros(3), "viscous_loss": np.zeros(3),
         "mode_energy": _column(0, 0, 0), "ball_energy": _column(0, 2, 0.5),
@@ -70,7 +70,7 @@ def test_zero_of_gravity_does_not_matter() -> None:
 
 
 def test_nothing_supplied() -> None:
-    """Without any energy the energy residual is zero and the shares are undefined; loss from nowhere is infinite."""
+    """Without any energy the residual is zero and the shares are NaN; a loss without supply has an infinite residual."""
     still = Run(RunArrays(time=TIME))
     assert still.energy_residual == 0.0
     assert all(np.isnan(share) for share in still.ledger.shares.values())
@@ -83,12 +83,12 @@ def test_undefined_energy_is_not_hidden() -> None:
 
 
 def test_example_runs_close(any_run: Run) -> None:
-    """The hand-made runs close to round-off, so that what is tested with them is plausible."""
+    """The energy residual of the example runs is round-off."""
     assert any_run.energy_residual < 1e-13
 
 
 def test_status(make_run) -> None:
-    """A run that ended early is not ok and tells why."""
+    """A run that ended early is not ok and has the reason as its message."""
     stopped = make_run(duration=0.01, times=11, status="interrupted", message="Stopped by hand.")
     assert not stopped.ok
     assert stopped.message == "Stopped by hand."
@@ -96,7 +96,7 @@ def test_status(make_run) -> None:
 
 
 def test_every_variable_is_described(any_run: Run) -> None:
-    """Every variable of every dataset has a unit and a meaning; the provenance is on the dataset."""
+    """Every variable of every dataset has a unit and a long name; each dataset has the provenance."""
     for group in any_run.groups:
         data = getattr(any_run, group)
         for name, variable in data.variables.items():
@@ -108,7 +108,7 @@ def test_every_variable_is_described(any_run: Run) -> None:
 
 
 def test_datasets_are_selected_by_name(two_dampers: Run) -> None:
-    """Balls, dampers, points and modes are found by their labels."""
+    """Balls, dampers, points and modes are selected by their labels."""
     arrays = two_dampers.arrays
     ball = two_dampers.motion.relative_position.sel(ball="damper2/3")
     np.testing.assert_array_equal(ball, arrays.relative_position[:, 3])
@@ -119,7 +119,7 @@ def test_datasets_are_selected_by_name(two_dampers: Run) -> None:
 
 
 def test_energy_dataset_balances(run: Run) -> None:
-    """Total, work, losses and residual of the dataset satisfy the balance; shares are there by channel."""
+    """Total, work, losses and residual of the dataset satisfy the balance; shares are labelled by channel."""
     energy = run.energy
     left = energy.total - energy.total[0] - energy.work + energy.losses
     assert float(abs(left - energy.residual).max()) < 1e-15
@@ -127,13 +127,13 @@ def test_energy_dataset_balances(run: Run) -> None:
     assert float(energy.share.sel(channel="normal")) == run.ledger.shares["normal"]
 
 
-def test_datasets_are_kept(run: Run) -> None:
+def test_datasets_are_cached(run: Run) -> None:
     """A dataset is built once."""
     assert run.motion is run.motion
 
 
 def test_import_is_light() -> None:
-    """Importing the results and asking for a plain summary loads none of the heavy libraries."""
+    """Importing the results and printing a summary loads none of the heavy libraries."""
     code = (
         "import sys, numpy, rattlebox.results as r\n"
         "print(r.Run(r.RunArrays(time=numpy.zeros(1))).summary())\n"
@@ -143,8 +143,8 @@ def test_import_is_light() -> None:
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-def test_figures_that_a_run_lacks_are_answered_with_those_it_has(run: Run) -> None:
-    """A figure of another kind of run, or of none, is refused with the names of those that there are."""
+def test_unknown_figures_are_refused_with_the_available_ones(run: Run) -> None:
+    """A figure that the run does not have is refused with the names of the available ones."""
     beads = Run(RunArrays(time=TIME, engine="dem"))
     for plots, name, expected in (
         (beads.plot, "impacts", "energy, motion, particles, phase_portrait"),
@@ -156,7 +156,7 @@ def test_figures_that_a_run_lacks_are_answered_with_those_it_has(run: Run) -> No
     assert copy.copy(run.plot).energy().axes
 
 
-def test_unknown_ball_is_answered_with_the_known(run: Run) -> None:
-    """A portrait of a ball that does not exist lists what there is."""
+def test_unknown_ball_is_refused_with_the_available_ones(run: Run) -> None:
+    """The error of a portrait of a missing ball lists the balls and points."""
     with pytest.raises(ValueError, match=r"'ball 7'; there are damper1/1, mass"):
         run.plot.phase_portrait("ball 7")

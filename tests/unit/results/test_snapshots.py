@@ -1,4 +1,4 @@
-"""Snapshots of particles in VTKHDF files, as VTK itself reads them."""
+"""Snapshots of particles in VTKHDF files, read by our reader and by VTK."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rattlebox.results.snapshots import SnapshotFile, Snapshots
 
 
 def case(**output: Any) -> rb.Case:
-    """Return balls in a kicked box, and in a can on the same structure that moves along z."""
+    """Return balls in a box with initial velocity along x and in a can on the same structure along z."""
     beads = rb.Particles(material="glass", diameter="4 mm", count=9)
     options: dict[str, Any] = {
         "particles": beads,
@@ -37,13 +37,13 @@ def case(**output: Any) -> rb.Case:
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """Return a run and the path of its snapshots, eleven of them."""
+    """Return a run and the path of its eleven snapshots."""
     path = tmp_path_factory.mktemp("snapshots") / "run.vtkhdf"
     return rb.simulate(case(snapshots=11), snapshots=path), path
 
 
-def test_snapshots_are_where_the_run_was(written: Any) -> None:
-    """Times, centres of mass, displacements and the last places and velocities are those of the run."""
+def test_snapshots_agree_with_the_run(written: Any) -> None:
+    """Times, centres of mass, displacements, and the last positions and velocities are those of the run."""
     run, path = written
     result = Snapshots(path)
     assert len(result) == 11
@@ -63,7 +63,7 @@ def test_snapshots_are_where_the_run_was(written: Any) -> None:
 
 
 def test_contact_force_of_a_stack(tmp_path: Path) -> None:
-    """Two balls at rest on each other: the upper one is pressed by its weight, the lower one from above and below."""
+    """The contact force on the upper of two stacked balls is its weight, on the lower one three times the weight."""
     steel = rb.Particles(material="steel", diameter="10 mm")
     pile = rb.ParticleDamper(
         particles=steel,
@@ -92,7 +92,7 @@ CAVITIES = [
 
 @pytest.mark.parametrize("cavity", CAVITIES)
 def test_surface_of_a_cavity(cavity: Any) -> None:
-    """The surface is closed, its corners are on the walls, its faces look inward, and it has the volume of the cavity."""
+    """The surface is closed, its corners are on the walls, its faces point inward, and its volume is the cavity's."""
     walls = surface(cavity)
     np.testing.assert_allclose(cavity.depth(walls.points), 0, atol=1e-12 * cavity.lengths.max())
     sides = [(a, b) for face in walls.polygons for a, b in zip(face, (*face[1:], face[0]), strict=True)]
@@ -107,7 +107,7 @@ def test_surface_of_a_cavity(cavity: Any) -> None:
 
 
 def test_walls_move_with_the_structure(written: Any) -> None:
-    """The file has the walls of both cavities after the particles, at each time displaced like their cavity."""
+    """The file has the walls of both cavities after the particles, displaced with their cavity at each time."""
     run, path = written
     walls = [surface(damper.cavity).points for damper in run.case.dampers]
     total = 18 + sum(map(len, walls))
@@ -125,8 +125,8 @@ def test_walls_move_with_the_structure(written: Any) -> None:
         assert np.ptp(moved[:, 0, 0]) > 1e-3, "the box moves"
 
 
-def test_vtk_reads_what_was_written(written: Any) -> None:
-    """VTK's own reader finds every time, point, field and the displacements of the cavities, which stand side by side."""
+def test_vtk_reads_the_file(written: Any) -> None:
+    """VTK's reader reads every time, point, field and the displacements of the cavities, which are side by side."""
     pytest.importorskip("vtkmodules", reason="VTK is not installed: python -m pip install 'rattlebox[3d]'")
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOHDF import vtkHDFReader
@@ -158,8 +158,8 @@ def test_vtk_reads_what_was_written(written: Any) -> None:
 
 
 @pytest.mark.parametrize(("steps", "count", "cavities"), [(2, 1, 1), (500, 3, 2), (2, 20_000, 1), (40, 200, 30)])
-def test_all_room_on_disk_is_taken_at_once(steps: int, count: int, cavities: int, tmp_path: Path) -> None:
-    """The room that is asked for is enough for the file, and the file has no holes that a full disk would not fill."""
+def test_disk_space_is_reserved_at_once(steps: int, count: int, cavities: int, tmp_path: Path) -> None:
+    """The reserved space is enough for the file, and the file has no holes that need space later."""
     fixed = {name: np.ones(count) for name in ("radius", "mass", "cavity", "species")}
     walls = [surface(rb.SphericalCavity(radius=1))] * cavities
     text = "# ein längerer Fall\n" * 1000
@@ -179,8 +179,8 @@ def test_all_room_on_disk_is_taken_at_once(steps: int, count: int, cavities: int
         assert 512 * (tmp_path / "run.vtkhdf").stat().st_blocks >= size
 
 
-def test_times_are_chosen(tmp_path: Path) -> None:
-    """Snapshots are taken at the steps nearest to the times that are given, each once."""
+def test_times_of_snapshots(tmp_path: Path) -> None:
+    """Snapshots are taken at the steps nearest to the given times, each once."""
     times = [0.0, 0.005, 0.00500001, 0.02 * (1 + 1e-15)]
     run = rb.simulate(case(snapshots=times), snapshots=tmp_path / "run.vtkhdf")
     result = Snapshots(tmp_path / "run.vtkhdf")
@@ -189,7 +189,7 @@ def test_times_are_chosen(tmp_path: Path) -> None:
 
 
 def test_times_after_the_end_are_refused() -> None:
-    """A snapshot that would be taken after the end of the run is told with both times."""
+    """A snapshot after the end of the run is refused with both times."""
     with pytest.raises(rb.CaseError) as caught:
         case(snapshots=["5 ms", "30 ms", "1 s"])
     assert str(caught.value).splitlines() == [
@@ -200,14 +200,14 @@ def test_times_after_the_end_are_refused() -> None:
 
 
 def test_no_times_give_no_file(tmp_path: Path) -> None:
-    """An empty list of times asks for no snapshots: no file is needed, and none is written."""
+    """With an empty list of times no file is needed, and none is written."""
     assert rb.simulate(case(snapshots=[])).ok
     assert rb.simulate(case(snapshots=[]), snapshots=tmp_path / "run.vtkhdf").ok
     assert not (tmp_path / "run.vtkhdf").exists()
 
 
 def test_snapshots_do_not_change_the_run(written: Any) -> None:
-    """A run of which snapshots are taken has the bits of one of which none are."""
+    """Runs with and without snapshots have the same bits."""
     run, _ = written
     plain = rb.simulate(case())
     np.testing.assert_array_equal(plain.arrays.cavity_force, run.arrays.cavity_force)
@@ -216,7 +216,7 @@ def test_snapshots_do_not_change_the_run(written: Any) -> None:
 
 @pytest.mark.parametrize(("content", "message"), [(None, "there is no file"), (b"notes", "is not an intact HDF5 file")])
 def test_other_files_are_refused(content: bytes | None, message: str, tmp_path: Path) -> None:
-    """A file that is missing or something else is told."""
+    """A missing file, a folder and a file of another format are refused."""
     path = tmp_path / "run.vtkhdf"
     if content is not None:
         path.write_bytes(content)
@@ -226,8 +226,8 @@ def test_other_files_are_refused(content: bytes | None, message: str, tmp_path: 
         Snapshots(tmp_path)
 
 
-def test_files_of_other_things_are_kept(written: Any, tmp_path: Path) -> None:
-    """Snapshots do not take the place of results or notes; earlier ones, also torn, give way."""
+def test_other_files_are_not_overwritten(written: Any, tmp_path: Path) -> None:
+    """Snapshots never overwrite results or notes, but do overwrite earlier snapshots, even truncated ones."""
     results, notes, torn = (tmp_path / name for name in ("results", "notes.txt", "torn.vtkhdf"))
     written[0].save(results)
     notes.write_text("buy milk")
@@ -248,15 +248,15 @@ def test_files_of_other_things_are_kept(written: Any, tmp_path: Path) -> None:
         ("no/run.vtkhdf", "there is no folder"),
     ],
 )
-def test_places_where_no_snapshots_can_be_are_told(tmp_path: Path, name: str, message: str) -> None:
-    """Files of another kind and in folders that are not there are refused before the run."""
+def test_bad_paths_of_snapshots_are_refused(tmp_path: Path, name: str, message: str) -> None:
+    """Files with another suffix and in missing folders are refused before the run."""
     with pytest.raises((rb.CaseError, OSError), match=message):
         rb.simulate(case(snapshots=2), snapshots=tmp_path / name)
     assert not any(tmp_path.iterdir())
 
 
 def test_runs_are_no_snapshots(written: Any, tmp_path: Path) -> None:
-    """The netCDF file of a run, which is HDF5 too, holds no snapshots; and there are as many of them as there are."""
+    """The netCDF file of a run, which is HDF5 too, has no snapshots; an index beyond the last is refused."""
     run, path = written
     with pytest.raises(rb.DataError, match="holds no snapshots of particles"):
         Snapshots(run.save(tmp_path / "run.nc"))
@@ -265,7 +265,7 @@ def test_runs_are_no_snapshots(written: Any, tmp_path: Path) -> None:
 
 
 def test_several_snapshots_at_once(written: Any) -> None:
-    """A slice of snapshots gives those that it gives of a list."""
+    """A slice of snapshots selects as a slice of a list."""
     there = Snapshots(written[1])
     times = list(there.times)
     for some in (slice(2, 5), slice(None, None, 4), slice(-2, None), slice(5, 2)):
@@ -281,14 +281,14 @@ def test_several_snapshots_at_once(written: Any) -> None:
         ([-1.0], "negative"),
     ],
 )
-def test_wrong_choices_are_told(value: Any, message: str) -> None:
-    """A choice of snapshots that makes no sense is refused."""
+def test_wrong_choices_are_refused(value: Any, message: str) -> None:
+    """Invalid values of `snapshots` are refused."""
     with pytest.raises(rb.CaseError, match=message):
         rb.Output(snapshots=value)
 
 
 def test_more_snapshots_than_steps_are_refused(tmp_path: Path) -> None:
-    """A run of three steps, which has four instants, is not asked for five of them, and nothing is written."""
+    """Five snapshots of a run with three steps, that is four instants, are refused, and nothing is written."""
     case = rb.Case(
         structure=rb.Fixed(),
         damper=rb.ParticleDamper(
@@ -309,13 +309,13 @@ def test_more_snapshots_than_steps_are_refused(tmp_path: Path) -> None:
 
 
 def test_snapshots_are_no_run(written: Any) -> None:
-    """Where a run is to be loaded from the file of snapshots, what it holds is told."""
+    """Loading a file of snapshots as a run is refused with its content."""
     with pytest.raises(rb.DataError, match=r"run\.vtkhdf holds snapshots of particles, not a run"):
         rb.load(written[1])
 
 
-def test_damaged_snapshots_are_named(written: Any, tmp_path: Path) -> None:
-    """A file that lacks a part, when it is opened or when a snapshot is read, is told with its name."""
+def test_damaged_snapshots_are_refused(written: Any, tmp_path: Path) -> None:
+    """A file without a required part is refused with its name, on opening or on reading a snapshot."""
     for lost in ("Steps", "PointData/radius", "PointData/spin"):
         path = tmp_path / "run.vtkhdf"
         path.write_bytes(written[1].read_bytes())

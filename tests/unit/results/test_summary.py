@@ -1,4 +1,4 @@
-"""The summary: right numbers, readable texts."""
+"""Numbers and text of the summary of a run."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from rattlebox.results.quantities import digits, prefix, quantity
     ],
 )
 def test_quantities(value: float, unit: str, text: str) -> None:
-    """Numbers are written with four digits and the prefix that suits them after rounding."""
+    """Numbers are written with four digits and the prefix that fits after rounding."""
     assert quantity(value, unit) == text
 
 
@@ -65,8 +65,8 @@ def test_numbers_of_a_hand_made_run() -> None:
     assert np.isnan(values["peak_contact_force"])
 
 
-def test_of_many_points_those_that_move_most_are_shown() -> None:
-    """Of nine points the table has all peaks, and all lines of those with the largest ones, in their order."""
+def test_the_summary_of_many_points_shows_the_largest_motions() -> None:
+    """For nine points the table has all peaks, but RMS values of the points with the largest peaks only."""
     time = np.linspace(0.0, 1.0, 5)
     peaks = np.array([1.0, 9.0, 2.0, 8.0, 3.0, 7.0, 4.0, 6.0, 5.0])
     names = tuple(f"p{k}" for k in range(9))
@@ -80,7 +80,7 @@ def test_of_many_points_those_that_move_most_are_shown() -> None:
 
 
 def _swinging(*peaks: float) -> Run:
-    """A structure whose points swing with these peaks."""
+    """Return a run of a structure with the given peaks at its points."""
     time = np.linspace(0.0, 1.0, 5)
     names = tuple(f"p{k}" for k in range(len(peaks)))
     return Run(RunArrays(time=time, points=names, mode_frequency=[1.0], displacement=np.outer(time, peaks)))
@@ -97,8 +97,8 @@ def _swinging(*peaks: float) -> Run:
         ((np.nan, 0.0, 1e-3), ["p0", "p2"]),
     ],
 )
-def test_points_that_stand_still_are_left_out(peaks: tuple[float, ...], shown: list[str]) -> None:
-    """The table and the legend name the points that move by more than rounding, or all where none does; values hold all."""
+def test_points_at_rest_are_omitted(peaks: tuple[float, ...], shown: list[str]) -> None:
+    """Table and legend omit points that move by rounding only, unless all do; the values have all points."""
     run = _swinging(*peaks)
     summary = run.summary()
     names = [f"p{k}" for k in range(len(peaks))]
@@ -111,13 +111,13 @@ def test_points_that_stand_still_are_left_out(peaks: tuple[float, ...], shown: l
 
 
 def test_a_point_that_moves_in_one_of_several_runs_is_compared() -> None:
-    """Side by side, a point is left out where it stands still in all of the runs."""
+    """A comparison omits a point only if it is at rest in all runs."""
     table = str(compare({"a": _swinging(1e-3, 0.0, 0.0), "b": _swinging(0.0, 1e-3, 0.0)}))
     assert [name for name in ("p0", "p1", "p2") if f"peak displacement, {name}" in table] == ["p0", "p1"]
 
 
 def test_numbers_of_a_run(run: Run) -> None:
-    """The summary holds the largest force and speed of the log and shares that add up to one."""
+    """The summary has the largest force and speed of the impact log and shares that add up to one."""
     values = run.summary().values
     assert values["impacts"] == len(run.arrays.impacts)
     assert values["peak_contact_force"] == run.arrays.impacts.peak_force.max()
@@ -126,25 +126,25 @@ def test_numbers_of_a_run(run: Run) -> None:
     assert values["energy_residual"] == run.energy_residual
 
 
-def test_dampers_are_told_apart() -> None:
-    """Of several dampers the summary tells what share of the energy each took, of many those that took most."""
+def test_losses_of_several_dampers() -> None:
+    """The summary has the energy share of each damper, or of the dampers with the largest shares if there are many."""
     lost = np.array([0.1, 0.0, 0.4, 0.2, 0.05, 0.15])
 
-    def told(count: int) -> str:
+    def summary_of(count: int) -> str:
         names = tuple(f"d{k}" for k in range(count))
         loss = np.outer([0.0, 1.0], lost[:count])
         run = Run(RunArrays(time=[0.0, 1.0], dampers=names, load_work=[0.0, 2.0], normal_loss=loss))
         assert run.ledger.damper_share == pytest.approx(lost[:count] / 2)
         return str(run.summary())
 
-    assert "lost in d" not in told(1)
-    assert re.findall(r"lost in (d\d) +(\S+)", told(6)) == [
+    assert "lost in d" not in summary_of(1)
+    assert re.findall(r"lost in (d\d) +(\S+)", summary_of(6)) == [
         ("d0", "5.000"), ("d2", "20.00"), ("d3", "10.00"), ("d5", "7.500")
     ]  # fmt: skip
 
 
 def test_hard_impacts_have_no_force(run: Run) -> None:
-    """An impact log whose forces are partly or all undefined gives the largest defined one, or a dash."""
+    """The largest force of an impact log ignores NaN; without any force the table has a dash."""
     log = run.arrays.impacts
     force = log.peak_force.copy()
     force[:-1] = np.nan
@@ -156,7 +156,7 @@ def test_hard_impacts_have_no_force(run: Run) -> None:
 
 
 def test_plain_text(any_run: Run) -> None:
-    """Every kind of run has a plain text whose columns align, without colours."""
+    """The text of every kind of run has aligned columns and no colours."""
     text = str(any_run.summary())
     assert "\x1b" not in text
     assert "impacts" in text
@@ -166,8 +166,8 @@ def test_plain_text(any_run: Run) -> None:
     assert ("displacement" in text) == bool(any_run.arrays.mode_frequency.size)
 
 
-def test_why_a_run_ended_is_said(make_run) -> None:
-    """The message of an interrupted run stands below its table."""
+def test_the_message_of_a_run_is_in_the_summary(make_run) -> None:
+    """The message of an interrupted run is printed below its table."""
     stopped = make_run(duration=0.01, times=11, status="interrupted", message="Stopped by hand [at 3].")
     assert str(stopped.summary()).endswith("Stopped by hand [at 3].")
 
@@ -184,15 +184,15 @@ def test_an_energy_error_is_reported() -> None:
         ),
         duration="0.1 s",
     )
-    for step, message in {"1 us": False, "30 us": True}.items():
+    for step, wrong in {"1 us": False, "30 us": True}.items():
         method = rb.TwoStep(dt_contact=step, dt_flight=step)
         run = rb.simulate(case.model_copy(update={"method": method}))
-        assert run.ok is not message, (step, run.energy_residual)
-        assert (run.message in str(run.summary())) is message
+        assert run.ok is not wrong, (step, run.energy_residual)
+        assert (run.message in str(run.summary())) is wrong
 
 
-def test_numbers_beyond_all_warn_of_nothing() -> None:
-    """The summary of a motion that grew beyond all numbers is made without warnings of NumPy."""
+def test_overflow_gives_no_warning() -> None:
+    """The summary of a motion with overflow raises no warning of NumPy."""
     arrays = RunArrays(
         time=np.array([0.0, 1.0]),
         points=("tip",),
@@ -205,14 +205,14 @@ def test_numbers_beyond_all_warn_of_nothing() -> None:
 
 
 def test_show_is_plain_outside_a_terminal(run: Run) -> None:
-    """Output that goes to a file has no frames and equals the text."""
+    """Output to a file has no frames and equals the text."""
     target = io.StringIO()
     run.summary().show(target)
     assert target.getvalue() == f"{run.summary()}\n"
 
 
 def test_show_is_a_table_in_a_terminal(run: Run) -> None:
-    """A terminal gets the framed table with the same numbers."""
+    """Output to a terminal is a framed table with the same numbers."""
 
     class Terminal(io.StringIO):
         def isatty(self) -> bool:
@@ -227,7 +227,7 @@ def test_show_is_a_table_in_a_terminal(run: Run) -> None:
 
 
 def test_comparison_has_a_column_for_each_run(run: Run, make_run) -> None:
-    """Runs with different points, dampers and ends share one table, a dash where a number is missing."""
+    """Runs with different points, dampers and statuses share one table, with a dash for a missing number."""
     fixed = make_run(fixed=True, ball_speed=0.2, status="interrupted", message="Stopped by hand.")
     table = compare({"free": run, "fixed": fixed}, "Two cavities")
     assert set(table.values) == {"free", "fixed"}
@@ -239,13 +239,13 @@ def test_comparison_has_a_column_for_each_run(run: Run, make_run) -> None:
 
 
 def test_comparison_of_nothing() -> None:
-    """A comparison needs a run."""
+    """A comparison without runs is refused."""
     with pytest.raises(ValueError, match="no run"):
         compare({})
 
 
 def test_plastic_line_only_where_it_is_lost(run: Run) -> None:
-    """Plastic flow has its line when some run lost energy to it."""
+    """The table has a line of plastic loss if a run has such a loss."""
     assert "plastic" not in str(run.summary())
     flowing = Run(run.arrays.replaced(plastic_loss=run.arrays.normal_loss / 2))
     assert "plastic" in str(compare({"a": run, "b": flowing}))

@@ -1,4 +1,4 @@
-"""Arguments of studies are looked at alike, whether they come from Python or from a file."""
+"""Validation of the arguments of studies, the same for Python and study files."""
 
 import math
 import re
@@ -37,7 +37,7 @@ WRONG = [
 
 @pytest.mark.parametrize(("name", "value"), WRONG, ids=str)
 def test_arguments_are_refused_by_name(name: str, value: Any) -> None:
-    """What no study file may hold is refused in Python, too, with the name and the value of the argument."""
+    """Bad arguments of a sweep are refused with the name and the value."""
     with pytest.raises(rb.CaseError, match="^" + re.escape(f"{name} = {value!r}\n")):
         rb.sweep(shaken(), {"damper.gap": ["1 mm"]}, ["peak"], **{name: value})
 
@@ -52,8 +52,8 @@ def test_arguments_are_refused_by_name(name: str, value: Any) -> None:
     ],
     ids=["lyapunov", "loss_map", "design", "sensitivity"],
 )
-def test_ready_maps_refuse_the_same(study: Any, arguments: tuple[Any, ...]) -> None:
-    """Ready maps look at their arguments as sweeps do."""
+def test_other_studies_refuse_the_same(study: Any, arguments: tuple[Any, ...]) -> None:
+    """Other studies check the common arguments as sweeps do."""
     for name, value in {"cycles": (-1, 2), "workers": 0}.items():
         with pytest.raises(rb.CaseError, match="^" + re.escape(f"{name} = {value!r}\n")):
             study(shaken(), *arguments, **{name: value})
@@ -89,7 +89,7 @@ OWN: list[tuple[Any, tuple[Any, ...], str, Any]] = [
     ("study", "arguments", "name", "value"), OWN, ids=[f"{row[0].__name__}-{row[2]}-{row[3]}" for row in OWN]
 )
 def test_each_study_refuses_its_own_by_name(study: Any, arguments: tuple[Any, ...], name: str, value: Any) -> None:
-    """What only one kind of study has is looked at as in its file, with the name and the value of the argument."""
+    """Bad arguments of one kind of study are refused with the name and the value."""
     with pytest.raises(rb.CaseError, match="^" + re.escape(f"{name} = {value!r}\n")):
         study(driven(), *arguments, cycles=(4, 2), **{name: value})
 
@@ -104,14 +104,14 @@ def test_each_study_refuses_its_own_by_name(study: Any, arguments: tuple[Any, ..
     ],
     ids=["sweep", "lyapunov", "design", "sensitivity"],
 )
-def test_what_to_skip_is_told_once(study: Any, arguments: tuple[Any, ...]) -> None:
-    """With cycles the time to skip is theirs: another one beside them is refused, not left out."""
+def test_skip_and_cycles_exclude_each_other(study: Any, arguments: tuple[Any, ...]) -> None:
+    """`skip` together with `cycles` is refused, not ignored."""
     with pytest.raises(rb.CaseError, match=r"skip = 0\.1 s and cycles exclude each other"):
         study(driven(), *arguments, cycles=(4, 2), skip="0.1 s")
 
 
-def test_what_is_no_parameter_is_told() -> None:
-    """A path, or bounds, of another type than is asked for get an answer, no traceback."""
+def test_bad_types_of_parameters_are_refused() -> None:
+    """A path or bounds of a wrong type raise a CaseError."""
     for path in (3, [["load.amplitude"]], ["load.amplitude"]):
         with pytest.raises(rb.CaseError):
             rb.bifurcation(driven(), path, [5.0, 10.0], cycles=(4, 2))
@@ -121,14 +121,14 @@ def test_what_is_no_parameter_is_told() -> None:
 
 
 def test_counts_of_numpy_are_counts(tmp_path: Path) -> None:
-    """Counts may come from NumPy, also where a store keeps them."""
+    """Counts may be NumPy integers, also with a store."""
     counts = {"cycles": np.array([1, 2]), "samples": np.int64(5), "last": np.int32(2)}
     result = rb.sweep(shaken(), {"damper.gap": ["1 mm"]}, ["peak"], store=tmp_path / "s.zarr", **counts)
     assert (result.status == 0).all()
 
 
 def test_one_measure_needs_no_list() -> None:
-    """Ready maps take one measure by its name, as sweeps do; what is no measure is told so."""
+    """All studies accept the name of a single measure and refuse other values."""
     ways: dict[Any, Any] = {
         rb.bifurcation: ("load.amplitude", [5.0, 10.0]),
         rb.basins: ({"damper.start": [-1.0, 1.0]},),

@@ -1,4 +1,4 @@
-"""Axes of a study: what values mean, what a design holds, and what is said of bad ones."""
+"""Axes of a study: values and units, grids, random designs, replicas, bad axes."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 
 @pytest.fixture(scope="module")
 def case() -> rb.Case:
-    """One steel ball, start in the middle of a gap of 0.4 mm."""
+    """Return a case with one steel ball that starts in the middle of a gap of 0.4 mm."""
     return rb.Case.from_file(EXAMPLES / "steel_ball.toml")
 
 
 @pytest.fixture(scope="module")
 def row() -> rb.Case:
-    """Five balls on a beam with two loads."""
+    """Return a case with five balls on a beam with two loads."""
     return rb.Case.from_file(EXAMPLES / "row_on_beam.toml")
 
 
 @pytest.fixture(scope="module")
 def shaker() -> rb.Case:
-    """One ball on a vertical shaker."""
+    """Return a case with one ball on a vertical shaker."""
     return rb.Case.from_file(EXAMPLES / "shaker.toml")
 
 
 def refused(case: rb.Case, axes: Any) -> str:
-    """Return what is said of bad axes, and check that it is short."""
+    """Return the error message of bad axes, which must be short."""
     with pytest.raises(rb.CaseError) as caught:
         read_axes(case, axes)
     message = str(caught.value)
@@ -48,7 +48,7 @@ def refused(case: rb.Case, axes: Any) -> str:
 
 
 def same(one: Grid, other: Grid) -> bool:
-    """Tell whether two designs are described alike."""
+    """Return whether two designs have the same description."""
     return one.describe() == other.describe()
 
 
@@ -75,7 +75,7 @@ def same(one: Grid, other: Grid) -> bool:
     ],
 )
 def test_values_are_read_in_si(case: rb.Case, path: str, given: Any, values: list[float], unit: str) -> None:
-    """However values are spelt, the column holds them in SI and the coordinate tells the unit and a name."""
+    """Values in any form are stored in SI, and the coordinate has the unit and a long name."""
     design = read_axes(case, {path: given})
     assert design.columns[path].dtype == np.float64
     np.testing.assert_allclose(design.columns[path], values, rtol=1e-15)
@@ -85,7 +85,7 @@ def test_values_are_read_in_si(case: rb.Case, path: str, given: Any, values: lis
 
 
 def test_pint_quantities_are_read(case: rb.Case) -> None:
-    """An array of pint keeps its unit."""
+    """The unit of a pint array is converted."""
     from rattlebox.model.units import registry
 
     design = read_axes(case, {"damper.gap": np.array([0.1, 0.2]) * registry().millimeter})
@@ -93,7 +93,7 @@ def test_pint_quantities_are_read(case: rb.Case) -> None:
 
 
 def test_places_in_lists_have_their_units(row: rb.Case) -> None:
-    """Members of lists vary on their own, in the unit of the list."""
+    """Elements of lists can vary, in the unit of the list."""
     design = read_axes(
         row,
         {
@@ -124,7 +124,7 @@ def test_places_in_lists_have_their_units(row: rb.Case) -> None:
 
 
 def test_names_and_parts_are_objects_with_labels(case: rb.Case) -> None:
-    """What is no number comes as objects of the case, and as short texts on the coordinate."""
+    """Values other than numbers are objects in the column and short labels on the coordinate."""
     contacts = [rb.Tsuji(restitution=0.9), {"kind": "thornton"}, rb.Linear(stiffness="1 MN/m", damping=5)]
     design = read_axes(
         case,
@@ -145,15 +145,15 @@ def test_names_and_parts_are_objects_with_labels(case: rb.Case) -> None:
 
 
 def test_labels_of_different_objects_differ(case: rb.Case) -> None:
-    """Two materials of one name can be told apart."""
+    """Two materials of one name have different labels."""
     steel = rb.materials()["steel"]
     soft = rb.Material(**{**dict(steel), "yield_stress": "500 MPa"})
     _, labels, _ = read_axes(case, {"damper.ball.material": [steel, soft]}).coords()["damper.ball.material"]
     assert labels.tolist() == ["steel (1)", "steel (2)"]
 
 
-def test_materials_of_the_case_are_known_by_name() -> None:
-    """A material that the case brings along need not be given again."""
+def test_materials_of_the_case_are_available_by_name() -> None:
+    """A material of the case can be named on an axis."""
     case = rb.Case(
         structure=rb.Fixed(),
         damper=rb.ImpactDamper(
@@ -171,7 +171,7 @@ def test_materials_of_the_case_are_known_by_name() -> None:
 
 
 def test_grid_has_one_dimension_an_item(case: rb.Case) -> None:
-    """Columns of a grid stretch along their own dimension only, the last one varying fastest."""
+    """Each column of a grid has its own dimension, and the last one varies fastest."""
     design = read_axes(case, {"damper.gap": ["1 mm", "2 mm", "3 mm"], "load.amplitude": ["1 kN", "5 kN"]})
     assert (design.dims, design.shape, design.size) == (("damper.gap", "load.amplitude"), (3, 2), 6)
     assert {path: column.shape for path, column in design.columns.items()} == {
@@ -184,7 +184,7 @@ def test_grid_has_one_dimension_an_item(case: rb.Case) -> None:
 
 
 def test_linked_parameters_share_a_dimension(case: rb.Case) -> None:
-    """A tuple of paths varies together along one dimension, called after the first, or as it is named."""
+    """Linked paths vary along one dimension, which has a given name or that of the first path."""
     gaps, loads = ["1 mm", "2 mm"], rb.linspace("1 kN", "5 kN", 2)
     tied = read_axes(case, {("damper.gap", "load.amplitude"): (gaps, loads), "duration": [1, 2]})
     named = read_axes(case, {"level": {"damper.gap": gaps, "load.amplitude": loads}, "duration": [1, 2]})
@@ -200,7 +200,7 @@ def test_linked_parameters_share_a_dimension(case: rb.Case) -> None:
 
 
 def test_exclusive_fields_replace_each_other(case: rb.Case) -> None:
-    """Varying a damping ratio, a cavity length or a diameter takes the place of what the case gives instead."""
+    """An axis over a damping ratio, cavity length or diameter replaces the alternative field of the case."""
     design = read_axes(
         case,
         {"structure.damping_ratio": [0.1], "damper.cavity_length": ["68 mm"], "damper.ball.diameter": ["66 mm"]},
@@ -212,8 +212,8 @@ def test_exclusive_fields_replace_each_other(case: rb.Case) -> None:
     assert variant.dampers[0].gap == pytest.approx(1e-3, rel=1e-12)
 
 
-def test_a_part_may_vary_with_what_is_in_it(case: rb.Case) -> None:
-    """A whole contact comes first, then its restitution."""
+def test_a_part_and_its_field_may_both_vary(case: rb.Case) -> None:
+    """The contact is replaced first, then its restitution."""
     laws = [rb.Tsuji(restitution=0.1, ending=ending) for ending in ("zero_force", "zero_overlap")]
     design = read_axes(case, {"damper.contact": laws, "damper.contact.restitution": [0.5, 0.9]})
     contact = design.case_at(case, 3).dampers[0].contact
@@ -224,7 +224,7 @@ def test_a_part_may_vary_with_what_is_in_it(case: rb.Case) -> None:
 
 
 def test_lengths_of_the_start_become_fractions_of_each_gap(case: rb.Case) -> None:
-    """A start given as a length stays that length whatever gap it meets."""
+    """A start given as a length is that length for every gap."""
     design = read_axes(case, {"damper.gap": ["0.1 mm", "1 mm"], "damper.start": ["50 um", "-0.02 mm"]})
     np.testing.assert_allclose(design.columns["damper.start"], [[0.5, -0.2], [0.05, -0.02]], rtol=1e-14)
     assert design.coords()["damper.start"][2]["units"] == "m"
@@ -233,8 +233,8 @@ def test_lengths_of_the_start_become_fractions_of_each_gap(case: rb.Case) -> Non
 
 
 @pytest.mark.parametrize("size", ["damper.ball.radius", "damper.ball.diameter"])
-def test_lengths_of_the_start_meet_the_gap_of_a_cavity(case: rb.Case, size: str) -> None:
-    """The gap that belongs to a cavity length and a varying ball is the one that counts."""
+def test_lengths_of_the_start_with_a_cavity_length(case: rb.Case, size: str) -> None:
+    """A start given as a length is exact if the gap follows from the cavity length and a varying ball."""
     sizes = ["30 mm", "33 mm"] if size.endswith("radius") else ["60 mm", "66 mm"]
     design = read_axes(
         case, {"damper.cavity_length": ["67 mm", "70 mm"], size: sizes, "damper.start": ["0.1 mm", "0.3 mm"]}
@@ -244,8 +244,8 @@ def test_lengths_of_the_start_meet_the_gap_of_a_cavity(case: rb.Case, size: str)
         np.testing.assert_allclose(design.case_at(case, index).dampers[0].positions0, [place], rtol=1e-12)
 
 
-def test_replicas_move_what_the_case_or_an_axis_gives(case: rb.Case) -> None:
-    """Offsets fill the reach to both sides, are the same for every variant, and are added."""
+def test_replicas_are_offsets_from_the_case_or_an_axis(case: rb.Case) -> None:
+    """Offsets are spread evenly over the reach on both sides, and each variant has the same offsets."""
     axes = {"damper.gap": ["0.1 mm", "1 mm"], "structure.mass": [10, 20]}
     moved = rb.replicas({"damper.start": "1 um", "structure.mass": "10 g"}, 64, seed=3)
     design = read_axes(case, [axes, moved])
@@ -266,19 +266,19 @@ def test_replicas_move_what_the_case_or_an_axis_gives(case: rb.Case) -> None:
 
 
 def test_replicas_of_a_start_at_a_wall_stay_inside(case: rb.Case) -> None:
-    """Beyond a wall of the cavity, also of one that is displaced, a start is mirrored at it."""
+    """A start beyond a wall of the cavity, also a displaced one, is mirrored at the wall."""
     for displacement in (0.0, 3e-4):
         centre = displacement / 4e-4
         here = replaced(case, {"structure.displacement": displacement, "damper.start": centre})
         axes = [{"damper.start": [centre - 1, centre, centre + 1]}, rb.replicas({"damper.start": "1 um"}, 8)]
-        beside = read_axes(here, axes).columns["damper.start"] - centre
-        assert np.abs(beside).max() <= 1 + 1e-12
-        np.testing.assert_allclose(beside[2], -np.sign(beside[1]) * beside[1] + 1, rtol=1e-12)
-        np.testing.assert_allclose(beside[0], -beside[2], rtol=1e-12)
+        start = read_axes(here, axes).columns["damper.start"] - centre
+        assert np.abs(start).max() <= 1 + 1e-12
+        np.testing.assert_allclose(start[2], -np.sign(start[1]) * start[1] + 1, rtol=1e-12)
+        np.testing.assert_allclose(start[0], -start[2], rtol=1e-12)
 
 
-def test_replicas_move_a_number_that_a_gap_or_a_restitution_gives(case: rb.Case) -> None:
-    """The gap that is moved is the one that a start in lengths refers to; a constant restitution counts as its number."""
+def test_replicas_of_a_gap_and_a_restitution(case: rb.Case) -> None:
+    """The start in lengths refers to the offset gap; the offset of a constant restitution is added to its number."""
     here = replaced(case, {"damper.contact.restitution": 0.9})
     reach = {"damper.gap": "0.1 mm", "damper.start": "10 um", "damper.contact.restitution": 0.05}
     design = read_axes(here, rb.replicas(reach, 16))
@@ -296,7 +296,7 @@ def test_replicas_move_a_number_that_a_gap_or_a_restitution_gives(case: rb.Case)
 
 @pytest.mark.parametrize("method", ["sobol", "halton", "lhs", "random"])
 def test_random_points_fill_their_ranges(case: rb.Case, method: Any) -> None:
-    """Points lie inside their ranges, evenly: a quarter of them in each quarter, in the logarithm where it is asked."""
+    """Points are spread evenly over their ranges, in the logarithm if requested: a quarter of them in each quarter."""
     ranges = {"damper.gap": ("0.1 mm", "2 mm"), "load.amplitude": ("10 N", "1000 N")}
     random = rb.random_design(ranges, 1000, method=method, log=["load.amplitude"])
     design = read_axes(case, random)
@@ -314,7 +314,7 @@ def test_random_points_fill_their_ranges(case: rb.Case, method: Any) -> None:
 
 
 def test_random_designs_repeat_and_differ_by_seed(case: rb.Case) -> None:
-    """The same seed gives the same design, another one another, and a longer Sobol design begins with the shorter."""
+    """A seed fixes the design, another seed gives another one, and a longer Sobol design begins with the shorter."""
     ranges = {"damper.gap": ("0.1 mm", "2 mm")}
     design = read_axes(case, rb.random_design(ranges, 10, seed=1))
     assert same(design, read_axes(case, rb.random_design(ranges, 10, seed=1)))
@@ -324,7 +324,7 @@ def test_random_designs_repeat_and_differ_by_seed(case: rb.Case) -> None:
 
 
 def test_random_designs_choose_materials(case: rb.Case) -> None:
-    """Where a parameter is no number, members of a list are drawn about equally often."""
+    """Choices from a list are drawn about equally often."""
     names = ["steel", "brass", "glass"]
     design = read_axes(case, rb.random_design({"damper.ball.material": names, "duration": (1, 2)}, 300))
     _, labels, _ = design.coords()["damper.ball.material"]
@@ -335,7 +335,7 @@ def test_random_designs_choose_materials(case: rb.Case) -> None:
 
 
 def test_description_is_plain_and_equal_for_equal_designs(case: rb.Case) -> None:
-    """Descriptions go through JSON unchanged and do not depend on the spelling of values, but on each of them."""
+    """Descriptions are JSON, do not depend on the units of values, and differ if any value differs."""
     spelt = [
         [
             {"damper.gap": ["1 mm", "2 mm"], "damper.ball.material": ["steel"]},
@@ -370,14 +370,14 @@ def test_description_is_plain_and_equal_for_equal_designs(case: rb.Case) -> None
 
 
 def rb_metre() -> Any:
-    """One metre as a quantity of pint."""
+    """Return one metre as a pint quantity."""
     from rattlebox.model.units import registry
 
     return registry().meter
 
 
-def test_designs_travel(case: rb.Case) -> None:
-    """A pickled design is the same design."""
+def test_designs_can_be_pickled(case: rb.Case) -> None:
+    """A pickled and restored design is equal."""
     design = read_axes(case, [{"damper.ball.material": ["steel", "brass"]}, rb.replicas({"damper.start": 0.01}, 3)])
     copy = pickle.loads(pickle.dumps(design))
     assert same(copy, design)
@@ -385,7 +385,7 @@ def test_designs_travel(case: rb.Case) -> None:
 
 
 def test_a_million_variants_are_light(case: rb.Case) -> None:
-    """A grid of a million holds its axes only, and big columns are not read value by value."""
+    """A grid of a million variants stores its axes only, and its description is short."""
     grid = read_axes(case, {"damper.gap": np.linspace(1e-4, 2e-3, 1000), "load.amplitude": np.linspace(1, 9e3, 1000)})
     assert grid.size == 10**6
     assert sum(column.nbytes for column in grid.columns.values()) == 16000
@@ -395,7 +395,7 @@ def test_a_million_variants_are_light(case: rb.Case) -> None:
 
 @pytest.mark.parametrize("index", [-1, 2])
 def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> None:
-    """Variants count from 0."""
+    """The index of a variant is from 0 to the size less one."""
     with pytest.raises(rb.CaseError, match="is not the number of a variant"):
         read_axes(case, {"duration": [1, 2]}).case_at(case, index)
 
@@ -472,14 +472,14 @@ def test_variants_that_do_not_exist_are_refused(case: rb.Case, index: int) -> No
     ],
 )
 def test_bad_axes_are_refused_with_the_place_and_a_reason(case: rb.Case, axes: Any, pattern: list[str]) -> None:
-    """Each wrong axis is told at once: the path, the value, what is allowed."""
+    """Each wrong axis is refused with the path, the value and the allowed values."""
     message = refused(case, axes)
     for word in pattern:
         assert word in message, message
 
 
-def test_values_that_the_place_has_in_another_unit_are_refused(shaker: rb.Case) -> None:
-    """The amplitude of a motion stays the displacement, or the acceleration, that it is."""
+def test_values_of_another_dimension_are_refused(shaker: rb.Case) -> None:
+    """The amplitude of a displacement cannot become an acceleration."""
     message = refused(shaker, {"structure.motion.amplitude": ["1 m/s^2"]})
     assert "a length (m) is needed, not an acceleration" in message
     assert read_axes(shaker, {"structure.motion.amplitude": ["0.1 mm"]}).coords()["structure.motion.amplitude"][2][
@@ -487,8 +487,8 @@ def test_values_that_the_place_has_in_another_unit_are_refused(shaker: rb.Case) 
     ] == ("m")
 
 
-def test_which_of_several_must_be_told(row: rb.Case) -> None:
-    """Where there are several balls or positions, the message says how to name one."""
+def test_an_index_is_needed_for_several_balls(row: rb.Case) -> None:
+    """With several balls or positions, the message proposes paths with an index."""
     assert "balls[0] to damper.balls[4]" in refused(row, {"damper.balls.material": ["steel"]})
     assert "damper.start[0]" in refused(row, rb.replicas({"damper.start": "1 um"}, 3))
 
@@ -505,8 +505,8 @@ def test_which_of_several_must_be_told(row: rb.Case) -> None:
     ],
     ids=str,
 )
-def test_ends_may_be_written_differently(ends: tuple[Any, Any]) -> None:
-    """Ends in other units of one dimension, or of which one is in SI, are left to the parameter."""
+def test_ends_of_a_range_may_have_different_units(ends: tuple[Any, Any]) -> None:
+    """The ends of a range may have different units of one dimension, or one may be a plain number in SI."""
     assert rb.linspace(*ends, 3).start == ends[0]
 
 
@@ -532,6 +532,6 @@ def test_ends_may_be_written_differently(ends: tuple[Any, Any]) -> None:
     ],
 )
 def test_bad_arguments_are_refused_at_once(make: Any, message: str) -> None:
-    """What is wrong without a case is told before there is one."""
+    """Arguments that are wrong for any case are refused at construction."""
     with pytest.raises(rb.CaseError, match=message):
         make()

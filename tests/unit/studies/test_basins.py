@@ -1,4 +1,4 @@
-"""Basins of attraction: starts, motions told apart, and how they are drawn."""
+"""Basins of attraction: attractors of starts, refused arguments, figures."""
 
 import runpy
 from pathlib import Path
@@ -15,7 +15,7 @@ STARTS = {"damper.start": np.linspace(-0.96, 0.96, 9), "damper.velocity": np.lin
 
 
 def shaken(amplitude=1e-3, phase=0.0, restitution=0.6, **damper):
-    """Return a ball that a shaker throws to and fro."""
+    """Return a ball in a shaken cavity."""
     return rb.Case(
         structure=rb.Shaker(motion=rb.Harmonic(amplitude=f"{amplitude!r} m", frequency="10 Hz", phase=phase)),
         damper=rb.ImpactDamper(
@@ -30,7 +30,7 @@ def shaken(amplitude=1e-3, phase=0.0, restitution=0.6, **damper):
 
 
 def test_mirrored_starts_lead_to_mirrored_motions():
-    """Half a cycle later, starts with left and right exchanged lead to the twin of each motion."""
+    """Mirrored starts with a phase shift of half a cycle lead to the mirrored motions."""
     maps = rb.basins(shaken(), STARTS, cycles=(200, 16), **QUIET)
     twins = rb.basins(shaken(phase=np.pi), STARTS, cycles=(200, 16), **QUIET)
     assert (maps.attractor > 0).all()
@@ -40,8 +40,8 @@ def test_mirrored_starts_lead_to_mirrored_motions():
     assert float(maps.share.sum()) == pytest.approx(1)
 
 
-def test_starts_end_where_their_attractor_says():
-    """Single runs from some starts end at a strobe of the motion that the map names."""
+def test_runs_end_on_their_attractor():
+    """Single runs from some starts end at a strobe of the attractor in the map."""
     maps = rb.basins(shaken(), STARTS, cycles=(200, 16), **QUIET)
     for i, j in [(0, 0), (2, 7), (4, 4), (8, 1), (8, 8)]:
         damper = shaken(start=float(STARTS["damper.start"][i]), velocity=float(STARTS["damper.velocity"][j]))
@@ -53,7 +53,7 @@ def test_starts_end_where_their_attractor_says():
 
 
 def test_chaos_has_no_attractor():
-    """Motions that do not repeat count as 0, and have no share."""
+    """Motions that do not repeat have the number 0 and no share."""
     maps = rb.basins(shaken(2.1e-3), STARTS, cycles=(100, 16), **QUIET)
     assert (maps.attractor == 0).all()
     assert (maps.period == 0).all()
@@ -62,8 +62,8 @@ def test_chaos_has_no_attractor():
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["no period found, 100 %"]
 
 
-def test_balls_that_hit_nothing_are_one_attractor():
-    """Wherever a ball rests, without impacts it is the same motion of the structure."""
+def test_motions_without_impacts_are_one_attractor():
+    """Without impacts the position of the ball does not matter: there is one attractor."""
     case = rb.Case(
         structure=rb.SDOF(mass="1 kg", stiffness="4 kN/m", damping_ratio=0.05),
         damper=rb.ImpactDamper(
@@ -80,8 +80,8 @@ def test_balls_that_hit_nothing_are_one_attractor():
         rb.plot_basins(maps)
 
 
-def test_unfinished_runs_are_told_apart():
-    """A start whose run does not finish is -1, whatever else."""
+def test_unfinished_runs_have_their_own_number():
+    """A start with an unfinished run has the number -1."""
     contact = rb.Tsuji(restitution=rb.JacksonGreen(yield_stress="100 MPa"))
     case = replaced(shaken(1e-4), {"damper.contact": contact, "method": rb.EventDriven()})
     maps = rb.basins(case, {"damper.velocity": [0.01, 5.0]}, cycles=(3, 4), **QUIET)
@@ -99,13 +99,13 @@ def test_unfinished_runs_are_told_apart():
         ({"damper.start": [0.0, 1.5]}, {}, "damper.start"),
     ],
 )
-def test_what_does_not_fit_is_told(starts, options, message):
-    """Bad arguments are told before anything runs."""
+def test_bad_arguments_are_refused(starts, options, message):
+    """Bad arguments are refused before the first run."""
     with pytest.raises(rb.CaseError, match=message):
         rb.basins(shaken(), starts, **{"cycles": (3, 4), **options})
 
 
-def test_without_damper_there_is_one_motion():
+def test_a_case_without_damper_is_refused():
     """A case without a damper is refused."""
     structure = rb.SDOF(mass="1 kg", stiffness="4 kN/m", damping_ratio=0.01)
     bare = rb.Case(structure=structure, load=rb.Harmonic(amplitude="1 N", frequency="10 Hz"), duration="1 s")
@@ -114,7 +114,7 @@ def test_without_damper_there_is_one_motion():
 
 
 def test_example(tmp_path, monkeypatch):
-    """The example finds four motions, two pairs of twins, and each strobe in its own basin."""
+    """The example has four attractors, two mirrored pairs, and each strobe is in its own basin."""
     monkeypatch.chdir(tmp_path)
     maps = runpy.run_path(str(EXAMPLE))["maps"]
     assert maps.orbit_impacts_per_cycle.values == pytest.approx([2, 2, 3, 3], abs=0.1)

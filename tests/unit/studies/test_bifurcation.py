@@ -1,4 +1,4 @@
-"""Bifurcation diagrams: directions, strobes, impacts, and what cannot be drawn."""
+"""Bifurcation diagrams: directions, strobes, impacts, refused arguments, figures."""
 
 import runpy
 from pathlib import Path
@@ -17,7 +17,7 @@ QUIET = {"progress": False}
 
 
 def shaken(*, method=None, **damper):
-    """Return a ball that a shaker throws to and fro."""
+    """Return a ball in a shaken cavity."""
     return rb.Case(
         structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz", phase=0.3)),
         damper=rb.ImpactDamper(
@@ -33,7 +33,7 @@ def shaken(*, method=None, **damper):
 
 
 def test_both_goes_up_and_then_back_down():
-    """The way down begins where the way up has ended; both are sorted by the parameter."""
+    """The way down begins with the last state of the way up; both are sorted by the parameter."""
     values = np.linspace(0.5e-3, 1.5e-3, 5)
     options = {"cycles": (20, 8), "show": "impacts", **QUIET}
     both = rb.bifurcation(shaken(), AMPLITUDE, values, **options)
@@ -52,7 +52,7 @@ def test_both_goes_up_and_then_back_down():
 
 
 def test_directions_differ_where_motions_coexist():
-    """Below the doubling, an asymmetric motion with three impacts lives beside the one with two; a sweep keeps its own."""
+    """Where motions with two and three impacts coexist, each direction follows its own."""
     values = np.linspace(0.9e-3, 1.3e-3, 21)
     maps = rb.bifurcation(shaken(), AMPLITUDE, values, cycles=(200, 16), **QUIET)
     near = maps.sel({AMPLITUDE: 1.0e-3}, method="nearest")
@@ -79,8 +79,8 @@ def test_strobes_and_impacts_are_those_of_a_run():
     np.testing.assert_allclose(maps.approach_speed.dropna("impact"), run.arrays.impacts.approach_speed[late], rtol=1e-8)
 
 
-def test_names_can_be_compared_fresh():
-    """What has no order is run from the case's own start, linked parameters together."""
+def test_names_can_vary_without_continuation():
+    """With direction 'fresh', values without order, here materials, are allowed, with linked parameters."""
     paths = ("damper.ball.material", "damper.gap")
     maps = rb.bifurcation(
         shaken(), paths, (["steel", "brass"], ["1 mm", "2 mm"]), cycles=(5, 4), direction="fresh", **QUIET
@@ -102,13 +102,13 @@ def test_names_can_be_compared_fresh():
         (AMPLITUDE, [1e-3], {"tolerance": 0}, "tolerance = 0"),
     ],
 )
-def test_what_cannot_be_followed_is_told(path, values, options, message):
-    """Bad arguments are told before anything runs."""
+def test_bad_arguments_are_refused(path, values, options, message):
+    """Bad arguments are refused before the first run."""
     with pytest.raises(rb.CaseError, match=message):
         rb.bifurcation(shaken(), path, values, **{"cycles": (3, 2), **options})
 
 
-def test_nothing_bifurcates_without_damper_or_cycle():
+def test_cases_without_damper_or_cycle_are_refused():
     """A case without a damper or without a harmonic load is refused."""
     structure = rb.SDOF(mass="1 kg", stiffness="4 kN/m", damping_ratio=0.01)
     bare = rb.Case(structure=structure, load=rb.Harmonic(amplitude="1 N", frequency="10 Hz"), duration="1 s")
@@ -127,7 +127,7 @@ def test_nothing_bifurcates_without_damper_or_cycle():
     "of", [None, "relative_position", "relative_velocity", "displacement", "velocity", "impact_phase"]
 )
 def test_every_quantity_is_drawn(of, size):
-    """Each quantity is drawn, dots for every direction, with nothing off the paper."""
+    """Each quantity is drawn with dots for both directions, and the figure fits on the paper."""
     maps = rb.bifurcation(shaken(), AMPLITUDE, [0.5e-3, 1e-3, 1.5e-3], cycles=(20, 8), show="impacts", **QUIET)
     figure = rb.plot_bifurcation(maps, of, size=size)
     figure.draw_without_rendering()
@@ -141,7 +141,7 @@ def test_every_quantity_is_drawn(of, size):
 
 
 def test_unknown_quantity_is_refused():
-    """A quantity that was not kept is answered with those that were."""
+    """Drawing a quantity or a ball that the diagram lacks is refused."""
     maps = rb.bifurcation(shaken(), AMPLITUDE, [1e-3], cycles=(3, 2), **QUIET)
     with pytest.raises(rb.CaseError, match="no such quantity"):
         rb.plot_bifurcation(maps, "approach_speed")
@@ -150,7 +150,7 @@ def test_unknown_quantity_is_refused():
 
 
 def test_example(tmp_path, monkeypatch):
-    """The example finds the least amplitude that keeps two impacts a cycle, as theory has it."""
+    """The least amplitude with two impacts per cycle in the example agrees with theory."""
     monkeypatch.chdir(tmp_path)
     maps = runpy.run_path(str(EXAMPLE))["maps"]
     down = maps.sel(direction="down")

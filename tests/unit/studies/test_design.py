@@ -1,4 +1,4 @@
-"""Designs: what is found, that a stop changes nothing, what is refused."""
+"""Design studies: objectives, fronts, restart after a stop, refused arguments, figures."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ def searched(**changes: Any) -> xr.Dataset:
     return rb.design(struck(), BOUNDS, **(options | changes))
 
 
-def test_objective_is_the_worst_of_all_members() -> None:
-    """What a trial is told is the worst, mean or median of a sweep over levels and starts of its case."""
+def test_objective_is_the_worst_of_all_runs() -> None:
+    """The objective of a trial is the worst value of a sweep over levels and starts of its case."""
     result = rb.design(
         struck(),
         {GAP: ("0.1 mm", "2 mm")},
@@ -72,15 +72,15 @@ def test_objective_is_the_worst_of_all_members() -> None:
 
 @pytest.mark.parametrize(("robust", "of"), [("mean", np.mean), ("median", np.median), ("worst", np.max)])
 def test_robust(robust: Any, of: Any) -> None:
-    """Mean, median and worst are those of the members."""
+    """The objective is the mean, median or worst value of the runs of a trial."""
     result = rb.design(struck(), {GAP: ("0.4 mm", "1 mm")}, "rms", starts=3, robust=robust, trials=1, progress=False)
     gap = float(result[GAP][0])
     members = rb.sweep(struck(), {"damper.start": [-1.0, 0.0, 1.0], GAP: [gap]}, "rms", progress=False)
     assert float(result.rms[0]) == of(members.rms.values.ravel())
 
 
-def test_front_beats_all_others() -> None:
-    """No allowed trial is better than one on the front in everything, and each other is beaten by one."""
+def test_front_is_not_dominated() -> None:
+    """No feasible trial dominates a trial on the front."""
     result = searched()
     allowed = result.isel(trial=result.feasible.values)
     best = result.isel(trial=result.front.values)
@@ -102,8 +102,8 @@ def test_best_case_is_the_trial() -> None:
     assert case.dampers[0].balls[0].weight == float(best.added_mass)
 
 
-def test_mass_limit_holds() -> None:
-    """Trials over the limit are not run, and none of them is the best; those within are found soon."""
+def test_mass_limit_is_applied() -> None:
+    """Trials above the mass limit are not run and are not feasible, and the search learns to avoid them."""
     result = searched()
     heavy = result.added_mass > 1.0
     assert heavy.any()
@@ -112,8 +112,8 @@ def test_mass_limit_holds() -> None:
     assert result.feasible.values[12:].mean() > result.feasible.values[:12].mean() - 0.2
 
 
-def test_runs_without_a_value_rule_a_trial_out() -> None:
-    """A trial one of whose runs never settles counts as not allowed, with the share of such runs."""
+def test_trials_with_missing_values_are_not_feasible() -> None:
+    """A trial with runs that never settle is not feasible and has the share of such runs."""
     result = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
     assert not result.feasible.any()
     assert (result.missing == 1).all()
@@ -121,7 +121,7 @@ def test_runs_without_a_value_rule_a_trial_out() -> None:
 
 
 def test_choices_and_misfits() -> None:
-    """Numbers and names are chosen from lists; parameters that do not fit together rule a trial out."""
+    """Numbers and names are chosen from lists; trials with incompatible parameters are not feasible."""
     parameters = {
         "damper.ball.material": ["steel", "brass"],
         "damper.ball.diameter": ["20 mm", "30 mm", "40 mm"],
@@ -137,7 +137,7 @@ def test_choices_and_misfits() -> None:
 
 
 def test_the_duration_may_be_searched() -> None:
-    """A trial runs as long as its parameters say: impacts are those of a sweep over the same durations."""
+    """The duration can be a parameter: the impacts of the trials are those of a sweep over their durations."""
     result = rb.design(struck(), {"duration": ("0.05 s", "0.5 s")}, "impacts", trials=3, progress=False)
     swept = rb.sweep(struck(), {"duration": result.duration.values}, "impacts", progress=False)
     assert (result.impacts.values == swept.impacts.values).all()
@@ -145,7 +145,7 @@ def test_the_duration_may_be_searched() -> None:
 
 
 def test_own_measure() -> None:
-    """A function of a Run is an objective, too."""
+    """A function of a Run can be an objective."""
 
     def last_place(run: Any) -> float:
         return float(abs(run.arrays.displacement[-1, 0]))
@@ -157,13 +157,13 @@ def test_own_measure() -> None:
 
 
 def test_same_seed_same_trials() -> None:
-    """A seed decides the trials, whatever the number of threads; another one gives others."""
+    """A seed fixes the trials for any number of threads; another seed gives other trials."""
     assert searched().identical(searched(workers=1))
     assert not searched(trials=3)[GAP].equals(searched(trials=3, seed=6)[GAP])
 
 
 def test_a_stop_changes_nothing(tmp_path: Path) -> None:
-    """After Ctrl-C, a line cut off and a call with fewer trials, the same call ends as one that never stopped."""
+    """After Ctrl-C, a truncated line and a call with fewer trials, the same call gives the result without a stop."""
     store = tmp_path / "design"
     journal = store / "progress" / "trials.journal"
 
@@ -189,7 +189,7 @@ def _search_into(store: str) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL")
 def test_kill_loses_nothing(tmp_path: Path) -> None:
-    """After kill -9 in the middle, the trials are those of an undisturbed search."""
+    """After kill -9 in the middle of a search, the resumed search has the same trials."""
     store = tmp_path / "design"
     journal = store / "progress" / "trials.journal"
     process = multiprocessing.get_context("spawn").Process(target=_search_into, args=(str(store),))
@@ -205,7 +205,7 @@ def test_kill_loses_nothing(tmp_path: Path) -> None:
 
 
 def test_another_study_is_refused(tmp_path: Path) -> None:
-    """A store of another case, seed or parameters is refused with what differs; so is one of something else."""
+    """A store of another case, seed, parameters or kind of study is refused with the difference."""
     store = tmp_path / "design"
     searched(trials=2, store=store)
     with pytest.raises(rb.StoreError, match="differs in seed"):
@@ -216,13 +216,13 @@ def test_another_study_is_refused(tmp_path: Path) -> None:
     def measured(run: rb.Run) -> float:
         return float(run.energy_residual)
 
-    def told_otherwise(run: rb.Run) -> float:
+    def changed(run: rb.Run) -> float:
         return 2.0
 
-    told_otherwise.__name__ = measured.__name__
+    changed.__name__ = measured.__name__
     searched(trials=1, objective=measured, store=tmp_path / "own")
     with pytest.raises(rb.StoreError, match="differs in functions"):
-        searched(trials=1, objective=told_otherwise, store=tmp_path / "own")
+        searched(trials=1, objective=changed, store=tmp_path / "own")
     other = tmp_path / "notes.txt"
     other.write_text("buy milk\n")
     with pytest.raises(rb.StoreError, match="a study must be a folder"):
@@ -238,8 +238,8 @@ def test_another_study_is_refused(tmp_path: Path) -> None:
     assert count_trials(store) == 2 and count_trials(tmp_path / "sweep") is None
 
 
-def test_a_store_opens_as_what_was_found(tmp_path: Path) -> None:
-    """What is on disk is what the search returned, the case files of the best trials too."""
+def test_open_study_returns_the_result(tmp_path: Path) -> None:
+    """The study on disk equals the returned one, with the case files of the best trials."""
     result = searched(trials=6, store=tmp_path / "design")
     there = rb.open_study(tmp_path / "design").load()
     xr.testing.assert_equal(there, result)
@@ -278,21 +278,21 @@ def test_a_store_opens_as_what_was_found(tmp_path: Path) -> None:
     ],
 )
 def test_clear_refusals(parameters: Any, options: dict[str, Any], message: str) -> None:
-    """What does not fit is refused before any trial, with what to try."""
+    """Bad arguments are refused before the first trial, with advice."""
     with pytest.raises(rb.CaseError) as caught:
         rb.design(struck(), parameters, progress=False, **options)
     assert message in str(caught.value)
 
 
 def test_without_optuna(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where Optuna is missing, the answer is the command that installs it."""
+    """Without Optuna the error has the command that installs it."""
     monkeypatch.setitem(sys.modules, "optuna", None)
     with pytest.raises(rb.MissingDependency, match=r"pip install 'rattlebox\[design\]'"):
         rb.design(struck(), BOUNDS)
 
 
 def test_optuna_is_silent(capfd: pytest.CaptureFixture[str]) -> None:
-    """Nothing is written but our own bar, and Optuna's own level is as before."""
+    """Optuna prints nothing, and its log level is not changed."""
     import optuna
 
     before = optuna.logging.get_verbosity()
@@ -313,18 +313,18 @@ def test_plot(objective: Any, size: Any, tmp_path: Path) -> None:
     assert len(np.asarray(marked.get_xdata())) == result.sizes["front"]
 
 
-def test_plot_tells_why_a_trial_does_not_count() -> None:
-    """Trials whose runs have no value are told apart from those that are too heavy, and trials are whole numbers."""
+def test_plot_shows_why_a_trial_is_not_feasible() -> None:
+    """The legend distinguishes trials without a value and too heavy ones, and ticks of trials are whole numbers."""
     nothing = rb.design(struck(duration="0.5 s"), {GAP: ("0.1 mm", "2 mm")}, starts=2, trials=3, progress=False)
     limited = searched(objective="impact_share")
-    for result, counts in ((nothing, "no value (3)"), (limited, f"too heavy ({int((~limited.feasible).sum())})")):
+    for result, label in ((nothing, "no value (3)"), (limited, f"too heavy ({int((~limited.feasible).sum())})")):
         axes = rb.plot_design(result).axes[0]
-        assert axes.get_legend_handles_labels()[1][2:] == [counts]
+        assert axes.get_legend_handles_labels()[1][2:] == [label]
         assert all(tick == int(tick) for tick in axes.get_xticks())
 
 
 def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In the example, heavier balls settle sooner, and the heaviest in less than half the time of the structure alone."""
+    """In the example heavier balls settle sooner, the heaviest in less than half the time without damper."""
     monkeypatch.chdir(tmp_path)
     result = runpy.run_path(str(EXAMPLE))["found"]
     best = result.isel(trial=result.front.values)
@@ -337,8 +337,8 @@ def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert (tmp_path / "design.png").stat().st_size > 5000
 
 
-def test_a_measure_that_gives_no_number_is_told() -> None:
-    """What goes wrong in the runs of a design is told, and is no trial that does not fit."""
+def test_a_measure_that_returns_no_number_is_refused() -> None:
+    """An error in a measure is raised; it is not treated as an infeasible trial."""
 
     def words(run: rb.Run) -> Any:
         return "many"

@@ -1,4 +1,4 @@
-"""Frequency responses: what they hold, what they refuse, and that they find what coexists."""
+"""Frequency responses: coexisting motions, variables, status, refused arguments."""
 
 import runpy
 from pathlib import Path
@@ -13,7 +13,7 @@ QUICK = {"cycles": (60, 8), "samples": 16, "progress": False}
 
 
 def case(**changes):
-    """A small ball with hard impacts in a light, weakly damped structure."""
+    """Return a small ball with hard impacts in a light, weakly damped structure."""
     parts = {
         "structure": rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
         "damper": rb.ImpactDamper(
@@ -26,8 +26,8 @@ def case(**changes):
     return rb.Case(**{**parts, **changes})
 
 
-def test_motions_that_coexist_are_found():
-    """Upwards the ball lies still until the structure reaches it; downwards it goes on hitting the walls."""
+def test_coexisting_motions():
+    """Upwards the ball is at rest until the structure reaches it; downwards it continues to hit the walls."""
     response = rb.frequency_response(case(), rb.linspace("28 Hz", "30 Hz", 11), progress=False, cycles=(150, 16))
     up, down = (response.sel(direction=way).isel(level=0) for way in ("up", "down"))
     assert up.impacts_per_cycle[0] == 0
@@ -39,7 +39,7 @@ def test_motions_that_coexist_are_found():
 
 
 def test_example():
-    """Upwards the ball lies still until the bare structure swings almost as far as the clearance."""
+    """Upwards the ball is at rest until the amplitude of the bare structure is almost the clearance."""
     one = runpy.run_path(str(EXAMPLE))["response"].isel(level=0)
     still = one.impacts_per_cycle.sel(direction="up").values == 0
     last = int(np.flatnonzero(still)[-1])
@@ -48,8 +48,8 @@ def test_example():
     assert (one.impacts_per_cycle.sel(direction="down") > 2).all()
 
 
-def test_what_it_holds():
-    """Dimensions, units and names are there for every variable, and further measures are kept."""
+def test_variables():
+    """Every variable has dimensions, unit and long name, and further measures are included."""
     response = rb.frequency_response(
         case(), ["29 Hz", "31 Hz"], levels=["2 N", 5.0, "0.01 kN"], measure=["loss_per_cycle"], direction="up", **QUICK
     )
@@ -60,15 +60,15 @@ def test_what_it_holds():
     assert all({"units", "long_name"} <= set(v.attrs) for n, v in response.items() if n != "status")
 
 
-def test_fresh_begins_each_time_as_the_case_says():
-    """Without a sweep each frequency is a run of its own."""
+def test_fresh_starts_each_frequency_from_the_case():
+    """With direction 'fresh' each frequency is a separate run."""
     both = rb.frequency_response(case(), [29.2, 30.2], direction="fresh", **QUICK)
     alone = rb.frequency_response(case(), [30.2], direction="up", **QUICK)
     assert both.peak.values[0, 0, 1] == alone.peak.values[0, 0, 0]
 
 
-def test_threads_leave_the_bits():
-    """Results are the same bits for any number of threads."""
+def test_bits_do_not_depend_on_threads():
+    """The result has the same bits for any number of threads."""
     one, two = (rb.frequency_response(case(), [30, 31], levels=[5, 10, 20], workers=n, **QUICK) for n in (1, 2))
     assert one.drop_attrs().equals(two.drop_attrs())
 
@@ -84,8 +84,8 @@ def test_base_motion():
     assert response.level.units == "m/s^2"
 
 
-def test_a_run_that_fails_is_told():
-    """A level at which a law ends carries a status and no numbers, and the others go on."""
+def test_a_run_that_fails_has_a_status():
+    """A level beyond the range of a law has a status and no numbers; the other levels are computed."""
     weak = case(
         method=rb.EventDriven(),
         damper=rb.ImpactDamper(
@@ -116,8 +116,8 @@ def test_a_run_that_fails_is_told():
         ({}, {"measure": ["impact"]}, "impacts"),
     ],
 )
-def test_bad_input_is_answered(changes, options, message):
-    """What does not fit is told with what would."""
+def test_bad_input_is_refused(changes, options, message):
+    """Bad arguments are refused with advice."""
     with pytest.raises(rb.CaseError) as error:
         rb.frequency_response(case(**changes), **{"frequencies": [30.0, 31.0], **QUICK, **options})
     assert message in str(error.value)

@@ -1,4 +1,4 @@
-"""Measures of steady motion carry a 95 % interval."""
+"""95 % intervals of the measures of steady motion."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def ball(**changes):
     return rb.Case(**{**parts, **changes})
 
 
-def test_the_intervals_of_chaotic_motion_hold_the_mean():
-    """Of 60 runs from other starts, about 95 % of the intervals hold the mean of all."""
+def test_the_intervals_of_chaotic_motion_cover_the_mean():
+    """About 95 % of the intervals of 60 runs with different starts contain the mean of all runs."""
     result = rb.sweep(ball(), {"damper.start": rb.linspace(-0.9, 0.9, 60)}, STEADY, cycles=(100, 192), progress=False)
     for name in STEADY:
         half = result[f"{name}_interval"]
@@ -41,12 +41,12 @@ def test_the_intervals_of_chaotic_motion_hold_the_mean():
         inside = abs(value - result[name].mean()) < half
         assert 0.85 < float(inside.mean()) <= 1.0, name
         assert half.attrs["units"] == result[name].attrs["units"]
-        # Not narrower than the scatter of the runs; wider where neighbouring cycles make up for each other.
+        # Not narrower than the scatter of the runs, but wider if neighbouring cycles are anticorrelated.
         assert 0.7 < float(half.median()) / (1.96 * float(result[name].std())) < 5, name
 
 
 def test_periodic_motion_has_a_narrow_interval():
-    """Motion that repeats each cycle has an interval of hardly any width; a short window has none, and says so."""
+    """The interval of a periodic motion is nearly zero; a window too short for an interval gives a note."""
     at_resonance = rb.sweep(ball(), {"load.frequency": ["34.4 Hz"]}, STEADY, cycles=(300, 40), progress=False)
     for name in STEADY:
         assert float(at_resonance[f"{name}_interval"][0]) < 1e-3 * float(at_resonance[name][0])
@@ -57,7 +57,7 @@ def test_periodic_motion_has_a_narrow_interval():
 
 
 def test_a_free_decay_has_no_interval():
-    """Measures of what is not driven for good, and peaks, carry none."""
+    """Measures of a motion without periodic load have no intervals, nor have peaks."""
     free = ball(load=None, structure=rb.SDOF(mass="1 kg", stiffness="40 kN/m", velocity="1 m/s"))
     result = rb.sweep(free, {"damper.gap": ["1 mm"]}, ["rms", "peak"], progress=False)
     assert set(result.data_vars) == {"status", "rms", "peak"}
@@ -66,7 +66,7 @@ def test_a_free_decay_has_no_interval():
 
 
 def test_intervals_do_not_change_what_is_measured():
-    """Losses at the ends of cycles are those at the ends of the window, and the store returns the intervals."""
+    """Intervals do not change the measures, and a store returns them."""
     axes = {"load.frequency": rb.linspace("27 Hz", "36 Hz", 5)}
     coarse = rb.sweep(ball(), axes, ["loss_per_cycle"], cycles=(50, 64), samples=2, progress=False)
     result = rb.sweep(ball(), axes, ["loss_per_cycle"], cycles=(50, 64), progress=False)
@@ -75,7 +75,7 @@ def test_intervals_do_not_change_what_is_measured():
 
 
 def test_intervals_in_stores_and_responses(tmp_path):
-    """A store returns intervals and the warning; a frequency response followed up and down has them, too."""
+    """A store returns intervals and the note; a frequency response in both directions has intervals."""
     result = rb.sweep(
         ball(), {"damper.gap": ["1 mm", "2 mm"]}, ["rms"], cycles=(5, 12), store=tmp_path / "s.zarr", progress=False
     )
@@ -89,7 +89,7 @@ def test_intervals_in_stores_and_responses(tmp_path):
 
 
 def test_random_vibration():
-    """Without cycles, the window is cut in equal parts; four times the length halves the interval."""
+    """Without cycles the window is divided into equal parts; four times the length halves the interval."""
     psd = [("10 Hz", "0.01 g_0^2/Hz"), ("200 Hz", "0.01 g_0^2/Hz")]
     medians = []
     for length in ("19 s", "70 s"):
@@ -106,7 +106,7 @@ def test_random_vibration():
 
 
 def test_particles_on_a_shaker():
-    """Measures of particle dampers carry intervals, too; a window of six cycles is too short."""
+    """Measures of particle dampers have intervals; a window of six cycles is too short."""
     case = rb.Case(
         structure=rb.Shaker(motion=rb.Harmonic(amplitude="60 m/s^2", frequency="50 Hz", direction="z")),
         damper=rb.ParticleDamper(
@@ -131,7 +131,7 @@ def test_particles_on_a_shaker():
 
 
 def test_a_line_lies_in_its_interval():
-    """The figure of a measure over one axis has a band as high as the interval."""
+    """The figure of a measure over one axis has a band with the width of the interval."""
     result = rb.sweep(
         ball(), {"load.frequency": ["28 Hz", "28.1 Hz", "28.2 Hz"]}, ["rms"], cycles=(100, 192), progress=False
     )

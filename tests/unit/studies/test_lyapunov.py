@@ -1,4 +1,4 @@
-"""Lyapunov exponents: over axes, in any phase of the load, of motions that stick, and against pairs left to themselves."""
+"""Lyapunov exponents: over axes, for any phase of the load, of sticking motions, against diverging pairs of runs."""
 
 import math
 import runpy
@@ -18,7 +18,7 @@ QUICK = {"cycles": (60, 60), "pairs": 3, "progress": False}
 
 
 def case(**changes):
-    """A small ball with hard impacts in a light, weakly damped structure."""
+    """Return a small ball with hard impacts in a light, weakly damped structure."""
     parts = {
         "structure": rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
         "damper": rb.ImpactDamper(
@@ -32,7 +32,7 @@ def case(**changes):
 
 
 def inelastic(restitution):
-    """A ball on a shaker, which it leaves once a cycle."""
+    """Return a ball on a shaker that it leaves once per cycle."""
     return rb.Case(
         structure=rb.Shaker(motion=rb.Harmonic(amplitude="1.5 mm", frequency="15 Hz")),
         damper=rb.ImpactDamper(
@@ -48,15 +48,15 @@ def inelastic(restitution):
 
 
 def test_example():
-    """The last windows of order hold the motion with two impacts a cycle, with its exact multiplier; chaos comes first."""
+    """In the example the motion is chaotic at first; the growth of the last periodic motion has the exact multiplier."""
     result = runpy.run_path(str(EXAMPLE))["study"].growth_per_cycle
     half_cycle = 0.9349517810953712  # exact multiplier at 33 Hz by the solution of Masri and Caughey (1966)
     assert float(result[-1]) == pytest.approx(2 * math.log(half_cycle), rel=1e-4)
     assert (result[:2] > 0.5).all()
 
 
-def test_variants_know_nothing_of_each_other():
-    """A variant has the same bits alone, among others, on disk and with any number of threads."""
+def test_variants_are_independent():
+    """A variant has the same bits alone, among others and with any number of threads."""
     axes = {"load.frequency": [29.0, 31.0, 33.0], "damper.gap": ["0.8 mm", "1 mm"]}
     one, two = (rb.lyapunov(case(), axes, workers=n, **QUICK) for n in (1, 2))
     assert one.drop_attrs().equals(two.drop_attrs())
@@ -67,7 +67,7 @@ def test_variants_know_nothing_of_each_other():
 
 
 def test_study_on_disk(tmp_path):
-    """With a store the result is the same, and is there when asked for again."""
+    """With a store the result is the same, and a second call reads it."""
     axes = {"load.frequency": [29.0, 33.0]}
     stored = rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **QUICK).load()
     again = rb.lyapunov(case(), axes, store=tmp_path / "map.zarr", **QUICK).load()
@@ -83,7 +83,7 @@ def test_study_on_disk(tmp_path):
 
 
 def test_units_and_names():
-    """Each variable says what it is, the exponent is the growth over the cycle, and the last average is it."""
+    """Each variable has unit and long name; exponent, growth per cycle and running exponent are consistent."""
     result = rb.lyapunov(case(), {"load.frequency": [30.0, 33.0]}, **QUICK)
     assert all({"units", "long_name"} <= set(v.attrs) for n, v in result.items() if n != "status")
     assert result.growth_per_cycle.values == pytest.approx(result.exponent.values / [30.0, 33.0])
@@ -92,7 +92,7 @@ def test_units_and_names():
 
 
 def test_the_phase_of_the_strobe_does_not_matter():
-    """Soft contacts that are closed whenever a cycle ends are waited for, and the exponent stays what it is."""
+    """The exponent is the same if soft contacts are closed at the end of each cycle."""
     damper = rb.ImpactDamper(
         ball=rb.Sphere(radius="14 mm", material="steel"),
         gap="1 mm",
@@ -107,8 +107,8 @@ def test_the_phase_of_the_strobe_does_not_matter():
     assert np.ptp(result.growth_per_cycle.values) < 1e-4
 
 
-def test_motions_that_stick_forget_everything():
-    """A ball that comes to rest on a shaker leaves it at the same moment whatever it did before: -inf."""
+def test_sticking_motions_have_an_infinite_negative_exponent():
+    """A ball that comes to rest on a shaker leaves it at the same time for any perturbation: the exponent is -inf."""
     result = rb.lyapunov(inelastic(0.0), **QUICK)
     assert float(result.exponent) == -math.inf
     assert np.isneginf(result.running_exponent).all()
@@ -116,8 +116,8 @@ def test_motions_that_stick_forget_everything():
     assert float(rb.lyapunov(inelastic(0.85), **QUICK).exponent) > 1
 
 
-def test_chaos_agrees_with_pairs_left_to_themselves():
-    """Pairs that are never brought back, begun at many places of the attractor, part with the same exponent."""
+def test_chaos_agrees_with_diverging_pairs():
+    """Pairs without renormalisation from many points of the attractor diverge with the same exponent."""
     brought_back = rb.lyapunov(case(), cycles=(150, 600), pairs=8, progress=False)
     shared = {"ball": rb.Sphere(radius="14 mm", material="steel"), "gap": "1 mm", "contact": rb.Tsuji(restitution=0.6)}
     taken = rb.Output(times=np.arange(150, 150 + 3 * 96, 3) / 31)
@@ -158,14 +158,14 @@ def test_chaos_agrees_with_pairs_left_to_themselves():
         ({"axes": {"duration": [1.0, 2.0]}, "cycles": None}, "duration"),
     ],
 )
-def test_bad_input_is_answered(options, message):
-    """What does not fit is told with what would, before anything runs."""
+def test_bad_input_is_refused(options, message):
+    """Bad arguments are refused with advice before the first run."""
     with pytest.raises(rb.CaseError, match=message):
         rb.lyapunov(case(), **{**QUICK, **options})
 
 
-def test_loads_that_cannot_be_begun_anew_are_refused():
-    """Under a record, and with cycles of a load that has none, the answer names another way."""
+def test_loads_without_period_are_refused():
+    """Cases with a record or with cycles of a pulse are refused with an alternative."""
     record = rb.Record(times=[0.0, 1.0], values=[1.0, 0.0])
     with pytest.raises(rb.CaseError, match="pairs of runs"):
         rb.lyapunov(case(load=record))
@@ -173,8 +173,8 @@ def test_loads_that_cannot_be_begun_anew_are_refused():
         rb.lyapunov(case(load=rb.HalfSine(amplitude=1.0, duration=0.01)), **QUICK)
 
 
-def test_it_stops_when_asked():
-    """Long work ends soon after it is told to, also while motions settle."""
+def test_cancellation():
+    """A cancelled task ends soon, also during the transient cycles."""
     task = LyapunovWork(case(), read_axes(case(), {"load.frequency": np.linspace(29, 33, 64)}), cycles=(20000, 20000))
     begun = time.perf_counter()
     assert task.run(0, 64, threads=1, cancelled=lambda: time.perf_counter() - begun > 0.3) is None

@@ -1,4 +1,4 @@
-"""Motions told apart by their strobes."""
+"""Periods and attractors of motions from their strobes."""
 
 import numpy as np
 
@@ -6,14 +6,14 @@ from rattlebox.studies.orbits import attractors, period_of
 
 
 def orbit(*points, turns=24, shift=0, blur=0.0, seed=0):
-    """Return strobes of an orbit through some points, begun at one of them, with noise."""
+    """Return noisy strobes of an orbit through some points, from the point with index `shift`."""
     points = np.roll(np.array(points, dtype=float), -shift, axis=0)
     strobes = np.resize(points, (turns, points.shape[1]))
     return strobes + blur * np.random.default_rng(seed).uniform(-1, 1, strobes.shape)
 
 
 def test_period_is_the_least_number_of_cycles():
-    """A motion that repeats every cycle does so every second one as well, and counts as period one."""
+    """The period of a motion is the smallest number of cycles after which it repeats."""
     strobes = np.stack(
         [
             orbit([0, 0]),
@@ -31,15 +31,15 @@ def test_period_is_the_least_number_of_cycles():
     assert residual[3] > 1e-4
 
 
-def test_longest_period_is_half_of_what_is_seen():
-    """A motion must be seen twice before it counts as one that repeats."""
+def test_longest_period_is_half_of_the_strobes():
+    """A period is accepted only if the strobes cover it twice."""
     points = [[k, 0] for k in range(6)]
     assert period_of(orbit(*points, turns=11), 1e-4)[0] == 0
     assert period_of(orbit(*points, turns=12), 1e-4)[0] == 6
 
 
 def test_motions_of_one_orbit_are_one_attractor():
-    """Phase within the period and noise do not matter, other points do; the largest comes first."""
+    """Strobes of one orbit with any phase and noise are one attractor; attractors are sorted by their share."""
     two, other = ([0, 0], [1, 0]), ([0, 0], [0, 1])
     strobes = np.stack(
         [
@@ -57,8 +57,8 @@ def test_motions_of_one_orbit_are_one_attractor():
     assert best[0] == 2
 
 
-def test_a_motion_for_each_start_is_cut_off():
-    """Where each start keeps a motion of its own, 256 of them are told apart and the rest counts as none."""
+def test_the_number_of_attractors_is_limited():
+    """At most 256 attractors are distinguished; other starts have no attractor."""
     strobes = np.stack([orbit([k, 0]) for k in range(300)])
     label, best = attractors(strobes, *period_of(strobes, 1e-4), 1e-2)
     assert len(best) == 256
@@ -66,8 +66,8 @@ def test_a_motion_for_each_start_is_cut_off():
     assert sorted(label[label > 0].tolist()) == list(range(1, 257))
 
 
-def test_nothing_that_repeats():
-    """Without a motion that repeats there is no attractor."""
+def test_without_periodic_motion():
+    """Without periodic motion there is no attractor."""
     strobes = np.random.default_rng(1).uniform(-1, 1, (3, 24, 2))
     label, best = attractors(strobes, *period_of(strobes, 1e-4), 1e-2)
     assert label.tolist() == [0, 0, 0]

@@ -1,4 +1,4 @@
-"""Functions of a run as measures: what tells one from another, and what they may be called."""
+"""Functions of a run as measures: fingerprints and names."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def case() -> rb.Case:
 
 
 def above(limit: float) -> Callable[[Any], float]:
-    """Return a measure that takes its limit from outside."""
+    """Return a measure with its limit in a closure."""
 
     def share(run: Any) -> float:
         return float(np.mean(np.abs(run.motion.displacement) > limit))
@@ -39,23 +39,23 @@ def above(limit: float) -> Callable[[Any], float]:
 
 
 def beyond(run: Any) -> float:
-    """Return a share with a limit of the module."""
+    """Return a share with a limit that is a module variable."""
     return float(np.mean(np.abs(run.motion.displacement) > LIMIT))
 
 
 class Above:
-    """A measure that holds its limit."""
+    """Measure with its limit as attribute."""
 
     def __init__(self, limit: float) -> None:
         self.limit = limit
 
     def __call__(self, run: Any) -> float:
-        """Return a share."""
+        """Return the share of samples above the limit."""
         return above(self.limit)(run)
 
 
-def made(text: str) -> Callable[[Any], float]:
-    """Return a function without a file, as at a prompt."""
+def typed_function(text: str) -> Callable[[Any], float]:
+    """Return a function without source file, as typed at a prompt."""
     names: dict[str, Any] = {}
     exec(f"def typed(run):\n    return {text}", names)
     typed: Callable[[Any], float] = names["typed"]
@@ -67,20 +67,20 @@ def made(text: str) -> Callable[[Any], float]:
     [
         (above(1e-3), above(1e-4)),
         (Above(1e-3), Above(1e-4)),
-        (made("1.0"), made("2.0")),
+        (typed_function("1.0"), typed_function("2.0")),
         (partial(max, 1.0), partial(max, 2.0)),
         (partial(max, (1, 2, 1)), partial(max, (1, 2, 2))),
         (partial(above(1e-3)), partial(above(1e-4))),
         (above(np.arange(2000.0)), above(np.arange(2000.0) * 2)),  # type: ignore[arg-type]
     ],
 )
-def test_functions_differ_by_what_they_take_along(one: Any, other: Any) -> None:
-    """A function is another one when what it takes from a closure, an object or a partial is, or its unwritten text."""
+def test_fingerprints_depend_on_closures_and_attributes(one: Any, other: Any) -> None:
+    """The fingerprint of a function depends on its closure, attributes, partial arguments and code."""
     assert fingerprint(one) == fingerprint(one) != fingerprint(other)
 
 
-def test_equal_functions_are_one() -> None:
-    """Functions that are made anew from equal values are the same, whichever objects hold these."""
+def test_equal_functions_have_one_fingerprint() -> None:
+    """Functions created twice from equal values have the same fingerprint."""
     for make in (
         lambda: above(float("0.001")),
         lambda: Above(float("0.001")),
@@ -89,15 +89,15 @@ def test_equal_functions_are_one() -> None:
         assert fingerprint(make()) == fingerprint(make())
 
 
-def test_functions_differ_by_their_modules_values(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A function is another one when a value of its module that it uses has changed."""
+def test_fingerprints_depend_on_module_variables(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The fingerprint depends on the values of the module variables that the function uses."""
     before = fingerprint(beyond)
     monkeypatch.setitem(beyond.__globals__, "LIMIT", 1e-4)
     assert fingerprint(beyond) != before
 
 
-def test_a_store_is_not_taken_for_that_of_another_function(tmp_path: Path) -> None:
-    """A store goes on with the function that it was begun with, made anew, and refuses one that takes another limit."""
+def test_a_store_refuses_another_function(tmp_path: Path) -> None:
+    """A store accepts an equal function in a later call and refuses one with another limit."""
     first = rb.sweep(case(), AXES, above(1e-3), store=tmp_path / "a.zarr", workers=1)
     again = rb.sweep(case(), AXES, above(1e-3), store=tmp_path / "a.zarr", workers=1)
     np.testing.assert_array_equal(first.share, again.share)
@@ -106,9 +106,9 @@ def test_a_store_is_not_taken_for_that_of_another_function(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("name", ["status", "feasible", "added_mass"])
-def test_names_of_other_parts_are_refused(name: str) -> None:
-    """A function that is called like another part of a study is refused before anything runs."""
-    measure = made("1.0")
+def test_names_of_other_variables_are_refused(name: str) -> None:
+    """A function with the name of another variable is refused before the first run."""
+    measure = typed_function("1.0")
     measure.__name__ = name
     with pytest.raises(rb.CaseError, match=f"{name} is the name of another variable"):
         rb.sweep(case(), AXES, measure)
@@ -120,7 +120,7 @@ def test_names_of_other_parts_are_refused(name: str) -> None:
     ("name", "options"),
     [("impacts", {}), ("status", {}), ("instant", {"motion": True}), ("last", {"last": 2}), ("progress", {})],
 )
-def test_axes_are_not_called_like_outputs(name: str, options: Any) -> None:
-    """An axis that is called like an output or an inner dimension is refused before anything runs."""
+def test_axes_with_names_of_outputs_are_refused(name: str, options: Any) -> None:
+    """An axis with the name of an output or an inner dimension is refused before the first run."""
     with pytest.raises(rb.CaseError, match=f"{name} is the name of another variable"):
         rb.sweep(case(), {name: AXES}, "impacts", **options)

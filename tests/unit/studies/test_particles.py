@@ -1,4 +1,4 @@
-"""Sweeps over cases with particles in space: each variant is the run that simulate gives."""
+"""Sweeps over cases with particle dampers: each variant equals a single run."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def shaken(**changes: Any) -> rb.Case:
 
 
 def struck(**changes: Any) -> rb.Case:
-    """Return the box on a structure that swings."""
+    """Return the box on a structure with an initial velocity."""
     usual: dict[str, Any] = {
         "structure": rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping="100 N s/m", velocity="0.5 m/s"),
         "damper": box(direction="z"),
@@ -49,14 +49,14 @@ def struck(**changes: Any) -> rb.Case:
     return rb.Case(**{**usual, **changes})
 
 
-def turned(run: rb.Run) -> float:
-    """Return the energy of all spins at the end."""
+def spin_energy(run: rb.Run) -> float:
+    """Return the rotational energy of all particles at the end."""
     assert isinstance(run, Run)
     return float(run.arrays.rotation_energy[-1].sum())
 
 
 def test_variants_are_runs() -> None:
-    """Measures and functions of a run are those of each variant run alone, for any number of threads, to the last bit."""
+    """Measures of each variant equal those of a single run, and the bits do not depend on the number of threads."""
     axes = {"damper.contact.restitution": [0.5, 0.9], "structure.velocity": ["0.2 m/s", "0.5 m/s"]}
     names = [
         "viscous_share",
@@ -68,13 +68,13 @@ def test_variants_are_runs() -> None:
         "peak_velocity",
         "settling_time",
     ]
-    result = rb.sweep(struck(), axes, [*names, turned], workers=2, progress=False)
+    result = rb.sweep(struck(), axes, [*names, spin_energy], workers=2, progress=False)
     assert (result.status == 0).all()
     assert result.peak.attrs["units"] == "m"
     for i, restitution in enumerate([0.5, 0.9]):
         alone = rb.simulate(struck(damper=box(direction="z", contact=rb.Tsuji(restitution=restitution))))
         one = result.isel({"damper.contact.restitution": i, "structure.velocity": 1})
-        assert float(one.turned) == turned(alone)
+        assert float(one.spin_energy) == spin_energy(alone)
         assert float(one.motion_share) == alone.ledger.shares["motion"]
         assert float(one.impact_share) == pytest.approx(sum(alone.ledger.partner_share), rel=1e-12)
         assert float(one.energy_residual) == alone.energy_residual
@@ -82,13 +82,13 @@ def test_variants_are_runs() -> None:
         assert float(one.peak_velocity) == np.abs(alone.arrays.velocity).max()
         settled = rb.analysis.settling_time(alone.arrays.time, alone.arrays.displacement[:, 0])
         assert float(one.settling_time) == settled < 0.08
-    again = rb.sweep(struck(), axes, [*names, turned], workers=1, progress=False)
+    again = rb.sweep(struck(), axes, [*names, spin_energy], workers=1, progress=False)
     assert again.equals(result)
 
 
 @pytest.mark.parametrize("samples", [128, 200, 333])
 def test_windows_hold_whole_cycles(samples: int) -> None:
-    """However many samples are asked for, measures look at just the cycles that are."""
+    """Measures are evaluated over exactly the given cycles for any number of samples."""
 
     def in_two_cycles(run: Run) -> float:
         result = shaken_cavity(run, frequency=50.0, after=0.02 - 1e-12)
@@ -102,7 +102,7 @@ def test_windows_hold_whole_cycles(samples: int) -> None:
 
 
 def test_friction_is_a_number_along_an_axis() -> None:
-    """Friction that is given as a number is one in axes and random designs, with the runs that its coefficient gives."""
+    """Friction varies as a number in axes and random designs, with the same result as its coefficient."""
     spread = rb.linspace(0.1, 0.5, 3)
     result = rb.sweep(shaken(), {"damper.friction": spread}, "impact_loss")
     same = rb.sweep(shaken(), {"damper.friction.coefficient": spread}, "impact_loss")
@@ -114,7 +114,7 @@ def test_friction_is_a_number_along_an_axis() -> None:
 
 
 def test_windows_begin_between_samples() -> None:
-    """A time to skip that is no sample's is where the window begins, with what the line between its neighbours says."""
+    """A window that begins between two samples begins with the interpolated values."""
     run = rb.simulate(shaken(duration="0.02 s", output=rb.Output(rate=1000)))
     window = particle_work.cut_before(run, 0.0104).arrays
     assert window.time[0] == 0.0104
@@ -123,23 +123,23 @@ def test_windows_begin_between_samples() -> None:
     np.testing.assert_allclose(window.cavity_displacement[0], between, rtol=1e-12)
 
 
-def test_too_little_for_a_cycle_is_told_before_anything_runs() -> None:
-    """Measures of a cycle are refused where what is left after the time to skip holds none."""
+def test_windows_shorter_than_a_cycle_are_refused() -> None:
+    """Measures per cycle are refused if the window after the skipped time is shorter than a cycle."""
     with pytest.raises(rb.CaseError, match="one cycle that loss_factor requires"):
         rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, "loss_factor", skip="0.055 s")
 
 
 @pytest.mark.parametrize("window", [{"cycles": (1, 2), "samples": 10}, {"skip": "20 ms", "samples": 5}])
 def test_too_few_samples_for_the_first_harmonic_are_refused(window: Any) -> None:
-    """Samples from which no first harmonic is known are refused where it is asked for, and taken where it is not."""
+    """Too few samples for the first harmonic are refused only for measures that need it."""
     with pytest.raises(rb.CaseError, match=r"too few for loss_factor, which requires 8\n  try: more"):
         rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, ["loss_per_cycle", "loss_factor"], progress=False, **window)
     result = rb.sweep(shaken(), {AMPLITUDE: ["50 m/s^2"]}, "loss_per_cycle", progress=False, **window)
     assert np.isfinite(result.loss_per_cycle).all()
 
 
-def test_samples_are_those_of_each_variant() -> None:
-    """Samples that are too few for the case itself, but not for its variants, are enough."""
+def test_the_number_of_samples_is_checked_for_each_variant() -> None:
+    """Samples per cycle are checked for each variant, not for the base case."""
     case = shaken(output=rb.Output(rate=300))
     slow = {"structure.motion.frequency": [20.0, 30.0, 50.0]}
     result = rb.sweep(case, slow, ["loss_factor"], progress=False)
@@ -147,8 +147,8 @@ def test_samples_are_those_of_each_variant() -> None:
     assert "6 samples per cycle are too few for loss_factor" in result.attrs["refused"]
 
 
-def test_a_cavity_that_stands_still_has_no_cycles() -> None:
-    """Of a shaker or a load without amplitude, measures of cycles are NaN, and the others are what they are."""
+def test_measures_per_cycle_without_excitation_are_nan() -> None:
+    """With an amplitude of zero, measures per cycle are NaN and the other measures are finite."""
     measures = ["rms", "loss_factor", "reduced_loss", "effective_mass", "loss_per_cycle"]
     load = {"load": rb.Harmonic(amplitude="10 N", frequency=50)}
     for case, axis, unit in ((shaken(), AMPLITUDE, "m/s^2"), (struck(**load), "load.amplitude", "N")):
@@ -159,8 +159,8 @@ def test_a_cavity_that_stands_still_has_no_cycles() -> None:
             assert np.isnan(still[name].values).tolist() == [True, False]
 
 
-def test_what_has_not_begun_has_no_cycles() -> None:
-    """Cycles that are looked at before a harmonic load or motion begins are refused, those of one variant by its status."""
+def test_cycles_before_the_start_of_the_load_are_refused() -> None:
+    """Cycles before the start of the harmonic load are refused; a variant with them has a status."""
     late = shaken(structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=50, direction="z", start="1 s")))
     for study in (
         lambda: rb.sweep(late, {"damper.packing.seed": [1, 2]}, ["rms"], cycles=(1, 1)),
@@ -173,8 +173,8 @@ def test_what_has_not_begun_has_no_cycles() -> None:
     assert some.status.values.tolist() == [0, 9] and np.isfinite(some.loss_factor.values[0])
 
 
-def test_windows_leave_out_what_is_before() -> None:
-    """Work, losses and shares count from the begin of the window, whose ledger closes by itself."""
+def test_measures_refer_to_the_window() -> None:
+    """Work, losses and shares are evaluated from the start of the window, with a small energy residual."""
     result = rb.sweep(
         struck(),
         {"structure.damping": [0.0, 100.0]},
@@ -196,8 +196,8 @@ def test_windows_leave_out_what_is_before() -> None:
     assert float(result.peak) == np.abs(arrays.displacement[first:]).max()
 
 
-def test_loss_maps_hold_what_the_analysis_finds() -> None:
-    """A loss map of particles has masses, loss factor and loss of the analysis of each run."""
+def test_loss_maps_agree_with_the_analysis() -> None:
+    """Masses, loss factor and loss in a loss map are those of the analysis of each run."""
     result = rb.loss_map(
         shaken(), [(20, "m/s^2"), (90, "m/s^2")], [40.0, 60.0], cycles=(2, 4), samples=401, progress=False
     )
@@ -217,8 +217,8 @@ def test_loss_maps_hold_what_the_analysis_finds() -> None:
     assert float(one.reduced_loss) == pytest.approx(float(by_energy.reduced_loss), rel=1e-6)
 
 
-def test_two_cavities_weigh_together() -> None:
-    """Two like cavities on one shaker have twice the apparent mass of one, and the same loss factor."""
+def test_effective_masses_of_two_cavities_add_up() -> None:
+    """Two equal cavities on one shaker have twice the effective mass of one, and the same loss factor."""
     names = ["effective_mass", "damping_mass", "loss_factor", "reduced_loss"]
     options: dict[str, Any] = {"cycles": (2, 3), "progress": False}
     one = rb.sweep(shaken(), {AMPLITUDE: [60.0]}, names, **options)
@@ -228,7 +228,7 @@ def test_two_cavities_weigh_together() -> None:
 
 
 def test_a_stop_loses_no_finished_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is finished is in the store; the same call runs only what is missing, to the same bits."""
+    """Finished variants are in the store; the same call computes only the missing ones, with the same bits."""
     store, axes = tmp_path / "study.zarr", {"damper.packing.seed": [1, 2, 3, 4]}
 
     def stopping(done: int, total: int) -> None:
@@ -237,20 +237,20 @@ def test_a_stop_loses_no_finished_run(tmp_path: Path, monkeypatch: pytest.Monkey
 
     with pytest.raises(Stopped, match="2 of 4 variants are in"):
         rb.sweep(struck(), axes, "impact_share", store=store, workers=1, progress=stopping)
-    ran = []
+    cases = []
     simulate = particle_work.simulate_dem
     monkeypatch.setattr(
-        particle_work, "simulate_dem", lambda case, **options: (ran.append(case), simulate(case, **options))[1]
+        particle_work, "simulate_dem", lambda case, **options: (cases.append(case), simulate(case, **options))[1]
     )
     result = rb.sweep(struck(), axes, "impact_share", store=store, workers=1, progress=False)
-    assert len(ran) == 2
+    assert len(cases) == 2
     whole = rb.sweep(struck(), axes, "impact_share", progress=False)
     assert result.impact_share.values.tobytes() == whole.impact_share.values.tobytes()
     assert len(set(whole.impact_share.values)) == 4
 
 
-def test_corners_that_cannot_be_run_have_a_status() -> None:
-    """A variant whose given step is too long is refused by itself; the others are run."""
+def test_variants_that_cannot_run_have_a_status() -> None:
+    """A variant with too long a step has the status refused; the others are computed."""
     case = struck(method=rb.Dem(dt="40 us"))
     result = rb.sweep(case, {"damper.softening": [1e5, 1.0]}, "impact_share", progress=False)
     assert result.status.values.tolist() == [0, result.status.attrs["flag_meanings"].split().index("refused")]
@@ -259,8 +259,8 @@ def test_corners_that_cannot_be_run_have_a_status() -> None:
     assert why[0] == "damper.softening = 1" and "40.0 µs is too long" in why[2]
 
 
-def test_stores_keep_why_a_variant_is_refused(tmp_path: Path) -> None:
-    """A study that is read from disk has the reason of a refusal, as the one that was returned, also when it ran before."""
+def test_stores_have_the_reason_of_a_refusal(tmp_path: Path) -> None:
+    """A study opened from disk and a repeated call have the reason of a refusal."""
     case, axes = struck(method=rb.Dem(dt="40 us")), {"damper.softening": [1e5, 1.0]}
     store = tmp_path / "study.zarr"
     result = rb.sweep(case, axes, store=store, progress=False)
@@ -269,8 +269,8 @@ def test_stores_keep_why_a_variant_is_refused(tmp_path: Path) -> None:
     assert rb.sweep(case, axes, store=store, progress=False).attrs["refused"] == result.attrs["refused"]
 
 
-def test_runs_that_leave_their_bounds_are_marked() -> None:
-    """Each run's flags are its own warnings: overlaps that are too deep, contacts of too few steps."""
+def test_validity_warnings_are_flags() -> None:
+    """The flags of each variant are the warnings of its run: deep overlaps and too few steps per contact."""
     cases = {"damper.softening": [1.0, 1e5], "method.dt": ["0.1 us", "2 us"]}
     result = rb.sweep(struck(method=rb.Dem(dt="0.1 us"), duration="5 ms"), cases, "impact_share", progress=False)
     about = result.warnings.attrs
@@ -299,21 +299,21 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("complaint", REFUSED)
-def test_what_does_not_fit_is_refused(complaint: str) -> None:
-    """What particles in space do not have is refused before anything runs, with its reason."""
-    with pytest.raises(rb.CaseError, match=complaint):
-        rb.sweep(struck(), {"structure.mass": [1.0, 2.0]}, **REFUSED[complaint])
+@pytest.mark.parametrize("message", REFUSED)
+def test_bad_arguments_are_refused(message: str) -> None:
+    """Arguments that particle dampers do not support are refused before the first run."""
+    with pytest.raises(rb.CaseError, match=message):
+        rb.sweep(struck(), {"structure.mass": [1.0, 2.0]}, **REFUSED[message])
 
 
-def test_other_studies_say_that_they_are_for_impact_dampers() -> None:
-    """Maps that follow a motion refuse particles in space, and say which studies do not."""
+def test_continuation_is_for_impact_dampers() -> None:
+    """Studies with continuation refuse particle dampers and propose other studies."""
     with pytest.raises(rb.CaseError, match=r"not particle dampers\n  try: a sweep, a loss map"):
         rb.bifurcation(shaken(), AMPLITUDE, [10.0, 20.0], progress=False)
 
 
-def test_stops_are_heard(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A task that is told to stop ends within a run, and within the settling before it."""
+def test_cancellation(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A cancelled task ends within a run and within the settling before it."""
     case = shaken(duration="1000 s", dampers=[box(packing=rb.Settled(seed=9))])
     task = particle_work.ParticleWork(case, read_axes(case, {AMPLITUDE: [60.0]}), ["work"])
     assert task.run(0, 1, cancelled=lambda: True) is None
@@ -323,7 +323,7 @@ def test_stops_are_heard(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_beds_are_settled_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What does not touch the fall starts from the same bed; another seed, size or friction has a bed of its own."""
+    """Dampers that differ only in properties without effect on settling share a bed; others have their own."""
     settle._beds.clear()
     falls = []
     fall = settle._SettlingBed.fall

@@ -1,4 +1,4 @@
-"""Sensitivities: indices of functions that are known, what is drawn, what is refused."""
+"""Sensitivity studies: indices, seeds, missing values, refused arguments, figures."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def struck(**changes: Any) -> rb.Case:
     return rb.Case(**(parts | changes))
 
 
-def test_points_are_those_of_a_sweep() -> None:
-    """Mean and variance are those of the runs, and a parameter without influence has no index."""
+def test_mean_and_variance_are_those_of_the_runs() -> None:
+    """Mean and variance are those of the runs, and the index of a parameter without influence is zero."""
     bounds = BOUNDS | {"structure.velocity": (0.0, 1e-12)}
     result = rb.sensitivity(struck(), bounds, "impact_share", 64, progress=False)
     assert result.total.sel(measure="impact_share", parameter="structure.velocity") < 1e-3
@@ -41,7 +41,7 @@ def test_points_are_those_of_a_sweep() -> None:
 
 
 def test_same_seed_same_indices() -> None:
-    """A seed decides points and intervals, whatever the number of threads or the state of NumPy's own generator."""
+    """A seed fixes points and intervals for any number of threads and any state of NumPy's global generator."""
     first = rb.sensitivity(struck(), BOUNDS, n=16, seed=0, workers=2, progress=False)
     np.random.seed(7)  # noqa: NPY002
     again = rb.sensitivity(struck(), BOUNDS, n=16, seed=0, workers=1, progress=False)
@@ -51,7 +51,7 @@ def test_same_seed_same_indices() -> None:
 
 
 def test_several_measures_names_and_logarithms() -> None:
-    """Measures have a row each; choices and logarithmic ranges are parameters, too."""
+    """Each measure has a row; parameters may be choices and logarithmic ranges."""
     bounds = BOUNDS | {"damper.ball.material": ["steel", "brass", "glass"]}
     result = rb.sensitivity(struck(), bounds, ["peak_contact_force", "impacts"], 16, log=["damper.gap"], progress=False)
     assert result.total.dims == ("measure", "parameter")
@@ -61,14 +61,14 @@ def test_several_measures_names_and_logarithms() -> None:
 
 
 def test_means_over_starts() -> None:
-    """With starts, each point is the mean over them: the mean of all is that of as many sweeps."""
+    """With several starts, the value of each point is the mean over the starts."""
     result = rb.sensitivity(struck(), BOUNDS, "impacts", 8, starts=[-1, 1], progress=False)
     single = [rb.sensitivity(struck(), BOUNDS, "impacts", 8, starts=[s, s], progress=False)["mean"] for s in (-1, 1)]
     assert float(result["mean"][0]) == pytest.approx(np.mean(single))
 
 
-def test_goes_on_from_a_store(tmp_path: Path) -> None:
-    """With a store the runs are on disk, and the same call takes them from there."""
+def test_resumes_from_a_store(tmp_path: Path) -> None:
+    """With a store the runs are on disk, and the same call reads them."""
     store = tmp_path / "study.zarr"
     first = rb.sensitivity(struck(), BOUNDS, n=8, store=store, progress=False)
     counts: list[int] = []
@@ -80,14 +80,14 @@ def test_goes_on_from_a_store(tmp_path: Path) -> None:
 
 
 def runs(values: Any, status: Any = 0) -> xr.Dataset:
-    """Return what a sweep might."""
+    """Return a dataset as from a sweep."""
     array = np.asarray(values, dtype=float)
     ended = np.broadcast_to(np.asarray(status, dtype="int8"), array.shape)
     return xr.Dataset({"status": ("sample", ended), "f": ("sample", array)}, attrs={"case": ""})
 
 
-def test_points_without_a_value_are_left_out() -> None:
-    """A run without a value takes its base point along; too many of them are refused."""
+def test_points_without_a_value_are_omitted() -> None:
+    """A run without a value removes all runs of its base point; too many missing values are an error."""
     rng = np.random.default_rng(1)
     values = rng.random(32 * 4)
     status = np.zeros(128)
@@ -116,14 +116,14 @@ def test_points_without_a_value_are_left_out() -> None:
     ],
 )
 def test_clear_refusals(bounds: Any, options: dict[str, Any], message: str) -> None:
-    """What does not fit is refused with what to try, and so is what gives no indices."""
+    """Bad arguments and measures without indices are refused with advice."""
     with pytest.raises(rb.CaseError) as caught:
         rb.sensitivity(struck(), bounds, **({"n": 8, "progress": False} | options))
     assert message in str(caught.value)
 
 
 def test_without_salib(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where SALib is missing, the answer is the command that installs it."""
+    """Without SALib the error has the command that installs it."""
     for name in [name for name in sys.modules if name.startswith("SALib")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "SALib", None)
@@ -135,7 +135,7 @@ def test_without_salib(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("size", ["column", "page", "slide"])
 def test_plot(size: Any, tmp_path: Path) -> None:
-    """Bars have the lengths of the indices, the most important parameter on top, and are saved without a warning."""
+    """Bars have the lengths of the indices, with the most important parameter on top."""
     result = rb.sensitivity(struck(), BOUNDS, ["impacts", "rms"], 16, progress=False)
     figure = rb.plot_sensitivity(result, size=size)
     figure.savefig(tmp_path / "bars.png")
@@ -148,7 +148,7 @@ def test_plot(size: Any, tmp_path: Path) -> None:
 
 
 def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In the example, the start decides nothing of the share taken up, but some of the largest force."""
+    """In the example the start has no influence on the impact share, but on the largest force."""
     monkeypatch.chdir(tmp_path)
     result = runpy.run_path(str(EXAMPLE))["found"]
     start = result.total.sel(parameter="damper.start")

@@ -1,4 +1,4 @@
-"""Study files: what they hold, and what is said of bad ones."""
+"""Study files: contents and errors."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ poisson = 0.0
 
 
 def refused(content: str) -> str:
-    """Return what is said of a study file, and check that it is short."""
+    """Return the error message of a study file, which must be short."""
     with pytest.raises(rb.CaseError) as caught:
         study_from_toml(content, source="study.toml", folder=EXAMPLES)
     message = str(caught.value)
@@ -46,8 +46,8 @@ def refused(content: str) -> str:
     return message
 
 
-def test_a_study_file_says_what_the_call_says() -> None:
-    """Case, axes in their order and options are those that one would pass to a sweep."""
+def test_a_study_file_equals_a_call() -> None:
+    """Case, axes in their order and options are those of the equivalent call of sweep."""
     study = study_from_toml(
         'measure = ["impacts", "impact_share"]\nskip = "100 ms"\nworkers = 2\n'
         + BALL
@@ -72,12 +72,12 @@ def test_a_study_file_says_what_the_call_says() -> None:
 
 
 def test_one_measure_needs_no_list() -> None:
-    """The name of one measure is as good as a list of one."""
+    """A single measure may be given by its name."""
     assert study_from_toml('measure = "impacts"\n' + BALL + GAPS, folder=EXAMPLES).measure == ["impacts"]
 
 
 def test_paths_need_no_quotes() -> None:
-    """What TOML reads as tables in tables is read as paths, also in linked axes, ranges and reaches."""
+    """Dotted keys without quotes are read as paths, also in linked axes, ranges and reaches."""
     bare = """
 [axes]
 damper.gap = { from = "0.1 mm", to = "2 mm", count = 3 }
@@ -104,7 +104,7 @@ damper.start = "1 um"
 
 
 def test_random_designs_and_replicas_are_read() -> None:
-    """The tables hold what random_design and replicas take."""
+    """The tables have the arguments of random_design and replicas."""
     study = study_from_toml(
         BALL
         + """
@@ -128,8 +128,8 @@ reach = { "damper.start" = "1 um" }
     ]
 
 
-def test_the_case_may_stand_in_the_file_with_its_materials() -> None:
-    """A case written inside counts like one in a file, and its materials may stand on axes."""
+def test_a_case_in_the_study_file_with_its_materials() -> None:
+    """A case may be a table of the study file, and its materials may be values of axes."""
     axes = '[axes]\n"damper.ball.material" = ["steel", "oak", "cork"]\n"damper.wall" = ["rigid", "cork"]\n'
     study = study_from_toml(INLINE + axes, folder=EXAMPLES)
     last = read_axes(study.case, study.axes).case_at(study.case, 5).dampers[0]
@@ -137,8 +137,8 @@ def test_the_case_may_stand_in_the_file_with_its_materials() -> None:
     assert last.wall == last.balls[0].material
 
 
-def test_files_are_seen_from_the_folder_of_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A study read from elsewhere finds its case, and the materials of that."""
+def test_paths_are_relative_to_the_folder_of_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The path of a case is relative to the study file, and axes may use the materials of the case."""
     (tmp_path / "cases").mkdir()
     (tmp_path / "cases" / "oak.toml").write_text(INLINE.replace("[case]\n", "").replace("[case.", "["))
     (tmp_path / "study.toml").write_text(
@@ -216,14 +216,14 @@ def test_files_are_seen_from_the_folder_of_the_study(tmp_path: Path, monkeypatch
     ],
 )
 def test_bad_study_files_are_refused_with_the_place_and_a_reason(content: str, pattern: list[str]) -> None:
-    """Each wrong study file is told at once: the file, the field, the value, what is allowed."""
+    """Each wrong study file is refused with the file, the field, the value and the allowed values."""
     message = refused(content)
     for word in pattern:
         assert word in message, message
 
 
-def test_a_study_file_that_is_not_there_is_told(tmp_path: Path) -> None:
-    """Missing files, folders and files that are no text are named."""
+def test_unreadable_study_files_are_refused(tmp_path: Path) -> None:
+    """Missing files, folders and files that are not text are refused."""
     with pytest.raises(rb.CaseError, match="there is no file"):
         read_study(tmp_path / "study.toml")
     with pytest.raises(rb.CaseError, match="is a folder"):

@@ -1,4 +1,4 @@
-"""Sweeps: measures of many variants equal those of single runs, to the last bit where they are the same numbers."""
+"""Sweeps: measures of many variants equal those of single runs."""
 
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ AXES = {"damper.gap": ["0.3 mm", "0.8 mm"], "load.amplitude": ["1 kN", "5 kN", "
 
 @pytest.fixture(scope="module")
 def swept() -> Any:
-    """Every measure that needs no cycle, of six variants, at as many samples as the runs have."""
+    """Return a sweep of six variants with every measure that needs no cycle and the samples of single runs."""
     names = [name for name, measure in MEASURES.items() if not measure.cyclic]
     return rb.sweep(rb.reference_case(PLASTIC_RIGID, duration=2.0), AXES, names, samples=2001)
 
@@ -59,7 +59,7 @@ def expected(run: Any) -> dict[str, float]:
 
 
 def test_measures_are_those_of_single_runs(swept: Any) -> None:
-    """Each measure of each variant equals what the run of that variant says."""
+    """Each measure of each variant equals that of its run."""
     assert not swept.status.any()
     for i, gap in enumerate(AXES["damper.gap"]):
         for j, amplitude in enumerate(AXES["load.amplitude"]):
@@ -70,7 +70,7 @@ def test_measures_are_those_of_single_runs(swept: Any) -> None:
 
 
 def test_settling_is_that_of_the_analysis_however_short_the_window() -> None:
-    """Where a window ends as the motion passes through the band, neither the core nor the analysis calls it settled."""
+    """If a window ends while the motion crosses the band, neither the core nor the analysis reports settling."""
     case = rb.Case(structure=rb.SDOF(mass=1, stiffness=400, damping=1, velocity="1 m/s"), duration=20.0)
     ends = np.linspace(0.5, 8, 60)
     result = rb.sweep(case, {"duration": ends}, "settling_time", samples=301).settling_time.values
@@ -81,13 +81,13 @@ def test_settling_is_that_of_the_analysis_however_short_the_window() -> None:
     assert 10 < np.isnan(result).sum() < 50
 
 
-def test_all_measures_of_the_core_are_told() -> None:
-    """The table of measures and the core's list are the same, and agree on which need samples."""
+def test_all_measures_of_the_core_are_listed() -> None:
+    """The table of measures and the core's list agree, also on which measures need samples."""
     assert {name: measure.samples for name, measure in MEASURES.items()} == _core.measures()
 
 
 def shaken(duration: float = 1.0) -> rb.Case:
-    """Return a hard ball in a cavity that is shaken ten times a second."""
+    """Return a ball with hard impacts in a cavity that is shaken at 10 Hz."""
     return rb.Case(
         structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency=10.0)),
         damper=rb.ImpactDamper(
@@ -98,8 +98,8 @@ def shaken(duration: float = 1.0) -> rb.Case:
     )
 
 
-def test_the_first_harmonic_has_the_samples_that_it_needs() -> None:
-    """However long the window is, each cycle has twenty samples by default; fewer than eight are refused."""
+def test_samples_for_the_first_harmonic() -> None:
+    """Each cycle has twenty samples by default for any window; fewer than eight are refused."""
     case, axes = shaken(duration=100.0), {"structure.motion[0].frequency": [10.0, 20.0]}
     for options, least in (({"skip": 10.0}, 36_001), ({"cycles": (10, 90)}, 64 * 90 + 1)):
         usual = rb.sweep(case, axes, ["effective_mass", "loss_factor"], **options)
@@ -113,11 +113,11 @@ def test_the_first_harmonic_has_the_samples_that_it_needs() -> None:
 
 
 def test_cyclic_measures_refer_to_the_window() -> None:
-    """With cycles the run lasts as many as are skipped and looked at, whatever the frequency."""
+    """With cycles the run lasts as many as are skipped and evaluated, for any frequency."""
     case = shaken()
     axes = {"structure.motion[0].frequency": [5.0, 10.0, 20.0]}
     result = rb.sweep(case, axes, ["impacts_per_cycle", "loss_per_cycle", "reduced_loss"], cycles=(40, 10))
-    # Hard impacts know no time: all frequencies are the same motion.
+    # Hard impacts have no time scale: all frequencies have the same motion.
     assert np.ptp(result.impacts_per_cycle.values) == 0
     assert result.impacts_per_cycle[0] > 0
     assert result.reduced_loss.values == pytest.approx(float(result.reduced_loss[0]), rel=1e-9)
@@ -126,8 +126,8 @@ def test_cyclic_measures_refer_to_the_window() -> None:
     )
 
 
-def test_skip_leaves_the_beginning_out() -> None:
-    """Impacts and losses before `skip` do not count."""
+def test_skip_omits_the_beginning() -> None:
+    """Impacts and losses before `skip` are not counted."""
     case = rb.reference_case(duration=2.0, output=rb.Output(times=[0.5, 2.0]))
     run = rb.simulate(case)
     result = rb.sweep(case, {"damper.gap": [case.dampers[0].gap]}, ["impacts", "impact_loss"], skip="0.5 s")
@@ -150,7 +150,7 @@ def test_motion_and_last_impacts_on_request() -> None:
 
 
 def test_own_measures_are_functions_of_a_run() -> None:
-    """A function of a Run is computed for each variant, from the same run as the others."""
+    """A function of a Run is computed for each variant from the run of the other measures."""
 
     def third_speed(run: rb.Run) -> float:
         return float(run.arrays.impacts.approach_speed[2])
@@ -161,8 +161,8 @@ def test_own_measures_are_functions_of_a_run() -> None:
     assert result.third_speed.values.tolist() == logged
 
 
-def test_threads_and_neighbours_change_no_bit() -> None:
-    """One thread or two, alone or among others: the same bits."""
+def test_bits_do_not_depend_on_threads_and_blocks() -> None:
+    """A variant has the same bits with one thread or two, alone or among others."""
     case = rb.reference_case(duration=1.0)
     axes = {"damper.start": rb.linspace(-0.9, 0.9, 23)}
     one = rb.sweep(case, axes, ["impact_share", "settling_time"], workers=1)
@@ -172,8 +172,8 @@ def test_threads_and_neighbours_change_no_bit() -> None:
     assert float(alone.impact_share[0]) == float(one.impact_share[7])
 
 
-def test_a_member_that_fails_carries_its_status() -> None:
-    """Where a law is left, the variant says so and has no numbers; the others have theirs."""
+def test_a_variant_that_fails_has_a_status() -> None:
+    """A variant beyond the range of a law has a status and no numbers; the others are computed."""
     law = rb.Tsuji(restitution=rb.JacksonGreen(yield_stress="20 MPa"))
     result = rb.sweep(
         rb.reference_case(law, duration=0.2), {"load.amplitude": ["10 N", "5 kN"]}, ["impacts", "impact_share"]
@@ -200,15 +200,15 @@ def test_a_member_that_fails_carries_its_status() -> None:
         ({"backend": "gpu"}, "is not a backend"),
     ],
 )
-def test_what_does_not_fit_is_told_before_anything_runs(options: dict[str, Any], message: str) -> None:
-    """Unknown measures, windows outside the run and cycles without a load are refused with a hint."""
+def test_bad_arguments_are_refused(options: dict[str, Any], message: str) -> None:
+    """Unknown measures, windows outside the run and cycles without a load are refused with advice."""
     with pytest.raises(rb.CaseError, match=message):
         rb.sweep(rb.reference_case(duration=1.0), {"damper.gap": ["1 mm"]}, **options)
 
 
 @pytest.mark.parametrize("value", ["2", None, np.ones(3), 1j], ids=str)
-def test_function_that_gives_no_number_is_told(value: Any) -> None:
-    """A function of a Run that gives anything but one number is named, with the variant and what it gave."""
+def test_a_function_that_returns_no_number_is_refused(value: Any) -> None:
+    """If a function of a Run does not return one number, the error has its name, the variant and the returned type."""
 
     def loudness(run: Any) -> Any:
         return value if run.ledger.work[-1] > 1e-3 else 0.0
@@ -218,8 +218,8 @@ def test_function_that_gives_no_number_is_told(value: Any) -> None:
         rb.sweep(rb.reference_case(duration=0.1), {"load.amplitude": [0.1, 5e3]}, loudness)
 
 
-def test_what_is_no_number_to_the_core_varies_too(tmp_path: Path) -> None:
-    """Scales of records, values in tables, numbers of events and kinds of laws vary on any axes, in any blocks."""
+def test_parameters_outside_the_batch_can_vary(tmp_path: Path) -> None:
+    """Scales of records, values in tables, numbers of events and kinds of laws can vary, in any blocks."""
     time = np.linspace(0, 0.5, 101)
     table = rb.Tabulated(speeds=[0.01, 0.1, 1.0], values=[0.9, 0.8, 0.5])
     ball = rb.Sphere(radius="10 mm", material="steel")
@@ -256,7 +256,7 @@ def test_what_is_no_number_to_the_core_varies_too(tmp_path: Path) -> None:
 
 
 def test_dimensions_have_coordinates() -> None:
-    """Samples, balls and last impacts have coordinates with units: times, cycles, numbers."""
+    """The dimensions of samples, balls and last impacts have coordinates with units."""
     case = rb.reference_case(PLASTIC_RIGID, duration=2.0)
     maps = rb.sweep(case, {"damper.gap": [1e-3]}, [], skip="1 s", samples=5, motion=True, last=3)
     assert maps.instant.values.tolist() == [1.0, 1.25, 1.5, 1.75, 2.0] and maps.instant.units == "s"
@@ -267,8 +267,8 @@ def test_dimensions_have_coordinates() -> None:
     assert both.instant.values.tolist() == [0.0, 0.5, 1.0] and both.instant.units == "1"
 
 
-def test_balls_that_do_not_line_up_are_refused() -> None:
-    """Motions of different numbers of balls have no common shape; their measures have."""
+def test_motions_of_different_numbers_of_balls_are_refused() -> None:
+    """Variants with different numbers of balls have measures, but no common array of motions."""
     case = rb.reference_case(PLASTIC_RIGID, duration=1.0)
     axes = {"dampers": [list(case.dampers), []]}
     assert rb.sweep(case, axes, ["impacts"]).impacts.values.tolist()[1] == 0
@@ -277,7 +277,7 @@ def test_balls_that_do_not_line_up_are_refused() -> None:
 
 
 def test_a_file_that_has_changed_is_another_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A store tells numbers that came from files: of the case, of a file that varies, and of columns that vary."""
+    """A store refuses changed numbers in files: of the case, of files on an axis and of columns on an axis."""
     monkeypatch.chdir(tmp_path)
 
     def record(scale: float) -> rb.Case:
