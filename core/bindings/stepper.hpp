@@ -4,6 +4,7 @@
 #include <nanobind/stl/array.h>
 
 #include "bindings/dem_problem.hpp"
+#include "stepper/engines.hpp"
 #include "stepper/stepper.hpp"
 
 namespace rattlebox::bindings {
@@ -87,6 +88,9 @@ inline void add_stepper(nb::module_& module) {
         .def_prop_ro("loss", [](const S& s) { return s.result().loss; })
         .def_prop_ro("stored", [](const S& s) { return s.result().stored; })
         .def_prop_ro("status", &S::status)
+        .def_prop_ro("restitution", [](const S& s) { return s.options().restitution; })
+        .def_prop_ro("friction", [](const S& s) { return s.options().friction; })
+        .def_prop_ro("gravity", &S::gravity)
         .def_prop_ro("time", &S::time)
         .def_prop_ro("inputs", &S::inputs)
         .def_prop_ro("components", &S::components)

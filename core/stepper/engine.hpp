@@ -2,9 +2,10 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
-#include "stepper/packed_case.hpp"
+#include "stepper/options.hpp"
 #include "util/archive.hpp"
 #include "util/status.hpp"
 
@@ -44,5 +45,8 @@ public:
     virtual void save(Writer& writer) = 0;
     virtual void restore(Reader& reader) = 0;
 };
+
+// Makes the engine of a packed case; `options` are then those that hold. Defined in stepper/engines.hpp.
+std::unique_ptr<StepEngine> make_engine(const std::uint8_t* bytes, std::size_t size, Options& options);
 
 } // namespace rattlebox

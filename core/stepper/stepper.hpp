@@ -14,13 +14,31 @@
 // structure are driven by loads; forces then follow from the same balance in the frame of the base.
 #pragma once
 
-#include <memory>
-#include <string>
+#include <algorithm>
+#include <bit>
 
-#include "stepper/impact_engine.hpp"
-#include "stepper/particle_engine.hpp"
+#include "stepper/engine.hpp"
 
 namespace rattlebox {
+
+inline const char* stop_reason(Status status) {
+    switch (status) {
+    case Status::law_domain:
+        return "an approach speed exceeds the range of the restitution law";
+    case Status::too_many_events:
+        return "too many events in one step";
+    case Status::step_too_small:
+        return "the error bound of a contact cannot be met";
+    case Status::not_finite:
+        return "the motion is not finite";
+    case Status::escaped:
+        return "a particle has left its cavity; shorten the time step or lower the softening";
+    case Status::no_rebound:
+        return "a dashpot cannot have a restitution of zero";
+    default:
+        return "the engine stopped";
+    }
+}
 
 struct StepResult {
     std::vector<Components> force, moment; // mean over the step, by damper; N, N m
@@ -30,7 +48,8 @@ struct StepResult {
 
 class Stepper {
     std::unique_ptr<StepEngine> engine_;
-    std::uint64_t case_hash_; // of the packed case
+    std::uint64_t case_hash_; // of the packed case and the options
+    Options options_;
     real time_ = 0;
     Components velocity_{}, displacement_{}; // of the attachment
     StepEnd end_;
@@ -39,6 +58,11 @@ class Stepper {
 
     std::size_t axes() const { return static_cast<std::size_t>(engine_->axes()); }
     bool alone() const { return engine_->component().alone; }
+
+    static std::uint64_t hash(const std::uint8_t* bytes, std::size_t size, const Options& options) {
+        const auto all = std::bit_cast<std::array<std::uint8_t, sizeof options>>(options);
+        return pack_hash(bytes, size) ^ pack_hash(all.data(), all.size());
+    }
 
     // Energy of the motion of the attachment, and its part in the work.
     real carried_energy(const StepEnd& e) const {
@@ -88,16 +112,9 @@ class Stepper {
     }
 
 public:
-    Stepper(const std::uint8_t* bytes, std::size_t size) : case_hash_(pack_hash(bytes, size)) {
-        if (packed_engine(bytes, size) == Engine::impact) {
-            PackedCase<Problem> packed;
-            read_case(packed, bytes, size);
-            engine_ = std::make_unique<ImpactEngine>(std::move(packed));
-        } else {
-            PackedCase<dem::Problem> packed;
-            read_case(packed, bytes, size);
-            engine_ = std::make_unique<ParticleEngine>(std::move(packed));
-        }
+    Stepper(const std::uint8_t* bytes, std::size_t size, const Options& options = {})
+        : case_hash_(hash(bytes, size, options)), options_(options) {
+        engine_ = make_engine(bytes, size, options_);
         std::copy_n(engine_->component().velocity, 3, velocity_.begin());
         end_ = engine_->end();
         result_.force.resize(end_.dampers.size()), result_.moment.resize(end_.dampers.size());
@@ -109,6 +126,8 @@ public:
     int inputs() const { return engine_->inputs(); }
     int dampers() const { return static_cast<int>(end_.dampers.size()); }
     int outputs() const { return static_cast<int>(engine_->component().rows.size()); }
+    const Options& options() const { return options_; } // as they are
+    Components gravity() const { return engine_->gravity(); }
     real time() const { return time_; }
     Components velocity() const { return velocity_; }         // of the attachment
     Components displacement() const { return displacement_; } // of the attachment
@@ -126,7 +145,11 @@ public:
         return sum;
     }
 
-    void set_gravity(Components g) { engine_->set_gravity(g); }
+    void set_gravity(Components g) {
+        for (const real value : g)
+            if (!(std::fabs(value) < infinity)) throw std::invalid_argument("gravity is not finite");
+        engine_->set_gravity(g);
+    }
 
     // Advances by a step. `inputs` are the accelerations of the attachment (damper alone) or the values of
     // the loads, all constant in the step.
@@ -168,20 +191,21 @@ public:
         Writer content(size.bytes);
         serialize(content);
         engine_->save(content);
-        Writer whole(content.bytes.size() + 16);
-        whole(case_hash_, pack_hash(content.bytes.data(), content.bytes.size()));
-        whole.bytes.insert(whole.bytes.end(), content.bytes.begin(), content.bytes.end());
+        Writer whole(content.bytes.size() + 24);
+        whole(case_hash_, pack_hash(content.bytes.data(), content.bytes.size()), content.bytes);
         return std::move(whole.bytes);
     }
 
     // Continues from a saved state. Throws, without a change, if it is damaged or of another case.
     void restore(const std::uint8_t* bytes, std::size_t size) {
-        Reader reader(reinterpret_cast<const char*>(bytes), size);
+        Reader whole(reinterpret_cast<const char*>(bytes), size);
         std::uint64_t case_hash, content_hash;
-        reader(case_hash, content_hash);
+        std::vector<std::uint8_t> content;
+        whole(case_hash, content_hash, content);
         if (case_hash != case_hash_) throw std::invalid_argument("the state is of another case");
-        if (content_hash != pack_hash(bytes + 16, size - 16))
+        if (!whole.at_end() || content_hash != pack_hash(content.data(), content.size()))
             throw std::invalid_argument("the state is damaged");
+        Reader reader(reinterpret_cast<const char*>(content.data()), content.size());
         serialize(reader);
         engine_->restore(reader);
         end_ = engine_->end();

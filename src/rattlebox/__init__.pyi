@@ -9,6 +9,7 @@ from rattlebox._util.exceptions import RattleboxError as RattleboxError
 from rattlebox._util.exceptions import ResourceError as ResourceError
 from rattlebox._util.exceptions import StepError as StepError
 from rattlebox._util.exceptions import StoreError as StoreError
+from rattlebox.engines.fmu import to_fmu as to_fmu
 from rattlebox.engines.simulate import simulate as simulate
 from rattlebox.engines.simulate import simulate_many as simulate_many
 from rattlebox.engines.stepper import Stepper as Stepper

@@ -114,6 +114,45 @@ def sweep(
     run_sweep(study, out, workers, dask)
 
 
+_ALONE = typer.Option("--alone", help="Only the damper: its attachment moves as prescribed, and it returns the force.")
+
+
+@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
+def fmu(
+    ctx: typer.Context,
+    case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="File to write; default named after the case file.")
+    ] = None,
+    fmi: Annotated[int, typer.Option(help="Version of FMI: 2 or 3.")] = 3,
+    input: Annotated[
+        str, typer.Option(help="Input of a damper alone: velocity or acceleration of its attachment.")
+    ] = "velocity",
+    alone: Annotated[bool, _ALONE] = False,
+) -> None:
+    """Write a case as an FMU for co-simulation: a structure with dampers, or a damper alone."""
+    _check_single(ctx, case)
+    from rattlebox.cli.component import write_fmu
+
+    write_fmu(case, out, fmi, input, alone)
+
+
+@app.command(cls=_Command, context_settings=_EXTRA_ARGUMENTS)
+def pack(
+    ctx: typer.Context,
+    case: Annotated[Path, typer.Argument(help="Case file (TOML).")],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="File to write; default named after the case file.")
+    ] = None,
+    alone: Annotated[bool, _ALONE] = False,
+) -> None:
+    """Write a case as a packed case, for the C interface rattlebox.h."""
+    _check_single(ctx, case)
+    from rattlebox.cli.component import write_packed
+
+    write_packed(case, out, alone)
+
+
 def _check_results(path: Path) -> None:
     """Raise if a path does not exist, or is a case file or a study file."""
     suggestion = "the folder that 'rattlebox run -o' or 'rattlebox sweep -o' wrote"

@@ -49,6 +49,22 @@ class StepResult:
     stored: float
 
 
+def component_case(
+    system: Case | ImpactDamper | ParticleDamper,
+    alone: bool | None = None,
+    method: Any = None,
+    motion: Signal | None = None,
+    structure_mass: Any = None,
+) -> tuple[Case, bool]:
+    """Return the case of a component, and whether it is a damper alone; see `Stepper` for the parameters."""
+    if not isinstance(system, Case):
+        return damper_case(system, method, motion, structure_mass, "1 s"), True
+    for name, given in (("method", method), ("motion", motion), ("structure_mass", structure_mass)):
+        if given is not None:
+            raise Hint(f"{name} belongs to a damper alone; a case has its own", f"the damper alone, with {name}=...")
+    return system, isinstance(system.structure, Fixed | Shaker) if alone is None else alone
+
+
 class Stepper:
     """A damper, or a structure with dampers, that another program advances step by step.
 
@@ -56,8 +72,10 @@ class Stepper:
     ----------
     system
         A damper alone: `advance` takes the motion of its attachment and returns the force on it. Or a case: its loads and
-        base accelerations are the inputs of `advance`, and the motion of its points the outputs. A case with the structure
-        `Fixed` or `Shaker` counts as a damper alone.
+        base accelerations are the inputs of `advance`, and the motion of its points the outputs.
+    alone
+        Whether only the damper of a case is advanced. The contacts are then adjusted to the structure of the case, and the
+        softening and the time step of particles chosen for its loads. By default for the structures `Fixed` and `Shaker`.
     method
         Method for a damper alone; default that of `Case`.
     motion
@@ -100,20 +118,13 @@ class Stepper:
         self,
         system: Case | ImpactDamper | ParticleDamper,
         *,
+        alone: bool | None = None,
         method: Any = None,
         motion: Signal | None = None,
         structure_mass: Any = None,
         velocity: Any = 0.0,
     ) -> None:
-        if isinstance(system, Case):
-            for name, given in (("method", method), ("motion", motion), ("structure_mass", structure_mass)):
-                if given is not None:
-                    raise Hint(
-                        f"{name} belongs to a damper alone; a case has its own", f"Stepper(case.damper, {name}=...)"
-                    )
-            case, alone = system, isinstance(system.structure, Fixed | Shaker)
-        else:
-            case, alone = damper_case(system, method, motion, structure_mass, "1 s"), True
+        case, alone = component_case(system, alone, method, motion, structure_mass)
         start = np.asarray(in_si(velocity, "m/s"), dtype=np.float64)
         self._packed = pack_component(case, alone=alone, velocity=start)
         if not alone and start.any():
@@ -136,6 +147,11 @@ class Stepper:
     def points(self) -> tuple[str, ...]:
         """Names of the points whose motion is an output; none for a damper alone."""
         return self._packed.outputs
+
+    @property
+    def packed(self) -> bytes:
+        """The packed case, for the C interface."""
+        return self._packed.data
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -100,7 +100,8 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
     case
         The case. Its loads and base accelerations become inputs.
     alone
-        Whether only the damper is packed; the structure then only adjusts the laws of the contacts.
+        Whether only the damper is packed. The structure and its loads then serve to adjust the laws of the contacts and to
+        choose the softening and the time step of particles.
     velocity
         Initial velocity of the attachment of a damper alone [m/s]: a number, or three components for particles.
 
@@ -127,7 +128,13 @@ def _impact(case: Case, alone: bool, velocity: float) -> PackedComponent:
             mode_coupling=nothing,
             mode_displacement=nothing,
             mode_velocity=nothing,
-            dampers=[damper.replace(shape=nothing, velocity=np.asarray(damper.velocity) - velocity)],
+            dampers=[
+                damper.replace(
+                    shape=nothing,
+                    position=np.asarray(damper.position) - case.modes.q0 @ np.asarray(damper.shape),
+                    velocity=np.asarray(damper.velocity) - velocity,
+                )
+            ],
             loads=[_core.Load(signal=IDLE, shape=nothing, base=True)],
         )
     points = () if alone else tuple(name for name in case.modes.shapes if name not in case.modes.spatial)
@@ -158,7 +165,13 @@ def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
             mode_coupling=nothing,
             mode_displacement=nothing,
             mode_velocity=nothing,
-            cavities=[cavity.replace(shape=np.zeros((0, 3)), velocity=np.asarray(cavity.velocity) - start)],
+            cavities=[
+                cavity.replace(
+                    shape=np.zeros((0, 3)),
+                    position=np.asarray(cavity.position) - case.modes.q0 @ np.asarray(cavity.shape),
+                    velocity=np.asarray(cavity.velocity) - start,
+                )
+            ],
             loads=[_core.Load(signal=IDLE, shape=nothing, base=True)] * 3,
             load_directions=np.eye(3),
         )

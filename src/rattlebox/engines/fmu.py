@@ -1,0 +1,308 @@
+"""Functional mock-up units (FMI 2.0 and 3.0, co-simulation) of dampers."""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+import re
+import uuid
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import Any, Literal
+
+import rattlebox
+from rattlebox._util.exceptions import ResourceError
+from rattlebox.core import _core
+from rattlebox.model.case import Case
+from rattlebox.model.dampers import ImpactDamper
+from rattlebox.model.errors import Hint
+from rattlebox.model.particle_damper import ParticleDamper
+from rattlebox.model.signals import Signal
+from rattlebox.prepare.component import PackedComponent, pack_component
+
+from .stepper import component_case
+
+AXES = "xyz"
+BASE_UNITS = {
+    "s": {"s": 1},
+    "m": {"m": 1},
+    "m/s": {"m": 1, "s": -1},
+    "m/s2": {"m": 1, "s": -2},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "N.m": {"kg": 1, "m": 2, "s": -2},
+    "J": {"kg": 1, "m": 2, "s": -2},
+}
+"""Units of the variables, by SI base units."""
+
+# First value references, as in core/stepper/fmu.hpp.
+INPUT_TIME, GRAVITY, RESTITUTION, FRICTION, WORK, LOSS, STORED, INPUT = 1, 2, 5, 6, 7, 8, 9, 10
+FORCE, MOMENT, DISPLACEMENT, VELOCITY = 100, 400, 1000, 2000
+MOST_INPUTS, MOST_DAMPERS, MOST_OUTPUTS = 90, 100, 1000
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of an FMU.
+
+    Attributes
+    ----------
+    name, reference, unit, description
+        Name, value reference, unit ("" for none) and description.
+    causality, variability
+        As in FMI.
+    start
+        Start value; None for outputs.
+    """
+
+    name: str
+    reference: int
+    unit: str
+    description: str
+    causality: str = "output"
+    variability: str = "continuous"
+    start: float | None = None
+
+
+def to_fmu(
+    system: Case | ImpactDamper | ParticleDamper,
+    path: str | os.PathLike[str],
+    *,
+    fmi: Literal[2, 3] = 3,
+    input: Literal["velocity", "acceleration"] = "velocity",
+    alone: bool | None = None,
+    method: Any = None,
+    motion: Signal | None = None,
+    structure_mass: Any = None,
+) -> Path:
+    """Write a damper, or a structure with dampers, as an FMU for co-simulation on Linux x86-64.
+
+    Parameters
+    ----------
+    system, alone, method, motion, structure_mass
+        As for `Stepper`. A damper alone has the motion of its attachment as input and force and moment as outputs; a
+        structure with dampers has loads as inputs and motions and forces as outputs.
+    path
+        File to write (.fmu). An existing file is replaced.
+    fmi
+        Version of FMI: 2 or 3.
+    input
+        Input of a damper alone: velocity or acceleration of the attachment.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    CaseError
+        If the case is not valid, its method has no stepper, or it has too many variables.
+    ResourceError
+        If this system has no binary of the core for FMUs.
+
+    Notes
+    -----
+    The FMU is self-contained: it needs neither Python nor Rattlebox. Its parameter `input_time` says to which end of a
+    communication step the inputs belong, 1 for the start (they are extrapolated) and 2 for the end; gravity can be changed
+    between steps, restitution and friction before the initialization.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> damper = rb.reference_case().dampers[0]
+    >>> rb.to_fmu(damper, "damper.fmu", structure_mass="2.37 kg").name
+    'damper.fmu'
+    """
+    if fmi not in (2, 3):
+        raise Hint(f"fmi = {fmi!r}: the versions are 2 and 3", "fmi=3")
+    if input not in ("velocity", "acceleration"):
+        raise Hint(f"input = {input!r}: an input is the velocity or the acceleration", 'input="velocity"')
+    path = Path(path)
+    if path.suffix != ".fmu":
+        raise Hint(f"{path}: the name of an FMU must end with .fmu", f'"{path.with_suffix(".fmu")}"')
+    library = component_library()
+    case, alone = component_case(system, alone, method, motion, structure_mass)
+    packed = pack_component(case, alone=alone)
+    name = re.sub(r"\W", "_", path.stem)
+    token = str(uuid.uuid5(uuid.NAMESPACE_OID, packed.data.hex() + input))
+    variables = list(_variables(packed, input))
+    folder = "linux64" if fmi == 2 else "x86_64-linux"
+    content = {
+        "modelDescription.xml": (_description_2 if fmi == 2 else _description_3)(name, token, variables).encode(),
+        f"binaries/{folder}/{name}.so": library.read_bytes(),
+        "resources/case.bin": packed.data,
+        "resources/input": input.encode(),
+        "documentation/index.html": _page(name, variables).encode(),
+    }
+    path.parent.mkdir(parents=True, exist_ok=True)
+    whole = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as file:
+            for entry, data in content.items():
+                file.writestr(zipfile.ZipInfo(entry), data, zipfile.ZIP_DEFLATED)
+        whole.replace(path)
+    finally:
+        whole.unlink(missing_ok=True)
+    return path
+
+
+def component_library() -> Path:
+    """Return the shared library of the core without Python."""
+    from importlib.resources import files
+
+    for folder in (Path(_core.__file__).parent, Path(str(files("rattlebox.core")))):
+        file = folder / "rattlebox_component.so"
+        if file.is_file() and platform.system() == "Linux" and platform.machine() == "x86_64":
+            return file
+    raise ResourceError(
+        "FMUs can be written on Linux x86-64 only", "this command on such a machine; the FMU is one file"
+    )
+
+
+def _variables(packed: PackedComponent, by: str) -> Iterator[Variable]:
+    """Yield the variables; the order is that of the file."""
+    if len(packed.inputs) > MOST_INPUTS or len(packed.dampers) > MOST_DAMPERS:
+        raise Hint(f"an FMU has at most {MOST_INPUTS} inputs and {MOST_DAMPERS} dampers", "a smaller case")
+    if len(packed.outputs) * packed.axes > MOST_OUTPUTS:
+        raise Hint(f"an FMU has at most {MOST_OUTPUTS} displacements", "fewer points")
+    stepper = _core.Stepper(packed.data)
+    ends = [""] if packed.axes == 1 else [f"_{axis}" for axis in AXES]
+
+    def each(name: str, reference: int, unit: str, description: str, **more: Any) -> Iterator[Variable]:
+        for number, end in enumerate(ends):
+            yield Variable(name + end, reference + number, unit, description, **more)
+
+    for number, end in enumerate(ends):
+        yield Variable(
+            f"gravity{end}", GRAVITY + number, "m/s2", "gravity", "parameter", "tunable", float(stepper.gravity[number])
+        )
+    for name, reference in (("restitution", RESTITUTION), ("friction", FRICTION)):
+        value = float(getattr(stepper, name))
+        if not math.isnan(value):
+            yield Variable(name, reference, "", f"{name} of all contacts", "parameter", "fixed", value)
+    if packed.alone:
+        unit = {"velocity": "m/s", "acceleration": "m/s2"}[by]
+        yield from each(by, INPUT, unit, f"{by} of the attachment", causality="input", start=0.0)
+    else:
+        for number, name in enumerate(packed.inputs):
+            unit = "m/s2" if name.startswith("base") else "N"
+            what = "acceleration of the base" if unit == "m/s2" else "load"
+            yield Variable(name, INPUT + number, unit, what, "input", start=0.0)
+    for number, damper in enumerate(packed.dampers):
+        label = "" if packed.alone else f"_{_plain(damper)}"
+        yield from each(f"force{label}", FORCE + 3 * number, "N", "mean force on the structure in the last step")
+        if packed.alone and packed.axes == 3:
+            yield from each("moment", MOMENT, "N.m", "mean moment on the structure in the last step")
+    for number, point in enumerate(packed.outputs):
+        first = number * packed.axes
+        yield from each(f"displacement_{_plain(point)}", DISPLACEMENT + first, "m", f"displacement of {point}")
+        yield from each(f"velocity_{_plain(point)}", VELOCITY + first, "m/s", f"velocity of {point}")
+    yield Variable("work", WORK, "J", "work done on the component since the start")
+    yield Variable("loss", LOSS, "J", "energy lost since the start")
+    yield Variable("stored", STORED, "J", "energy stored at the end of the last step")
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"\W", "_", name)
+
+
+_CAPABILITIES = (
+    'canHandleVariableCommunicationStepSize="true" canGetAndSetFMU{s}tate="true" canSerializeFMU{s}tate="true"'
+)
+_INPUT_TIME = "end of a communication step to which the inputs belong"
+
+
+def _head(name: str, version: str, token: str) -> str:
+    return (
+        f'<?xml version="1.0" encoding="UTF-8"?>\n<fmiModelDescription fmiVersion="{version}" modelName="{name}" {token} '
+        f'generationTool="Rattlebox {rattlebox.__version__}" variableNamingConvention="flat">\n'
+    )
+
+
+def _units() -> str:
+    rows = []
+    for unit, powers in BASE_UNITS.items():
+        base = " ".join(f'{name}="{power}"' for name, power in powers.items())
+        rows.append(f'<Unit name="{unit}"><BaseUnit {base}/></Unit>')
+    return f"<UnitDefinitions>{''.join(rows)}</UnitDefinitions>\n"
+
+
+def _attributes(variable: Variable) -> str:
+    return (
+        f'name="{escape(variable.name)}" valueReference="{variable.reference}" description="{escape(variable.description)}" '
+        f'causality="{variable.causality}" variability="{variable.variability}"'
+    )
+
+
+def _value(variable: Variable) -> str:
+    unit = f' unit="{variable.unit}"' if variable.unit else ""
+    return unit if variable.start is None else f'{unit} start="{variable.start!r}"'
+
+
+def _description_2(name: str, token: str, variables: list[Variable]) -> str:
+    rows = [
+        f'<ScalarVariable name="input_time" valueReference="{INPUT_TIME}" description="{_INPUT_TIME}" causality="parameter" '
+        'variability="fixed" initial="exact"><Enumeration declaredType="InputTime" start="2"/></ScalarVariable>'
+    ]
+    for variable in variables:
+        initial = {"parameter": ' initial="exact"', "output": ' initial="calculated"'}.get(variable.causality, "")
+        rows.append(f"<ScalarVariable {_attributes(variable)}{initial}><Real{_value(variable)}/></ScalarVariable>")
+    outputs = [number for number, variable in enumerate(variables, 2) if variable.causality == "output"]
+    unknowns = "".join(f'<Unknown index="{number}"/>' for number in outputs)
+    return (
+        _head(name, "2.0", f'guid="{{{token}}}"')
+        + f'<CoSimulation modelIdentifier="{name}" {_CAPABILITIES.format(s="s")}/>\n'
+        + _units()
+        + '<TypeDefinitions><SimpleType name="InputTime"><Enumeration><Item name="start" value="1"/>'
+        + '<Item name="end" value="2"/></Enumeration></SimpleType></TypeDefinitions>\n'
+        + '<LogCategories><Category name="logStatusError"/></LogCategories>\n'
+        + '<DefaultExperiment startTime="0" stopTime="1" stepSize="1e-4"/>\n'
+        + "<ModelVariables>\n"
+        + "\n".join(rows)
+        + "\n</ModelVariables>\n"
+        + f"<ModelStructure><Outputs>{unknowns}</Outputs><InitialUnknowns>{unknowns}</InitialUnknowns></ModelStructure>\n"
+        + "</fmiModelDescription>\n"
+    )
+
+
+def _description_3(name: str, token: str, variables: list[Variable]) -> str:
+    rows = [
+        '<Float64 name="time" valueReference="0" causality="independent" variability="continuous" unit="s"/>',
+        f'<Enumeration name="input_time" valueReference="{INPUT_TIME}" description="{_INPUT_TIME}" causality="parameter" '
+        'variability="fixed" declaredType="InputTime" start="2"/>',
+    ]
+    rows += [f"<Float64 {_attributes(variable)}{_value(variable)}/>" for variable in variables]
+    outputs = [variable.reference for variable in variables if variable.causality == "output"]
+    return (
+        _head(name, "3.0", f'instantiationToken="{{{token}}}"')
+        + f'<CoSimulation modelIdentifier="{name}" {_CAPABILITIES.format(s="S")}/>\n'
+        + _units()
+        + '<TypeDefinitions><EnumerationType name="InputTime"><Item name="start" value="1"/><Item name="end" value="2"/>'
+        + "</EnumerationType></TypeDefinitions>\n"
+        + '<LogCategories><Category name="logStatusError"/></LogCategories>\n'
+        + '<DefaultExperiment startTime="0" stopTime="1" stepSize="1e-4"/>\n'
+        + "<ModelVariables>\n"
+        + "\n".join(rows)
+        + "\n</ModelVariables>\n"
+        + "<ModelStructure>"
+        + "".join(f'<Output valueReference="{reference}"/>' for reference in outputs)
+        + "".join(f'<InitialUnknown valueReference="{reference}"/>' for reference in outputs)
+        + "</ModelStructure>\n</fmiModelDescription>\n"
+    )
+
+
+def _page(name: str, variables: list[Variable]) -> str:
+    rows = "".join(
+        f"<tr><td>{escape(v.name)}</td><td>{v.causality}</td><td>{v.unit}</td><td>{escape(v.description)}</td></tr>"
+        for v in variables
+    )
+    return (
+        f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{name}</title><h1>{name}</h1>'
+        "<p>A damper, written by Rattlebox. Forces are means over the last communication step. The parameter input_time "
+        "says to which end of a step the inputs belong: 1 start, 2 end.</p>"
+        f"<table><tr><th>Variable</th><th>Causality</th><th>Unit</th><th>Description</th></tr>{rows}</table></html>\n"
+    )

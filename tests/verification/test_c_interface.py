@@ -1,0 +1,109 @@
+"""The C interface, from C and by its functions, against steppers in Python."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.engines.fmu import component_library
+
+ROOT = Path(__file__).parents[2]
+
+
+def ball() -> rb.ImpactDamper:
+    """A ball in a cavity."""
+    return rb.ImpactDamper(
+        ball=rb.Sphere(radius="10 mm", material="steel"), gap="3 mm", contact=rb.Tsuji(restitution=0.6)
+    )
+
+
+def library() -> ctypes.CDLL:
+    """The shared library, with the types of its functions."""
+    found = ctypes.CDLL(str(component_library()))
+    found.rattlebox_create.restype = ctypes.c_void_p
+    found.rattlebox_error.restype = ctypes.c_char_p
+    found.rattlebox_save.restype = ctypes.c_void_p
+    for name in ("time", "work", "loss", "stored", "restitution", "friction"):
+        getattr(found, f"rattlebox_{name}").restype = ctypes.c_double
+    return found
+
+
+def test_the_c_example_has_the_numbers_of_a_stepper(tmp_path: Path) -> None:
+    """The example compiles as C without a warning, and agrees with the same loop in Python."""
+    compiler = [shutil.which("cc")] if shutil.which("cc") else [sys.executable, "-m", "ziglang", "cc"]
+    (tmp_path / "ball.bin").write_bytes(rb.Stepper(ball(), structure_mass="1 kg").packed)
+    subprocess.run(
+        [*compiler, "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{ROOT / 'core'}",
+         ROOT / "examples" / "component.c", component_library(), "-lm", "-o", "component",
+         f"-Wl,-rpath,{component_library().parent}"],
+        cwd=tmp_path, check=True,
+    )  # fmt: skip
+    done = subprocess.run(["./component", "ball.bin"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    words = done.stdout.replace(",", "").split()
+    stepper, x, v, force, loss = rb.Stepper(ball(), structure_mass="1 kg"), 5e-3, 0.0, 0.0, 0.0
+    omega, h = 2 * np.pi * 10, 1e-5
+    for k in range(50000):
+        v += 0.5 * h * (force - omega**2 * x)
+        x += h * v
+        result = stepper.advance((k + 1) * h, velocity=v)
+        force, loss = result.force, loss + result.loss
+        v += 0.5 * h * (force - omega**2 * x)
+    assert float(words[1]) == pytest.approx(math.hypot(x, v / omega), rel=1e-3)
+    assert float(words[4]) == pytest.approx(loss, rel=1e-3)
+    assert loss > 0.01
+    failed = subprocess.run(["./component"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert failed.returncode == 1
+
+
+def test_errors_are_texts() -> None:
+    """Bytes that are no packed case, and steps and states that are not possible, return an error and its text."""
+    lib, packed = library(), rb.Stepper(ball()).packed
+    for wrong in (b"", b"no", packed[:-8], packed[:60] + bytes([packed[60] ^ 1]) + packed[61:]):
+        assert lib.rattlebox_create(wrong, ctypes.c_size_t(len(wrong))) is None
+        assert lib.rattlebox_error(None)
+    handle = ctypes.c_void_p(lib.rattlebox_create(packed, ctypes.c_size_t(len(packed))))
+    number = ctypes.c_double
+    for length, value in ((-1e-3, 0.0), (float("nan"), 0.0), (1e-3, float("inf"))):
+        assert lib.rattlebox_advance(handle, number(length), ctypes.byref(number(value))) == 1
+        assert lib.rattlebox_error(handle)
+    assert lib.rattlebox_restore(handle, b"nothing", ctypes.c_size_t(7)) == 1
+    assert lib.rattlebox_choose(handle, number(1.5), number(float("nan")), None) == 1
+    assert lib.rattlebox_choose(handle, number(0.5), number(float("nan")), None) == 0
+    assert lib.rattlebox_restitution(handle) == 0.5
+    assert math.isnan(lib.rattlebox_friction(handle))
+    assert lib.rattlebox_advance(handle, number(1e-3), ctypes.byref(number(1.0))) == 0
+    assert lib.rattlebox_time(handle) == 1e-3
+    assert lib.rattlebox_choose(handle, number(0.7), number(float("nan")), None) == 1
+    lib.rattlebox_free(handle)
+
+
+def test_saved_states_continue(tmp_path: Path) -> None:
+    """A state that is saved and restored through the C interface repeats the steps to the last bit."""
+    lib, packed = library(), rb.Stepper(ball()).packed
+    handle = ctypes.c_void_p(lib.rattlebox_create(packed, ctypes.c_size_t(len(packed))))
+
+    def go() -> list[float]:
+        force, seen = (ctypes.c_double * 3)(), []
+        for k in range(60):
+            velocity = ctypes.c_double(0.6 * math.cos(0.3 * k))
+            assert lib.rattlebox_advance_to_velocity(handle, ctypes.c_double(1e-3), ctypes.byref(velocity)) == 0
+            lib.rattlebox_force(handle, 0, force)
+            seen += [force[0], lib.rattlebox_stored(handle), lib.rattlebox_loss(handle)]
+        return seen
+
+    go()
+    size = ctypes.c_size_t()
+    state = ctypes.string_at(lib.rattlebox_save(handle, ctypes.byref(size)), size.value)
+    expected = go()
+    assert any(expected[::3])
+    assert lib.rattlebox_restore(handle, state, size) == 0
+    assert go() == expected
+    lib.rattlebox_free(handle)

@@ -1,0 +1,355 @@
+"""FMUs in FMPy: valid, equal to steppers, coupled, rewound, and with errors instead of wrong numbers."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi3 import FMU3Slave
+from fmpy.validation import validate_fmu
+
+import rattlebox as rb
+
+VERSIONS = (2, 3)
+SPRING = (2 * np.pi * 10) ** 2  # N/m, of a mass of 1 kg
+
+
+def ball(**changes: Any) -> rb.ImpactDamper:
+    """A ball with room to fly."""
+    given = {"ball": rb.Sphere(radius="10 mm", material="steel"), "gap": "3 mm", "contact": rb.Tsuji(restitution=0.6)}
+    return rb.ImpactDamper(**{**given, **changes})
+
+
+def box() -> rb.ParticleDamper:
+    """A box of balls with friction."""
+    return rb.ParticleDamper(
+        particles=rb.Particles(material="steel", diameter="6 mm", count=50),
+        cavity=rb.Box(size=("30 mm", "30 mm", "30 mm")),
+        contact=rb.Tsuji(restitution=0.75),
+        softening=1e3,
+    )
+
+
+def structure(**changes: Any) -> rb.Case:
+    """A mass on a spring with a ball under a load."""
+    given: dict[str, Any] = {
+        "structure": rb.SDOF(mass="1 kg", frequency="10 Hz"),
+        "damper": ball(),
+        "load": rb.HalfSine(amplitude="20 N", duration="20 ms"),
+        "duration": "0.3 s",
+    }
+    return rb.Case(**{**given, **changes})
+
+
+SYSTEMS = {"ball": ball, "box": box, "structure": structure, "structure with box": lambda: structure(damper=box())}
+
+
+class Unit:
+    """An FMU in FMPy, with the same functions for both versions."""
+
+    def __init__(self, file: Path, folder: Path) -> None:
+        self.description = fmpy.read_model_description(str(file))
+        self.reference = {variable.name: variable.valueReference for variable in self.description.modelVariables}
+        kind = FMU2Slave if self.description.fmiVersion == "2.0" else FMU3Slave
+        self.is_2 = kind is FMU2Slave
+        self.said: list[str] = []
+        self.fmu = kind(
+            guid=self.description.guid,
+            unzipDirectory=fmpy.extract(str(file), str(folder)),
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            instanceName="one",
+        )
+        self.fmu.instantiate(loggingOn=True)
+
+    def initialize(self, **values: float) -> None:
+        """Pass the initialization; `values` are set before its end."""
+        if self.is_2:
+            self.fmu.setupExperiment(startTime=0.0)
+            self.fmu.enterInitializationMode()
+        else:
+            self.fmu.enterInitializationMode(startTime=0.0)
+        self.set(**values)
+        self.fmu.exitInitializationMode()
+
+    def set(self, **values: float) -> None:
+        """Set variables by name."""
+        for name, value in values.items():
+            reference = [self.reference[name]]
+            if name == "input_time":
+                (self.fmu.setInteger if self.is_2 else self.fmu.setInt64)(reference, [int(value)])
+            else:
+                (self.fmu.setReal if self.is_2 else self.fmu.setFloat64)(reference, [value])
+
+    def get(self, *names: str) -> list[float]:
+        """Return variables by name."""
+        return list((self.fmu.getReal if self.is_2 else self.fmu.getFloat64)([self.reference[name] for name in names]))
+
+    def step(self, time: float, length: float, **inputs: float) -> None:
+        """Set inputs and make a step."""
+        self.set(**inputs)
+        self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=length)
+
+    def save(self) -> Any:
+        """Return a state."""
+        return self.fmu.getFMUState() if not self.is_2 else self.fmu.getFMUstate()
+
+    def restore(self, state: Any) -> None:
+        """Go back to a state."""
+        (self.fmu.setFMUstate if self.is_2 else self.fmu.setFMUState)(state)
+
+    def forget(self, state: Any) -> None:
+        """Free a state."""
+        (self.fmu.freeFMUstate if self.is_2 else self.fmu.freeFMUState)(state)
+
+
+@contextmanager
+def unit(folder: Path, system: Any, fmi: int, **options: Any) -> Iterator[Unit]:
+    """Write an FMU and load it."""
+    made = Unit(rb.to_fmu(system, folder / "damper.fmu", fmi=fmi, **options), folder / "unzipped")
+    yield made
+    made.fmu.freeInstance()
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_fmpy_finds_no_fault(name: str, fmi: int, tmp_path: Path) -> None:
+    """The description is valid, and the binary is found and simulated by FMPy as it is."""
+    file = rb.to_fmu(SYSTEMS[name](), tmp_path / "damper.fmu", fmi=fmi)
+    assert validate_fmu(str(file)) == []
+    result = fmpy.simulate_fmu(str(file), stop_time=0.01, step_size=1e-3, output_interval=1e-3)
+    assert result["time"][-1] == pytest.approx(0.01)
+    assert np.isfinite(result["stored"]).all()
+
+
+def test_the_binary_needs_libc_and_libm_only(tmp_path: Path) -> None:
+    """The shared library in the FMU depends on nothing else."""
+    fmpy.extract(str(rb.to_fmu(ball(), tmp_path / "damper.fmu")), str(tmp_path / "x"))
+    (library,) = (tmp_path / "x").rglob("*.so")
+    listed = subprocess.run(["ldd", library], capture_output=True, text=True, check=True).stdout.split("\n")
+    names = {line.split()[0].split("/")[-1].split(".")[0] for line in listed if line.strip()}
+    assert names <= {"linux-vdso", "libm", "libc", "ld-linux-x86-64"}
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+@pytest.mark.parametrize("by", ["velocity", "acceleration"])
+def test_inputs_of_the_end_give_the_steps_of_a_stepper(by: str, fmi: int, tmp_path: Path) -> None:
+    """With the inputs of the end of each step, an FMU has the forces and energies of a stepper, to the last bit."""
+    stepper, h, work = rb.Stepper(ball(), velocity=0.4), 1e-3, 0.0
+    if by == "acceleration":
+        stepper = rb.Stepper(ball(), velocity=0.0)
+    with unit(tmp_path, ball(), fmi, input=by) as own:
+        first = before = 0.4 if by == "velocity" else 40.0
+        own.initialize(**{by: first})
+        for k in range(100):
+            value = first * np.cos(60 * (k + 1) * h)
+            own.step(k * h, h, **{by: value})
+            given = value if by == "velocity" else value - 0.5 * (value - before)
+            result = stepper.advance(stepper.time + h, **{by: given})
+            work, before = work + result.work, value
+            assert own.get("force", "stored") == pytest.approx([result.force, result.stored], rel=1e-9, abs=1e-12)
+        assert own.get("work")[0] == pytest.approx(work)
+        assert any(own.get("loss"))
+
+
+@pytest.mark.parametrize("input_time", [1, 2])
+@pytest.mark.parametrize("by", ["velocity", "acceleration"])
+def test_both_input_times_have_second_order(by: str, input_time: int, tmp_path: Path) -> None:
+    """Inputs of the start and of the end of each step both approach the shaken run with the square of the step."""
+    rate, top = 2 * np.pi * 20, 2e-3
+    motion = rb.Harmonic(amplitude=f"{top} m", frequency="20 Hz")
+    case = rb.Case(structure=rb.Shaker(motion=motion), damper=ball(gap="2 mm"), duration="0.09 s")
+    loss = float(rb.simulate(case, progress=False).impacts["energy_lost"].sum())
+    damper = ball(gap="2 mm", velocity=top * rate if by == "velocity" else 0.0)
+    value = {
+        "velocity": lambda t: top * rate * np.cos(rate * t),
+        "acceleration": lambda t: -top * rate**2 * np.sin(rate * t),
+    }[by]
+    with unit(tmp_path, damper, 3, input=by) as own:
+        start, errors = own.save(), []
+        for steps in (900, 3600):
+            own.restore(start)
+            own.initialize(input_time=input_time, **{by: value(0.0)})
+            for k in range(steps):
+                h = 0.09 / steps
+                own.step(k * h, h, **{by: value((k if input_time == 1 else k + 1) * h)})
+            errors.append(abs(own.get("loss")[0] / loss - 1))
+        own.forget(start)
+    assert errors[1] < errors[0] / 8
+    assert errors[1] < 2e-4
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_coupled_to_a_mass_on_a_spring_it_approaches_the_whole_run(fmi: int, tmp_path: Path) -> None:
+    """Two FMUs, a mass on a spring and a ball, exchange velocity and force and approach the coupled run."""
+    displaced = rb.SDOF(mass="1 kg", frequency="10 Hz", displacement="5 mm")
+    whole = rb.simulate(structure(structure=displaced, damper=ball(start="5 mm"), load=[]), progress=False)
+    assert whole.impacts.sizes["impact"] >= 4
+    host = rb.Case(
+        structure=displaced,
+        load=rb.Harmonic(amplitude="0 N", frequency="1 Hz"),
+        duration="1 s",
+        dampers=(),
+    )
+    errors = []
+    for steps in (6000, 24000):
+        with (
+            unit(tmp_path / f"{steps}a", host, fmi) as mass,
+            unit(tmp_path / f"{steps}b", ball(), fmi, structure_mass="1 kg") as own,
+        ):
+            mass.initialize(input_time=2)
+            own.initialize()
+            h = 0.3 / steps
+            for k in range(steps):
+                mass.step(k * h, h, load_1=own.get("force")[0])
+                own.step(k * h, h, velocity=mass.get("velocity_mass")[0])
+            (x,) = mass.get("displacement_mass")
+            errors.append(abs(x - float(whole.motion.displacement.values[-1].item())))
+    assert errors[1] < 1.5e-5
+    assert errors[1] < errors[0]
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_rewound_steps_have_the_same_bits(name: str, fmi: int, tmp_path: Path) -> None:
+    """After going back to a state, also through its bytes, the outputs repeat to the last bit."""
+    with unit(tmp_path, SYSTEMS[name](), fmi) as own:
+        own.initialize()
+        inputs = [v.name for v in own.description.modelVariables if v.causality == "input"]
+        outputs = [v.name for v in own.description.modelVariables if v.causality == "output"]
+
+        def go(first: int, steps: int) -> list[list[float]]:
+            seen = []
+            for k in range(first, first + steps):
+                own.step(k * 1e-3, 1e-3, **{name: 0.5 * np.sin(0.5 * k + i) for i, name in enumerate(inputs)})
+                seen.append(own.get(*outputs))
+            return seen
+
+        go(0, 30)
+        state = own.save()
+        expected = go(30, 20)
+        own.restore(state)
+        assert go(30, 20) == expected
+        if own.is_2:
+            data = own.fmu.serializeFMUstate(state)
+            other = own.fmu.deSerializeFMUstate(data, ctypes.c_void_p())
+        else:
+            data = own.fmu.serializeFMUState(state)
+            other = own.fmu.deserializeFMUState(data)
+        own.restore(other)
+        assert go(30, 20) == expected
+        own.forget(state)
+        own.forget(other)
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_parameters_change_the_case(fmi: int, tmp_path: Path) -> None:
+    """Restitution holds before the first step and is refused after it; gravity can be changed between steps."""
+    damper = ball(velocity="0.5 m/s")
+    with unit(tmp_path, damper, fmi) as own:
+        own.initialize(restitution=0.9)
+        assert own.get("restitution") == [0.9]
+        impulse = 0.0
+        for k in range(100):
+            own.step(k * 1e-4, 1e-4, velocity=0.0)
+            impulse += own.get("force")[0] * 1e-4
+        assert impulse == pytest.approx(float(damper.masses[0]) * 0.5 * 1.9, rel=1e-6)
+        with pytest.raises(Exception, match="failed"):
+            own.set(restitution=0.5)
+    with unit(tmp_path / "b", ball(), fmi) as own:
+        own.initialize()
+        own.step(0.0, 1e-3, velocity=0.0)
+        own.set(gravity=9.81)
+        for k in range(1, 2000):
+            own.step(k * 1e-3, 1e-3, velocity=0.0)
+        assert own.get("force")[0] == pytest.approx(9.81 * float(damper.masses[0]), rel=1e-6)
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_bad_values_return_an_error(fmi: int, tmp_path: Path) -> None:
+    """NaN as input, steps that are negative or not in order, and unknown variables return an error; the FMU goes on."""
+    with unit(tmp_path, ball(), fmi) as own:
+        own.initialize()
+        own.step(0.0, 1e-3, velocity=0.1)
+        for act in (
+            lambda: own.set(velocity=float("nan")),
+            lambda: own.set(gravity=float("inf")),
+            lambda: own.set(input_time=3),
+            lambda: own.step(1e-3, -1e-3),
+            lambda: own.step(1e-3, float("nan")),
+            lambda: own.step(0.0, 1e-3),
+            lambda: (own.fmu.getReal if own.is_2 else own.fmu.getFloat64)([12345]),
+        ):
+            with pytest.raises(Exception, match="failed"):
+                act()
+        own.step(1e-3, 1e-3, velocity=0.1)
+        assert np.isfinite(own.get("force")[0])
+
+
+@pytest.mark.parametrize("fmi", VERSIONS)
+def test_a_thousand_instances_leak_nothing(fmi: int, tmp_path: Path) -> None:
+    """A thousand instances one after the other, and as many states, take no more memory than the first ones."""
+    file = rb.to_fmu(ball(), tmp_path / "damper.fmu", fmi=fmi)
+    folder = fmpy.extract(str(file), str(tmp_path / "x"))
+    description = fmpy.read_model_description(str(file))
+    kind = FMU2Slave if fmi == 2 else FMU3Slave
+
+    def use(count: int) -> int:
+        for _ in range(count):
+            own = kind(guid=description.guid, unzipDirectory=folder, modelIdentifier="damper", instanceName="a")
+            own.instantiate()
+            if fmi == 2:
+                own.setupExperiment()
+            own.enterInitializationMode()
+            own.exitInitializationMode()
+            own.doStep(currentCommunicationPoint=0.0, communicationStepSize=1e-3)
+            state = own.getFMUstate() if fmi == 2 else own.getFMUState()
+            (own.freeFMUstate if fmi == 2 else own.freeFMUState)(state)
+            (own.fmi2FreeInstance if fmi == 2 else own.fmi3FreeInstance)(own.component)
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+        return pages * 4096
+
+    use(200)
+    before = use(50)
+    assert use(1000) - before < 4e6
+
+
+def test_a_missing_resource_is_an_error(tmp_path: Path) -> None:
+    """An FMU whose packed case is damaged cannot be instantiated."""
+    file = rb.to_fmu(ball(), tmp_path / "damper.fmu")
+    folder = Path(fmpy.extract(str(file), str(tmp_path / "x")))
+    description = fmpy.read_model_description(str(file))
+    case = folder / "resources" / "case.bin"
+    whole = case.read_bytes()
+    for content in (b"", whole[:60], whole[:50] + b"\1" + whole[51:]):
+        case.write_bytes(content)
+        own = FMU3Slave(guid=description.guid, unzipDirectory=str(folder), modelIdentifier="damper", instanceName="a")
+        with pytest.raises(Exception, match="nstantiate"):
+            own.instantiate()
+    shutil.rmtree(folder)
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        ({"fmi": 1}, "fmi"),
+        ({"input": "force"}, "input"),
+        ({"path": "damper.zip"}, ".fmu"),
+        ({"system": "two"}, "damper"),
+    ],
+)
+def test_wrong_options_are_refused(options: dict[str, Any], named: str, tmp_path: Path) -> None:
+    """Options outside their range raise an error that names them."""
+    two = structure(damper=[ball(), ball()]) if "system" in options else None
+    options = {key: value for key, value in options.items() if key != "system"}
+    path = tmp_path / options.pop("path", "damper.fmu")
+    with pytest.raises(rb.CaseError, match=named):
+        rb.to_fmu(two or ball(), path, alone=None if two is None else True, **options)
