@@ -19,6 +19,7 @@ PAGES = (
     "how-to/basins",
     "how-to/bifurcation",
     "how-to/design",
+    "how-to/fmu",
     "how-to/frequency_response",
     "how-to/loads",
     "how-to/matlab",
