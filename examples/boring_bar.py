@@ -26,8 +26,8 @@ def curve(fill, softening=100, amplitudes=AMPLITUDES, packings=2):
 
 if __name__ == "__main__":
     curves = {f"fill {fill}": curve(fill) for fill in (0.1, 0.2, 0.4)}
-    at_5g = [100 * float(found.damping_ratio.sel(amplitude=40e-6)) for found in curves.values()]
+    at_5g = [100 * float(result.damping_ratio.sel(amplitude=40e-6)) for result in curves.values()]
     print("damping ratio at 5 g:", ", ".join(f"{ratio:.1f} %" for ratio in at_5g))
     assert 1.1 < at_5g[0] < 1.5 < at_5g[1] < 2.1 < 2.9 < at_5g[2] < 3.6
-    assert all((found.damping_ratio.diff("amplitude") < 0).all() for found in curves.values())
+    assert all((result.damping_ratio.diff("amplitude") < 0).all() for result in curves.values())
     rb.plot_damping_curve(curves).savefig("boring_bar.png", dpi=200)

@@ -34,11 +34,11 @@ balls = rb.ParticleDamper(
 )
 dampers = {"bare": {}, "tuned mass": {"tuned_mass": tuned}, "one ball": {"damper": ball}, "16 balls": {"damper": balls}}
 common = {"structure": tower, "base": quake, "duration": "23.9 s", "output": rb.Output(rate="200 Hz")}
-found = rb.compare({name: rb.Case(**common, **damper) for name, damper in dampers.items()})
+result = rb.compare({name: rb.Case(**common, **damper) for name, damper in dampers.items()})
 
 figure, panels = plt.subplots(1, 2, figsize=(7, 3), sharey=True, layout="constrained")
 floors, rms = [None, *(f"storey {k}" for k in range(1, 6))], {}
-for (name, run), mark, colour in zip(found.runs.items(), "o^sD", rb.plots.SERIES_COLOURS, strict=False):
+for (name, run), mark, colour in zip(result.runs.items(), "o^sD", rb.plots.SERIES_COLOURS, strict=False):
     drifts = [1e3 * drift(run, upper, lower) for lower, upper in pairwise(floors)]
     peak, rms[name] = [float(abs(d).max()) for d in drifts], [float(d.std()) for d in drifts]
     print(f"{name:10} first storey: peak {peak[0]:.1f} mm, RMS {rms[name][0]:.1f} mm")

@@ -15,7 +15,7 @@ case = rb.Case(
     load=rb.HalfSine(amplitude="5 kN", duration="1 ms"),
     duration="6 s",
 )
-found = rb.design(
+result = rb.design(
     case,
     {
         "damper.gap": ("0.1 mm", "2 mm"),
@@ -26,8 +26,8 @@ found = rb.design(
     starts=3,
     trials=40,
 )
-rb.plot_design(found).savefig("design.png")
-rb.Case.from_toml(found.case.item(-1)).to_file("fastest.toml")
-fastest = found.isel(trial=found.front.values[-1])
+rb.plot_design(result).savefig("design.png")
+rb.Case.from_toml(result.case.item(-1)).to_file("fastest.toml")
+fastest = result.isel(trial=result.front.values[-1])
 print(f"{float(fastest.added_mass):.2f} kg of ball settle the structure within {float(fastest.settling_time):.1f} s")
 assert abs(float(fastest.settling_time) - 1.8) < 0.1

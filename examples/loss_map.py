@@ -18,12 +18,12 @@ case = rb.Case(
     duration="1 s",
     method=rb.Newton(),
 )
-found = rb.loss_map(
+result = rb.loss_map(
     case,
     rb.geomspace("15 m/s^2", "500 m/s^2", 25),
     rb.geomspace("10 Hz", "200 Hz", 21),
     cycles=(400, 20),
 )
-rb.plot_loss_map(found).savefig("loss_map.png")
-print(f"largest loss per cycle: {float(found.reduced_loss.max()):.1f} m V^2")
-assert 11 < found.reduced_loss.max() < 12.5
+rb.plot_loss_map(result).savefig("loss_map.png")
+print(f"largest loss per cycle: {float(result.reduced_loss.max()):.1f} m V^2")
+assert 11 < result.reduced_loss.max() < 12.5

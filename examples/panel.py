@@ -31,7 +31,7 @@ damper = rb.ParticleDamper(
 shaking = rb.Random("gevs_acceptance", LENGTH, seed=1)
 common = {"structure": panel, "base": shaking, "duration": LENGTH, "output": rb.Output(rate="10 kHz")}
 figure, axes = plt.subplots(figsize=(7, 3), layout="constrained")
-found = {}
+levels = {}
 for name, dampers in {"bare": {}, "with particles": {"damper": damper}}.items():
     motion = rb.simulate(rb.Case(**common, **dampers)).motion
     along_z = motion.sel(axis="z") if "axis" in motion.dims else motion
@@ -40,16 +40,16 @@ for name, dampers in {"bare": {}, "with particles": {"damper": damper}}.items():
     density = power_spectral_density(motion.time, absolute, resolution=2).density
     level = band_levels(density.sel(frequency=slice(20, 2000))) / G
     axes.bar(
-        np.arange(level.size) + 0.4 * len(found),
+        np.arange(level.size) + 0.4 * len(levels),
         level,
         width=0.4,
-        color=rb.plots.SERIES_COLOURS[len(found)],
+        color=rb.plots.SERIES_COLOURS[len(levels)],
         label=name,
     )
-    found[name] = float(level.sel(nominal="200")), float(along_z.interface_force.std())
-    print(f"{name:14} {found[name][0]:.1f} g in the band of 200 Hz, {found[name][1]:.0f} N on the base")
+    levels[name] = float(level.sel(nominal="200")), float(along_z.interface_force.std())
+    print(f"{name:14} {levels[name][0]:.1f} g in the band of 200 Hz, {levels[name][1]:.0f} N on the base")
 axes.set_xticks(np.arange(level.size) + 0.2, level.nominal.values, rotation=90)
 axes.set(xlabel="Third-octave band (Hz)", ylabel="RMS acceleration ($g_0$)")
 axes.legend()
 figure.savefig("panel.png", dpi=200)
-assert np.allclose(list(found.values()), [(53.5, 973), (29.3, 626)], rtol=0.12)
+assert np.allclose(list(levels.values()), [(53.5, 973), (29.3, 626)], rtol=0.12)

@@ -16,7 +16,7 @@ case = rb.Case(
     load=rb.HalfSine(amplitude="5 kN", duration="1 ms"),
     duration="4 s",
 )
-found = rb.sensitivity(
+result = rb.sensitivity(
     case,
     {
         "damper.gap": ("0.2 mm", "1.2 mm"),
@@ -27,7 +27,7 @@ found = rb.sensitivity(
     ["impact_share", "peak_contact_force"],
     n=128,
 )
-rb.plot_sensitivity(found).savefig("sensitivity.png")
-shares = found.total.sel(measure="impact_share")
+rb.plot_sensitivity(result).savefig("sensitivity.png")
+shares = result.total.sel(measure="impact_share")
 print(f"largest total index of the impact share: {float(shares.max()):.2f}, {shares.idxmax().item()}")
 assert shares.idxmax() == "damper.contact.restitution"

@@ -70,8 +70,8 @@ def mean_interval(values: ArrayLike) -> Interval:
     Examples
     --------
     >>> import numpy as np
-    >>> found = mean_interval(np.random.default_rng(1).normal(5.0, 1.0, 4000))
-    >>> found.lower < 5.0 < found.upper, round(found.half_width, 2)
+    >>> result = mean_interval(np.random.default_rng(1).normal(5.0, 1.0, 4000))
+    >>> result.lower < 5.0 < result.upper, round(result.half_width, 2)
     (True, 0.03)
     """
     x = np.asarray(values, dtype=np.float64)

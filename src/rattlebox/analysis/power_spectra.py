@@ -113,8 +113,8 @@ def power_spectral_density(time: ArrayLike, values: ArrayLike, *, resolution: fl
     >>> import numpy as np
     >>> time = np.arange(100_000) / 1000
     >>> white = np.random.default_rng(1).normal(size=time.size)
-    >>> found = power_spectral_density(time, white, resolution=2.0)
-    >>> round(float(found.density.sel(frequency=slice(20, 480)).mean()), 4)  # 1 / 500 Hz
+    >>> result = power_spectral_density(time, white, resolution=2.0)
+    >>> round(float(result.density.sel(frequency=slice(20, 480)).mean()), 4)  # 1 / 500 Hz
     0.002
     """
     import xarray
@@ -261,8 +261,8 @@ def transfer_function(
     >>> import numpy as np
     >>> time = np.arange(20_000) / 1000
     >>> force = np.random.default_rng(1).normal(size=time.size)
-    >>> found = transfer_function(time, force, 3 * force, resolution=1.0)
-    >>> complex(found.transfer.sel(frequency=50)).real, float(found.coherence.sel(frequency=50))  # doctest: +NUMBER
+    >>> result = transfer_function(time, force, 3 * force, resolution=1.0)
+    >>> complex(result.transfer.sel(frequency=50)).real, float(result.coherence.sel(frequency=50))  # doctest: +NUMBER
     (3.0, 1.0)
     """
     import xarray

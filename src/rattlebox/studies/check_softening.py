@@ -87,8 +87,8 @@ def check_softening(
     ...     ),
     ...     duration="0.5 s",
     ... )
-    >>> found = rb.check_softening(case, "reduced_loss", softenings=(1000, 100), packings=2, cycles=(3, 5), progress=False)
-    >>> sorted(found)[:2]
+    >>> result = rb.check_softening(case, "reduced_loss", softenings=(1000, 100), packings=2, cycles=(3, 5), progress=False)
+    >>> sorted(result)[:2]
     ['reduced_loss', 'reduced_loss_change']
     """
     import xarray

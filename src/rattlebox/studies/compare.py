@@ -50,13 +50,13 @@ def compare(
     >>> import rattlebox as rb
     >>> structure = rb.SDOF(mass="20 kg", stiffness="80 kN/m", damping_ratio=0.01)
     >>> common = {"structure": structure, "load": rb.HalfSine(amplitude="5 kN", duration="1 ms"), "duration": "3 s"}
-    >>> found = rb.compare(
+    >>> result = rb.compare(
     ...     {
     ...         "bare": rb.Case(**common),
     ...         "tuned mass": rb.Case(**common, tuned_mass=rb.TunedMass.den_hartog(structure, mass="1 kg")),
     ...     }
     ... )
-    >>> found.values["tuned mass"]["rms_reduction[mass]"] > 0.5
+    >>> result.values["tuned mass"]["rms_reduction[mass]"] > 0.5
     True
     """
     if not isinstance(cases, Mapping) or not cases:

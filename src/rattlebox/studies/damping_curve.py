@@ -148,8 +148,8 @@ def damping_curve(
     ...     ),
     ...     duration="2 s",
     ... )
-    >>> found = rb.damping_curve(case, ["0.2 mm", "0.5 mm", "1 mm"])
-    >>> bool((found.damping_ratio > found.bare).any())
+    >>> result = rb.damping_curve(case, ["0.2 mm", "0.5 mm", "1 mm"])
+    >>> bool((result.damping_ratio > result.bare).any())
     True
     """
     if way not in WAYS:

@@ -326,7 +326,7 @@ def test_plot_shows_why_a_trial_is_not_feasible() -> None:
 def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In the example heavier balls settle sooner, the heaviest in less than half the time without damper."""
     monkeypatch.chdir(tmp_path)
-    result = runpy.run_path(str(EXAMPLE))["found"]
+    result = runpy.run_path(str(EXAMPLE))["result"]
     best = result.isel(trial=result.front.values)
     assert (np.diff(best.settling_time) < 0).all()
     bare = 3 * 2 * 20 / 25.3  # ln 20 time constants of the envelope

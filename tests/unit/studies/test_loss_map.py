@@ -98,7 +98,7 @@ def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     and gravity is up to a tenth of the shaker's acceleration.
     """
     monkeypatch.chdir(tmp_path)
-    result = runpy.run_path(str(EXAMPLE))["found"]
+    result = runpy.run_path(str(EXAMPLE))["result"]
     slow = result.isel({FREQUENCY: 0, AMPLITUDE: -1})
     assert float(slow.effective_mass / slow.particle_mass) == pytest.approx(1, abs=0.02)
     ridge = result.isel(result.reduced_loss.argmax([AMPLITUDE])).sel({FREQUENCY: slice(80, 200)})

@@ -150,7 +150,7 @@ def test_plot(size: Any, tmp_path: Path) -> None:
 def test_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In the example the start has no influence on the impact share, but on the largest force."""
     monkeypatch.chdir(tmp_path)
-    result = runpy.run_path(str(EXAMPLE))["found"]
+    result = runpy.run_path(str(EXAMPLE))["result"]
     start = result.total.sel(parameter="damper.start")
     assert float(start.sel(measure="impact_share")) < 0.01
     assert float(start.sel(measure="peak_contact_force")) == pytest.approx(0.085, abs=0.05)

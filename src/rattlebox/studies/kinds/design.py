@@ -124,8 +124,8 @@ class Design(Study):
     --------
     >>> import rattlebox as rb
     >>> case = rb.reference_case(rb.Tsuji(restitution=0.6), duration=8.0)
-    >>> found = rb.design(case, {"damper.gap": ("0.1 mm", "2 mm")}, starts=3, trials=5)
-    >>> best = rb.Case.from_toml(found.case.item(0))
+    >>> result = rb.design(case, {"damper.gap": ("0.1 mm", "2 mm")}, starts=3, trials=5)
+    >>> best = rb.Case.from_toml(result.case.item(0))
     """
 
     kind: ClassVar[str] = "design"

@@ -80,8 +80,8 @@ class LossMap(Study):
     ...     duration="1 s",
     ...     method=rb.Newton(),
     ... )
-    >>> found = rb.loss_map(case, rb.geomspace("1 mm", "10 mm", 4), ["20 Hz", "40 Hz"])
-    >>> found.loss_factor.dims
+    >>> result = rb.loss_map(case, rb.geomspace("1 mm", "10 mm", 4), ["20 Hz", "40 Hz"])
+    >>> result.loss_factor.dims
     ('structure.motion.amplitude', 'structure.motion.frequency')
     """
 

@@ -112,8 +112,8 @@ class Sensitivity(Study):
     --------
     >>> import rattlebox as rb
     >>> bounds = {"damper.gap": ("0.1 mm", "2 mm"), "load.amplitude": ("1 kN", "5 kN")}
-    >>> found = rb.sensitivity(rb.reference_case(duration=1.0), bounds, "impact_share", 64)
-    >>> found.total.dims
+    >>> result = rb.sensitivity(rb.reference_case(duration=1.0), bounds, "impact_share", 64)
+    >>> result.total.dims
     ('measure', 'parameter')
     """
 
