@@ -104,6 +104,7 @@ def _main_results(run: Record) -> dict[str, Value]:
             values[f"peak_displacement[{point}]"] = _largest(np.abs(x))
             values[f"rms_displacement[{point}]"] = _rms(arrays.time, x)
             values[f"rms_acceleration[{point}]"] = _rms_derivative(arrays.time, arrays.velocity[:, k] + base[:, k])
+        values |= _storey_drifts(arrays)
         if is_driven(arrays):
             for k, point in enumerate(arrays.points):
                 values |= _steady(arrays.time, arrays.displacement[:, k], point)
@@ -209,6 +210,17 @@ def _reductions(reference: Mapping[str, Value], values: Mapping[str, Value]) -> 
     return found
 
 
+def _storey_drifts(arrays: RunArrays) -> dict[str, Value]:
+    """Return the peak drift of each storey of a shear building: the displacement of its floor over that of the one below."""
+    values: dict[str, Value] = {}
+    below: Any = 0.0
+    while (storey := f"storey {len(values) + 1}") in arrays.points:
+        floor = arrays.displacement[:, arrays.points.index(storey)]
+        values[f"peak_drift[{storey}]"] = _largest(np.abs(floor - below))
+        below = floor
+    return values
+
+
 def _steady(time: Any, x: Any, point: str) -> dict[str, Value]:
     """Return the RMS displacement over the second half of the run with half the width of its 95 % interval."""
     even = np.linspace(
@@ -263,6 +275,7 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         rows.append(_Row(f"rms_acceleration[{point}]", f"RMS acceleration{where}", "m/s^2"))
         rows.append(_Row(f"peak_reduction[{point}]", f"reduction of the peak{where}", "%"))
         rows.append(_Row(f"rms_reduction[{point}]", f"reduction of the RMS{where}", "%"))
+    rows += [_Row(key, f"peak drift, {name}", "m") for key, name in _largest_of("peak_drift", all_values)]
     rows.append(_Row("equivalent_damping_ratio", "equivalent damping ratio", "%", at="damping_amplitude"))
     rows.append(_Row("rms_interface_force", "RMS force on the base", "N"))
     rows.append(_Row("computing_time", "computing time", "s"))

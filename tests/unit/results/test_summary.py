@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import rattlebox as rb
+from rattlebox import analysis
 from rattlebox.results import Run, RunArrays, compare
 from rattlebox.results.quantities import digits, prefix, quantity
 
@@ -249,3 +250,16 @@ def test_plastic_line_only_where_it_is_lost(run: Run) -> None:
     assert "plastic" not in str(run.summary())
     flowing = Run(run.arrays.replaced(plastic_loss=run.arrays.normal_loss / 2))
     assert "plastic" in str(compare({"a": run, "b": flowing}))
+
+
+def test_drifts_of_storeys_are_listed() -> None:
+    """The summary of a shear building has the peak drift of each storey, the displacement over that of the floor below."""
+    tower = rb.ShearBuilding(masses=["50 t"] * 3, stiffnesses=["60 MN/m"] * 3, damping_ratio=0.02)
+    run = rb.simulate(
+        rb.Case(structure=tower, base=rb.HalfSine(amplitude="0.2 g", duration="0.3 s"), duration="2 s"), progress=False
+    )
+    values = run.summary().values
+    for upper, lower in (("storey 1", None), ("storey 2", "storey 1"), ("storey 3", "storey 2")):
+        expected = float(abs(analysis.drift(run, upper, lower)).max())
+        assert values[f"peak_drift[{upper}]"] == pytest.approx(expected)
+        assert f"peak drift, {upper}" in str(run.summary())
