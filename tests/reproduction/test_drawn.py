@@ -118,7 +118,10 @@ def unknown_marks(figure: Figure, data: xr.Dataset) -> list[str]:
     The label of an axis must contain its unit, and rows must have names. Lines across the axes may also be at zero or one,
     and areas may begin at zero.
     """
-    numbers = [data[name] for name in data.variables if data[name].dtype.kind in "iuf"]
+    # Without coordinates, which `rows` would copy for each pair.
+    numbers = [
+        data[name].drop_vars(data.coords, errors="ignore") for name in data.variables if data[name].dtype.kind in "iuf"
+    ]
     units = {variable.units for variable in numbers}
     result = []
     for place, axes in enumerate(figure.axes):

@@ -261,7 +261,7 @@ def test_the_command_draws_the_files_of_a_folder(
         for of, name in ((folder, "a.png"), (folder / file, "b.png")):
             assert answer(monkeypatch, capsys, of, *options, "-o", name)[0] == 0
         assert Path("a.png").read_bytes() == Path("b.png").read_bytes()
-    assert answer(monkeypatch, capsys, folder, "-o", "a.gif")[0] == 0
+    assert answer(monkeypatch, capsys, folder, "-o", "a.gif", "--pixels", "320x180")[0] == 0
     assert Path("a.gif").read_bytes().startswith(b"GIF89a")
     Path("bare").mkdir()
     Path("bare/run.nc").write_bytes((folder / "run.nc").read_bytes())
@@ -293,7 +293,7 @@ def test_an_interrupted_film_does_not_replace_the_earlier_one(
 
     monkeypatch.setattr(_Scene, "show", press)
     (tmp_path / name).write_text("an earlier film")
-    code, out, err = answer(monkeypatch, capsys, run[1], "-o", tmp_path / name)
+    code, out, err = answer(monkeypatch, capsys, run[1], "-o", tmp_path / name, "--pixels", "320x180")
     assert (code, out, err) == (130, "", f"stopped; {tmp_path / name} was not written\n")
     assert [path.read_text() for path in tmp_path.iterdir()] == ["an earlier film"]
 

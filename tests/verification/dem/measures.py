@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -353,6 +354,7 @@ FILLED = {
 }
 
 
+@cache
 def settled(name: str) -> tuple[Any, float]:
     """Return the force of two hundred settled spheres on their cavity [N], (3,), and their weight [N]."""
     soft = rb.Material(name="soft", density=2500, young=5e7, poisson=0.25)
