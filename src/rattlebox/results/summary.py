@@ -106,8 +106,7 @@ def _main_results(run: Record) -> dict[str, Value]:
             values[f"rms_acceleration[{point}]"] = _rms_derivative(arrays.time, arrays.velocity[:, k] + base[:, k])
         values |= _storey_drifts(arrays)
         if is_driven(arrays):
-            for k, point in enumerate(arrays.points):
-                values |= _steady(arrays.time, arrays.displacement[:, k], point)
+            values |= _steady_results(run, base)
         elif (decay := free_decay(arrays)) is not None:
             values["equivalent_damping_ratio"] = decay.damping_ratio
             values["damping_amplitude"] = decay.amplitude
@@ -221,17 +220,46 @@ def _storey_drifts(arrays: RunArrays) -> dict[str, Value]:
     return values
 
 
-def _steady(time: Any, x: Any, point: str) -> dict[str, Value]:
-    """Return the RMS displacement over the second half of the run with half the width of its 95 % interval."""
-    even = np.linspace(
-        0.5 * (time[0] + time[-1]), time[-1], min(max(int(np.count_nonzero(2 * time >= time[-1])), 2), 20_000)
-    )
-    interval = mean_interval(np.interp(even, time, x) ** 2)
-    rms = [math.sqrt(max(square, 0.0)) for square in (interval.lower, interval.mean, interval.upper)]
-    return {
-        f"steady_rms_displacement[{point}]": rms[1],
-        f"steady_rms_displacement_error[{point}]": 0.5 * (rms[2] - rms[0]),
-    }
+def _steady_results(run: Record, base: Any) -> dict[str, Value]:
+    """Return results over the second half of a driven run, each with half the width of its 95 % interval.
+
+    Accelerations and the power lost are means over equal intervals of the length of a mean output step.
+    """
+    arrays = run.arrays
+    time = arrays.time
+    count = min(max(int(np.count_nonzero(2 * time >= time[-1])), 2), 20_000)
+    even = np.linspace(0.5 * (time[0] + time[-1]), time[-1], count)
+
+    def late(x: Any) -> Any:
+        return np.interp(even, time, x)
+
+    def late_rate(x: Any) -> Any:
+        return np.diff(late(x)) / (even[1] - even[0])
+
+    values: dict[str, Value] = {}
+    for k, point in enumerate(arrays.points):
+        values |= _with_interval(f"steady_rms_displacement[{point}]", late(arrays.displacement[:, k]))
+        values |= _with_interval(f"steady_rms_acceleration[{point}]", late_rate(arrays.velocity[:, k] + base[:, k]))
+    force = arrays.interface_force.reshape(time.size, -1)
+    if np.isfinite(force).all() and force.any():
+        values |= _with_interval("steady_rms_interface_force", late(np.linalg.norm(force, axis=1)))
+    values |= _with_interval("steady_loss_power", late_rate(run.ledger.losses), squared=False)
+    return values
+
+
+def _with_interval(key: str, x: Any, *, squared: bool = True) -> dict[str, Value]:
+    """Return the root mean square, or the mean, of a steady series, and half the width of its 95 % interval."""
+    interval = mean_interval(x**2 if squared else x)
+    lower, mean, upper = interval.lower, interval.mean, interval.upper
+    if squared:
+        lower, mean, upper = (math.sqrt(max(square, 0.0)) for square in (lower, mean, upper))
+    return {key: mean, _error_of(key): 0.5 * (upper - lower)}
+
+
+def _error_of(key: str) -> str:
+    """Return the key of half the width of the interval of a value: rms_x[point] -> rms_x_error[point]."""
+    name, bracket, point = key.partition("[")
+    return f"{name}_error{bracket}{point}"
 
 
 def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
@@ -268,19 +296,23 @@ def _rows(all_values: tuple[dict[str, Value], ...]) -> list[_Row]:
         if key not in detailed:
             continue
         rows.append(_Row(f"rms_displacement[{point}]", f"RMS displacement{where}", "m"))
-        steady = f"steady_rms_displacement[{point}]"
-        rows.append(
-            _Row(steady, f"RMS displacement, second half{where}", "m", f"steady_rms_displacement_error[{point}]")
-        )
+        rows.append(_steady_row(f"steady_rms_displacement[{point}]", f"RMS displacement, second half{where}", "m"))
         rows.append(_Row(f"rms_acceleration[{point}]", f"RMS acceleration{where}", "m/s^2"))
+        rows.append(_steady_row(f"steady_rms_acceleration[{point}]", f"RMS acceleration, second half{where}", "m/s^2"))
         rows.append(_Row(f"peak_reduction[{point}]", f"reduction of the peak{where}", "%"))
         rows.append(_Row(f"rms_reduction[{point}]", f"reduction of the RMS{where}", "%"))
     rows += [_Row(key, f"peak drift, {name}", "m") for key, name in _largest_of("peak_drift", all_values)]
     rows.append(_Row("equivalent_damping_ratio", "equivalent damping ratio", "%", at="damping_amplitude"))
     rows.append(_Row("rms_interface_force", "RMS force on the base", "N"))
+    rows.append(_steady_row("steady_rms_interface_force", "RMS force on the base, second half", "N"))
+    rows.append(_steady_row("steady_loss_power", "mean power lost, second half", "W"))
     rows.append(_Row("computing_time", "computing time", "s"))
     rows.append(_Row("particle_steps_per_second", "particle steps per second", "million"))
     return [row for row in rows if any(row.key in values for values in all_values)]
+
+
+def _steady_row(key: str, label: str, unit: str) -> _Row:
+    return _Row(key, label, unit, _error_of(key))
 
 
 def _largest_of(what: str, all_values: tuple[dict[str, Value], ...], count: int = _MAX_POINTS) -> list[tuple[str, str]]:

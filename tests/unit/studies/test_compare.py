@@ -43,6 +43,13 @@ def test_steady_values_carry_an_interval() -> None:
     values = rb.simulate(case()).summary().values
     error = float(values["steady_rms_displacement_error[mass]"])
     assert abs(float(values["steady_rms_displacement[mass]"]) - exact) < error < 0.1 * exact
+    damping = 2 * 0.01 * math.sqrt(k * m)
+    for key, expected in (
+        ("rms_acceleration{}[mass]", omega**2 * exact),
+        ("loss_power{}", damping * (omega * exact) ** 2),
+    ):
+        error = float(values[f"steady_{key.format('_error')}"])
+        assert abs(float(values[f"steady_{key.format('')}"]) - expected) < error < 0.1 * expected
     short = rb.simulate(case(duration="0.05 s")).summary()
     assert math.isnan(float(short.values["steady_rms_displacement_error[mass]"]))
     assert "too short" in str(short)
