@@ -111,6 +111,8 @@ def main() -> None:
     os.chdir(ROOT)
     data = CoverageData("build/coverage")
     data.read()
+    if not any(path.startswith(str(PACKAGE)) for path in data.measured_files()):
+        raise SystemExit("build/coverage has no data of this package\n  try: make coverage")
     cases = ElementTree.parse("build/tests.xml").iter("testcase")
     seconds = {(case.get("classname"), case.get("name")): float(case.get("time", 0)) for case in cases}
     texts = {

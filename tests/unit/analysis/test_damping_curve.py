@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.integrate import solve_ivp
 
 from rattlebox.analysis import damping_over_amplitude
+from rattlebox.analysis.damping_curve import band_edges
 
 F0 = 12.0
 W0 = 2 * math.pi * F0
@@ -23,6 +25,18 @@ def test_linear_decay(ratio, shift):
     )
     np.testing.assert_allclose(result.damping_ratio, ratio, rtol=2e-4)
     np.testing.assert_allclose(result.frequency, damped / (2 * math.pi), rtol=2e-4)
+
+
+def test_squares_of_a_linear_decay():
+    """The integral of the squared envelope is the difference of its squares at the band's ends over 2 delta."""
+    time = np.arange(0, 4, 1 / (40 * F0))
+    values = np.exp(-0.02 * W0 * time) * np.cos(W0 * math.sqrt(1 - 0.02**2) * time)
+    amplitudes = np.array([0.05, 0.1, 0.2])
+    result = damping_over_amplitude(time, xr.DataArray(values, dims="time", attrs={"units": "m"}), amplitudes)
+    assert result.squares.attrs["units"] == "(m)^2"
+    edges = band_edges(amplitudes)
+    np.testing.assert_allclose(result.squares, np.diff(edges**2) / (2 * 0.02 / math.sqrt(1 - 0.02**2)), rtol=2e-4)
+    assert damping_over_amplitude(time, values, amplitudes).squares.attrs["units"] == ""
 
 
 def test_coulomb_friction():
