@@ -122,7 +122,9 @@ def read_arrays(file: Path) -> dict[str, Array]:
     except OSError as error:
         raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
     except Exception as error:
-        raise DataError(f"{file} cannot be read as {file.suffix[1:].upper()}: {error}") from None
+        raise DataError(
+            f"{file} cannot be read as {file.suffix[1:].upper()}: {error}", "the complete file, as it was written"
+        ) from None
     return {name: np.asarray(value, dtype=float) for name, value in content.items() if _is_real(value)}
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rattlebox._util.exceptions import DataError
+from rattlebox._util.exceptions import CaseError, DataError
 from rattlebox.exchange.read.ansys import read_full, read_result
 from rattlebox.exchange.read.modal_table import read_modal_table
 from rattlebox.exchange.read.modes_in_file import ModesInFile, listed
@@ -59,9 +59,15 @@ def read_modes(path: str, count: int | None) -> ModesInFile | dict[str, Any]:
 def _from_toml(file: Path) -> dict[str, Any]:
     try:
         content = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise DataError(f"{file} cannot be read: {error}") from None
-    table = read_toml(content, str(file))
+    except UnicodeDecodeError:
+        raise DataError(f"{file} is not text", "a TOML file in UTF-8") from None
+    except OSError as error:
+        raise DataError(f"{file} cannot be read: {error.strerror or error}") from None
+    try:
+        table = read_toml(content, str(file))
+    except CaseError as error:
+        advice = "" if "\n  try: " in str(error) else 'frequencies = ["10 Hz"] and [shapes] tip = [0.7]'
+        raise DataError(str(error), advice) from None
     if not table:
         raise DataError(f"{file} is empty", "frequencies, damping_ratios and shapes")
     for name in table:

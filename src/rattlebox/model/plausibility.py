@@ -34,6 +34,8 @@ _FEWEST_POINTS = 64  # a record with fewer points is a polyline, not a sampled s
 _BANDS = 2048
 _LARGEST_CHANGE = 0.02  # of the response of a mode
 _LONGEST_RECORD = 100.0  # in durations of the run
+_PEAKS = {"m/s^2": (1e-5, 1e5, 100.0), "m": (1e-9, 10.0, 1.0)}
+"""Least and largest plausible peak of a record of the base, the latter also if its unit is assumed."""
 _ACROSS = 1e-6
 _SMALLEST_FILL_RATIO = 1e-4
 _DENSITIES = 5.0, 25e3  # kg/m^3
@@ -82,6 +84,20 @@ def _note_assumed_units(case: Case) -> Iterator[str]:
             yield (
                 f"note: {name}: {file} states no unit; {signal.unit} is assumed, with a peak of {peak:.4g} {signal.unit}"
                 f"{in_g}; set unit or scale if that is wrong"
+            )
+
+
+def _check_peaks(case: Case) -> Iterator[str]:
+    """Warn of records of the base whose peak suggests another unit."""
+    for name, signal in _named_signals(case):
+        if not isinstance(signal, Record) or signal.unit not in _PEAKS:
+            continue
+        peak = abs(signal.scale) * float(np.max(np.abs(signal.values)))
+        least, most, most_assumed = _PEAKS[signal.unit]
+        if not least <= peak <= (most_assumed if signal.unit_is_assumed else most):
+            yield (
+                f"{name} is a record with a peak of {peak:.4g} {signal.unit}; usual are {least:g} to"
+                f" {most_assumed:g} {signal.unit}; try: unit or scale, the unit of its numbers"
             )
 
 
@@ -135,6 +151,7 @@ def _check_signals(case: Case) -> Iterator[str]:
                 f"{name} is a sweep of {signal.length:.4g} s from {signal.first_frequency:.4g} Hz to"
                 f" {signal.last_frequency:.4g} Hz; the run ends at {float(signal.frequency_at(case.duration)):.4g} Hz"
             )
+    yield from _check_peaks(case)
     yield from _check_interpolation(case)
     yield from _check_directions(case)
     if case.output.rate is None:

@@ -21,6 +21,7 @@ from .files import BINARY, Array, check_finite, existing, read_arrays
 Column = int | str
 """Number of a column, counted from 1, or its name."""
 
+_ANY = "one or two columns of numbers below their names and units: time (s), acceleration (g)"
 _NEEDED = {1: "one is", 2: "two are", 3: "three are"}
 
 
@@ -94,7 +95,7 @@ def read_samples(path: str, column: Column | None = None) -> tuple[Array, list[s
         return _parse_rows(file, lines, [index])[:, 0], [cells[index] for cells in headings]
     arrays = read_arrays(file)
     if not arrays:
-        raise DataError(f"{file} contains no numbers")
+        raise DataError(f"{file} contains no numbers", _ANY)
     if len(arrays) == 1 and next(iter(arrays.values())).ndim == 2 and not isinstance(column, str):
         (table,) = arrays.values()
         table = table.T if table.shape[0] == 1 else table
@@ -129,7 +130,7 @@ def as_columns(value: Any, count: int = 2) -> Any:
 def _select_arrays(file: Path, arrays: dict[str, Array], columns: Sequence[Column] | None) -> tuple[Array, Array]:
     """Return times and values: two variables, or two columns of the only variable."""
     if not arrays:
-        raise DataError(f"{file} contains no numbers")
+        raise DataError(f"{file} contains no numbers", _ANY)
     if columns is None and {"time", "value"} <= set(arrays):
         columns = ("time", "value")
     if len(arrays) == 1 and (columns is None or all(isinstance(column, int) for column in columns)):
@@ -258,7 +259,7 @@ def _parse_text(
     lines = _split_lines(file)
     start = _first_data_line(lines)
     if start is None:
-        raise DataError(f"{file} contains no numbers")
+        raise DataError(f"{file} contains no numbers", _ANY)
     width = len(lines[start][1])
     for number, cells, _ in lines[:start]:
         if len(cells) != width and set(cells) <= set(known):
@@ -318,10 +319,11 @@ def _bad_row(file: Path, lines: list[tuple[int, list[str]]], indices: list[int])
         row = [cells[k] for k in indices]
         bad = next((cell for cell in row if not _is_number(cell)), None)
         if bad is not None:
-            advice = "a decimal point, not a comma" if _is_number(_with_decimal_point(bad)) else ""
+            is_decimal_comma = _is_number(_with_decimal_point(bad))
+            advice = "a decimal point, not a comma" if is_decimal_comma else "a number, or # before lines of text"
             return DataError(f"{file}, line {number}: {bad!r} is not a number", advice)
         if not np.isfinite([float(cell) for cell in row]).all():
-            return DataError(f"{file}, line {number}: {', '.join(row)} is not finite")
+            return DataError(f"{file}, line {number}: {', '.join(row)} is not finite", "finite numbers in all lines")
     raise AssertionError("all lines are rows of numbers")
 
 

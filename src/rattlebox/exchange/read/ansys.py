@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import struct
-import warnings
+import subprocess
+import sys
+from functools import lru_cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -20,13 +23,13 @@ _MASS_UNITS = {
 _MOST_DENSE = 400  # degrees of freedom up to which a dense solver is used
 
 
-def _open(path: Path, kind: str) -> Any:
-    """Return a reader of the file after checks of its header.
+def _read_arrays(path: Path, kind: str) -> dict[str, Any]:
+    """Return the arrays of a file, see `ansys_arrays`.
 
     Raises
     ------
     DataError
-        If the file is not of this kind, has swapped bytes, or is cut short.
+        If the file is not of this kind, has swapped bytes, or is damaged.
     """
     start = read_start(path, 8)
     words = struct.unpack("<ii", start) if len(start) == 8 else (0, 0)
@@ -36,30 +39,31 @@ def _open(path: Path, kind: str) -> Any:
             f"{path} {'has big-endian bytes' if swapped else 'is not a binary file of Ansys'}",
             "a file that Ansys wrote on an x86 machine",
         )
-    if path.stat().st_size < 4096:
+    stat = path.stat()
+    if stat.st_size < 4096:
         raise DataError(f"{path} ends within its header", "the complete file")
-    reader = optional_import("ansys.mapdl.reader", "fe", "a modal table in CSV")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            standard = reader.common.read_standard_header(str(path))
-            wanted = {"rst": 12, "full": 4}[kind]
-            if int(standard["file format"]) != wanted:
-                raise DataError(f"{path} is not a .{kind} file; its format is {int(standard['file format'])}")
-            return reader.read_binary(str(path))
-    except DataError:
-        raise
-    except Exception as error:
-        raise DataError(
-            f"{path} cannot be read as .{kind}: {str(error).strip() or type(error).__name__}", "the complete file"
-        ) from None
+    return _read_once(path, kind, stat.st_mtime_ns, stat.st_size)
 
 
-def _check_size(path: Path, words: int) -> None:
-    """Raise DataError if a file is shorter than its header states."""
-    size = path.stat().st_size
-    if size < 4 * words:
-        raise DataError(f"{path} has {size} bytes, but its header states {4 * words}", "the complete file")
+@lru_cache(maxsize=4)
+def _read_once(path: Path, kind: str, modified: int, size: int) -> dict[str, Any]:
+    """Return the arrays of a file; those of the last files are kept until the files change."""
+    optional_import("ansys.mapdl", "fe", "a modal table in CSV")
+    with TemporaryDirectory() as folder:
+        output = Path(folder) / "arrays.npz"
+        command = [sys.executable, "-P", str(Path(__file__).with_name("ansys_arrays.py")), kind, str(path), str(output)]
+        process = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+        if process.returncode == 1:
+            reason = (process.stderr.strip().splitlines() or ["cannot be read"])[-1]
+            raise DataError(f"{path} {reason}", "the complete file")
+        if process.returncode:
+            raise DataError(
+                f"{path} cannot be read as .{kind}: the reader crashed (exit code {process.returncode}); the file may be"
+                " cut short or damaged",
+                "the complete file",
+            )
+        with np.load(output) as arrays:
+            return dict(arrays)
 
 
 def read_result(path: Path) -> ModesInFile:
@@ -81,19 +85,12 @@ def read_result(path: Path) -> ModesInFile:
         If the file is damaged or not of a modal analysis, or if all shapes have a largest component of 1, so that the modal
         masses are unknown.
     """
-    result = _open(path, "rst")
-    header = result._resultheader
-    if int(header["kan"]) != 2:
-        raise DataError(f"{path} has an analysis of type {int(header['kan'])}; type 2 (modal) is needed")
-    if int(header["nSector"]) > 1:
+    result = _read_arrays(path, "rst")
+    if result["analysis"] != 2:
+        raise DataError(f"{path} has an analysis of type {result['analysis']}; type 2 (modal) is needed")
+    if result["sectors"] > 1:
         raise DataError(f"{path} has a cyclic sector, which is not supported", "modes of the whole structure")
-    _check_size(path, int(header["ptrend"]))
-    try:
-        shapes = [np.asarray(result.nodal_solution(k)[1], dtype=float) for k in range(int(result.n_results))]
-        nodes = result.nodal_solution(0)[0]
-    except Exception as error:
-        raise DataError(f"{path}: the modes cannot be read: {error}", "the complete file") from None
-    modes = np.array(shapes)[:, :, :3]
+    modes = result["shapes"][:, :, :3]
     if modes.shape[2] != 3 or not np.isfinite(modes).all():
         raise DataError(f"{path}: the modes have {modes.shape[2]} components at nodes; three finite ones are needed")
     largest = np.abs(modes).max(axis=(1, 2))
@@ -103,9 +100,9 @@ def read_result(path: Path) -> ModesInFile:
             "MODOPT with Nrmkey = OFF, for modes that are mass-normalised; or modal_masses",
         )
     return ModesInFile(
-        frequencies=np.asarray(result.time_values, dtype=float),
-        shapes={str(int(node)): modes[:, k] for k, node in enumerate(nodes)},
-        mass_unit=_MASS_UNITS.get(str(header["units"])),
+        frequencies=np.asarray(result["frequencies"], dtype=float),
+        shapes={str(int(node)): modes[:, k] for k, node in enumerate(result["nodes"])},
+        mass_unit=_MASS_UNITS.get(str(result["units"])),
         notes=(
             f"the modes of {path.name} are assumed to be mass-normalised, the default of Ansys (MODOPT, Nrmkey = OFF)",
         ),
@@ -133,18 +130,16 @@ def read_full(path: Path, count: int) -> ModesInFile:
     DataError
         If the file is damaged, or contains no mass matrix.
     """
-    from scipy.sparse import csr_array, triu
+    from scipy.sparse import coo_array, csr_array, triu
 
-    file = _open(path, "full")
-    _check_size(path, int(file._header["ptrEND"]))
-    if not int(file._header["ntermMl"]):
-        raise DataError(f"{path} contains no mass matrix", "the .full file of a modal analysis")
-    try:
-        numbers, stiffness, mass = file.load_km(sort=False)
-    except Exception as error:
-        raise DataError(f"{path}: the matrices cannot be read: {error}", "the complete file") from None
-    K, M = (csr_array(matrix + triu(matrix, 1).T) for matrix in (csr_array(stiffness), csr_array(mass)))
-    fixed = {(int(node), int(axis)) for node, axis in np.atleast_2d(file.const)[:, :2]} if len(file.const) else set()
+    arrays = _read_arrays(path, "full")
+    numbers, n = arrays["rows"], len(arrays["rows"])
+    upper = [
+        coo_array((arrays[f"{name}_value"], (arrays[f"{name}_row"], arrays[f"{name}_column"])), shape=(n, n)).tocsr()
+        for name in ("K", "M")
+    ]
+    K, M = (csr_array(matrix + triu(matrix, 1).T) for matrix in upper)
+    fixed = {(int(node), int(axis)) for node, axis in arrays["fixed"][:, :2]}
     free = np.array([(int(node), int(axis)) not in fixed for node, axis in numbers])
     values, free_vectors = lowest_modes(K[free][:, free], M[free][:, free], count)
     axes = numbers[:, 1]

@@ -16,6 +16,7 @@ _STEP = re.compile(r"DT\s*=\s*([\d.]+(?:E[-+]?\d+)?)", re.I)
 _OLD_HEADER = re.compile(r"^\s*(\d+)\s+([\d.]+(?:E[-+]?\d+)?)\s+NPTS\s*,\s*DT", re.I)
 _UNIT = re.compile(r"UNITS?\s+OF\s+(\S+)|\bIN\s+(G|CM/S\S*|M/S\S*)\s*$", re.I)
 _OTHER_QUANTITY = re.compile(r"\b(velocity|displacement)\b", re.I)
+_WHOLE = "the file as it was downloaded"
 _HEADER = 12  # most lines of the header
 
 
@@ -83,15 +84,15 @@ def read_ground_motion(path: Path) -> GroundMotion:
         try:
             values += [float(word) for word in line.split()]
         except ValueError:
-            raise DataError(f"{path}, line {number}: {line.strip()[:40]!r} is not a row of numbers") from None
+            raise DataError(f"{path}, line {number}: {line.strip()[:40]!r} is not a row of numbers", _WHOLE) from None
     if len(values) != int(count):
         raise DataError(
             f"{path} states {count} samples, but contains {len(values)}",
-            "the complete file: it may be cut short" if len(values) < int(count) else "the file as it was downloaded",
+            "the complete file: it may be cut short" if len(values) < int(count) else _WHOLE,
         )
     samples = np.array(values)
     if not np.isfinite(samples).all():
-        raise DataError(f"{path}: sample {int(np.argmin(np.isfinite(samples))) + 1} is not finite")
+        raise DataError(f"{path}: sample {int(np.argmin(np.isfinite(samples))) + 1} is not finite", _WHOLE)
     unit = _UNIT.search(header)
     return GroundMotion(float(step), samples, (unit[1] or unit[2]).strip(".,") if unit else "")
 

@@ -74,9 +74,11 @@ def read_modal_table(path: Path) -> ModesInFile:
             try:
                 table[row, column] = float(cell)
             except ValueError:
-                raise DataError(f"{path}, line {number}, column {names[column]!r}: {cell!r} is not a number") from None
+                raise DataError(
+                    f"{path}, line {number}, column {names[column]!r}: {cell!r} is not a number", "a number"
+                ) from None
             if not np.isfinite(table[row, column]):
-                raise DataError(f"{path}, line {number}, column {names[column]!r}: {cell} is not finite")
+                raise DataError(f"{path}, line {number}, column {names[column]!r}: {cell} is not finite", "a number")
     return _modes(path, names, units, table)
 
 

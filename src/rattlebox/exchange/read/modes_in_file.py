@@ -69,5 +69,5 @@ def read_start(path: Path, size: int) -> bytes:
     except OSError as error:
         raise DataError(f"{path} cannot be read: {error.strerror or error}") from None
     if not start.strip():
-        raise DataError(f"{path} is empty")
+        raise DataError(f"{path} is empty", "the complete file, as it was written")
     return start

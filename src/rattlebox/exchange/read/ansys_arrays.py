@@ -1,0 +1,85 @@
+"""Script that copies the arrays of an Ansys file to a NPZ file: python -P ansys_arrays.py rst|full FILE OUTPUT.
+
+It runs in a process of its own, because the reader's C code trusts the pointers in the file and crashes on wrong ones.
+"""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+_FORMATS = {"rst": 12, "full": 4}
+
+
+def copy_arrays(kind: str, path: str, output: str) -> None:
+    """Write the arrays of a file to a NPZ file.
+
+    Parameters
+    ----------
+    kind
+        "rst" or "full".
+    path, output
+        The Ansys file, and the NPZ file to write.
+
+    Raises
+    ------
+    SystemExit
+        If the file is not of this kind, is cut short, or cannot be read; with the reason.
+    """
+    reader: Any = import_module("ansys.mapdl.reader")
+
+    try:
+        file_format = int(reader.common.read_standard_header(path)["file format"])
+        if file_format != _FORMATS[kind]:
+            sys.exit(f"is not a .{kind} file; its format is {file_format}")
+        file = reader.read_binary(path)
+        arrays = _result(file, path) if kind == "rst" else _matrices(file, path)
+    except Exception as error:
+        sys.exit(f"cannot be read as .{kind}: {' '.join(str(error).split()) or type(error).__name__}")
+    np.savez(output, **arrays)
+
+
+def _check_size(path: str, words: int) -> None:
+    """Exit if a file is shorter than its header states."""
+    size = Path(path).stat().st_size
+    if size < 4 * words:
+        sys.exit(f"has {size} bytes, but its header states {4 * words}")
+
+
+def _result(file: Any, path: str) -> dict[str, Any]:
+    """Return kind of analysis, number of sectors, units, frequencies, nodes and shapes (m, n, components)."""
+    header = file._resultheader
+    _check_size(path, int(header["ptrend"]))
+    arrays: dict[str, Any] = {
+        "analysis": int(header["kan"]),
+        "sectors": int(header["nSector"]),
+        "units": str(header["units"]),
+    }
+    if arrays["analysis"] != 2 or arrays["sectors"] > 1:
+        return arrays
+    solutions = [file.nodal_solution(k) for k in range(int(file.n_results))]
+    shapes = np.array([np.asarray(values, dtype=float) for _, values in solutions])
+    return {**arrays, "frequencies": file.time_values, "nodes": solutions[0][0], "shapes": shapes}
+
+
+def _matrices(file: Any, path: str) -> dict[str, Any]:
+    """Return the upper triangles of K and M, the node and axis of each row, and those that are fixed."""
+    _check_size(path, int(file._header["ptrEND"]))
+    if not int(file._header["ntermMl"]):
+        sys.exit("contains no mass matrix")
+    rows, stiffness, mass = file.load_km(sort=False)
+    arrays = {"rows": rows, "fixed": np.asarray(file.const, dtype=int).reshape(len(file.const), -1)}
+    for name, matrix in (("K", stiffness), ("M", mass)):
+        entries = matrix.tocoo()
+        arrays |= {f"{name}_row": entries.row, f"{name}_column": entries.col, f"{name}_value": entries.data}
+    return arrays
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("ignore")
+    copy_arrays(*sys.argv[1:])

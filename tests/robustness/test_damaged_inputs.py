@@ -1,0 +1,301 @@
+"""Damaged files of other programs, for every reader: an error that names the file, never a traceback, and exit code 2.
+
+The readers are all functions `read_...` of the modules below; a reader that no file reaches fails a test.
+"""
+
+from __future__ import annotations
+
+import importlib
+import io
+import pkgutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+import scipy.io
+from ansys.mapdl.reader import examples
+
+import rattlebox as rb
+import rattlebox.analysis.measured
+import rattlebox.exchange.read
+import rattlebox.model.files
+import rattlebox.model.modal_files
+import rattlebox.model.recorded
+import rattlebox.model.records
+from rattlebox.analysis import read_frequency_response
+from rattlebox.cli.commands import run_command
+from rattlebox.model.plausibility import plausibility_notes
+
+UFF = Path(__file__).parents[1] / "data/uff"
+MODULES: list[ModuleType] = [
+    *(
+        importlib.import_module(f"rattlebox.exchange.read.{each.name}")
+        for each in pkgutil.iter_modules(rattlebox.exchange.read.__path__)
+    ),
+    rattlebox.model.files,
+    rattlebox.model.modal_files,
+    rattlebox.model.recorded,
+    rattlebox.model.records,
+    rattlebox.analysis.measured,
+]
+READERS = {
+    f"{module.__name__}.{name}": value
+    for module in MODULES
+    for name, value in vars(module).items()
+    if isinstance(value, FunctionType) and name.startswith("read_") and value.__module__ == module.__name__
+}
+
+SDOF = '[structure]\nkind = "sdof"\nmass = "1 kg"\nfrequency = "5 Hz"\n'
+MODAL = '[structure]\nkind = "modal"\ndamping_ratio = 0.01\n'
+MATRICES = '[structure]\nkind = "matrices"\npoints = { tip = 0 }\n'
+BEADS = (
+    SDOF
+    + '[damper]\nparticles = { name = "beads", material = "glass", diameter = "3 mm", count = 2 }\n'
+    + 'contact = { kind = "tsuji", restitution = 0.8 }\n'
+    + 'cavity = { kind = "sphere", diameter = "20 mm" }\n[damper.packing]\nkind = "positions"\nfile = "FILE"\n'
+)
+TIMES = 0.01 * np.arange(40)
+VALUES = 0.3 * np.sin(7 * TIMES)
+
+
+def saved(write: Callable[..., None], *arguments: Any, **options: Any) -> bytes:
+    """Return what a function writes to a stream."""
+    stream = io.BytesIO()
+    write(stream, *arguments, **options)
+    return stream.getvalue()
+
+
+def table(head: str, *columns: Any) -> bytes:
+    """Return a CSV file."""
+    rows = "".join(",".join(f"{x:.10g}" for x in row) + "\n" for row in zip(*columns, strict=True))
+    return f"{head}\n{rows}".encode()
+
+
+class Good(NamedTuple):
+    """A good file, the case that reads it ("" for a function), and its properties."""
+
+    name: str
+    content: bytes
+    case: str = ""
+    other: dict[str, bytes] = {}  # noqa: RUF012
+    swapped: tuple[bytes, bytes] | None = None  # mark of the byte order, and that of the other order
+    counted: bool = True  # whether a cut at the end of a line can be noticed
+
+
+def record(options: str = "") -> str:
+    """Return a case of which the file is the motion of the base."""
+    return SDOF + f'[base]\nkind = "record"\nfile = "FILE"\n{options}'
+
+
+K, M = np.array([[3e4, -1e4], [-1e4, 1e4]]), np.diag([2.0, 1.0])
+MTX = saved(scipy.io.mmwrite, K, symmetry="general"), saved(scipy.io.mmwrite, M, symmetry="general")
+AT2 = (
+    "PEER NGA\nQUAKE\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   40, DT=   .0100 SEC\n"
+    + "".join("".join(f"{v:15.7E}" for v in VALUES[k : k + 5]) + "\n" for k in range(0, 40, 5))
+).encode()
+COLUMNS = np.column_stack([TIMES, VALUES])
+PLACES = "x,y,z\n0.001,0.002,0.003\n-0.004,0.001,0.002\n"
+
+GOOD: dict[str, Good] = {
+    "AT2": Good("a.at2", AT2, record()),
+    "one column": Good("a.txt", table("acceleration (g)", VALUES), record('dt = "0.01 s"\n'), counted=False),
+    "two columns": Good("a.csv", table("time (s),acceleration (g)", TIMES, VALUES), record(), counted=False),
+    "NPY": Good("a.npy", saved(np.save, COLUMNS), record(), swapped=(b"'<f8'", b"'>f8'")),
+    "NPZ record": Good("a.npz", saved(np.savez, time=TIMES, value=VALUES), record()),
+    "MAT record": Good("a.mat", saved(scipy.io.savemat, {"time": TIMES, "value": VALUES}), record(),
+                       swapped=(b"IM", b"MI")),
+    "UFF record": Good("a.uff", (UFF / "time_history_58b.uff").read_bytes(), record(),
+                       swapped=(b"58b     1", b"58b     2")),
+    "UFF text record": Good("a.uff", (UFF / "time_history_58.uff").read_bytes(), record()),
+    "modal table": Good("a.csv", table("frequency (Hz),modal mass (kg),tip", [10, 25], [4, 1], [2, -1]),
+                        MODAL + 'file = "FILE"\n', counted=False),
+    "modal TOML": Good("a.toml", b'modal_masses = [4, 1]\nfrequencies = ["10 Hz", 25]\n[shapes]\ntip = [2, -1]\n',
+                       MODAL + 'file = "FILE"\n'),
+    "UFF modes": Good("a.unv", (UFF / "modes_mm_mN_2414.uff").read_bytes(),
+                      MODAL + 'file = "FILE"\npoints = { a = 9581 }\n'),
+    "Ansys result": Good("a.rst", Path(examples.rstfile).read_bytes(), MODAL + 'file = "FILE"\npoints = { a = 100 }\n',
+                         swapped=(b"\x64\x00\x00\x00", b"\x00\x00\x00\x64")),
+    "Ansys matrices": Good("a.full", Path(examples.fullfile).read_bytes(),
+                           MODAL + 'file = "FILE"\nmode_count = 2\npoints = { a = 100 }\n',
+                           swapped=(b"\x64\x00\x00\x00", b"\x00\x00\x00\x64")),
+    "Matrix Market": Good("a.mtx", MTX[0], MATRICES + 'file = { K = "FILE", M = "M.mtx" }\n', {"M.mtx": MTX[1]}),
+    "NPZ matrices": Good("a.npz", saved(np.savez, K=K, M=M), MATRICES + 'file = "FILE"\n'),
+    "MAT matrices": Good("a.mat", saved(scipy.io.savemat, {"K": K, "M": M}), MATRICES + 'file = "FILE"\n',
+                         swapped=(b"IM", b"MI")),
+    "positions": Good("a.csv", PLACES.encode(), BEADS, counted=False),
+    "UFF response function": Good("a.uff", (UFF / "frf_58.uff").read_bytes()),
+    "response function": Good(
+        "a.csv", table("f (Hz),real (m/s^2/N),imag (m/s^2/N)", 1 + TIMES, VALUES, VALUES), counted=False
+    ),
+}  # fmt: skip
+TEXT = {name: good for name, good in GOOD.items() if good.name[-3:] in ("at2", "txt", "csv", "oml", "mtx")}
+
+
+def prepare(folder: Path, good: Good, content: bytes) -> Path:
+    """Write a file, and the case that reads it; return its path."""
+    for name, text in {**good.other, good.name: content}.items():
+        (folder / name).write_bytes(text)
+    (folder / "case.toml").write_text('duration = "0.5 ms"\n' + good.case.replace("FILE", good.name))
+    return folder / good.name
+
+
+def read(folder: Path, good: Good, content: bytes) -> Any:
+    """Read a file as a user does."""
+    file = prepare(folder, good, content)
+    return rb.Case.from_file(folder / "case.toml") if good.case else read_frequency_response(file)
+
+
+def check_refused(
+    folder: Path, good: Good, content: bytes, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Check that a file is refused by an error with its name, by the command line with exit code 2."""
+    if not good.case:
+        with pytest.raises(rb.RattleboxError, match=good.name):
+            read(folder, good, content)
+        return
+    prepare(folder, good, content)
+    monkeypatch.setattr(sys, "argv", ["rattlebox", "run", str(folder / "case.toml"), "--out", str(folder / "out")])
+    with pytest.raises(SystemExit) as stop:
+        run_command()
+    printed = capsys.readouterr().err
+    assert stop.value.code == 2, printed
+    assert "Traceback" not in printed and good.name in printed and "try:" in printed
+
+
+def test_every_reader_has_a_good_file(tmp_path: Path) -> None:
+    """The good files can be read, and reach all readers of the package."""
+    codes = {reader.__code__: name for name, reader in READERS.items()}
+    reached: set[str] = set()
+    before = sys.getprofile()
+
+    def note(frame: Any, event: str, argument: Any) -> None:
+        if event == "call" and frame.f_code in codes:
+            reached.add(codes[frame.f_code])
+
+    for good in GOOD.values():
+        sys.setprofile(note)
+        try:
+            read(tmp_path, good, good.content)
+        finally:
+            sys.setprofile(before)
+    assert reached == set(READERS)
+
+
+@pytest.mark.parametrize("name", GOOD)
+@pytest.mark.parametrize(
+    "damage",
+    [
+        pytest.param(lambda content: b"", id="empty"),
+        pytest.param(lambda content: b" \r\n\n", id="blank"),
+        pytest.param(lambda content: bytes(len(content)), id="zeros"),
+        pytest.param(lambda content: np.random.default_rng(3).bytes(max(len(content), 5000)), id="garbage"),
+        pytest.param(lambda content: b"<html><body>404 not found</body></html>\n" * 200, id="web page"),
+    ],
+)
+def test_other_content(
+    tmp_path: Path,
+    name: str,
+    damage: Callable[[bytes], bytes],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """An empty file and one with any other content are refused."""
+    check_refused(tmp_path, GOOD[name], damage(GOOD[name].content), monkeypatch, capsys)
+
+
+@pytest.mark.parametrize("name", [name for name, good in GOOD.items() if good.counted])
+@pytest.mark.parametrize("share", [0.02, 0.3, 0.6, 0.9])
+def test_cut_files(
+    tmp_path: Path, name: str, share: float, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A file that states its length, or has a mark of its end, is refused wherever it is cut."""
+    good = GOOD[name]
+    check_refused(tmp_path, good, good.content[: int(share * len(good.content))], monkeypatch, capsys)
+
+
+@pytest.mark.parametrize("name", [name for name, good in GOOD.items() if not good.counted and b"," in good.content])
+def test_cut_tables(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A table whose last line lacks columns is refused."""
+    content = GOOD[name].content
+    check_refused(tmp_path, GOOD[name], content[: content.rindex(b",")], monkeypatch, capsys)
+
+
+@pytest.mark.parametrize("name", TEXT)
+def test_other_encoding(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A text file in UTF-16 is refused."""
+    check_refused(tmp_path, GOOD[name], GOOD[name].content.decode().encode("utf-16"), monkeypatch, capsys)
+
+
+@pytest.mark.parametrize("name", TEXT)
+def test_text_in_place_of_a_number(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A word in place of the last number is refused."""
+    content = GOOD[name].content.rstrip(b" ]\n")
+    last = max(content.rfind(mark) for mark in (b",", b" ", b"\n"))
+    end = b"]\n" if name == "modal TOML" else b"\n"
+    check_refused(tmp_path, GOOD[name], content[: last + 1] + b"bad" + end, monkeypatch, capsys)
+
+
+@pytest.mark.parametrize("name", [name for name, good in GOOD.items() if good.swapped])
+def test_the_other_byte_order(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A binary file whose mark of the byte order contradicts its content is refused."""
+    good = GOOD[name]
+    assert good.swapped is not None and good.swapped[0] in good.content
+    check_refused(tmp_path, good, good.content.replace(*good.swapped, 1), monkeypatch, capsys)
+
+
+def without_unit(name: str, factor: float) -> bytes:
+    """Return the file of a record with its values times a factor, and no unit."""
+    times, values = TIMES, factor * VALUES
+    return {
+        "one column": table("acceleration", values),
+        "two columns": table("time,acceleration", times, values),
+        "NPY": saved(np.save, np.column_stack([times, values])),
+        "NPZ record": saved(np.savez, time=times, value=values),
+        "MAT record": saved(scipy.io.savemat, {"time": times, "value": values}),
+    }[name]
+
+
+@pytest.mark.parametrize("name", ["one column", "two columns", "NPY", "NPZ record", "MAT record"])
+@pytest.mark.parametrize(("factor", "implausible"), [(1.0, False), (1000.0, True), (1e-6, True)])
+def test_records_without_unit(tmp_path: Path, name: str, factor: float, implausible: bool) -> None:
+    """The assumed unit of a record without unit is noted with the peak; an implausible peak gives a warning."""
+    notes = plausibility_notes(read(tmp_path, GOOD[name], without_unit(name, factor)))
+    peak = f"{factor * np.abs(VALUES).max():.4g} m/s^2"
+    assert any(note.startswith("note") and peak in note and "m/s^2 is assumed" in note for note in notes)
+    assert any(note.startswith("warning") and peak in note for note in notes) == implausible
+
+
+@pytest.mark.parametrize(
+    ("name", "stated", "none"),
+    [("AT2", b" IN UNITS OF G", b""), ("UFF record", b"acc (g)              g   ", b"acc                 NONE ")],
+)
+def test_files_that_state_a_unit_without_it(tmp_path: Path, name: str, stated: bytes, none: bytes) -> None:
+    """Formats with a field for the unit are refused, or their unit is noted, if the field is empty."""
+    assert stated in GOOD[name].content
+    content = GOOD[name].content.replace(stated, none)
+    if name == "AT2":
+        with pytest.raises(rb.DataError, match=r'states no unit\n.*try: unit = "g"'):
+            read(tmp_path, GOOD[name], content)
+    else:
+        notes = plausibility_notes(read(tmp_path, GOOD[name], content))
+        assert any("m/s^2 is assumed, with a peak of 1 m/s^2" in note for note in notes)
+
+
+@pytest.mark.parametrize(("unit", "implausible"), [("g_0", False), ("km/s^2", False), ("Mm/s^2", True)])
+def test_an_implausible_peak_in_a_stated_unit(tmp_path: Path, unit: str, implausible: bool) -> None:
+    """A record in a wrong unit gives a warning with its peak if no shock has that acceleration."""
+    good = GOOD["two columns"]
+    notes = plausibility_notes(read(tmp_path, good, table(f"time (s),acceleration ({unit})", TIMES, VALUES)))
+    assert any(note.startswith("warning") and "peak of" in note for note in notes) == implausible
