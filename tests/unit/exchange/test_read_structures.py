@@ -67,7 +67,30 @@ def test_modes_in_millimetres_and_millinewtons() -> None:
     modal = rb.Modal.from_file(UFF / "modes_mm_mN_2414.uff", points={"a": 9581}, damping_ratio=0.01)
     np.testing.assert_allclose(modal.frequencies, [23383.2, 23384.1, 37317.1, 54308.9, 54313.4])
     np.testing.assert_allclose(modal.modes().shapes["a"][0], [0.156530, 13.1011, -3.2994e-05], rtol=1e-5)
-    assert not list(modal.notes())
+    (note,) = modal.notes()  # the file numbers coordinate systems, but does not define them
+    assert "does not define the coordinate system 2 " in note and "global axes are assumed" in note
+
+
+def system_2420(kind: int, angle: float) -> bytes:
+    """Return a data set 2420 with the coordinate systems 1 to 321, turned about z by an angle [rad]."""
+    c, s = math.cos(angle), math.sin(angle)
+    rows = "".join("".join(f"{x:25.16e}" for x in row) + "\n" for row in ([c, s, 0], [-s, c, 0], [0, 0, 1], [0, 0, 0]))
+    systems = "".join(f"{label:10d}{kind:10d}{1:10d}\nsystem\n{rows}" for label in range(1, 322))
+    return f"    -1\n  2420\n{1:10d}\npart\n{systems}    -1\n".encode()
+
+
+@pytest.mark.parametrize(
+    ("kind", "angle", "message"), [(0, 0.3, "turned axes"), (1, 0.0, "not Cartesian"), (0, 0.0, "")]
+)
+def test_coordinate_systems_of_displacements(tmp_path: Path, kind: int, angle: float, message: str) -> None:
+    """Displacements along other axes than the global ones are refused; those along parallel axes are read."""
+    (tmp_path / "modes.unv").write_bytes(system_2420(kind, angle) + MODES)
+    options: dict[str, Any] = {"points": {"a": 9581}, "damping_ratio": 0.01}
+    if message:
+        with pytest.raises(rb.DataError, match=f"coordinate system .*{message}\n.*global axes"):
+            rb.Modal.from_file(tmp_path / "modes.unv", **options)
+    else:
+        assert not list(rb.Modal.from_file(tmp_path / "modes.unv", **options).notes())
 
 
 def test_modes_of_set_55_need_modal_masses() -> None:

@@ -22,6 +22,7 @@ _UNIT_CODES = {
 _NORMAL_MODES = 2
 _COMPLEX_MODES = (3, 7)  # analysis types
 _DISPLACEMENT = 8
+_GEOMETRY = (15, 2411, 2420)  # nodes, nodes, coordinate systems
 _TAIL = 4096  # bytes that contain the last line
 _LARGEST_IMAGINARY = 1e-6  # largest imaginary part of a real mode, over the largest component
 
@@ -56,8 +57,8 @@ class Function:
     quantities: tuple[int, int] = (0, 0)
 
 
-def _read_sets(path: Path, kinds: tuple[int, ...]) -> list[dict[str, Any]]:
-    """Return the data sets of these kinds.
+def _read_sets(path: Path, kinds: tuple[int, ...], further: tuple[int, ...] = ()) -> list[dict[str, Any]]:
+    """Return the data sets of these kinds, of which one is needed, and of further kinds.
 
     Raises
     ------
@@ -74,7 +75,7 @@ def _read_sets(path: Path, kinds: tuple[int, ...]) -> list[dict[str, Any]]:
             warnings.simplefilter("ignore")
             file = pyuff.UFF(str(path))
             types = [int(kind) for kind in file.get_set_types()]
-            sets = [file.read_sets(number) for number, kind in enumerate(types) if kind in kinds]
+            sets = [file.read_sets(number) for number, kind in enumerate(types) if kind in kinds + further]
     except Exception as error:  # pyuff does not wrap the errors of its parser
         raise DataError(
             f"{path} cannot be read as a universal file: {str(error).strip() or type(error).__name__}",
@@ -88,7 +89,7 @@ def _read_sets(path: Path, kinds: tuple[int, ...]) -> list[dict[str, Any]]:
         raise DataError(
             f"{path}: the last data set does not end with -1; the file may be cut short", "the complete file"
         )
-    if not sets:
+    if not {each["type"] for each in sets} & set(kinds):
         available = ", ".join(map(str, sorted(set(types))))
         raise DataError(f"{path} contains no set {' or '.join(map(str, kinds))}; it contains {available}")
     return sets
@@ -112,7 +113,8 @@ def read_universal_modes(path: Path) -> ModesInFile:
     DataError
         If there are no normal modes, modes are complex or cover different nodes, or the units contradict their code.
     """
-    sets = _read_sets(path, (55, 2414, 164))
+    every = _read_sets(path, (55, 2414, 164), _GEOMETRY)
+    sets = [each for each in every if each["type"] not in _GEOMETRY]
     modes = [_mode(path, each) for each in sets if each["type"] != 164 and _is_mode(each)]
     if not modes:
         kinds = sorted({int(each["analysis_type"]) for each in sets if each["type"] != 164})
@@ -148,6 +150,48 @@ def read_universal_modes(path: Path) -> ModesInFile:
         modal_masses=masses,
         damping_ratios=damping if damping.any() else None,
         mass_unit=_mass_unit(path, [each for each in sets if each["type"] == 164]),
+        notes=_check_axes(path, [each for each in every if each["type"] in _GEOMETRY], nodes),
+    )
+
+
+def _check_axes(path: Path, sets: list[dict[str, Any]], nodes: Any) -> tuple[str, ...]:
+    """Return a note if a node has displacements along the axes of a system that the file does not define.
+
+    Raises
+    ------
+    DataError
+        If a node has displacements along other axes than the global ones.
+    """
+    turned: dict[int, str] = {}
+    known = {0, 1}  # 1 is the global Cartesian system of most programs
+    for each in sets:
+        if each["type"] == 2420:
+            for label, kind, matrix in zip(each["CS_sys_labels"], each["CS_types"], each["CS_matrices"], strict=True):
+                known.add(int(label))
+                if int(kind) != 0 or not np.allclose(np.asarray(matrix)[:3], np.eye(3), atol=1e-6):
+                    turned[int(label)] = "Cartesian, with turned axes" if int(kind) == 0 else "not Cartesian"
+    used = {
+        int(node): int(system)
+        for each in sets
+        if each["type"] != 2420
+        for node, system in zip(each["node_nums"], each["disp_cs"], strict=True)
+    }
+    undefined: dict[int, int] = {}
+    for node in map(int, nodes):
+        system = used.get(node, 0)
+        if system in turned:
+            raise DataError(
+                f"{path}: node {node} has displacements in the coordinate system {system}, which is {turned[system]}",
+                "an export with displacements along the global axes x, y and z",
+            )
+        if system not in known:
+            undefined.setdefault(system, node)
+    if not undefined:
+        return ()
+    system, node = next(iter(undefined.items()))
+    return (
+        f"{path.name} does not define the coordinate system {system} of the displacements of node {node}; the global axes "
+        "are assumed",
     )
 
 
