@@ -91,8 +91,8 @@ class Random(Sampled):
     M. Shinozuka, G. Deodatis (1991): Simulation of stochastic processes by spectral representation. Applied Mechanics
     Reviews 44, 191-204, doi:10.1115/1.3119501.
 
-    NASA Goddard Space Flight Center: General Environmental Verification Standard, GSFC-STD-7000, generalized random
-    vibration test levels.
+    NASA Goddard Space Flight Center (2013): General Environmental Verification Standard for GSFC Flight Programs and
+    Projects, GSFC-STD-7000A, Table 2.4-3, generalized random vibration test levels of components of 22.7 kg or less.
 
     Examples
     --------
