@@ -144,7 +144,8 @@ def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str |
     Notes
     -----
     The energy E of the mode with the largest energy falls from E_1 to E_2 = E_1 / 4 about the amplitude in the time t:
-    zeta = ln(E_1 / E_2) / (2 omega t). For a smooth decay that is the ratio of `damping_over_amplitude` to 2 %.
+    zeta = ln(E_1 / E_2) / (2 omega t). The energy falls in two steps a cycle, so that the relative error of a smooth decay
+    is up to 2 zeta / ln 4: 1.4 % for a ratio of 0.01, 6 % for 0.04.
 
     Examples
     --------

@@ -21,7 +21,7 @@ from .case_work import Extra
 from .gather_variants import gather_values, gather_variants
 from .grid import Grid
 from .impact_work import ImpactWork, with_intervals
-from .measures import MEASURES, check_names
+from .measures import MEASURES, check_names, name_of
 from .work import Values
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ class ContinuationWork(ImpactWork):
         """
         for name in self.measures:
             if name not in MEASURES:
-                raise Hint(f"there is no measure {name!r} in a continuation", nearest(str(name), MEASURES))
+                raise Hint(f"there is no measure {name_of(name)!r} in a continuation", nearest(name_of(name), MEASURES))
         check_names(self.measures)
         along = (path for path, column in self.grid.columns.items() if column.shape[-1] > 1)
         for path in along:

@@ -30,6 +30,7 @@ from pydantic import (
 from pydantic.dataclasses import dataclass
 
 from rattlebox._util.exceptions import CaseError
+from rattlebox.analysis import equivalent_damping
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint, nearest, translate
 from rattlebox.model.units import NotNegativeTime, Number, PositiveMass, Whole
@@ -261,12 +262,16 @@ def _if_table(value: Any, handler: Callable[[Any], Any]) -> Any:
     return handler(value) if not isinstance(value, Mapping) else value
 
 
+_FUNCTIONS: dict[str, Callable[..., Any]] = {"equivalent_damping": equivalent_damping}
+"""Functions of a Run that study files can name."""
+
+
 def _as_measures(value: Any) -> Any:
     if isinstance(value, str) or callable(value):
-        return [value]
+        value = [value]
     if not isinstance(value, Iterable):
         raise Hint(f"{value!r} is not the name of a measure or a function of a Run", '"impact_share"')
-    return list(value)
+    return [_FUNCTIONS.get(each, each) if isinstance(each, str) else each for each in value]
 
 
 def known_measures(measures: Any) -> list[Any]:

@@ -12,6 +12,7 @@ import pytest
 
 import rattlebox as rb
 from rattlebox.studies.fingerprint import fingerprint
+from rattlebox.studies.study_file import read_study
 
 LIMIT = 1e-3
 AXES = {"damper.gap": ["0.4 mm", "0.8 mm"]}
@@ -124,3 +125,16 @@ def test_axes_with_names_of_outputs_are_refused(name: str, options: Any) -> None
     """An axis with the name of an output or an inner dimension is refused before the first run."""
     with pytest.raises(rb.CaseError, match=f"{name} is the name of another variable"):
         rb.sweep(case(), {name: AXES}, "impacts", **options)
+
+
+@pytest.mark.parametrize("form", ['"equivalent_damping"', '["peak", "equivalent_damping"]'])
+def test_study_files_name_the_equivalent_damping(tmp_path: Path, form: str) -> None:
+    """A sweep of a study file computes the damping ratio of a free decay by the name of the function."""
+    (tmp_path / "study.toml").write_text(
+        f'kind = "sweep"\nmeasure = {form}\n[axes]\n"structure.damping_ratio" = [0.01, 0.02, 0.04]\n'
+        '[case]\nduration = "2 s"\n[case.structure]\n'
+        'kind = "sdof"\nmass = "3 kg"\nfrequency = "20 Hz"\ndamping_ratio = 0.02\nvelocity = "0.3 m/s"\n'
+    )
+    result = read_study(tmp_path / "study.toml").run()
+    ratios = np.array([0.01, 0.02, 0.04])
+    assert (np.abs(result.equivalent_damping / ratios - 1) < 1.5 * ratios).all()  # the energy falls in steps
