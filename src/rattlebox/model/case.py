@@ -201,9 +201,13 @@ class Case(Part):
             )
         for field, signals in (("base", self.base), ("motion", self.shaker_motion)):
             for index, signal in enumerate(signals):
-                if signal.direction is not None:
+                if signal.direction != signals[0].direction:
                     place = (*(("structure",) if field == "motion" else ()), field, index, "direction")
-                    raise Hint("without particle dampers all motion is along one line", "leave direction out", place)
+                    raise Hint(
+                        "without particle dampers all motion is along one line",
+                        "the same direction for all, or none",
+                        place,
+                    )
         if self.base and self.modes.spatial:
             raise Hint(
                 f"the point {min(self.modes.spatial)!r} moves in 3-D, and the base of a case without particle dampers"

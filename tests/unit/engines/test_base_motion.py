@@ -40,3 +40,15 @@ def test_signals_that_begin_in_the_run(signal: rb.HalfSine | rb.Harmonic | rb.Re
     np.testing.assert_allclose(displacement[1:], np.cumsum(step * (velocity[1:] + velocity[:-1]) / 2), atol=1e-9)
     assert displacement[0] == velocity[0] == 0
     assert abs(acceleration).max() == pytest.approx(4.0 if isinstance(signal, rb.Record) else 3.0, rel=1e-6)
+
+
+def test_a_direction_without_particle_dampers() -> None:
+    """The line of motion is the direction of the base; without particle dampers several directions are refused."""
+    structure = rb.SDOF(mass="3 kg", frequency="20 Hz", damping_ratio=0.02)
+    pulses = [rb.HalfSine(amplitude="1 g", duration="11 ms", direction=axis) for axis in (None, "z", "x")]
+    free, along = (rb.simulate(rb.Case(structure=structure, base=pulse, duration="0.2 s")) for pulse in pulses[:2])
+    np.testing.assert_array_equal(along.arrays.displacement, free.arrays.displacement)
+    np.testing.assert_array_equal(along.arrays.interface_force, free.arrays.interface_force)
+    assert np.abs(along.arrays.displacement).max() > 1e-4
+    with pytest.raises(rb.CaseError, match=r"base\[1\].direction.*\n.*along one line\n.*the same direction for all"):
+        rb.Case(structure=structure, base=pulses[1:], duration="0.2 s")
