@@ -130,9 +130,11 @@ class Case(Part):
         names: set[str] = set()
         for index, damper in enumerate(self.dampers):
             with at("dampers", index):
-                if damper.label(index) in names:
-                    raise Hint(f"two dampers are called {damper.label(index)!r}", "different names")
-                names.add(damper.label(index))
+                for each in damper.each() if isinstance(damper, ParticleDamper) else (damper,):
+                    label = each.label(len(names))
+                    if label in names:
+                        raise Hint(f"two dampers are called {label!r}", "different names")
+                    names.add(label)
                 if isinstance(damper, ImpactDamper):
                     self._check_clearance(damper)
                     self._check_starts(damper)
@@ -304,10 +306,10 @@ class Case(Part):
         """The impact dampers."""
         return tuple(damper for damper in self.dampers if isinstance(damper, ImpactDamper))
 
-    @property
+    @cached_property
     def particle_dampers(self) -> tuple[ParticleDamper, ...]:
-        """The particle dampers."""
-        return tuple(damper for damper in self.dampers if isinstance(damper, ParticleDamper))
+        """The particle dampers, identical ones (`ParticleDamper.number`) one by one."""
+        return tuple(each for damper in self.dampers if isinstance(damper, ParticleDamper) for each in damper.each())
 
     @property
     def shaker_motion(self) -> tuple[Signal, ...]:

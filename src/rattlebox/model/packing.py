@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_serializer, model_validator
@@ -33,6 +33,18 @@ class Packing(Part):
     field_names: ClassVar[tuple[str, ...]] = ("packing",)
     kind: str
 
+    @property
+    def is_random(self) -> bool:
+        """Whether another seed gives other initial positions."""
+        return False
+
+    def repeated(self, index: int) -> Self:
+        """Return the packing of one of several identical dampers: the same for index 0, others with their own seeds."""
+        if index == 0 or not self.is_random:
+            return self
+        seed = int(np.random.SeedSequence([getattr(self, "seed", 0), index]).generate_state(1)[0])
+        return self.model_copy(update={"seed": seed})
+
 
 class Lattice(Packing):
     """Particles on a lattice that fills the cavity, with random displacements within their cells.
@@ -48,6 +60,11 @@ class Lattice(Packing):
     kind: Literal["lattice"] = "lattice"
     noise: Annotated[Number, Field(ge=0, le=1)] = 0.5
     seed: Annotated[Whole, Field(ge=0)] = 0
+
+    @property
+    def is_random(self) -> bool:
+        """Whether there is noise."""
+        return self.noise > 0
 
     def place(self, cavity: AnyCavity, radii: Vector, *, settles: bool = True) -> Vector:
         """Return positions for spheres.
@@ -98,6 +115,11 @@ class Settled(Packing):
     kind: Literal["settled"] = "settled"
     seed: Annotated[Whole, Field(ge=0)] = 0
     at_rest: Annotated[Number, Field(gt=0, le=0.1)] = 1e-3
+
+    @property
+    def is_random(self) -> bool:
+        """True."""
+        return True
 
 
 def _table(columns: int, unit: str, what: str) -> Any:

@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rattlebox._util.narrow import instance
+
 from .elementwise import Vector
 from .errors import Hint, at
 from .methods import Dem
+from .particle_damper import ParticleDamper
 from .space import unit_vector
 
 if TYPE_CHECKING:
@@ -64,7 +67,7 @@ def check_particle_case(case: Case) -> None:
         Saying what and where.
     """
     first = case.particle_dampers[0]
-    if len(case.particle_dampers) < len(case.dampers):
+    if case.impact_dampers:
         raise Hint(
             "impact dampers and particle dampers cannot be in one case",
             "a ParticleDamper with one particle in place of each impact damper",
@@ -81,12 +84,14 @@ def check_particle_case(case: Case) -> None:
                 "a rate",
                 ["output", "times"],
             )
-    for index, damper in enumerate(case.particle_dampers):
+    for index, damper in enumerate(case.dampers):
+        damper = instance(damper, ParticleDamper)
         with at("dampers", index):
             if damper.gravity != first.gravity:
                 raise Hint(f"gravity is {first.gravity} in another damper of this case", "the same", ["gravity"])
-            with at("point"):
-                case.modes.space_shape(damper.point, damper.direction)
+            for number, point in enumerate(damper.points or (damper.point,)):
+                with at(*(("points", number) if damper.points else ("point",))):
+                    case.modes.space_shape(point, damper.direction)
     if case.base and not case.modes.spatial and len({damper.direction for damper in case.particle_dampers}) > 1:
         raise Hint(
             "a structure whose points move along lines has one direction, but its dampers have several",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -38,9 +39,10 @@ from .packing import (
 from .pairs import Body, Pair
 from .particles import MAX_PARTICLES, Particles, as_species
 from .space import Accelerations, Direction, Velocities
-from .units import Number
+from .units import Number, Whole
 
 WALL = "wall"
+MAX_DAMPERS = 10_000  # identical ones at a point
 _BYTES = 1000  # smallest memory of a particle and its contacts
 
 
@@ -204,8 +206,11 @@ class ParticleDamper(Part):
         numbers in the laws of each species, or the "smaller" or "larger" number. By default all species have the same laws.
     gravity
         Gravity along x, y and z [m/s^2].
-    point
-        Point of the structure; needed if there are several.
+    point, points
+        Point of the structure, needed if there are several; or points that have such a damper each.
+    number
+        Number of identical dampers at each point. Each has a random packing of its own, with a seed that follows from that
+        of the packing.
     direction
         Direction of the base motion, and of a point whose mode shapes have one component.
     packing
@@ -221,6 +226,7 @@ class ParticleDamper(Part):
     """
 
     field_names: ClassVar[tuple[str, ...]] = ("damper", "dampers")
+    alternatives: ClassVar[tuple[tuple[str, str], ...]] = (("point", "points"),)
     kind: Literal["particle"] = "particle"
     name: str = ""
     particles: Annotated[tuple[Particles, ...], BeforeValidator(as_species), AlsoAccepts()] = Field(
@@ -238,6 +244,8 @@ class ParticleDamper(Part):
     mixing: Mixing | None = None
     gravity: Accelerations = (0.0, 0.0, -9.81)
     point: str | None = None
+    points: tuple[str, ...] = Field(default=(), examples=[["tip", "middle"]])
+    number: Annotated[Whole, Field(ge=1, le=MAX_DAMPERS)] = 1
     direction: Direction = "x"
     packing: AnyPacking = Field(default_factory=Lattice)
     velocity: Velocities = (0.0, 0.0, 0.0)
@@ -251,11 +259,24 @@ class ParticleDamper(Part):
 
     @model_validator(mode="after")
     def _fits(self) -> ParticleDamper:
+        self._check_group()
         self._check_amounts()
         self._check_room()
         self._check_pairs()
         self._check_filling()
         return self
+
+    def _check_group(self) -> None:
+        """Raise if identical dampers have no place, or start alike."""
+        if self.point is not None and self.points:
+            raise Hint("point and points exclude each other", "one of them", ["points"])
+        each = Counter(self.points or (self.point,))
+        if self.number * max(each.values()) > 1 and not self.packing.is_random:
+            raise Hint(
+                "identical dampers with the same packing would move in step, like a single heavier one",
+                'packing = { kind = "settled" }, or a lattice with noise',
+                ["packing"],
+            )
 
     def _check_amounts(self) -> None:
         if not self.particles:
@@ -349,6 +370,7 @@ class ParticleDamper(Part):
             and largest**3 * 4 / 3 * math.pi < self.cavity.volume
         ):
             raise self._too_many(whole)
+        count *= self.number * max(1, len(self.points))
         if count * _BYTES > memory():
             raise ResourceError(
                 f"{count:.3g} particles take {1e-9 * count * _BYTES:.3g} GB, and this machine has {1e-9 * memory():.3g} GB",
@@ -398,6 +420,24 @@ class ParticleDamper(Part):
     def label(self, index: int) -> str:
         """Return the name of the damper; by default it has the number of the damper in the case."""
         return self.name or ("damper" if index == 0 else f"damper{index + 1}")
+
+    def each(self) -> tuple[ParticleDamper, ...]:
+        """Return the identical dampers that this one stands for (see `number`), each with its own point and packing."""
+        places = [point for point in self.points or (self.point,) for _ in range(self.number)]
+        if len(places) == 1 and not self.points:
+            return (self,)
+        return tuple(
+            self.model_copy(
+                update={
+                    "name": f"{self.name}{index + 1}" if self.name and index else self.name,
+                    "point": point,
+                    "points": (),
+                    "number": 1,
+                    "packing": self.packing.repeated(index),
+                }
+            )
+            for index, point in enumerate(places)
+        )
 
     @cached_property
     def contents(self) -> Contents:

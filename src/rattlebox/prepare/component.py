@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -112,8 +113,8 @@ def pack_component(case: Case, *, alone: bool, velocity: Any = 0.0) -> PackedCom
     """
     if isinstance(case.method, TwoStep):
         raise Hint("the two-step method has no stepper", "method = EventDriven() or Newton()")
-    if alone and len(case.dampers) != 1:
-        raise Hint(f"a damper alone is needed, but the case has {len(case.dampers)}", "a stepper for each of them")
+    if alone and len(_dampers(case)) != 1:
+        raise Hint(f"a damper alone is needed, but the case has {len(_dampers(case))}", "a stepper for each of them")
     return _particles(case, alone, velocity) if case.particle_dampers else _impact(case, alone, velocity)
 
 
@@ -195,7 +196,11 @@ def _idle(problem: Any) -> Any:
 
 
 def _names(case: Case) -> tuple[str, ...]:
-    return tuple(damper.label(index) for index, damper in enumerate(case.dampers))
+    return tuple(damper.label(index) for index, damper in enumerate(_dampers(case)))
+
+
+def _dampers(case: Case) -> Sequence[ImpactDamper | ParticleDamper]:
+    return case.particle_dampers or case.impact_dampers
 
 
 def _inputs(case: Case, alone: bool, axes: int) -> tuple[str, ...]:

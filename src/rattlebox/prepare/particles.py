@@ -180,13 +180,12 @@ def resolve_softening(case: Case) -> tuple[Case, tuple[str, ...]]:
     shapes = _shapes(case)
     state = _without_particles(case)
     speeds = expected_speeds(case, [state[..., 1] @ shape for shape in shapes])
-    new_dampers: list[Any] = list(case.dampers)
+    new_dampers = list(dampers)
     notes = []
     for index, (damper, shape, speed) in enumerate(zip(dampers, shapes, speeds, strict=True)):
         if damper.softening == "auto":
             choice = choose_softening(damper, cavity_motion(case, shape, state), largest_softening(case, damper, speed))
-            place = next(k for k, each in enumerate(new_dampers) if each is damper)
-            new_dampers[place] = damper.model_copy(update={"softening": choice.softening})
+            new_dampers[index] = damper.model_copy(update={"softening": choice.softening})
             notes.append((f"{damper.label(index)}: " if len(dampers) > 1 else "") + choice.note)
     return case.model_copy(update={"dampers": tuple(new_dampers)}), tuple(notes)
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rattlebox.model.errors import Hint
-from rattlebox.model.packing import Lattice, Settled
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.units import whole_number
 from rattlebox.prepare.particles import resolve_softening
 from rattlebox.studies.kinds.sweep import sweep
+from rattlebox.studies.robust import packing_axis
 
 if TYPE_CHECKING:
     import xarray
@@ -100,16 +100,7 @@ def check_softening(
     case, _ = resolve_softening(case)
     own = max(damper.softening_factor for damper in case.particle_dampers)
     values = _values(own, softenings)
-    index = next(k for k, each in enumerate(case.dampers) if isinstance(each, ParticleDamper))
-    packing = case.particle_dampers[0].packing
-    if not (isinstance(packing, Settled) or (isinstance(packing, Lattice) and packing.noise)):
-        raise Hint(
-            "the packing has no random seed, so that all repeated runs would be equal",
-            "packing = rb.Settled(seed=1), or rb.Lattice with noise",
-            ["packing"],
-        )
-    path = "damper.packing.seed" if len(case.dampers) == 1 else f"dampers[{index}].packing.seed"
-    seeds = list(range(packing.seed, packing.seed + count))
+    seeds = packing_axis(case, count)
     found: dict[str, list[Any]] = {name: [] for name in names}
     for value in values:
         dampers = [
@@ -119,7 +110,7 @@ def check_softening(
             for each in case.dampers
         ]
         variant = case.model_copy(update={"dampers": tuple(dampers)})
-        study = sweep(variant, {path: seeds}, names, skip=skip, cycles=cycles, workers=workers, progress=progress)
+        study = sweep(variant, seeds, names, skip=skip, cycles=cycles, workers=workers, progress=progress)
         for name in names:
             found[name].append(study[name])
     data: dict[str, Any] = {}

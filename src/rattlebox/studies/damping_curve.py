@@ -20,6 +20,7 @@ from rattlebox.model.packing import Lattice, Settled
 from rattlebox.model.structures import Modal, Shaker
 from rattlebox.model.units import parse, whole_number
 from rattlebox.studies.evaluate_cases import evaluate_cases
+from rattlebox.studies.robust import no_random_packing
 
 if TYPE_CHECKING:
     import xarray
@@ -209,13 +210,13 @@ def _starts(case: Case, count: int) -> list[Case]:
     cases, random = [], not case.dampers
     for number in range(count):
         dampers: list[Any] = []
-        for damper in case.dampers:
+        for damper in case.particle_dampers or case.impact_dampers:
             if isinstance(damper, ImpactDamper):
                 random = True
                 # `start` displaces the row as a whole, by a fraction of the gap.
                 start = float(rng.uniform(-1, 1)) if number else 0.0
                 dampers.append(damper.model_copy(update={"start": start}))
-            elif isinstance(damper.packing, Settled) or (isinstance(damper.packing, Lattice) and damper.packing.noise):
+            elif isinstance(damper.packing, (Settled, Lattice)) and damper.packing.is_random:
                 random = True
                 packing = damper.packing.model_copy(update={"seed": damper.packing.seed + number})
                 dampers.append(damper.model_copy(update={"packing": packing}))
@@ -223,11 +224,7 @@ def _starts(case: Case, count: int) -> list[Case]:
                 dampers.append(damper)
         cases.append(case.model_copy(update={"dampers": tuple(dampers), "loads": (), "base": ()}))
     if count > 1 and not random:
-        raise Hint(
-            "the packing has no random seed, so that all initial states would be equal",
-            "packing = rb.Settled(seed=1), rb.Lattice with noise, or packings=1",
-            ["packing"],
-        )
+        raise no_random_packing()
     return cases
 
 

@@ -323,3 +323,52 @@ def test_points_of_matrices_in_3d(tmp_path: Path) -> None:
         rb.Matrices(**BEAM, points={"tip": TIP}, influence=[1, 1, 1, 1])
     with pytest.raises(rb.CaseError, match="3 weights, but there are 4 degrees of freedom"):
         rb.Matrices(**BEAM, points={"tip": np.eye(3)})
+
+
+def test_identical_dampers_have_packings_of_their_own() -> None:
+    """A number of identical dampers runs as that many listed ones with the seeds, names and points of its copies."""
+    group = damper(packing=rb.Settled(seed=4), number=2, points=["mass"], name="can", softening=100)
+    copies = group.each()
+    assert [(each.name, each.point, each.number, each.points) for each in copies] == [
+        ("can", "mass", 1, ()),
+        ("can2", "mass", 1, ()),
+    ]
+    assert copies[0].packing == group.packing != copies[1].packing
+    struck = rb.SDOF(mass="1 kg", frequency="20 Hz", velocity="0.2 m/s")
+    run = rb.simulate(case(group).model_copy(update={"structure": struck, "duration": 0.01}))
+    listed = rb.simulate(run.case.model_copy(update={"dampers": copies}))
+    assert run.arrays.dampers == listed.arrays.dampers == ("can", "can2")
+    assert np.array_equal(run.arrays.displacement, listed.arrays.displacement)
+    loss = run.ledger.damper_share
+    assert loss[0] != loss[1]
+
+
+def test_identical_dampers_are_one_part_of_the_case() -> None:
+    """Paths, case files and softening "auto" refer to all identical dampers at once."""
+    three = case(damper(packing=rb.Settled(), number=3)).replaced({"damper.friction": 0.4, "damper.softening": "auto"})
+    assert len(three.dampers) == 1 and len(three.particle_dampers) == 3
+    assert rb.Case.from_toml(three.to_toml()) == three
+    assert {each.friction for each in three.particle_dampers} == {three.dampers[0].friction}
+    assert len({each.packing.seed for each in three.particle_dampers}) == 3
+    assert len(three.replaced({"damper.number": 5}).particle_dampers) == 5
+    with pytest.raises(rb.CaseError, match="a damper alone is needed, but the case has 3"):
+        rb.Stepper(three, alone=True)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"number": 0}, "number = 0\n  must be at least 1"),
+        ({"number": 2.5}, "number = 2.5\n  an integer is needed"),
+        ({"number": 2, "packing": rb.Lattice(noise=0)}, "would move in step"),
+        ({"points": ["mass", "mass"], "packing": rb.Lattice(noise=0)}, "would move in step"),
+        ({"point": "mass", "points": ["mass"]}, "exclude each other"),
+        ({"points": ["mass", "tip"]}, "points[1] = 'tip'\n  the structure has no point 'tip'"),
+        ({"number": 10_000, "particles": balls(1_000_000), "cavity": rb.Box(size=("1 m",) * 3)}, "GB"),
+    ],
+)
+def test_wrong_groups_are_refused(fields: dict[str, Any], message: str) -> None:
+    """Numbers below one, several dampers that would move in step, and unknown points are refused."""
+    with pytest.raises(rb.RattleboxError) as caught:
+        case(damper(**fields))
+    assert message in str(caught.value)
