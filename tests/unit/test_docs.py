@@ -28,6 +28,7 @@ PAGES = (
     "how-to/results",
     "how-to/sensitivity",
     "how-to/softening",
+    "how-to/stepper",
     "how-to/structures",
     "how-to/sweep",
     "tutorials/boring_bar",
@@ -40,6 +41,7 @@ FIELDS = DOCS / "reference" / "case_file.md"
 
 
 SEARCHES = (
+    "co-simulation",
     "contact law",
     "energy balance",
     "install",

@@ -136,6 +136,34 @@ def test_loads_of_standards_give_the_responses_of_formulas() -> None:
     assert example["gain_in_sweep"]() == pytest.approx(25, rel=0.03)
 
 
+def test_own_time_loop_approaches_the_whole_run() -> None:
+    """The error of Newmark's loop halves with the step, and falls with its square if steps are repeated."""
+    example = runpy.run_path(str(EXAMPLES / "own_time_loop.py"))
+    whole, orders = example["whole_run"](), []
+    for exchanges, steps in ((1, (4000, 8000)), (4, (4000, 8000))):
+        errors = [np.abs(example["newmark"](count, exchanges) - whole).max() for count in steps]
+        orders.append(np.log2(errors[0] / errors[1]))
+        assert errors[1] < {1: 4e-6, 4: 1e-7}[exchanges]
+    assert orders == pytest.approx([1, 2], abs=0.2)
+
+
+def test_ball_on_an_arm_of_mujoco_moves_as_in_a_whole_run() -> None:
+    """The tip of the arm has the displacement of the whole run, with an error that falls with the step."""
+    difference = runpy.run_path(str(EXAMPLES / "mujoco_arm.py"))["difference"]
+    errors = [difference(step) for step in (1e-4, 5e-5)]
+    assert errors[1] < 0.006
+    assert errors[0] / errors[1] == pytest.approx(2, abs=0.3)
+
+
+def test_box_on_a_beam_of_exudyn_damps_as_in_a_whole_run() -> None:
+    """Without balls the tip has the motion of the exact beam, with balls its RMS within half of the scatter of packings."""
+    example = runpy.run_path(str(EXAMPLES / "exudyn_beam.py"))
+    rms = example["rms"]
+    bare = rms(example["coupled"](damped=False)), rms(example["whole_run"](damped=False))
+    assert bare[0] == pytest.approx(bare[1], rel=2e-3)
+    assert rms(example["coupled"]()) == pytest.approx(rms(example["whole_run"]()), rel=0.03)
+
+
 @pytest.mark.parametrize(
     "name", ["building", *(pytest.param(name, marks=pytest.mark.slow) for name in ("boring_bar", "panel"))]
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from typing import Any
 
@@ -122,6 +123,65 @@ def test_a_row_with_gravity_rests_on_the_wall() -> None:
     for k in range(1, 40):
         result = stepper.advance(0.05 * k, acceleration=0.0)
     assert result.force == pytest.approx(9.81 * float(np.sum(damper.masses)), rel=1e-6)
+
+
+def deviation(ratio: float, step: float, exchanges: int = 1, relaxation: float = 1.0) -> float:
+    """Return the largest deviation of the force in steps 150 to 200, for a ball that lies on a structure with less mass.
+
+    The structure is free and carries the ball; a push of 1 % of the weight accelerates both.
+    """
+    damper = ball(gravity="9.81 m/s^2", start="2 mm")
+    mass = float(damper.masses[0])
+    stepper = rb.Stepper(damper, structure_mass=mass / ratio)
+    for _ in range(60):
+        weight = stepper.advance(stepper.time + 0.02, acceleration=0.0).force
+    velocity, force, deviations = 0.0, weight, []
+    for _ in range(200):
+        before, to = stepper.save(), stepper.time + step
+        for exchange in range(exchanges):
+            if exchange > 0:
+                stepper.restore(before)
+            new = velocity + step * ratio / mass * (force - 0.99 * weight)
+            force += relaxation * (stepper.advance(to, velocity=new).force - force)
+        velocity = new
+        deviations.append(abs(force / weight - 1))
+        if deviations[-1] > 100:
+            break
+    return max(deviations[150:], default=np.inf)
+
+
+def test_heavy_balls_need_short_steps_or_several_exchanges() -> None:
+    """One exchange is unstable if ball and step are large; repeated with relaxation it gives the force of the motion."""
+    unstable = 0.3  # the ball has lost contact, or worse
+    for ratio in (0.1, 0.3):
+        for step in (2e-5, 1e-4, 5e-4):
+            assert deviation(ratio, step) == pytest.approx(0.01 * ratio / (1 + ratio), rel=0.15)
+    assert deviation(0.8, 2e-5) < 0.02 > deviation(0.8, 5e-4)
+    assert deviation(0.8, 1e-4) > unstable
+    assert deviation(1.2, 2e-5) < 0.02
+    for step in (1e-4, 5e-4, 2e-3):
+        assert deviation(1.2, step) > unstable
+    assert deviation(2.0, 5e-4, exchanges=4) > unstable
+    for ratio in (1.2, 2.0, 5.0):
+        for step in (5e-4, 2e-3):
+            repeated = deviation(ratio, step, exchanges=4, relaxation=1 / (1 + ratio))
+            assert repeated == pytest.approx(0.01 * ratio / (1 + ratio), rel=0.01)
+    assert deviation(2.0, 1e-4, exchanges=4, relaxation=1 / 3) == pytest.approx(0.01 * 2 / 3, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("system", "mass", "named"),
+    [
+        (ball(), None, None),
+        (ball(), "2 kg", None),
+        (ball(), "0.5 kg", r"6.6 % of the effective mass .* lasts 69 µs at 1 m/s"),
+        (ball(), "25 g", r"1.3 times the effective mass .* relaxation of 0.43"),
+    ],
+)
+def test_dampers_that_are_heavy_for_their_structure_have_a_note(system: Any, mass: Any, named: str | None) -> None:
+    """The note names the ratio of the masses, the duration of a contact, and above 0.3 a relaxation."""
+    notes = rb.Stepper(system, structure_mass=mass).notes
+    assert (len(notes) == 1 and re.search(named, notes[0])) if named else notes == ()
 
 
 # ---- particle dampers

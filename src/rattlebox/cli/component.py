@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import rattlebox as rb
+from rattlebox.engines.fmu import fmu_and_notes
 
 
 def write_fmu(case: Path, out: Path | None, fmi: Any, by: Any, alone: bool) -> None:
     """Write a case file as an FMU and print its name; see `rattlebox.to_fmu`."""
     content = rb.Case.from_file(case)
-    file = rb.to_fmu(content, out or Path(f"{case.stem}.fmu"), fmi=fmi, input=by, alone=alone or None)
-    print(f"{file}: FMI {fmi}.0 for co-simulation on Linux x86-64")
+    file, notes = fmu_and_notes(content, out or Path(f"{case.stem}.fmu"), fmi=fmi, input=by, alone=alone or None)
+    print(f"{file}: FMI {fmi}.0 for co-simulation on Linux x86-64", *notes, sep="\n  ")
 
 
 def write_packed(case: Path, out: Path | None, alone: bool) -> None:
@@ -20,4 +21,4 @@ def write_packed(case: Path, out: Path | None, alone: bool) -> None:
     stepper = rb.Stepper(rb.Case.from_file(case), alone=alone or None)
     file = out or Path(f"{case.stem}.bin")
     file.write_bytes(stepper.packed)
-    print(f"{file}: inputs {', '.join(stepper.inputs)}")
+    print(f"{file}: inputs {', '.join(stepper.inputs)}", *stepper.notes, sep="\n  ")

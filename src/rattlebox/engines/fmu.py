@@ -108,7 +108,8 @@ def to_fmu(
     -----
     The FMU is self-contained: it needs neither Python nor Rattlebox. Its parameter `input_time` says to which end of a
     communication step the inputs belong, 1 for the start (they are extrapolated) and 2 for the end; gravity can be changed
-    between steps, restitution and friction before the initialization.
+    between steps, restitution and friction before the initialization. The notes of the stepper (`Stepper.notes`) are on its
+    page documentation/index.html.
 
     Examples
     --------
@@ -117,6 +118,19 @@ def to_fmu(
     >>> rb.to_fmu(damper, "damper.fmu", structure_mass="2.37 kg").name
     'damper.fmu'
     """
+    options = {"alone": alone, "method": method, "motion": motion, "structure_mass": structure_mass}
+    return fmu_and_notes(system, path, fmi=fmi, input=input, **options)[0]
+
+
+def fmu_and_notes(
+    system: Case | ImpactDamper | ParticleDamper,
+    path: str | os.PathLike[str],
+    *,
+    fmi: int = 3,
+    input: str = "velocity",
+    **options: Any,
+) -> tuple[Path, tuple[str, ...]]:
+    """Write an FMU and return its file and the notes of its stepper; see `to_fmu`."""
     if fmi not in (2, 3):
         raise Hint(f"fmi = {fmi!r}: the versions are 2 and 3", "fmi=3")
     if input not in ("velocity", "acceleration"):
@@ -125,7 +139,7 @@ def to_fmu(
     if path.suffix != ".fmu":
         raise Hint(f"{path}: the name of an FMU must end with .fmu", f'"{path.with_suffix(".fmu")}"')
     library = component_library()
-    case, alone = component_case(system, alone, method, motion, structure_mass)
+    case, alone = component_case(system, **options)
     packed = pack_component(case, alone=alone)
     name = re.sub(r"\W", "_", path.stem)
     token = str(uuid.uuid5(uuid.NAMESPACE_OID, packed.data.hex() + input))
@@ -136,7 +150,7 @@ def to_fmu(
         f"binaries/{folder}/{name}.so": library.read_bytes(),
         "resources/case.bin": packed.data,
         "resources/input": input.encode(),
-        "documentation/index.html": _page(name, variables).encode(),
+        "documentation/index.html": _page(name, variables, packed.notes).encode(),
     }
     path.parent.mkdir(parents=True, exist_ok=True)
     whole = path.with_name(f".{path.name}.{os.getpid()}")
@@ -147,7 +161,7 @@ def to_fmu(
         whole.replace(path)
     finally:
         whole.unlink(missing_ok=True)
-    return path
+    return path, packed.notes
 
 
 def component_library() -> Path:
@@ -295,7 +309,7 @@ def _description_3(name: str, token: str, variables: list[Variable]) -> str:
     )
 
 
-def _page(name: str, variables: list[Variable]) -> str:
+def _page(name: str, variables: list[Variable], notes: tuple[str, ...]) -> str:
     rows = "".join(
         f"<tr><td>{escape(v.name)}</td><td>{v.causality}</td><td>{v.unit}</td><td>{escape(v.description)}</td></tr>"
         for v in variables
@@ -304,5 +318,6 @@ def _page(name: str, variables: list[Variable]) -> str:
         f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{name}</title><h1>{name}</h1>'
         "<p>A damper, written by Rattlebox. Forces are means over the last communication step. The parameter input_time "
         "says to which end of a step the inputs belong: 1 start, 2 end.</p>"
-        f"<table><tr><th>Variable</th><th>Causality</th><th>Unit</th><th>Description</th></tr>{rows}</table></html>\n"
+        f"<table><tr><th>Variable</th><th>Causality</th><th>Unit</th><th>Description</th></tr>{rows}</table>"
+        f"{''.join(f'<p>{escape(note)}</p>' for note in notes)}</html>\n"
     )

@@ -155,7 +155,7 @@ class Stepper:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was chosen for the case, such as its softening."""
+        """What was chosen for the case, such as its softening, and warnings about the exchange with a light structure."""
         return self._packed.notes
 
     def advance(self, to: Any, *, velocity: Any = None, acceleration: Any = None, loads: Any = None) -> StepResult:

@@ -108,6 +108,11 @@ class ModalModel:
                 lines[name] = shape
         return lines
 
+    def mobility(self, name: str | None) -> float:
+        """Return the largest inverse effective mass of a point over its directions [1/kg]; 0 for a fixed structure."""
+        shape = self.shapes[self.point(name)]
+        return float(np.max(np.sum(np.square(shape), axis=0), initial=0.0))
+
     def effective_mass(self, name: str | None) -> float:
         """Return the effective mass for an impact at a point, 1 / sum(shape^2) [kg]; infinite for a fixed structure."""
         mass: float = inverse(total(self.shape(name) ** 2))

@@ -299,7 +299,7 @@ def _check_damper(case: Case, damper: ImpactDamper | ParticleDamper, name: str) 
             )
     if max(diameters) > _LARGEST_BODY:
         yield f"a {body} of {name} is {max(diameters):.4g} m wide; a number without a unit is in metres"
-    mobility = float(np.max(np.sum(np.square(case.modes.shapes[case.modes.point(damper.point)]), axis=0), initial=0.0))
+    mobility = case.modes.mobility(damper.point)
     if mass * mobility > 1:
         yield (
             f"the {body}s of {name} have a mass of {mass:.4g} kg, {mass * mobility:.3g} times the effective mass of the"

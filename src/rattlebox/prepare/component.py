@@ -12,16 +12,23 @@ from rattlebox.core import _core
 from rattlebox.model.case import Case
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.errors import Hint
-from rattlebox.model.methods import TwoStep
+from rattlebox.model.methods import Newton, TwoStep
+from rattlebox.model.pairs import contact_pairs
 from rattlebox.model.particle_damper import ParticleDamper
 from rattlebox.model.signals import Signal
 from rattlebox.model.structures import SDOF, Fixed, Shaker
 
+from ..results.quantities import quantity
 from .pack import pack
 from .particles import pack_particles, prepare
 
 IDLE = _core.Harmonic(amplitude=0.0, frequency=0.0, phase=0.0, start=0.0, stop=0.0)
 """Signal of an input, whose values come with the steps."""
+
+
+LIGHT, HEAVY = 0.03, 0.3
+"""Mass in a damper over the effective mass of its structure. Up to `LIGHT`, the reaction of the structure within a step does
+not matter; above `HEAVY`, an exchange once in each step may diverge (tests/verification/test_stepper.py)."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +155,7 @@ def _impact(case: Case, alone: bool, velocity: float) -> PackedComponent:
         points,
         _names(case),
         1,
-        (),
+        _exchange_notes(case) if alone else (),
     )
 
 
@@ -187,8 +194,34 @@ def _particles(case: Case, alone: bool, velocity: Any) -> PackedComponent:
         points,
         _names(case),
         3,
-        prepared.notes,
+        (*prepared.notes, *(_exchange_notes(case) if alone else ())),
     )
+
+
+def _exchange_notes(case: Case) -> tuple[str, ...]:
+    """Return a note on the steps and exchanges that a damper alone needs, if the mass of its structure is known."""
+    (damper,) = case.dampers
+    is_ball = isinstance(damper, ImpactDamper)
+    masses = damper.masses if isinstance(damper, ImpactDamper) else damper.contents.mass
+    ratio = float(np.sum(masses)) * case.modes.mobility(damper.point)
+    if not isinstance(damper, ImpactDamper):
+        steps = "steps much shorter than a contact"
+    elif isinstance(case.method, Newton):
+        steps = "contacts with a duration, method = EventDriven(), and steps much shorter than it"
+    else:
+        law = _core.normal_law(*damper.contact.coefficients(contact_pairs(case, 0)[0]))
+        steps = f"steps much shorter than a contact, which lasts {quantity(law.contact_time(1.0), 's', 2)} at 1 m/s"
+    if ratio > HEAVY:
+        return (
+            f"warning: {ratio:.2g} times the effective mass of the structure is in {damper.label(0)}, and one exchange in "
+            f"each step may diverge; try: {steps}, or repeated steps with a relaxation of {1 / (1 + ratio):.2g}",
+        )
+    if ratio > LIGHT and is_ball:
+        return (
+            f"{100 * ratio:.2g} % of the effective mass of the structure is in {damper.label(0)}: with one exchange in each "
+            f"step, impulses are too large by up to this share; try: {steps}",
+        )
+    return ()
 
 
 def _idle(problem: Any) -> Any:
