@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .elementwise import Vector, inverse, total
 from .errors import Hint, nearest
@@ -112,6 +113,27 @@ class ModalModel:
         """Return the largest inverse effective mass of a point over its directions [1/kg]; 0 for a fixed structure."""
         shape = self.shapes[self.point(name)]
         return float(np.max(np.sum(np.square(shape), axis=0), initial=0.0))
+
+    def harmonic_response(self, omega: Vector, forces: Vector) -> NDArray[np.complex128]:
+        """Return the complex amplitudes of the modal displacements for harmonic modal forces.
+
+        Parameters
+        ----------
+        omega : (F,) float
+            Angular frequencies [rad/s].
+        forces : (m, n) float
+            Amplitudes of modal forces of n loads.
+
+        Returns
+        -------
+        (F, m, n) complex
+            Modal displacements q of q'' + D q' + k q = f, with exp(i omega t).
+        """
+        dynamic = self.stiffness - omega[:, None] ** 2 + 2j * self.decay * omega[:, None]
+        if self.coupling is None:
+            return np.asarray(forces / dynamic[..., None], np.complex128)
+        matrix = 1j * omega[:, None, None] * self.coupling + dynamic[..., None] * np.eye(self.stiffness.size)
+        return np.asarray(np.linalg.solve(matrix, np.broadcast_to(forces, (omega.size, *forces.shape))), np.complex128)
 
     def effective_mass(self, name: str | None) -> float:
         """Return the effective mass for an impact at a point, 1 / sum(shape^2) [kg]; infinite for a fixed structure."""
