@@ -40,6 +40,13 @@ def test_mean_and_variance_are_those_of_the_runs() -> None:
     assert (result.total.sel(parameter=list(BOUNDS)) > 0.05).all()
 
 
+def test_driven_cases_have_no_indices_of_intervals() -> None:
+    """Of a driven case, only the measure has indices, not its 95 % interval, which short runs lack."""
+    driven = struck(load=rb.Harmonic(amplitude="10 N", frequency="10 Hz"), duration="0.1 s")
+    result = rb.sensitivity(driven, {"load.amplitude": (5.0, 10.0)}, "rms", 8, progress=False)
+    assert result.measure.values.tolist() == ["rms"]
+
+
 def test_same_seed_same_indices() -> None:
     """A seed fixes points and intervals for any number of threads and any state of NumPy's global generator."""
     first = rb.sensitivity(struck(), BOUNDS, n=16, seed=0, workers=2, progress=False)

@@ -19,6 +19,7 @@ from rattlebox.model.units import Whole
 from rattlebox.results.schema import OUTCOMES
 from rattlebox.studies.axes import read_axes
 from rattlebox.studies.kinds.sweep import Sweep
+from rattlebox.studies.measures import INTERVAL
 from rattlebox.studies.robust import robust_axes
 from rattlebox.studies.sampling import RandomDesign, random_design
 from rattlebox.studies.store import save_result
@@ -173,7 +174,7 @@ def _indices(runs: xr.Dataset, paths: list[str], n: int, confidence: float, seed
     """Return the Sobol indices of all measures of a sweep."""
     import xarray as xr
 
-    names = [str(name) for name in runs.data_vars if name not in OUTCOMES]
+    names = [str(name) for name in runs.data_vars if name not in OUTCOMES and not str(name).endswith(INTERVAL)]
     rows = [_indices_of_measure(runs, name, len(paths), n, confidence, seed) for name in names]
     found = xr.Dataset(
         {
