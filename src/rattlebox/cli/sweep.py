@@ -15,9 +15,9 @@ from rattlebox._util.exceptions import RattleboxError, ResourceError
 from rattlebox._util.optional_imports import optional_import
 from rattlebox._util.text import printable
 from rattlebox.cli.exit_codes import STOPPED
-from rattlebox.cli.show import status_lines
 from rattlebox.cli.terminal import terminal
 from rattlebox.model.plausibility import plausibility_notes
+from rattlebox.studies.outcomes import status_lines
 from rattlebox.studies.runner import Stopped
 from rattlebox.studies.study_file import read_study
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib.ticker import Formatter
 from numpy.typing import NDArray
 
-from ..results.quantities import quantity
+from ..results.quantities import quantity, without_zeros
 from .style import label, scaled, shorten
 
 if TYPE_CHECKING:
@@ -182,4 +181,4 @@ def value_of(coord: xr.DataArray, value: Any) -> str:
     number = float(value) + 0.0  # turns -0.0 into 0.0
     if not unit and number.is_integer() and abs(number) < _LARGEST_EXACT:
         return f"{number:.0f}"
-    return re.sub(r"\.0+(?!\d)|(\.\d*[1-9])0+(?!\d)", r"\1", quantity(number, unit))
+    return without_zeros(quantity(number, unit))

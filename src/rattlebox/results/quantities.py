@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 PREFIXES: dict[int, str] = {
     -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T",
@@ -11,6 +12,9 @@ PREFIXES: dict[int, str] = {
 
 MISSING = "-"
 """Text for NaN."""
+
+PREFIXED_UNITS = ("m", "s", "kg", "m/s", "m/s^2", "N", "N/m", "J", "W", "Pa", "Hz")
+"""Units that take an SI prefix in tables; others, such as kg/m^3 and rad, are written as they are."""
 
 
 def _exponent(value: float, significant: int) -> int:
@@ -109,3 +113,43 @@ def quantity(value: float, unit: str, significant: int = 4) -> str:
         return digits(value, significant)
     divisor, written = in_unit(value, unit)
     return f"{digits(value / divisor, significant)} {written}"
+
+
+def amount(value: float, unit: str = "", significant: int = 4) -> str:
+    """Format a number with its unit, without trailing zeros, as inputs are written: 20 kg, 0.4 mm.
+
+    Parameters
+    ----------
+    value
+        Number in SI units.
+    unit
+        Unit; "" or "1" for a pure number, "%" for a share in per cent. Units outside of `PREFIXED_UNITS` get no prefix.
+    significant
+        Largest number of significant digits.
+
+    Examples
+    --------
+    >>> amount(0.0004, "m"), amount(20.0, "kg"), amount(7850.0, "kg/m^3")
+    ('0.4 mm', '20 kg', '7850 kg/m^3')
+    """
+    if math.isnan(value):
+        return MISSING
+    value += 0.0  # turns -0.0 into 0.0
+    if unit in PREFIXED_UNITS and not (unit == "s" and abs(value) >= 1):
+        divisor, written = in_unit(value, unit, 0.1 if unit in ("m", "s") else 1.0)
+        return f"{without_zeros(digits(value / divisor, significant))} {written}"
+    if unit == "%":
+        return f"{without_zeros(digits(100.0 * value, significant))} %"
+    number = without_zeros(digits(value, significant))
+    return number if unit in ("", "1") else f"{number} {unit}"
+
+
+def without_zeros(text: str) -> str:
+    """Return a text without zeros at the end of the decimals of its numbers.
+
+    Parameters
+    ----------
+    text
+        Numbers, with or without units.
+    """
+    return re.sub(r"\.0+(?!\d)|(\.\d*[1-9])0+(?!\d)", r"\1", text)

@@ -1,0 +1,114 @@
+"""Outcomes of the runs of a study: statuses, refusals and warnings, in lines of text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.prepare.time_step import WARNINGS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_CHUNK_BYTES = 2**26
+
+
+def status_lines(study: xr.Dataset) -> list[str]:
+    """Return lines with the statuses of the runs of a study, the reason of a refusal, and the warnings.
+
+    Parameters
+    ----------
+    study
+        Dataset from `open_study` or `sweep`.
+
+    Returns
+    -------
+    list of str
+        Empty for a study without statuses and warnings.
+    """
+    lines = []
+    if counts := status_counts(study):
+        statuses = ", ".join(f"{count:,} {name}" for name, count in counts.items())
+        lines.append(f"{sum(counts.values()):,} variants: {statuses}")
+    if "refused" in study.attrs:
+        lines.append(f"refused, for example with {study.attrs['refused']}")
+    return [*lines, *warning_lines(study)]
+
+
+def status_counts(study: xr.Dataset) -> dict[str, int]:
+    """Count the runs of a study by their status.
+
+    Parameters
+    ----------
+    study
+        Dataset from `open_study` or `sweep`.
+
+    Returns
+    -------
+    dict of str to int
+        Number of runs by the name of the status, in the order of the status codes.
+    """
+    if "status" not in study:
+        return {}
+    names = study.status.attrs.get("flag_meanings", "").split()
+    numbers, counts = np.unique(np.concatenate([computed(chunk) for chunk in chunks(study.status)]), return_counts=True)
+    return {
+        names[number] if number < len(names) else f"status {number}": int(count)
+        for number, count in zip(numbers, counts, strict=True)
+    }
+
+
+def warning_lines(study: xr.Dataset) -> list[str]:
+    """Return the warnings of a study: measures without an interval, and runs that exceeded validity limits.
+
+    Parameters
+    ----------
+    study
+        Dataset from `open_study` or `sweep`.
+
+    Returns
+    -------
+    list of str
+        One line for each validity limit that at least one run exceeded, after a line about short runs.
+    """
+    lines = [f"warning: {study.attrs['too_short']}"] if "too_short" in study.attrs else []
+    if "warnings" not in study or "flag_masks" not in study.warnings.attrs:
+        return lines
+    attrs = study.warnings.attrs
+    flags = np.concatenate([computed(chunk) for chunk in chunks(study.warnings)])
+    counts = [np.count_nonzero(flags & mask) for mask in attrs["flag_masks"]]
+    names = [WARNINGS.get(name, name) for name in attrs["flag_meanings"].split()]
+    return lines + [f"warning: {count:,} with {name}" for count, name in zip(counts, names, strict=True) if count]
+
+
+def chunks(values: xr.DataArray) -> Iterator[np.ndarray[Any, Any]]:
+    """Read a variable in chunks that fit in memory.
+
+    Parameters
+    ----------
+    values
+        The variable.
+    """
+    if not values.ndim:
+        yield values.values.reshape(1)
+        return
+    rows = max(1, _CHUNK_BYTES * len(values) // max(1, values.nbytes))
+    for start in range(0, len(values), rows):
+        yield values[start : start + rows].values
+
+
+def computed(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return the values that are computed and finite, (n,).
+
+    Parameters
+    ----------
+    values
+        Values of a study, in which missing variants are NaN, or the smallest number of an integer variable.
+    """
+    if values.dtype.kind == "f":
+        valid = np.isfinite(values)
+    else:
+        valid = values != (np.iinfo(values.dtype).min if values.dtype.kind == "i" else None)
+    return values[valid]  # type: ignore[no-any-return]
