@@ -85,6 +85,7 @@ from rattlebox.plots.sensitivity import plot_sensitivity as plot_sensitivity
 from rattlebox.prepare.laws import alpha_of_restitution as alpha_of_restitution
 from rattlebox.prepare.laws import restitution_curve as restitution_curve
 from rattlebox.prepare.laws import restitution_of_alpha as restitution_of_alpha
+from rattlebox.report.write import write_report as write_report
 from rattlebox.results import Run as Run
 from rattlebox.results import load as load
 from rattlebox.results.snapshots import Snapshots as Snapshots

@@ -28,6 +28,7 @@ _WRITERS = {
     ".csv": "run.to_csv",
     ".vtkhdf": "rb.simulate(case, snapshots=...), for particle dampers",
     ".toml": "case.to_file",
+    ".html": "rb.write_report",
 }
 
 

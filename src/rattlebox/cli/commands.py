@@ -246,6 +246,31 @@ def plot(
 
 
 @app.command(cls=_Command)
+def report(
+    results: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Folder written by run or sweep, or a file run.nc. Several runs are compared with each other."
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", help="File to write (HTML); default named after the first results, in the current folder."
+        ),
+    ] = None,
+    title: Annotated[str | None, typer.Option(help="Title of the page.")] = None,
+    question: Annotated[str | None, typer.Option(help="Question that the results answer, one sentence.")] = None,
+) -> None:
+    """Write a report about a run or a study: one HTML page without other files, which prints on A4."""
+    from rattlebox.cli.report import write
+
+    for path in results:
+        _check_results(path)
+    write(results, out, title, question)
+
+
+@app.command(cls=_Command)
 def demo(
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder for results.")] = Path("demo"),
 ) -> None:

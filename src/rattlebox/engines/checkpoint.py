@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from filelock import FileLock, Timeout
@@ -90,6 +90,41 @@ def is_checkpoint(path: Path) -> bool:
             return bool({"case", "numbers"} <= json.loads(file["about"].tobytes()).keys())
     except Exception:  # NumPy and zipfile raise nearly any exception for damaged files
         return False
+
+
+class Unfinished(NamedTuple):
+    """State of a run that is not finished: the text of its case, the simulated time and the computing time so far [s]."""
+
+    case_toml: str
+    time: float
+    seconds: float
+
+
+def read_unfinished(path: Path) -> Unfinished:
+    """Return the case and the progress of a run from its checkpoint, of any case and version.
+
+    Parameters
+    ----------
+    path
+        An existing file.
+
+    Raises
+    ------
+    DataError
+        If the file is not an intact checkpoint.
+    """
+    require_readable(path)
+    try:
+        with zipfile.ZipFile(path) as archive:
+            about = json.loads(_read_array(archive, "about").tobytes())
+        check_format(path, about["format"], FORMAT)
+        return Unfinished(str(about["case"]), float(about["time"]), float(about["seconds"]))
+    except (DataError, MemoryError):
+        raise
+    except Exception:  # NumPy and zipfile raise nearly any exception for damaged files
+        raise DataError(
+            f"{path} is not an intact checkpoint: its description is damaged", "another file, or remove this one"
+        ) from None
 
 
 class Checkpoint:

@@ -146,15 +146,27 @@ def unit_of(case: Case, path: str) -> str | None:
     for step in place:
         if isinstance(node, Part):
             step = instance(step, str)
-            if isinstance(node, Signal) and step in ("amplitude", "values"):
-                unit = node.unit
-            else:
-                field = type(node).model_fields[step]
-                unit = next(_units([*field.metadata, field.annotation]), None)
+            unit = unit_of_field(node, step)
             node = get_field(node, step)
         else:
             node = node[step]
     return unit
+
+
+def unit_of_field(part: Part, name: str) -> str | None:
+    """Return the SI unit of the numbers of a field, "1" for dimensionless numbers, None for other values.
+
+    Parameters
+    ----------
+    part
+        The part.
+    name
+        Name of the field.
+    """
+    if isinstance(part, Signal) and name in ("amplitude", "values"):
+        return part.unit
+    field = type(part).model_fields[name]
+    return next(_units([*field.metadata, field.annotation]), None)
 
 
 def _units(annotations: Sequence[Any]) -> Iterator[str]:

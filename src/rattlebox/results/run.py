@@ -6,7 +6,7 @@ import os
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rattlebox._util.exceptions import CaseError
 from rattlebox._util.html import paragraph
@@ -155,6 +155,32 @@ class Run(Record):
             If no space is left on the disk.
         """
         return export.to_csv(self, Path(folder))
+
+    def report(self, path: str | os.PathLike[str], **options: Any) -> Path:
+        """Write a report about the run: one HTML page that prints on A4; see `rattlebox.write_report`.
+
+        Parameters
+        ----------
+        path
+            File to write, .html. An earlier report is replaced; any other file is not.
+        **options
+            `title` and `question`, as of `rattlebox.write_report`.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        DataError
+            If the file exists and is not a report, or cannot be written.
+        ResourceError
+            If no space is left on the disk.
+        """
+        # results must not import the report statically, which is above it
+        written: Path = import_module("rattlebox.report.write").write_report(self, path, **options)
+        return written
 
 
 def load(path: str | os.PathLike[str]) -> Run:

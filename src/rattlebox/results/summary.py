@@ -354,6 +354,10 @@ class _Report:
     def _cells(self) -> list[tuple[str, ...]]:
         raise NotImplementedError
 
+    def lines(self) -> list[tuple[str, ...]]:
+        """Return the texts of the table, one tuple for each line: its label, and a text for each column."""
+        return self._cells()
+
     def __str__(self) -> str:
         cells = self._cells()
         if any(self._columns):

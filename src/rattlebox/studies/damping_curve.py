@@ -121,8 +121,8 @@ def damping_curve(
     xarray.Dataset
         Over `amplitude` [m]: `damping_ratio`, `lower` and `upper` limit of its 95 % interval (NaN with fewer than two
         packings that reach the amplitude), `bare` (of the structure alone), and over `packing`, too, `damping_ratios` of
-        each. NaN where no decay passes the amplitude within the duration. Attributes: way, mode, point, frequency [Hz], and
-        `warnings` of the runs, such as that softening changes the loss.
+        each. NaN where no decay passes the amplitude within the duration. Attributes: way, mode, point, frequency [Hz], the
+        text of the case, and `warnings` of the runs, such as that softening changes the loss.
 
     Raises
     ------
@@ -165,7 +165,10 @@ def damping_curve(
         ratios = _from_shaking(cases, about, levels, cycles, run, warnings)
     else:
         ratios = _from_decay(cases, about, levels, way, run, warnings)
-    return _dataset(ratios, levels, about, way).assign_attrs(warnings=list(warnings))
+    found: dict[str, Any] = {"study": "damping_curve", "case": case.to_toml(), "warnings": list(warnings)}
+    if way == "shaking":
+        found["cycles"] = list(cycles)
+    return _dataset(ratios, levels, about, way).assign_attrs(found)
 
 
 def _levels(amplitudes: Sequence[Any]) -> FloatArray:

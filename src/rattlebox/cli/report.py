@@ -1,0 +1,86 @@
+"""`rattlebox report`: a page about runs and studies on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rattlebox._util.exceptions import CaseError, DataError
+from rattlebox.cli.folder import CHECKPOINT, RUN, SNAPSHOTS, is_run
+from rattlebox.cli.terminal import terminal
+from rattlebox.engines.checkpoint import read_unfinished
+from rattlebox.report.kinds.unfinished import UnfinishedRun
+from rattlebox.report.write import write_report
+from rattlebox.results import load
+from rattlebox.results.snapshots import Snapshots
+from rattlebox.studies.stored import has_map, open_study
+from rattlebox.studies.trial_store import count_trials
+
+
+def write(results: Sequence[Path], out: Path | None, title: str | None, question: str | None) -> None:
+    """Write a report about results on disk, and print its name.
+
+    Parameters
+    ----------
+    results
+        Folders of runs or studies, or files run.nc.
+    out
+        File to write; default named after the first results, in the current folder.
+    title, question
+        See `rattlebox.write_report`.
+
+    Raises
+    ------
+    CaseError
+        If the same results are given twice.
+    DataError
+        If results are missing or damaged, or the file exists and is not a report.
+    """
+    path = out or Path(f"{results[0].resolve().with_suffix('').name}.html")
+    replaces = path.exists()
+    found: dict[str, Any] = {}
+    for each in results:
+        name = str(each)
+        if name in found:
+            raise CaseError(f"{name} is given twice", "each folder once")
+        found[name] = read_result(each)
+    result = found if len(found) > 1 else next(iter(found.values()))
+    write_report(result, path, title=title, question=question)
+    note = " (replaced an earlier report; choose another name with -o)" if replaces and out is None else ""
+    terminal().print(f"written: {path}{note}", soft_wrap=True)
+
+
+def read_result(path: Path) -> Any:
+    """Return a run, an unfinished run, or the dataset of a study.
+
+    Parameters
+    ----------
+    path
+        Folder of a run or of a study, or run.nc.
+
+    Raises
+    ------
+    DataError
+        If there is no such result.
+    StoreError
+        If a study is damaged.
+    """
+    if not is_run(path):
+        trials = count_trials(path)
+        if trials is not None and not has_map(path):
+            raise DataError(
+                f"{path} is a design that is not finished: {trials} trials, whose result is written at the end",
+                "repeat the command that started it, which resumes it; then the report",
+            )
+        return open_study(path).load()
+    if path.is_file():
+        if path.suffix != ".nc":
+            raise DataError(f"{path} is not a run", f"{RUN}, or its folder")
+        return load(path)
+    if (path / RUN).is_file():
+        return load(path / RUN)
+    if (path / CHECKPOINT).is_file():
+        snapshots = Snapshots(path / SNAPSHOTS) if (path / SNAPSHOTS).is_file() else None
+        return UnfinishedRun(*read_unfinished(path / CHECKPOINT), snapshots)
+    raise DataError(f"{path} has no {RUN}", "the folder that 'rattlebox run -o' wrote")

@@ -1,0 +1,165 @@
+"""Tables of the inputs of a case: every field with its unit, and numbers that follow from them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox._util.exceptions import RattleboxError
+from rattlebox.model.base import Part
+from rattlebox.model.dampers import ImpactDamper
+from rattlebox.model.materials import Material
+from rattlebox.model.paths import unit_of_field
+from rattlebox.model.units import as_written
+from rattlebox.results.case_words import counted, natural_frequencies
+from rattlebox.results.quantities import amount
+
+from .parts import Table
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
+_MAX_NUMBERS = 6
+"""Longest list that is written out."""
+_MAX_MODES = 6
+"""Most modes in the line of natural frequencies."""
+_PARTS = {"dampers": "Damper", "tuned_masses": "Tuned mass", "loads": "Load", "base": "Motion of the base"}
+_HIDDEN = ("name", "kind", "title", "source")
+
+
+def input_tables(case: Case) -> list[Table]:
+    """Return the inputs of a case, one table for each part.
+
+    Parameters
+    ----------
+    case
+        The case.
+
+    Returns
+    -------
+    list of Table
+        Structure, dampers, tuned masses, loads, base, and the run itself. Lines of numbers that follow from the others are
+        first, in italics on the page (their names begin with "= ").
+    """
+    structure = case.structure
+    tables = [Table(f"Structure: {_kind(structure)}", (), [*_structure_lines(case), *_lines(structure)])]
+    for field, title in _PARTS.items():
+        items = getattr(case, field)
+        for number, part in enumerate(items):
+            own = _damper_lines(case, number) if field == "dampers" else iter(())
+            name = getattr(part, "name", "") or (str(number + 1) if len(items) > 1 else "")
+            heading = f"{title} {name}".rstrip() + f": {_kind(part)}"
+            tables.append(Table(heading, (), [*own, *_lines(part)]))
+    tables.append(Table("Run", (), list(_lines(case, ("structure", *_PARTS)))))
+    return [table for table in tables if table.rows]
+
+
+def _structure_lines(case: Case) -> Iterator[tuple[str, str]]:
+    """Yield natural frequencies and damping ratios of the structure."""
+    modes, frequencies = case.structure.modes(), natural_frequencies(case)
+    if not frequencies:
+        return
+    stiff = np.asarray(modes.stiffness) > 0
+    ratios = np.asarray(modes.decay)[stiff] / np.sqrt(np.asarray(modes.stiffness)[stiff])
+    more = f" and {len(frequencies) - _MAX_MODES} more" if len(frequencies) > _MAX_MODES else ""
+    yield "= natural frequencies", ", ".join(amount(each, "Hz") for each in frequencies[:_MAX_MODES]) + more
+    yield "= damping ratios", ", ".join(amount(float(each), "%", 3) for each in ratios[:_MAX_MODES]) + more
+    if modes.total_mass is not None and np.ndim(modes.total_mass) == 0:
+        yield "= total mass", amount(float(modes.total_mass), "kg")
+
+
+def _damper_lines(case: Case, number: int) -> Iterator[tuple[str, str]]:
+    """Yield mass, mass ratio, clearance or fill of a damper."""
+    damper = case.dampers[number]
+    if isinstance(damper, ImpactDamper):
+        mass = float(np.sum(damper.masses))
+        yield "= mass of the balls", amount(mass, "kg")
+        yield "= clearance", f"{amount(damper.clearance, 'm')}, twice the gap"
+    else:
+        mass = float(damper.contents.mass.sum())
+        volume = float((4 / 3 * np.pi * damper.contents.radius**3).sum())
+        yield "= particles", counted(len(damper.contents.radius), "particle")
+        yield "= mass of the particles", amount(mass, "kg")
+        yield "= share of the volume of the cavity", amount(volume / damper.cavity.volume, "%", 3)
+    modes = case.structure.modes()
+    try:
+        moved = np.asarray(modes.shapes[modes.point(damper.point)])
+    except RattleboxError:
+        return
+    if len(moved):
+        shape = np.linalg.norm(moved.reshape(len(moved), -1), axis=1)
+        ratios = mass * shape**2
+        first = int(np.argmax(ratios > 0))
+        if ratios[first] > 0:
+            yield f"= mass ratio to mode {first + 1} at its point", amount(float(ratios[first]), "%", 3)
+
+
+def _lines(part: Part, leave_out: Sequence[str] = ()) -> Iterator[tuple[str, str]]:
+    """Yield names and values of the fields of a part that are set."""
+    from_file = part.fields_from_file()
+    for name, field in type(part).model_fields.items():
+        if name in _HIDDEN or name in leave_out or field.exclude or name in from_file:
+            continue
+        value = getattr(part, name)
+        if name == "balls":
+            name, value = _balls(value)
+        elif name == "unit" and isinstance(getattr(part, "amplitude", None), float):
+            continue
+        text = _text(value, unit_of_field(part, name) if name in type(part).model_fields else None)
+        if text:
+            yield name.replace("_", " "), text
+
+
+def _balls(balls: Sequence[Part]) -> tuple[str, Any]:
+    """Return the name and value of the line of balls; equal balls are listed once."""
+    if all(ball == balls[0] for ball in balls):
+        return "ball" if len(balls) == 1 else f"{len(balls)} balls, each", balls[0]
+    return "balls", balls
+
+
+def _kind(part: Any) -> str:
+    return str(getattr(part, "kind", "")).replace("_", " ")
+
+
+def _text(value: Any, unit: str | None = None) -> str:
+    """Return the value of a field as text; "" for values that are not set."""
+    if value is None or value == ():
+        return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return amount(value, unit or "", 6)
+    if isinstance(value, str):
+        number = as_written(value)
+        return amount(number[0], number[1], 6) if number and number[1] else value
+    if isinstance(value, Part):
+        return _part(value)
+    if isinstance(value, Mapping):
+        return "; ".join(f"{name}: {_text(each, unit)}" for name, each in value.items())
+    if len(value) > _MAX_NUMBERS and all(isinstance(each, (list, tuple)) for each in value):
+        return f"{len(value)} rows of {len(value[0])} numbers"
+    items = [_text(each, unit) for each in value]
+    if len(items) == 1:
+        return items[0]
+    if len(items) > _MAX_NUMBERS:
+        if all(isinstance(each, (int, float)) for each in value):
+            return f"{len(items)} numbers, {items[0]} to {items[-1]}"
+        return f"{'; '.join(items[:_MAX_NUMBERS])}; and {len(items) - _MAX_NUMBERS} more"
+    numbers, units = zip(*(item.partition(" ")[::2] for item in items), strict=True)
+    if len(set(units)) == 1 and all(isinstance(each, float) for each in value):
+        return f"{', '.join(numbers)} {units[0]}".rstrip()
+    return ("; " if any(isinstance(each, (list, tuple, Part)) for each in value) else ", ").join(items)
+
+
+def _part(part: Part) -> str:
+    """Return a part inside a part in one line; a material by its name and main numbers."""
+    if isinstance(part, Material):
+        numbers = f"{amount(part.density, 'kg/m^3')}, E {amount(part.young, 'Pa')}, Poisson's ratio {part.poisson:g}"
+        strength = "" if part.yield_stress is None else f", yield stress {amount(part.yield_stress, 'Pa')}"
+        return f"{(part.name or 'own material').replace('_', ' ')} ({numbers}{strength})"
+    kind = [_kind(part)] if "kind" in type(part).model_fields else []
+    return ", ".join([*kind, *(f"{name} {text}" for name, text in _lines(part))])

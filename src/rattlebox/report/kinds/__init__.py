@@ -1,0 +1,67 @@
+"""Kinds of reports: which result has which content."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+from rattlebox._util.exceptions import CaseError
+from rattlebox.report.kinds.unfinished import UnfinishedRun
+from rattlebox.report.parts import Kind
+from rattlebox.results.run import Run
+from rattlebox.results.summary import Comparison
+
+KINDS: Mapping[str, tuple[str, str]] = {
+    "run": ("run", "KIND"),
+    "unfinished": ("unfinished", "KIND"),
+    "comparison": ("comparison", "KIND"),
+    "sweep": ("sweep", "KIND"),
+    "bifurcation": ("steady_motions", "BIFURCATION"),
+    "basins": ("steady_motions", "BASINS"),
+    "lyapunov": ("steady_motions", "LYAPUNOV"),
+    "frequency_response": ("frequency_response", "KIND"),
+    "loss_map": ("loss_map", "KIND"),
+    "damping_curve": ("damping_curve", "KIND"),
+    "design": ("design", "KIND"),
+    "sensitivity": ("sensitivity", "KIND"),
+}
+"""Module in this folder, and its `Kind`, by the attribute `study` of a dataset; or "run" and "comparison"."""
+
+
+def kind_of(result: Any) -> Kind:
+    """Return the kind of a result; datasets without one of their own are reported as sweeps.
+
+    Parameters
+    ----------
+    result
+        A run, a comparison, the dataset of a study, or datasets of `rb.damping_curve` by name.
+
+    Raises
+    ------
+    CaseError
+        If there is no report about it.
+    """
+    module, name = KINDS[_name(result)]
+    kind: Kind = getattr(import_module(f"{__name__}.{module}"), name)
+    return kind
+
+
+def _name(result: Any) -> str:
+    if isinstance(result, Run):
+        return "run"
+    if isinstance(result, Comparison):
+        return "comparison"
+    if isinstance(result, UnfinishedRun):
+        return "unfinished"
+    import xarray as xr
+
+    if isinstance(result, xr.Dataset):
+        name = str(result.attrs.get("study", "sweep"))
+        return name if name in KINDS else "sweep"
+    if isinstance(result, Mapping) and result and all(_name(each) == "damping_curve" for each in result.values()):
+        return "damping_curve"
+    raise CaseError(
+        f"there is no report about {result!r:.60}",
+        "a run, rb.compare(...), the dataset of a study, or a mapping of these by name",
+    )

@@ -1,0 +1,159 @@
+"""Report about damping curves: one dataset of `rb.damping_curve`, or several by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rattlebox.plots.damping_curve import plot_damping_curve
+from rattlebox.report import study_words as words
+from rattlebox.report.numbers import between
+from rattlebox.report.parts import Call, Kind, Limit, Picture, Table
+from rattlebox.results.case_words import dampers_words, joined, structure_words
+from rattlebox.results.quantities import MISSING, amount
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rattlebox.model.case import Case
+
+Curves = Any
+"""One dataset, or datasets by name."""
+
+_WAYS = {
+    "decay": "the decay of the envelope in free vibration",
+    "energy": "the energy lost in free vibration",
+    "shaking": "the energy lost per cycle in steady motion",
+}
+
+
+def _named(curves: Curves) -> dict[str, xr.Dataset]:
+    return dict(curves) if isinstance(curves, Mapping) and not hasattr(curves, "data_vars") else {"": curves}
+
+
+def _cases(curves: Curves) -> Mapping[str, Case]:
+    return {name: words.cases_of(curve)[""] for name, curve in _named(curves).items()}
+
+
+def _question(curves: Curves) -> str:
+    named = _named(curves)
+    first = next(iter(named.values()))
+    ends = f"{amount(float(first.amplitude.min()), 'm')} to {amount(float(first.amplitude.max()), 'm')}"
+    what = f"mode {first.attrs['mode']} ({amount(float(first.attrs['frequency']), 'Hz')})"
+    try:
+        case = words.cases_of(first)[""]
+        system = structure_words(case)
+        system += f" with {dampers_words(case)}" if len(named) == 1 and case.dampers else ""
+    except ValueError:  # CaseError
+        system = "the structure"
+    if len(named) > 1:
+        system += f" with {joined(list(named))}"
+    return f"Which damping ratio has {what} of {system} at amplitudes from {ends}?"
+
+
+def _answer(curves: Curves) -> Iterator[str]:
+    for name, curve in _named(curves).items():
+        subject = f"{name}: the damping ratio" if name else "The damping ratio"
+        values = curve.damping_ratio.values
+        if not np.isfinite(values).any():
+            yield f"{subject} is unknown: no decay passes these amplitudes."
+            continue
+        best = int(np.nanargmax(values))
+        yield f"{subject} is largest, {_at(curve, best)}; the structure alone has {amount(float(curve.bare[best]), '%', 3)}."
+        ends = [k for k in (0, len(values) - 1) if k != best and np.isfinite(values[k])]
+        if ends:
+            yield f"It is {joined([_at(curve, k) for k in ends])}."
+
+
+def _at(curve: xr.Dataset, k: int) -> str:
+    ratio, lower, upper = (float(curve[name][k]) for name in ("damping_ratio", "lower", "upper"))
+    interval = "" if not np.isfinite(lower) else f" (95 % interval {between(lower, upper, '%')})"
+    return f"{amount(ratio, '%', 3)}{interval} at {amount(float(curve.amplitude[k]), 'm')}"
+
+
+def _pictures(curves: Curves) -> Iterator[Picture]:
+    caption = (
+        "Damping ratio over the amplitude of vibration. Bands are 95 % intervals of the mean over the random starts; "
+        "the grey "
+        "line is the structure alone."
+    )
+    named = _named(curves)
+    yield Picture(
+        caption, partial(plot_damping_curve, named if len(named) > 1 else next(iter(named.values())), size="page")
+    )
+
+
+def _tables(curves: Curves) -> Iterator[Table]:
+    for name, curve in _named(curves).items():
+        rows = [
+            (
+                amount(float(curve.amplitude[k]), "m"),
+                amount(float(curve.damping_ratio[k]), "%", 3),
+                between(float(curve.lower[k]), float(curve.upper[k]), "%"),
+                str(int(np.isfinite(curve.damping_ratios[:, k]).sum())) if "damping_ratios" in curve else MISSING,
+            )
+            for k in range(curve.amplitude.size)
+        ]
+        title = f"Damping ratio, {name}" if name else "Damping ratio"
+        yield Table(title, ("amplitude", "damping ratio", "95 % interval", "random starts"), rows, numbers=True)
+
+
+def _warnings(curves: Curves) -> Iterator[str]:
+    for name, curve in _named(curves).items():
+        yield from (f"{name}: {line}" if name else line for line in words.study_warnings(curve))
+
+
+def _limits(curves: Curves) -> Iterator[Limit]:
+    first = next(iter(_named(curves).values()))
+    way = str(first.attrs.get("way", ""))
+    yield Limit(
+        "method",
+        _WAYS.get(way, way),
+        "",
+        "The damping ratio of a linear oscillator with the same loss. Methods differ where the response is not "
+        "nearly harmonic, "
+        "or where the amplitude falls through the range in a few cycles: compare two values of way.",
+    )
+    yield Limit(
+        "statistical error",
+        f"{first.sizes.get('packing', 1)} random starts",
+        "",
+        "Intervals are those of the mean over the random starts (Student, 95 %).",
+    )
+    yield from (limit for limit in words.study_limits(first) if limit.name != "statistical error")
+
+
+def _call(curves: Curves) -> Call | None:
+    named = _named(curves)
+    if len(named) > 1:
+        return None
+    curve = next(iter(named.values()))
+    packings = {"packings": int(curve.sizes["packing"])} if "packing" in curve.sizes else {}
+    return Call(
+        "damping_curve",
+        {
+            "amplitudes": curve.amplitude.values.tolist(),
+            "way": str(curve.attrs["way"]),
+            "mode": int(curve.attrs["mode"]),
+            "point": str(curve.attrs["point"]),
+            **packings,
+            **({"cycles": [int(n) for n in curve.attrs["cycles"]]} if "cycles" in curve.attrs else {}),
+        },
+    )
+
+
+KIND = Kind(
+    name="Damping curve",
+    cases=_cases,
+    question=_question,
+    answer=_answer,
+    call=_call,
+    pictures=_pictures,
+    tables=_tables,
+    warnings=_warnings,
+    limits=_limits,
+    about=lambda curves: words.study_about(next(iter(_named(curves).values()))),
+)

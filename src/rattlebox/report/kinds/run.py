@@ -1,0 +1,170 @@
+"""Report about one run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from rattlebox.report.limits import readable_case, run_limits
+from rattlebox.report.numbers import with_interval
+from rattlebox.report.parts import Call, Kind, Picture, Table
+from rattlebox.results.case_words import counted, dampers_words, joined, loads_words, structure_words
+from rattlebox.results.quantities import amount
+from rattlebox.results.summary import Value
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+    from rattlebox.results.run import Run
+
+_CAPTIONS = {
+    "motion": "Displacement of the structure over time, and the motion in each cavity.",
+    "energy": "Energies over time, and below them where the energy supplied is lost. The line is the energy supplied.",
+    "impacts": "Impacts over time.",
+    "particles": "The particles at the end of the run, as seen from the base.",
+}
+_LOSSES = {
+    "viscous": "in the structure",
+    "normal": "in normal damping of contacts",
+    "plastic": "in plastic flow",
+    "sliding": "in sliding",
+    "rolling": "in rolling",
+}
+_NEGLIGIBLE = 5e-4
+"""Share of the energy that is not mentioned."""
+
+
+def _cases(run: Run) -> Mapping[str, Case]:
+    return {"": run.case}
+
+
+def _question(run: Run) -> str:
+    case = readable_case(run)
+    return (
+        f"How does the structure move within {amount(run.arrays.time[-1], 's')}?"
+        if case is None
+        else case_question(case)
+    )
+
+
+def case_question(case: Case) -> str:
+    """Return the question that a run of a case answers.
+
+    Parameters
+    ----------
+    case
+        The case.
+    """
+    dampers, loads = dampers_words(case), loads_words(case)
+    what = structure_words(case)
+    if case.structure.kind in ("shaker", "fixed"):
+        return f"How does {dampers or 'the cavity'} move in {what} within {amount(case.duration, 's')}?"
+    what += f" with {dampers}" if dampers else " without dampers"
+    how = f"respond to {loads}" if loads else "vibrate freely"
+    return f"How does {what} {how} within {amount(case.duration, 's')}?"
+
+
+def _answer(run: Run) -> Iterator[str]:
+    if not run.ok:
+        yield f"The run has the status {run.status}: {run.message}"
+    yield from result_sentences(run.summary().values, attached_points(run))
+
+
+def attached_points(run: Run) -> list[str]:
+    """Return the names of the points of tuned masses.
+
+    Parameters
+    ----------
+    run
+        The run.
+    """
+    case = readable_case(run)
+    if case is None:
+        return []
+    return [part.label(number, len(case.tuned_masses)) for number, part in enumerate(case.tuned_masses)]
+
+
+def result_sentences(values: Mapping[str, Value], leave_out: Sequence[str] = ()) -> Iterator[str]:
+    """Yield sentences about the values of the summary of a run.
+
+    Parameters
+    ----------
+    values
+        Values of `Run.summary`.
+    leave_out
+        Names of points that are not mentioned.
+    """
+    numbers = {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
+    prefix, hidden = "peak_displacement[", {f"peak_displacement[{name}]" for name in leave_out}
+    peaks = {name: value for name, value in numbers.items() if name.startswith(prefix) and name not in hidden}
+    if peaks:
+        name = max(peaks, key=lambda each: peaks[each])
+        point = name.partition("[")[2][:-1]
+        steady = numbers.get(f"steady_rms_displacement[{point}]")
+        half = numbers.get(f"steady_rms_displacement_error[{point}]", math.nan)
+        yield f"The peak displacement of {point} is {amount(peaks[name], 'm')}."
+        if steady is not None:
+            unknown = "" if math.isfinite(half) else "; the run is too short for an interval"
+            yield (
+                f"In the second half of the run its RMS displacement is {with_interval(steady, half, 'm')}"
+                f" (95 % interval{unknown})."
+            )
+        else:
+            yield f"Its RMS displacement over the run is {amount(numbers[f'rms_displacement[{point}]'], 'm')}."
+    if "equivalent_damping_ratio" in numbers:
+        ratio, at = numbers["equivalent_damping_ratio"], numbers["damping_amplitude"]
+        yield f"The free decay has a damping ratio of {amount(ratio, '%', 3)} at an amplitude of {amount(at, 'm')}."
+    supplied = numbers.get("supplied_energy", 0.0)
+    parts = [
+        f"{amount(numbers[f'share_{channel}'], '%', 3)} {words}"
+        for channel, words in _LOSSES.items()
+        if numbers.get(f"share_{channel}", 0.0) > _NEGLIGIBLE
+    ]
+    if supplied > 0 and parts:
+        left = numbers.get("share_motion", 0.0)
+        rest = f"; {amount(left, '%', 3)} is left in the motion" if left > _NEGLIGIBLE else ""
+        yield f"Of the {amount(supplied, 'J')} supplied, {joined(parts)} is lost{rest}."
+    if "steady_loss_power" in numbers:
+        half = numbers.get("steady_loss_power_error", math.nan)
+        yield f"The mean power lost in the second half is {with_interval(numbers['steady_loss_power'], half, 'W')}."
+    if "impacts" in numbers:
+        hits = counted(int(numbers["impacts"]), "impact")
+        speed, force = (numbers.get(name, math.nan) for name in ("largest_approach_speed", "peak_contact_force"))
+        most = f", the fastest at {amount(speed, 'm/s')}" if math.isfinite(speed) else ""
+        most += f", with a peak force of {amount(force, 'N')}" if math.isfinite(force) else ""
+        yield f"There are {hits}{most}." if int(numbers["impacts"]) != 1 else f"There is {hits}{most}."
+
+
+def _pictures(run: Run) -> Iterator[Picture]:
+    figures = run.plot
+    for name in (each for each in _CAPTIONS if each in dir(figures)):
+        # Without PyVista, which takes seconds to load, and half as wide, which takes a quarter of the time.
+        options = {"renderer": "plain", "size": "column"} if name == "particles" else {"size": "page"}
+        yield Picture(_CAPTIONS[name], partial(getattr(figures, name), **options))
+
+
+def _tables(run: Run) -> Iterator[Table]:
+    yield Table("Summary", (), run.summary().lines(), numbers=True)
+
+
+def _about(run: Run) -> Iterator[str]:
+    origin = run.provenance
+    date = f" on {origin.created[:16].replace('T', ' ')} UTC" if origin.created else ""
+    yield f"Computed by Rattlebox {origin.version}{date}, {origin.platform}, in {amount(run.wall_time, 's', 3)}."
+    if origin.method:
+        yield f"Method: {origin.method}."
+
+
+KIND = Kind(
+    name="Run",
+    cases=_cases,
+    question=_question,
+    answer=_answer,
+    call=lambda run: Call("simulate"),
+    pictures=_pictures,
+    tables=_tables,
+    warnings=lambda run: run.notes,
+    limits=run_limits,
+    about=_about,
+)

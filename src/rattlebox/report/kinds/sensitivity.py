@@ -1,0 +1,85 @@
+"""Report about a sensitivity analysis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rattlebox.plots.sensitivity import plot_sensitivity
+from rattlebox.report import study_words as words
+from rattlebox.report.kinds.sweep import KIND as SWEEP
+from rattlebox.report.kinds.sweep import system_words
+from rattlebox.report.parts import Kind, Limit, Picture, Table
+from rattlebox.results.case_words import joined
+from rattlebox.results.quantities import amount
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def _question(study: xr.Dataset) -> str:
+    measures = joined([str(name).replace("_", " ") for name in study.measure.values])
+    return (
+        f"Which of {joined([str(path) for path in study.parameter.values])} cause the variation of {measures} of "
+        + (f"{system_words(study)}?")
+    )
+
+
+def _answer(study: xr.Dataset) -> Iterator[str]:
+    level = amount(float(study.attrs.get("confidence", 0.95)), "%")
+    for name in study.measure.values:
+        row = study.sel(measure=name)
+        order = np.argsort(-row.total.values)
+        parts = [
+            f"{row.parameter.values[k]} {row.total.values[k]:.2f} ± {row.total_confidence.values[k]:.2f}"
+            for k in order[:3]
+        ]
+        yield (
+            f"Of the variance of {str(name).replace('_', ' ')}, the total shares are {joined(parts)} ({level} "
+            "intervals); its "
+            f"mean is {amount(float(row['mean']))}."
+        )
+
+
+def _tables(study: xr.Dataset) -> Iterator[Table]:
+    rows = []
+    for name in study.measure.values:
+        for path in study.parameter.values:
+            cell = study.sel(measure=name, parameter=path)
+            first = f"{float(cell['first']):.3f} ± {float(cell.first_confidence):.3f}"
+            rows.append((str(name), str(path), first, f"{float(cell.total):.3f} ± {float(cell.total_confidence):.3f}"))
+    yield Table("Sobol indices", ("measure", "parameter", "alone", "with interactions"), rows, numbers=True)
+
+
+def _limits(study: xr.Dataset) -> Iterator[Limit]:
+    left = int(study.left_out.max()) if "left_out" in study else 0
+    yield Limit(
+        "sampling",
+        f"{study.attrs.get('n', '?')} base points, {left} left out",
+        "",
+        "Intervals are from a bootstrap over the base points. The indices hold for independent parameters within "
+        "their bounds.",
+    )
+    yield from words.study_limits(study)
+
+
+KIND = Kind(
+    name="Sensitivity",
+    cases=words.cases_of,
+    question=_question,
+    answer=_answer,
+    call=lambda study: None,
+    pictures=lambda study: [
+        Picture(
+            "Share of the variance that each parameter causes alone, and with its interactions.",
+            partial(plot_sensitivity, study, size="page"),
+        )
+    ],
+    tables=_tables,
+    warnings=SWEEP.warnings,
+    limits=_limits,
+    about=SWEEP.about,
+)

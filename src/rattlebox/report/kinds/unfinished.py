@@ -1,0 +1,72 @@
+"""Report about a run of particles that is not finished, from its checkpoint and its snapshots."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
+
+from rattlebox.model.case import Case
+from rattlebox.plots.particles import plot_particles
+from rattlebox.report.kinds.run import case_question
+from rattlebox.report.parts import Call, Kind, Picture
+from rattlebox.results.quantities import amount
+
+if TYPE_CHECKING:
+    from rattlebox.results.snapshots import Snapshots
+
+
+@dataclass(frozen=True)
+class UnfinishedRun:
+    """A run that was stopped before its end.
+
+    Attributes
+    ----------
+    case_toml
+        Text of its case.
+    time, seconds
+        Simulated time and computing time so far [s].
+    snapshots
+        Snapshots so far, if there are any.
+    """
+
+    case_toml: str
+    time: float
+    seconds: float
+    snapshots: Snapshots | None = None
+
+    @cached_property
+    def case(self) -> Case:
+        """The case."""
+        return Case.from_toml(self.case_toml)
+
+
+def _cases(run: UnfinishedRun) -> Mapping[str, Case]:
+    return {"": run.case}
+
+
+def _answer(run: UnfinishedRun) -> Iterator[str]:
+    share = amount(run.time / run.case.duration, "%", 2)
+    yield (
+        f"The run is not finished: it has reached {amount(run.time, 's')} of {amount(run.case.duration, 's')} ({share}), in "
+        f"{amount(run.seconds, 's', 3)} of computing. There are no results yet; the command that started the run resumes it."
+    )
+
+
+def _pictures(run: UnfinishedRun) -> Iterator[Picture]:
+    if run.snapshots is not None and len(run.snapshots):
+        yield Picture(
+            "The particles in the last snapshot so far.",
+            partial(plot_particles, run.snapshots, size="column", renderer="plain"),
+        )
+
+
+KIND = Kind(
+    name="Unfinished run",
+    cases=_cases,
+    question=lambda run: case_question(run.case),
+    answer=_answer,
+    call=lambda run: Call("simulate"),
+    pictures=_pictures,
+)

@@ -1,0 +1,51 @@
+"""Numbers with their 95 % intervals, as the sentences of a report write them."""
+
+from __future__ import annotations
+
+import math
+
+from rattlebox.results.quantities import MISSING, PREFIXED_UNITS, amount, digits, in_unit
+
+
+def with_interval(value: float, half: float, unit: str = "") -> str:
+    """Return a value with half of the width of its 95 % interval: "0.41 ± 0.02 mm".
+
+    Parameters
+    ----------
+    value
+        Number in SI units.
+    half
+        Half of the width; NaN for a value without interval.
+    unit
+        Its unit; "%" for a share.
+    """
+    if not (math.isfinite(value) and math.isfinite(half)):
+        return amount(value, unit)
+    divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)
+    if unit in PREFIXED_UNITS:
+        divisor, written = in_unit(value, unit, 0.1 if unit in ("m", "s") else 1.0)
+    value, half = value / divisor, abs(half) / divisor
+    # Two digits of the interval, and as many decimals of the value.
+    decimals = max(0, 1 - math.floor(math.log10(half))) if half > 0 else 4
+    if decimals > 6 or half >= 1e6:
+        return f"{digits(value)} ± {digits(half, 2)} {written}".rstrip()
+    return f"{value:.{decimals}f} ± {half:.{decimals}f} {written}".rstrip()
+
+
+def between(lower: float, upper: float, unit: str = "") -> str:
+    """Return the limits of an interval in one unit: "3.1 to 3.6 %".
+
+    Parameters
+    ----------
+    lower, upper
+        Limits in SI units.
+    unit
+        Their unit; "%" for shares.
+    """
+    if not (math.isfinite(lower) and math.isfinite(upper)):
+        return MISSING
+    divisor, written = (0.01, "%") if unit == "%" else (1.0, "" if unit == "1" else unit)
+    if unit in PREFIXED_UNITS:
+        largest = max(abs(lower), abs(upper))
+        divisor, written = in_unit(largest, unit, 0.1 if unit in ("m", "s") else 1.0)
+    return f"{amount(lower / divisor, significant=3)} to {amount(upper / divisor, significant=3)} {written}".rstrip()

@@ -1,0 +1,266 @@
+"""Content of a report, and its page in HTML."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from markupsafe import Markup, escape
+
+from rattlebox._util.exceptions import RattleboxError
+from rattlebox._util.text import printable
+from rattlebox.model.case import Case
+
+from .inputs import input_tables
+from .kinds import kind_of
+from .parts import Limit, Picture, Table
+from .reproduce import Recipe, recipe
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+GENERATOR = "Rattlebox report"
+"""Name in the page by which reports of this program are recognised."""
+
+_MAX_SVG_BYTES = 300_000
+"""Largest drawing that is embedded as SVG; larger ones become PNG."""
+_DPI = 170.0
+_MAX_CASES = 6
+"""Most cases that are drawn with their inputs."""
+
+
+class Image(NamedTuple):
+    """A figure as a data URL, "" if it cannot be drawn, with its caption."""
+
+    url: str
+    caption: str
+
+
+class Described(NamedTuple):
+    """A case with its drawing and its inputs; those that differ from another case, if its name is given."""
+
+    name: str
+    drawing: Image | None
+    tables: tuple[Table, ...]
+    other: str | None = None
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class Section:
+    """Everything that the page shows about one result.
+
+    Attributes
+    ----------
+    title
+        Name of the result.
+    kind
+        Name of its kind.
+    question, answer
+        Sentences.
+    cases
+        Cases with drawing and inputs.
+    images
+        Figures.
+    tables
+        Tables of results.
+    warnings, limits, about
+        Warnings in full, limits of the method, and origin.
+    recipe
+        How to compute the result again.
+    """
+
+    title: str
+    kind: str
+    question: str
+    answer: tuple[str, ...]
+    cases: tuple[Described, ...]
+    images: tuple[Image, ...]
+    tables: tuple[Table, ...]
+    warnings: tuple[str, ...]
+    limits: tuple[Limit, ...]
+    about: tuple[str, ...]
+    recipe: Recipe
+
+
+def section(result: Any, title: str, case: Case | None, question: str | None) -> Section:
+    """Return what the page shows about a result.
+
+    Parameters
+    ----------
+    result
+        See `write_report`.
+    title
+        Name of the result.
+    case
+        Case of a dataset that does not hold it.
+    question
+        Question in place of that of the kind.
+    """
+    kind = kind_of(result)
+    if case is not None and hasattr(result, "assign_attrs") and not isinstance(result.attrs.get("case"), str):
+        result = result.assign_attrs(case=case.to_toml())
+    problem, cases = "", {}
+    try:
+        cases = dict(kind.cases(result))
+    except RattleboxError as error:  # the dataset has no case, or a file that the case names is gone
+        problem = error.complaint
+    described: list[Described] = []
+    for name, each in list(cases.items())[:_MAX_CASES]:
+        described.append(describe(name, each, described[0] if described else None))
+    if problem:
+        described = [Described("", None, (), problem=problem)]
+    return Section(
+        title=title,
+        kind=kind.name,
+        question=question or kind.question(result),
+        answer=tuple(kind.answer(result)),
+        cases=tuple(described),
+        images=tuple(image(picture) for picture in kind.pictures(result)),
+        tables=tuple(table for table in kind.tables(result) if table.rows),
+        warnings=tuple(kind.warnings(result)),
+        limits=tuple(kind.limits(result)),
+        about=tuple(kind.about(result)),
+        recipe=recipe(cases, kind.call(result)),
+    )
+
+
+def describe(name: str, case: Case, first: Described | None = None) -> Described:
+    """Return the drawing and the inputs of a case; of a further one the inputs that differ from those of the first.
+
+    Parameters
+    ----------
+    name
+        Name of the case in the report.
+    case
+        The case.
+    first
+        The first case, if this is a further one.
+    """
+    tables = input_tables(case)
+    if first is not None:
+        known = {(table.title, tuple(row)) for table in first.tables for row in table.rows}
+        tables = [
+            table._replace(rows=[row for row in table.rows if (table.title, tuple(row)) not in known])
+            for table in tables
+        ]
+    return Described(name, None, tuple(table for table in tables if table.rows), first.name if first else None)
+
+
+def image(picture: Picture) -> Image:
+    """Return a drawn figure with its caption: SVG, or PNG if that is smaller.
+
+    Parameters
+    ----------
+    picture
+        Figure to draw.
+    """
+    try:
+        return Image(data_url(picture.draw()), picture.caption)
+    except RattleboxError as error:  # such as basins over one axis, which have no map
+        complaint = getattr(error, "complaint", str(error))
+        return Image("", f"{picture.caption} Not drawn: {complaint}.")
+
+
+def data_url(figure: Figure) -> str:
+    """Return a figure as a data URL: a small drawing as SVG, a large one or a picture as PNG.
+
+    Parameters
+    ----------
+    figure
+        The figure.
+    """
+    import matplotlib as mpl
+
+    if not any(axes.images for axes in figure.axes):
+        buffer = io.BytesIO()
+        # Text as outlines looks the same in every browser; equal reports have equal bytes.
+        with mpl.rc_context({"svg.fonttype": "path", "svg.hashsalt": "rattlebox"}):
+            mpl.figure.Figure.savefig(figure, buffer, format="svg", metadata={"Date": None})
+        if buffer.tell() <= _MAX_SVG_BYTES:
+            return f"data:image/svg+xml;base64,{base64.b64encode(buffer.getvalue()).decode()}"
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=_DPI)
+    return f"data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode()}"
+
+
+def render(sections: list[Section], title: str) -> str:
+    """Return the page as self-contained HTML.
+
+    Parameters
+    ----------
+    sections
+        Results in the order of the page.
+    title
+        Title of the page.
+    """
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    from rattlebox import __version__
+
+    environment = Environment(
+        loader=PackageLoader("rattlebox.report"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.filters["typeset"] = typeset
+    environment.filters["download"] = _download
+    return environment.get_template("report.html").render(
+        generator=GENERATOR,
+        title=title,
+        sections=sections,
+        version=__version__,
+        created=datetime.now(UTC).isoformat(" ", timespec="minutes")[:16],
+    )
+
+
+_TYPESET = (
+    (re.compile(r"(\d+(?:\.\d+)?)e([+-]?)0*(\d+)\b"), r"\1 × 10<sup>\2\3</sup>"),
+    (re.compile(r"\^(-?[\d.]*\d)"), r"<sup>\1</sup>"),
+    (re.compile(r"\+-"), "±"),
+    (re.compile(r"(?<![\w)\]./:&#-])-(?=\d)"), "−"),
+)
+
+
+def typeset(text: str) -> Markup:
+    """Return a text as HTML, with powers of ten, exponents and minus signs.
+
+    Parameters
+    ----------
+    text
+        Plain text, also from files of the user.
+    """
+    html = str(escape(printable(text)))
+    for pattern, printed in _TYPESET:
+        html = pattern.sub(printed, html)
+    return Markup(html)
+
+
+def _download(text: str) -> str:
+    """Return a text file as a data URL."""
+    return f"data:text/plain;charset=utf-8;base64,{base64.b64encode(text.encode()).decode()}"
+
+
+def sections_of(result: Any, case: Case | None = None, question: str | None = None) -> Iterator[Section]:
+    """Yield a section for each result of a mapping, or for the only one.
+
+    Parameters
+    ----------
+    result, case, question
+        See `write_report`.
+    """
+    results: Mapping[str, Any] = {"": result}
+    if isinstance(result, Mapping) and result and not hasattr(result, "data_vars"):
+        try:
+            kind_of(result)  # a mapping of damping curves is one result
+        except RattleboxError:
+            results = result
+    for name, each in results.items():
+        yield section(each, str(name), case, question)

@@ -1,0 +1,115 @@
+"""How to compute a result again: command, case file, study file and Python script."""
+
+from __future__ import annotations
+
+import pprint
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from rattlebox.model.case import Case
+
+    from .parts import Call
+
+_WIDTH = 96
+_LIST = re.compile(r"\[\n((?: +[^\[\]{}\n]+,\n)+)\]")
+
+
+class File(NamedTuple):
+    """A text file that the page contains for download.
+
+    Attributes
+    ----------
+    name
+        File name.
+    content
+        Text.
+    shown
+        Text on the page, with long lists shortened.
+    """
+
+    name: str
+    content: str
+    shown: str
+
+
+class Recipe(NamedTuple):
+    """How to compute a result again.
+
+    Attributes
+    ----------
+    commands
+        Commands for a terminal.
+    files
+        Files that they use.
+    remarks
+        What is missing.
+    """
+
+    commands: tuple[str, ...]
+    files: tuple[File, ...]
+    remarks: tuple[str, ...] = ()
+
+
+def recipe(cases: Mapping[str, Case], call: Call | None) -> Recipe:
+    """Return commands and files that compute a result again.
+
+    Parameters
+    ----------
+    cases
+        Cases of the result by name; "" for the only one.
+    call
+        Call of a function of `rattlebox` with the case; None for runs that are compared, or if it is unknown.
+    """
+    names = {name: _file_name(number, len(cases)) for number, name in enumerate(cases)}
+    files = [File(names[name], case.to_toml(), case.short_toml()) for name, case in cases.items()]
+    if call is None:
+        if len(cases) < 2:
+            return Recipe((), tuple(files), ("The call of the study is not part of its result.",) if files else ())
+        script = _comparison_script(names)
+        commands = tuple(f"rattlebox run {file} -o {file.removesuffix('.toml')}" for file in names.values())
+        return Recipe((*commands, "python script.py"), (*files, File("script.py", script, script)))
+    script = _script(call)
+    files.append(File("script.py", script, script))
+    if call.function == "simulate":
+        return Recipe(("rattlebox run case.toml -o out", "python script.py"), tuple(files))
+    more: list[str] = []
+    if call.kind and not call.remarks:
+        study = _study_file(call)
+        files.append(File("study.toml", study, study))
+        more.append("rattlebox sweep study.toml -o study")
+    return Recipe((*more, "python script.py"), tuple(files), call.remarks)
+
+
+def _file_name(number: int, count: int) -> str:
+    return "case.toml" if count == 1 else f"case_{number + 1}.toml"
+
+
+def _script(call: Call) -> str:
+    lines = ["import rattlebox as rb", "", 'case = rb.Case.from_file("case.toml")']
+    arguments = "".join(f"\n    {name}={_literal(value)}," for name, value in call.arguments.items())
+    arguments = f"\n    case,{arguments}\n" if arguments else "case"
+    lines += [*(f"# {remark}" for remark in call.remarks), f"result = rb.{call.function}({arguments})"]
+    return "\n".join([*lines, 'rb.write_report(result, "report.html")', ""])
+
+
+def _literal(value: object) -> str:
+    return pprint.pformat(value, width=_WIDTH, compact=True, sort_dicts=False).replace("\n", "\n    ")
+
+
+def _comparison_script(names: Mapping[str, str]) -> str:
+    cases = "".join(f"\n        {name!r}: rb.Case.from_file({file!r})," for name, file in names.items())
+    return (
+        f"import rattlebox as rb\n\nresult = rb.compare(\n    {{{cases}\n    }}\n)\n"
+        'rb.write_report(result, "report.html")\n'
+    )
+
+
+def _study_file(call: Call) -> str:
+    import tomli_w
+
+    text = tomli_w.dumps({"kind": call.kind, **call.arguments, "case": {"file": "case.toml"}})
+    # Lists of plain values on one line each.
+    return _LIST.sub(lambda found: "[" + ", ".join(part.strip() for part in found[1].split(",\n") if part) + "]", text)

@@ -1,0 +1,400 @@
+"""Sentences, tables and limits that the reports about all kinds of studies share."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from rattlebox._util.exceptions import RattleboxError
+from rattlebox.model.case import Case
+from rattlebox.model.errors import Hint
+from rattlebox.plots.labels import REPLICA, name_of, unit_of
+from rattlebox.report.limits import mode_limits
+from rattlebox.report.numbers import with_interval
+from rattlebox.report.parts import Limit, Table
+from rattlebox.results.case_words import counted, joined
+from rattlebox.results.quantities import MISSING, amount
+from rattlebox.results.schema import OUTCOMES
+from rattlebox.studies.measures import INTERVAL
+from rattlebox.studies.outcomes import status_counts, status_lines
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MAX_AXIS_WORDS = 4
+"""Most axes that a sentence lists with their ranges."""
+
+
+def cases_of(study: xr.Dataset) -> Mapping[str, Case]:
+    """Return the base case of a study.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+
+    Raises
+    ------
+    CaseError
+        If the dataset has no case, or a file that the case names is gone.
+    """
+    if not isinstance(study.attrs.get("case"), str):
+        raise Hint("the dataset does not hold its case", "the argument case")
+    return {"": Case.from_toml(study.attrs["case"])}
+
+
+def axes_of(study: xr.Dataset) -> list[xr.DataArray]:
+    """Return the coordinates that vary, without those of repeated runs.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    """
+    repeated = replica_dims(study)
+    return [
+        coord
+        for name, coord in study.coords.items()
+        if coord.ndim == 1 and coord.size > 1 and coord.dims[0] not in repeated and str(name) not in ("front", "trial")
+    ]
+
+
+def replica_dims(study: xr.Dataset | xr.DataArray) -> list[str]:
+    """Return the dimensions along which only the random start of the runs varies.
+
+    Parameters
+    ----------
+    study
+        Dataset or variable of a study.
+    """
+    return [str(dim) for dim in study.dims if str(dim) in (REPLICA, "packing") or str(dim).rpartition(".")[2] == "seed"]
+
+
+def axis_value(coord: xr.DataArray, value: Any) -> str:
+    """Return a value of an axis as text with its unit.
+
+    Parameters
+    ----------
+    coord
+        Coordinate of the study.
+    value
+        One of its values.
+    """
+    return amount(float(value), unit_of(coord)) if coord.dtype.kind in "fiu" else str(value)
+
+
+def axis_words(coord: xr.DataArray) -> str:
+    """Return a phrase about an axis: "damper gap (5 values from 0.2 mm to 1 mm)".
+
+    Parameters
+    ----------
+    coord
+        Coordinate of the study.
+    """
+    values = coord.values
+    if values.dtype.kind not in "fiu":
+        names = [str(each) for each in values]
+        return f"{name_of(coord)} ({', '.join(names) if len(names) <= 4 else f'{len(names)} values'})"
+    ends = f"{axis_value(coord, values.min())} to {axis_value(coord, values.max())}"
+    return f"{name_of(coord)} ({coord.size} values from {ends})"
+
+
+def axes_words(study: xr.Dataset) -> str:
+    """Return a phrase about all axes.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    """
+    axes = axes_of(study)
+    words = [axis_words(coord) for coord in axes[:_MAX_AXIS_WORDS]]
+    if len(axes) > _MAX_AXIS_WORDS:
+        words.append(f"{len(axes) - _MAX_AXIS_WORDS} further parameters")
+    return joined(words) if words else "its parameters"
+
+
+def measures_of(study: xr.Dataset) -> list[str]:
+    """Return the measures of a study: numbers over its axes, without intervals and statuses.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    """
+    over = set(study["status"].dims) if "status" in study else None
+    return [
+        str(name)
+        for name, values in study.data_vars.items()
+        if name not in OUTCOMES
+        and not str(name).endswith((INTERVAL, "_error"))
+        and values.dtype.kind in "fiu"
+        and values.ndim
+        and (over is None or set(values.dims) <= over)
+    ]
+
+
+class Estimate(NamedTuple):
+    """A measure and half of the width of its 95 % interval (NaN where it is unknown), over the axes of a study."""
+
+    value: xr.DataArray
+    half: xr.DataArray
+
+
+def estimate(study: xr.Dataset, name: str) -> Estimate:
+    """Return a measure with its 95 % interval.
+
+    Repeated runs are averaged; the interval of their mean is that of Student. Otherwise it is the one of the time average in
+    the run, by batch means.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    name
+        Name of the measure.
+    """
+    values = study[name].astype(float)
+    values = values.where(np.isfinite(values))
+    if repeated := replica_dims(values):
+        from scipy.special import stdtrit
+
+        known: Any = values.count(repeated)
+        freedom = np.maximum(known - 1, 1)
+        half: Any = stdtrit(freedom, 0.975) * values.std(repeated, ddof=0) * np.sqrt(1 / freedom)
+        return Estimate(values.mean(repeated), half.where(known > 1))
+    half = study.get(f"{name}{INTERVAL}")
+    return Estimate(values, values * math.nan if half is None else half)
+
+
+def place_words(study: xr.Dataset, values: xr.DataArray, index: int) -> str:
+    """Return the values of the axes at one place of a variable: "damper gap 0.4 mm, load amplitude 1 kN".
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    values
+        Variable over some of its axes.
+    index
+        Number of the place in C order.
+    """
+    place = dict(zip(values.dims, np.unravel_index(index, values.shape), strict=True)) if values.ndim else {}
+    words = []
+    for coord in axes_of(study):
+        if coord.dims[0] in place:
+            words.append(f"{name_of(coord)} {axis_value(coord, coord.values[place[coord.dims[0]]])}")
+    return ", ".join(words)
+
+
+def extremes(study: xr.Dataset, name: str) -> str:
+    """Return a sentence about the largest and the smallest value of a measure; empty if it has none.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    name
+        Name of the measure.
+    """
+    values, half = estimate(study, name)
+    numbers, halves = values.values.ravel(), np.broadcast_to(half.values, values.shape).ravel()
+    if not np.isfinite(numbers).any():
+        return ""
+    unit, words = unit_of(study[name]), capitalised(name_of(study[name]))
+    high, low = int(np.nanargmax(numbers)), int(np.nanargmin(numbers))
+    if numbers[high] == numbers[low]:
+        return f"{words}: {amount(float(numbers[high]), unit)} everywhere."
+
+    def at(index: int) -> str:
+        where = place_words(study, values, index)
+        return with_interval(float(numbers[index]), float(halves[index]), unit) + (f" at {where}" if where else "")
+
+    return f"{words}: at most {at(high)}; at least {at(low)}."
+
+
+def capitalised(text: str) -> str:
+    """Return a text with a capital letter at its begin.
+
+    Parameters
+    ----------
+    text
+        Any text.
+    """
+    return text[:1].upper() + text[1:]
+
+
+def progress_sentence(study: xr.Dataset) -> str:
+    """Return a sentence about the variants that are not computed; empty if the study is complete.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    """
+    if "status" not in study:
+        return ""
+    total = study["status"].size
+    done = sum(status_counts(study).values())
+    if done == total:
+        return ""
+    share = amount(done / total, "%", 2)
+    return (
+        f"The study is not finished: {done:,} of {total:,} variants ({share}) are computed, and this report is about "
+        "these. The command that started it resumes it."
+    )
+
+
+def study_warnings(study: xr.Dataset) -> list[str]:
+    """Return the warnings of a study in full: statuses other than finished, refusals, exceeded limits.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    """
+    counts = status_counts(study)
+    lines = [line for line in status_lines(study) if line.startswith(("warning", "refused"))]
+    failed = {name: count for name, count in counts.items() if name != "finished"}
+    if failed:
+        what = ", ".join(f"{count:,} {name.replace('_', ' ')}" for name, count in failed.items())
+        lines.insert(0, f"{sum(failed.values()):,} of {sum(counts.values()):,} runs have no result: {what}")
+    given = study.attrs.get("warnings", [])
+    return lines + ([given] if isinstance(given, str) and given else [str(each) for each in given])
+
+
+def study_limits(study: xr.Dataset) -> Iterator[Limit]:
+    """Yield the limits that all studies share.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    """
+    try:
+        case = next(iter(cases_of(study).values()))
+    except RattleboxError:
+        case = None
+    if "energy_residual" in study:
+        worst = float(np.nanmax(study.energy_residual.values))
+        yield Limit(
+            "energy balance", f"{worst:.1e}, largest of all runs", "see the page", "Runs beyond it have no results."
+        )
+    if case is not None:
+        yield from mode_limits(case)
+        soft = [damper.softening for damper in case.particle_dampers if damper.softening != 1]
+        if soft:
+            yield Limit(
+                "softening of contacts",
+                ", ".join(str(each) if isinstance(each, str) else f"{each:g}" for each in soft),
+                "0.2 m V²",
+                "Moduli of contacts are divided by this factor, which changes the loss of beds that rest under their "
+                "weight; rb.check_softening compares.",
+            )
+    cycles = option_of(study, "cycles")
+    if isinstance(cycles, list) and len(cycles) == 2:
+        yield Limit(
+            "steady motion",
+            f"{cycles[1]} cycles after {cycles[0]}",
+            "",
+            "Cycles that are skipped are the transient. A motion that is not steady after them counts as steady: "
+            "compare with "
+            "more cycles.",
+        )
+    if repeated := replica_dims(study):
+        count = math.prod(study.sizes[dim] for dim in repeated)
+        yield Limit(
+            "statistical error",
+            f"{count} random starts",
+            "",
+            "Intervals are those of the mean over the random starts (Student, 95 %).",
+        )
+    elif case is None or case.dampers:
+        has_intervals = any(str(name).endswith(INTERVAL) for name in study.data_vars)
+        what = "Intervals are those of time averages in one run (batch means, 95 %); o" if has_intervals else "O"
+        yield Limit(
+            "statistical error",
+            "1 run of each variant",
+            "",
+            f"{what}ther starts or packings may scatter more, since motion with impacts depends on the smallest change: add "
+            "seeds of packings, or replicas, as an axis.",
+        )
+
+
+def option_of(study: xr.Dataset, name: str) -> Any:
+    """Return an option of a study from the attributes of its dataset, None if it is not there.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    name
+        Name of the attribute: a value, or its JSON.
+    """
+    value = study.attrs.get(name)
+    if isinstance(value, str):
+        with suppress(ValueError):  # a name, not JSON
+            value = json.loads(value)
+    return value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def measure_table(study: xr.Dataset, names: Sequence[str]) -> Table:
+    """Return a table of the smallest and largest value of each measure.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    names
+        Names of the measures.
+    """
+    rows = []
+    for name in names:
+        values, _ = estimate(study, name)
+        numbers, unit = values.values, unit_of(study[name])
+        known = numbers[np.isfinite(numbers)]
+        ends = [amount(float(end), unit) for end in (known.min(), known.max())] if known.size else [MISSING, MISSING]
+        rows.append((name_of(study[name]), *ends, f"{known.size:,}"))
+    return Table("Results", ("measure", "smallest", "largest", "values"), rows, numbers=True)
+
+
+def axis_table(study: xr.Dataset) -> Table:
+    """Return a table of the axes of a study.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    """
+    rows = []
+    repeated = replica_dims(study)
+    for name, coord in study.coords.items():
+        if coord.ndim != 1 or str(name) in ("front", "trial"):
+            continue
+        values = coord.values
+        if values.dtype.kind in "fiu":
+            text = f"{axis_value(coord, values.min())} to {axis_value(coord, values.max())}" if values.size else MISSING
+        else:
+            text = ", ".join(map(str, values[:6])) + (" ..." if values.size > 6 else "")
+        kind = "random start" if coord.dims[0] in repeated else name_of(coord)
+        rows.append((str(name), kind, text, counted(coord.size, "value")))
+    return Table("What varies", ("axis", "meaning", "range", "number"), rows)
+
+
+def study_about(study: xr.Dataset) -> Iterator[str]:
+    """Yield the version that computed a study, and when.
+
+    Parameters
+    ----------
+    study
+        Dataset of a study.
+    """
+    attrs = study.attrs
+    if "version" in attrs:
+        created = f", started on {str(attrs['created'])[:16].replace('T', ' ')} UTC" if "created" in attrs else ""
+        yield f"Computed by Rattlebox {attrs['version']}{created}."

@@ -1,0 +1,139 @@
+"""Write a report to a file."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rattlebox._util.atomic_io import atomic_write, check_suffix, require_folder
+from rattlebox._util.exceptions import DataError
+
+if TYPE_CHECKING:
+    from rattlebox.model.case import Case
+
+_SUFFIXES = (".html", ".htm")
+_MARK = re.compile(rb"\n<!-- Rattlebox report, SHA-256 of the text above: ([0-9a-f]{64}) -->\n$")
+
+
+def write_report(
+    result: Any,
+    path: str | os.PathLike[str],
+    *,
+    title: str | None = None,
+    question: str | None = None,
+    case: Case | None = None,
+) -> Path:
+    """Write a report about a result: one HTML page, without other files, that prints on A4.
+
+    The page has the question and its answer with 95 % intervals, a drawing of the case to scale, a table of the inputs with
+    units, the figures, all warnings, the limits of the method, and what is needed to compute the result again.
+
+    Parameters
+    ----------
+    result
+        A run, the result of `rb.compare`, the dataset of a study (`rb.sweep`, `rb.frequency_response`, `rb.loss_map`,
+        `rb.damping_curve`, `rb.design`, ..., or `rb.open_study`, also of an unfinished study), or a mapping of several of
+        them by name. Runs in a mapping, and damping curves in a mapping, are compared with each other.
+    path
+        File to write, .html. An earlier report is replaced; any other file, and a report that was edited, is not.
+    title
+        Title of the page; default the name of the case, or the kind of the result.
+    question
+        Question that the result answers, in place of the one that follows from its kind.
+    case
+        Case of a dataset that does not hold it, such as a loss map from another file.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    CaseError
+        If there is no report about the result.
+    DataError
+        If the file exists and is not a report of Rattlebox or has changed since, or cannot be written.
+    ResourceError
+        If no space is left on the disk.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> run = rb.simulate(rb.reference_case(duration=0.1))
+    >>> path = rb.write_report(run, "report.html")  # doctest: +SKIP
+    """
+    path = Path(path)
+    if path.suffix.lower() not in _SUFFIXES:
+        check_suffix(path, ".html")
+        raise DataError(f"{path}: a report is an HTML file", str(path.with_suffix(".html")))
+    require_folder(path)
+    check_replaceable(path)
+    # Drawing and rendering take longer than the checks above.
+    from .page import render, sections_of
+
+    sections = list(sections_of(_compared(result), case, question))
+    content = render(sections, title or _title(result, sections)).encode()
+    with atomic_write(path, "make room and write the report again") as name:
+        name.write_bytes(content + _mark(content))
+    return path
+
+
+def check_replaceable(path: Path) -> None:
+    """Raise if a file exists that is not an unchanged report.
+
+    Parameters
+    ----------
+    path
+        File to be written.
+
+    Raises
+    ------
+    DataError
+        If there is such a file.
+    """
+    if not os.path.lexists(path):
+        return
+    if path.is_file():
+        content = path.read_bytes()
+        found = _MARK.search(content)
+        if found and hashlib.sha256(content[: found.start()]).hexdigest().encode() == found[1]:
+            return
+        if found:
+            raise DataError(
+                f"{path} is a report that has changed since it was written, and is not overwritten", "another name"
+            )
+    raise DataError(
+        f"{path} exists and is not a report of Rattlebox, and is not overwritten", "another name, or move it"
+    )
+
+
+def _mark(content: bytes) -> bytes:
+    digest = hashlib.sha256(content).hexdigest()
+    return f"\n<!-- Rattlebox report, SHA-256 of the text above: {digest} -->\n".encode()
+
+
+def _compared(result: Any) -> Any:
+    """Return a mapping of runs as their comparison, and other results unchanged."""
+    from rattlebox.results.run import Run
+    from rattlebox.results.summary import Comparison
+
+    if isinstance(result, Mapping) and result and all(isinstance(each, Run) for each in result.values()):
+        return Comparison({str(name): run for name, run in result.items()})
+    return result
+
+
+def _title(result: Any, sections: list[Any]) -> str:
+    name = ""
+    source = getattr(result, "source", None)
+    if source is not None and not isinstance(source, str):
+        name = source.name
+    elif len(sections) == 1 and hasattr(result, "case_toml"):
+        import tomllib
+
+        name = str(tomllib.loads(result.case_toml).get("name", ""))
+    return name or (sections[0].kind if len(sections) == 1 else "Report")

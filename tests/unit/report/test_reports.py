@@ -1,0 +1,303 @@
+"""Tests of reports: content for each kind of result, pages that need nothing else, escaping, files that exist."""
+
+from __future__ import annotations
+
+import base64
+import os
+import re
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rattlebox as rb
+from rattlebox.report.page import typeset
+
+HOSTILE = '<script>alert("1")</script> & <b>'
+"""A name that would run or change the page if it were not escaped."""
+
+
+class Page(HTMLParser):
+    """Elements, links and text of a page; raises if an element is not closed."""
+
+    EMPTY = ("meta", "img", "br", "link")
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.source = path.read_text(encoding="utf-8")
+        self.tags: list[str] = []
+        self.links: list[str] = []
+        self.downloads: dict[str, str] = {}
+        self.text = ""
+        self._open: list[str] = []
+        self.feed(self.source)
+        self.close()
+        assert self._open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Collect an element and its links."""
+        self.tags.append(tag)
+        values = {name: value or "" for name, value in attrs}
+        self.links += [values[name] for name in ("src", "href") if name in values]
+        if "download" in values:
+            self.downloads[values["download"]] = base64.b64decode(values["href"].partition(",")[2]).decode()
+        if tag not in self.EMPTY:
+            self._open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        """Check that elements are nested."""
+        assert self._open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        """Collect text."""
+        self.text += data
+
+
+def case(**changes: Any) -> rb.Case:
+    """Return a case with one ball."""
+    parts: dict[str, Any] = {
+        "structure": rb.SDOF(mass="1 kg", stiffness="40 kN/m", damping_ratio=0.01),
+        "damper": rb.ImpactDamper(
+            ball=rb.Sphere(radius="14 mm", material="steel"), gap="1 mm", contact=rb.Tsuji(restitution=0.6)
+        ),
+        "load": rb.Harmonic(amplitude="10 N", frequency="30 Hz"),
+        "duration": "0.5 s",
+    }
+    return rb.Case(**{**parts, **changes})
+
+
+def on_shaker() -> rb.Case:
+    """Return a case of a ball on a shaker with hard impacts."""
+    return case(
+        structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="10 Hz")), load=(), method=rb.Newton()
+    )
+
+
+def free() -> rb.Case:
+    """Return a case in free vibration."""
+    structure = rb.SDOF(mass="3 kg", frequency="50 Hz", damping_ratio=0.01, velocity="0.2 m/s")
+    return case(structure=structure, load=(), duration="2 s")
+
+
+def particles() -> rb.Case:
+    """Return a case of eight particles in a cylinder."""
+    damper = rb.ParticleDamper(
+        particles=rb.Particles(material="glass", diameter="4 mm", count=8),
+        cavity=rb.Cylinder(diameter="12 mm", length="12 mm"),
+        contact=rb.Tsuji(restitution=0.8),
+        friction=0.2,
+        softening=1e4,
+    )
+    return case(damper=damper, duration="0.05 s", output=rb.Output(rate="1 kHz"))
+
+
+@cache
+def result_of(name: str) -> Any:
+    """Return a small result of a kind."""
+    quiet = {"progress": False}
+    return {
+        "run": lambda: rb.simulate(case()),
+        "free run": lambda: rb.simulate(free()),
+        "particles": lambda: rb.simulate(particles()),
+        "comparison": lambda: rb.compare({"bare": case(damper=()), "ball": case()}, **quiet),
+        "runs": lambda: {"a": rb.simulate(case(damper=())), "b": rb.simulate(case())},
+        "sweep": lambda: rb.sweep(
+            case(), {"damper.gap": ["0.5 mm", "1 mm"], "load.amplitude": [5, 10, 20]}, ["rms", "impacts"], **quiet
+        ),
+        "frequency_response": lambda: rb.frequency_response(case(), [28, 30, 32], cycles=(20, 10), **quiet),
+        "bifurcation": lambda: rb.bifurcation(case(), "load.amplitude", [5, 10], cycles=(20, 8), **quiet),
+        "basins": lambda: rb.basins(on_shaker(), {"damper.start": rb.linspace(-1, 1, 3)}, cycles=(20, 8), **quiet),
+        "lyapunov": lambda: rb.lyapunov(case(), {"load.amplitude": [5, 10]}, cycles=(20, 20), **quiet),
+        "loss_map": lambda: rb.loss_map(on_shaker(), [1e-3, 2e-3], [10.0, 20.0], **quiet),
+        "damping_curve": lambda: rb.damping_curve(free(), ["0.2 mm", "0.4 mm"], packings=4, **quiet),
+        "damping curves": lambda: dict.fromkeys(("a", "b"), result_of("damping_curve")),
+        "design": lambda: rb.design(case(), {"damper.gap": ("0.5 mm", "2 mm")}, "rms", trials=3, **quiet),
+        "sensitivity": lambda: rb.sensitivity(
+            case(duration="0.1 s"), {"damper.gap": ("0.5 mm", "2 mm"), "load.amplitude": (5.0, 10.0)}, "rms", 8, **quiet
+        ),
+        "several": lambda: {"the run": result_of("run"), "the curve": result_of("damping_curve")},
+    }[name]()
+
+
+KINDS = {
+    "run": "How does an oscillator of 1 kg at 31.83 Hz with a steel ball of 90.23 g",
+    "free run": "vibrate freely within 2 s?",
+    "particles": "8 glass balls of 4 mm",
+    "comparison": "How do the variants “bare” and “ball” of an oscillator of 1 kg",
+    "runs": "How do the variants “a” and “b”",
+    "sweep": "How do the RMS displacement and impacts of an oscillator",
+    "frequency_response": "Which steady motion has an oscillator",
+    "bifurcation": "Which steady motions has an oscillator",
+    "basins": "To which steady motion of a shaker",
+    "lyapunov": "Is the motion of an oscillator",
+    "loss_map": "How much energy does a steel ball",
+    "damping_curve": "Which damping ratio has mode 1 (50 Hz)",
+    "damping curves": "of an oscillator of 3 kg at 50 Hz with a and b",
+    "design": "Which damper gap give the smallest RMS displacement",
+    "sensitivity": "Which of damper.gap and load.amplitude cause the variation of rms",
+    "several": "Which damping ratio has mode 1 (50 Hz)",
+}
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_report_of_each_kind_is_complete_and_needs_nothing_else(name: str, tmp_path: Path) -> None:
+    """A report has all parts, figures with captions, and neither scripts nor links to other files."""
+    path = rb.write_report(result_of(name), tmp_path / "report.html")
+    page = Page(path)
+    assert KINDS[name] in page.text
+    for heading in ("Case", "Inputs", "Results", "Warnings and notes", "Limits of the method", "How to reproduce"):
+        assert heading in page.text
+    assert not {"script", "link", "iframe", "object"} & set(page.tags)
+    assert all(link.startswith("data:") for link in page.links)
+    assert "url(" not in page.source
+    assert (
+        page.tags.count("figcaption") == page.tags.count("img") >= 1 or "Not drawn: the starts vary along" in page.text
+    )
+    assert "nan" not in re.sub(r"[A-Za-z]+nan|nan[A-Za-z]+", "", page.text)
+    assert path.stat().st_size < 2_000_000
+
+
+@pytest.mark.parametrize("name", ["run", "comparison", "sweep", "frequency_response", "loss_map", "damping_curve"])
+def test_files_of_a_report_compute_the_result_again(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The case file and the script of a report, in an empty folder, compute an equal result."""
+    result = result_of(name)
+    page = Page(rb.write_report(result, tmp_path / "first.html"))
+    monkeypatch.chdir(tmp_path)
+    for file, content in page.downloads.items():
+        Path(file).write_text(content, encoding="utf-8")
+    names: dict[str, Any] = {}
+    exec(page.downloads["script.py"], names)
+    again = names["result"]
+    if name == "run":
+        assert again == result
+    elif name == "comparison":
+        assert again.runs == result.runs
+    else:
+        assert again.equals(result)
+    assert Path("report.html").is_file()
+    if "study.toml" in page.downloads:
+        from rattlebox.studies.study_file import read_study
+
+        assert read_study("study.toml").run(progress=False).equals(result)
+
+
+def test_numbers_of_the_answer_are_those_of_the_result(tmp_path: Path) -> None:
+    """The answer of a damping curve has the largest ratio with its interval, that of a run the peak."""
+    curve = result_of("damping_curve")
+    text = Page(rb.write_report(curve, tmp_path / "a.html")).text
+    best = int(np.argmax(curve.damping_ratio.values))
+    lower, ratio, upper = (f"{100 * float(curve[name][best]):.3g}" for name in ("lower", "damping_ratio", "upper"))
+    assert f"{ratio} % (95 % interval {lower} to {upper} %)" in text
+    run = result_of("run")
+    peak = float(np.abs(run.motion.displacement).max())
+    assert (
+        f"The peak displacement of mass is {1e3 * peak:.3f} mm" in Page(rb.write_report(run, tmp_path / "b.html")).text
+    )
+
+
+def test_warnings_are_complete(tmp_path: Path) -> None:
+    """Each note of a run is in its report, and limits have the values of the run."""
+    run = result_of("particles")
+    assert any("warning" in note for note in run.notes)
+    page = Page(rb.write_report(run, tmp_path / "report.html"))
+    for note in run.notes:
+        assert str(typeset(note)) in page.source
+    assert f"{100 * run.diagnostics['largest_overlap']:.3g} % of the radius" in page.text
+
+
+def test_user_texts_are_escaped(tmp_path: Path) -> None:
+    """Names with markup appear as text, in the page and in its drawings."""
+    named = case(
+        name=HOSTILE,
+        structure=rb.Modal(frequencies=[30], damping_ratio=0.01, shapes={HOSTILE: [1.0]}),
+        damper=case().dampers[0].model_copy(update={"name": f"{HOSTILE} $x$ $"}),
+    )
+    run = rb.simulate(named)
+    path = rb.write_report({HOSTILE: run, "'": run}, tmp_path / "report.html", title=HOSTILE, question=HOSTILE)
+    page = Page(path)
+    assert "script" not in page.tags and "b" not in page.tags
+    assert page.text.count('<script>alert("1")</script>') >= 4
+    for link in page.links:
+        if link.startswith("data:image/svg"):
+            assert b"<script>" not in base64.b64decode(link.partition(",")[2])
+    assert (
+        f"name = '{HOSTILE}'" in page.downloads["case_1.toml"]
+        or HOSTILE.replace('"', '\\"') in page.downloads["case_1.toml"]
+    )
+
+
+def test_control_characters_do_not_reach_the_page(tmp_path: Path) -> None:
+    """Control characters of a question are replaced."""
+    page = Page(rb.write_report(result_of("run"), tmp_path / "report.html", question="a\x00\x1b[31mb"))
+    assert "\x1b" not in page.source and "a??[31mb" in page.text
+
+
+def test_only_unchanged_reports_are_replaced(tmp_path: Path) -> None:
+    """A report replaces an earlier one; files of others and edited reports stay as they are."""
+    path, run = tmp_path / "report.html", result_of("run")
+    run.report(path)
+    run.report(path, title="again")
+    assert "again" in Page(path).text
+    edited = path.read_bytes().replace(b"again", b"mine ")
+    for content, words in ((b"<html>", "is not a report"), (edited, "has changed"), (b"", "is not a report")):
+        path.write_bytes(content)
+        with pytest.raises(rb.DataError, match=words):
+            run.report(path)
+        assert path.read_bytes() == content
+    folder = tmp_path / "folder.html"
+    folder.mkdir()
+    with pytest.raises(rb.DataError, match="is not a report"):
+        run.report(folder)
+    target = tmp_path / "elsewhere.txt"
+    target.write_text("mine")
+    (tmp_path / "link.html").symlink_to(target)
+    with pytest.raises(rb.DataError, match="is not a report"):
+        run.report(tmp_path / "link.html")
+    assert target.read_text() == "mine"
+    assert sorted(os.listdir(tmp_path)) == ["elsewhere.txt", "folder.html", "link.html", "report.html"]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("report.pdf", "HTML"), ("run.nc", "run.save"), ("missing/report.html", "no folder")],
+)
+def test_bad_names_are_refused(name: str, words: str, tmp_path: Path) -> None:
+    """The name of another kind of file, or in a missing folder, is an error before anything is drawn."""
+    with pytest.raises(rb.DataError, match=words):
+        result_of("run").report(tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("result", [3, "out", {}, {"a": 3}, [1]])
+def test_other_objects_have_no_report(result: Any, tmp_path: Path) -> None:
+    """What is not a result is an error that lists what is."""
+    with pytest.raises(rb.CaseError, match=r"rb\.compare"):
+        rb.write_report(result, tmp_path / "report.html")
+
+
+def test_dataset_without_its_case(tmp_path: Path) -> None:
+    """A dataset that does not hold its case is reported without drawing; the case can be given."""
+    curve = result_of("damping_curve").copy()
+    del curve.attrs["case"]
+    assert "No drawing and no table of inputs" in Page(rb.write_report(curve, tmp_path / "a.html")).text
+    assert "natural frequencies" in Page(rb.write_report(curve, tmp_path / "b.html", case=free())).text
+
+
+def test_run_whose_case_names_a_missing_file(tmp_path: Path) -> None:
+    """A run whose case can no longer be read has a report, which states that."""
+    record = tmp_path / "pulse.csv"
+    record.write_text("t (s),F (N)\n0,0\n0.01,5\n0.02,0\n1,0\n")
+    rb.simulate(case(load=rb.Record(file=str(record)))).save(tmp_path / "run.nc")
+    record.unlink()
+    page = Page(rb.load(tmp_path / "run.nc").report(tmp_path / "report.html"))
+    assert "No drawing and no table of inputs" in page.text and "pulse.csv" in page.text
+    assert "The peak displacement of mass is" in page.text
+
+
+def test_unknown_studies_are_reported_as_sweeps(tmp_path: Path) -> None:
+    """A dataset of a kind without a report of its own has one with its measures."""
+    study = result_of("sweep").assign_attrs(study="new_kind")
+    assert "RMS displacement: at most" in Page(rb.write_report(study, tmp_path / "report.html")).text
