@@ -139,6 +139,48 @@ def shaken_cavity(run: Run, *, frequency: float, damper: str | None = None, afte
     )
 
 
+def force_harmonics(
+    times: FloatArray, momentum: FloatArray, frequency: float, count: int
+) -> tuple[FloatArray, FloatArray]:
+    """Compute the harmonics of the force on the particles, and how much the first one varies from cycle to cycle.
+
+    Parameters
+    ----------
+    times : (T,) float
+        Evenly spaced times that span whole cycles [s].
+    momentum : (..., T) float
+        Momentum of the particles along the motion of the cavity [kg m/s].
+    frequency
+        Frequency of the motion [Hz].
+    count
+        Largest number of a harmonic.
+
+    Returns
+    -------
+    harmonics : (..., count - 1) float
+        Amplitudes of the harmonics 2 to `count` [N]; NaN with fewer than three samples in a cycle of the harmonic.
+    variation : (...) float
+        Root mean square of the difference between the complex amplitude of the first harmonic in one cycle and its mean [N].
+
+    Notes
+    -----
+    Like in `shaken_cavity`, a sampling step has the mean force of the change of momentum over it.
+    """
+    step = float(times[-1] - times[0]) / (times.size - 1)
+    turns = frequency * (0.5 * (times[1:] + times[:-1]) - times[0])
+    cycles = max(1, round(frequency * float(times[-1] - times[0])))
+    change = 2 * frequency * np.diff(momentum, axis=-1)
+    harmonics = np.full((*momentum.shape[:-1], count - 1), np.nan)
+    for n in range(2, min(count, int(1 / (3 * frequency * step) + 1e-6)) + 1):
+        part = change @ np.exp(-2j * np.pi * n * turns)
+        harmonics[..., n - 2] = np.abs(part) / (cycles * np.sinc(n * frequency * step))
+    cycle = np.minimum(turns.astype(int), cycles - 1)
+    first = change * np.exp(-2j * np.pi * turns) / np.sinc(frequency * step)
+    each = np.add.reduceat(first, np.flatnonzero(np.diff(cycle, prepend=-1)), axis=-1)
+    variation = np.sqrt(np.mean(np.abs(each - each.mean(axis=-1, keepdims=True)) ** 2, axis=-1))
+    return harmonics, np.asarray(variation)
+
+
 def _losses(run: Run, damper: int) -> FloatArray:
     """Return the energy lost in the contacts of a damper, (T,) [J]."""
     arrays = run.arrays

@@ -157,13 +157,17 @@ class ImpactWork(CaseWork):
                 continue
             values = run_block(part.packed, part.shape, first, last, output, threads=threads, progress=proceed)
             if values is not None:
-                values = with_intervals(values, output)
+                values = self.reduced(with_intervals(values, output), first, last)
             if values is None or numbers is None:
                 return values
             for name, array in values.items():
                 column = found.setdefault(name, np.empty((stop - start, *array.shape[1:]), array.dtype))
                 column[numbers[first:last] - start] = array
         return found
+
+    def reduced(self, values: dict[str, NDArray[Any]], start: int, stop: int) -> dict[str, NDArray[Any]]:
+        """Return the outputs of variants start to stop from those of the core; subclasses reduce motions to numbers."""
+        return values
 
     def validate(self) -> None:
         """Raise if a variant is not valid, before anything runs.

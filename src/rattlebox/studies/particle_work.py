@@ -244,31 +244,32 @@ class ParticleWork(CaseWork):
             rows[index] = self.row(case, run, index)
         return self.columns(rows, start, stop)
 
-    def row(self, case: Case, run: Run, index: int) -> dict[str, float]:
+    def row(self, case: Case, run: Run, index: int) -> dict[str, Any]:
         """Return the outputs of one variant by name."""
         exceeded = exceeded_limits(run.diagnostics)
-        row: dict[str, float] = {
+        row: dict[str, Any] = {
             "status": Status[run.status],
             "warnings": sum(2**bit for bit, name in enumerate(WARNINGS) if name in exceeded),
         }
         if run.status == "energy_error" and "energy_residual" in self.measure_names:
-            row["energy_residual"] = self._window(run, case).value("energy_residual")
+            row["energy_residual"] = self.window(run, case).value("energy_residual")
         if run.ok:
-            window = self._window(run, case)
+            window = self.window(run, case)
             row |= {name: window.value(name) for name in self.measure_names}
             row |= self._intervals(run, case, row)
             row |= self.call_functions(run, index)
         return row
 
-    def columns(self, rows: Mapping[int, Mapping[str, float]], start: int, stop: int) -> Values:
+    def columns(self, rows: Mapping[int, Mapping[str, Any]], start: int, stop: int) -> Values:
         """Return each output of a range of variants; those without a row have the status "refused"."""
+        missing = {"status": Status.refused, "warnings": 0}
 
-        def column(name: str, missing: float, kind: str) -> NDArray[Any]:
-            return np.array([rows.get(index, {}).get(name, missing) for index in range(start, stop)], kind)
+        def column(name: str) -> NDArray[Any]:
+            extra, kind, _ = self.outputs[name]
+            empty = np.full([length for _, length in extra], missing.get(name, np.nan))
+            return np.array([rows.get(index, {}).get(name, empty) for index in range(start, stop)], kind)
 
-        names = (*self.measure_names, *(name + INTERVAL for name in self.averages), *self.functions)
-        values = {name: column(name, np.nan, "float64") for name in names}
-        return {"status": column("status", Status.refused, "int8"), "warnings": column("warnings", 0, "int8"), **values}
+        return {name: column(name) for name in self.outputs}
 
     def refusal_reason(self, index: int) -> str:
         """Return the reason why a variant cannot run; "" if it can."""
@@ -323,7 +324,7 @@ class ParticleWork(CaseWork):
             return {}
         limits = _batch_limits(self._start(case), float(run.arrays.time[-1]), _frequency(case), run.arrays.time)
         lengths = np.diff(limits)[None]
-        parts = [self._window(cut_after(run, end), case, start) for start, end in pairwise(limits)]
+        parts = [self.window(cut_after(run, end), case, start) for start, end in pairwise(limits)]
         return {
             name + INTERVAL: float(
                 interval_of(name, [row[name]], np.array([[part.value(name) for part in parts]]), lengths)[0]
@@ -335,7 +336,8 @@ class ParticleWork(CaseWork):
         """Return the start of the window [s]."""
         return self.skip if self.cycles is None else self.cycles[0] / _frequency(case)
 
-    def _window(self, run: Run, case: Case, start: float | None = None) -> Window:
+    def window(self, run: Run, case: Case, start: float | None = None) -> Window:
+        """Return the part of the run of a variant over which measures are evaluated, or the part from `start` [s] on."""
         frequency = _frequency(case)
         start = self._start(case) if start is None else start
         part = cut_before(run, start)

@@ -5,43 +5,27 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rattlebox._util.exceptions import DataError, RattleboxError
-from rattlebox.analysis.describing_function import MassTable, Solutions, damping_of_modes, solve
+from rattlebox.analysis.describing_function import MassTable
 from rattlebox.model.case import Case
 from rattlebox.model.errors import Hint
 from rattlebox.model.modes import ModalModel
-from rattlebox.model.particle_case import direction_of_base
 from rattlebox.model.space import Triple, unit_vector
 from rattlebox.model.structures import StructurePart
 from rattlebox.model.units import parse, whole_number
-from rattlebox.studies.sampling import Spaced
-from rattlebox.studies.stored import open_study
+
+from .loss_table import LossTable
+from .map_response import FLAGS, MapResponse, Transfer
+from .sampling import Spaced
 
 if TYPE_CHECKING:
     import xarray
 
 FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
-
-AMPLITUDE, FREQUENCY = "structure.motion.amplitude", "structure.motion.frequency"
-"""Axes of a loss map."""
-
-FLAGS = {
-    "several_solutions": "several steady motions coexist",
-    "below_map": "a motion of a damper is below the amplitudes of the map",
-    "above_map": "a motion of a damper is above the amplitudes of the map",
-    "outside_frequencies": "the frequency is outside of the map",
-    "not_found": "a motion was not found, because runs of the map failed or the search did",
-    "map_warning": "runs of the map next to the motion exceeded a validity limit",
-}
-"""Names of flags and their meaning."""
 
 _AT_MODES = 201
 _BETWEEN = 200
@@ -100,7 +84,8 @@ def response_from_map(
         `solutions`, and `interpolation_error`, the relative change of the largest amplitude if every second amplitude or
         frequency of the map is omitted. Also over `solution`, the largest motion of the dampers first: `amplitude` [m] and
         `phase` [rad] of the observed point relative to the base, amplitude sin(2 pi f t + phase of the load + phase);
-        `cavity_amplitude`, the largest of the dampers, in the unit of the map; `is_unstable` between two folds. Over
+        `cavity_amplitude`, the largest of the dampers, in the unit of the map; `first_harmonic_share` of the mean square
+        velocity of the dampers, an estimate, flagged below 0.95; `is_unstable` between two folds. Over
         level and frequency: `bare_amplitude` without dampers. Over `at`, `number` and `level`: `peak` [m], the largest
         amplitude, and `peak_frequency`; NaN if the response may be larger where the map does not cover it. Over `at`,
         `number`, `mode` and `map_amplitude`, that of the damper with the largest motion: `damping_ratio` and
@@ -136,7 +121,7 @@ def response_from_map(
     >>> response.peak.dims
     ('at', 'number', 'level')
     """
-    table = _Map.read(loss_map)
+    table = LossTable.read(loss_map)
     model = _modes(structure)
     levels, unit = _levels(level)
     numbers = [whole_number(each, "number", 1) for each in _listed(number)]
@@ -144,12 +129,23 @@ def response_from_map(
     dampers = _Dampers(model, tuple(dict.fromkeys(name for place in places for name in place)), table, direction)
     load = _Load.of(model, unit, load_point, load_direction, dampers)
     hertz = _frequencies(frequencies, table.masses, model, dampers.shapes, max(numbers))
-    transfer = _Transfer.of(
-        model, hertz, load, dampers, _observed(model, point or places[0][0], dampers.direction, point)
-    )
-    parts = [[_Response.of(transfer, table, place, count, levels) for count in numbers] for place in places]
-    result = _dataset(parts, transfer, table, levels, unit, numbers, places)
-    _check_coverage(result, unit, table)
+    name, shape = _observed(model, point or places[0][0], dampers.direction, point)
+    transfer = Transfer(model, hertz, dampers.shapes, load.force, load.base, shape)
+    parts = [
+        [
+            MapResponse.of(transfer.at([dampers.points.index(name) for name in place]), table, count, levels)
+            for count in numbers
+        ]
+        for place in places
+    ]
+    about = {"title": "Response from a loss map", "point": name, "load": load.name, "map_case": table.case}
+    axes = {
+        "at": ("at", [" + ".join(place) for place in places], {"long_name": "points of the dampers"}),
+        "number": ("number", numbers, _described("1", "number of dampers at each point")),
+        "level": ("level", levels, _described(unit, f"amplitude of the {load.name}")),
+    }
+    result = _dataset(parts, transfer, table.masses, axes, about)
+    _check_coverage(result, table)
     return result
 
 
@@ -213,93 +209,10 @@ def _places(at: Any, model: ModalModel) -> list[tuple[str, ...]]:
     return places
 
 
-@dataclass(frozen=True, eq=False)
-class _Map:
-    """A loss map: apparent mass, direction of the motion, and points whose runs exceeded a validity limit, (K, J)."""
-
-    masses: MassTable
-    axis: FloatArray | None
-    is_doubtful: NDArray[np.bool_]
-    case: str
-    limits: str
-
-    @classmethod
-    def read(cls, source: Any) -> _Map:
-        import xarray
-
-        data = source
-        if isinstance(source, (str, os.PathLike)):
-            data = open_study(source) if Path(source).is_dir() else _open_file(source)
-        if not isinstance(data, xarray.Dataset) or not {"effective_mass", "damping_mass", AMPLITUDE, FREQUENCY} <= set(
-            data.variables
-        ):
-            what = f"{source!r:.60}" if not isinstance(data, xarray.Dataset) else "the dataset"
-            raise Hint(f"{what} is not a loss map", "rb.loss_map(case, amplitudes, frequencies)", ["loss_map"])
-        data = data.transpose(AMPLITUDE, FREQUENCY, ...).sortby([AMPLITUDE, FREQUENCY])
-        unit = data[AMPLITUDE].attrs.get("units")
-        if unit not in ("m", "m/s^2"):
-            raise Hint(
-                f"the amplitudes of the map have the unit {unit!r}", '"m" or "m/s^2" in their attributes', ["loss_map"]
-            )
-        if data.sizes[AMPLITUDE] < 2:
-            raise Hint("a map with one amplitude cannot be interpolated", "two amplitudes or more", ["loss_map"])
-        mass = (data.effective_mass - 1j * data.damping_mass).values
-        if "status" in data:
-            mass = np.where(data.status.values == 0, mass, np.nan)
-        doubtful = data.warnings.values > 0 if "warnings" in data else np.zeros(mass.shape, bool)
-        names = str(data.warnings.attrs.get("flag_meanings", "")) if "warnings" in data else ""
-        text = str(data.attrs.get("case", ""))
-        return cls(
-            MassTable(data[FREQUENCY].values, data[AMPLITUDE].values, mass, unit == "m/s^2"),
-            _axis_of(text),
-            doubtful,
-            text,
-            names,
-        )
-
-    def doubtful_at(self, frequency: FloatArray, amplitude: FloatArray) -> NDArray[np.bool_]:
-        """Return whether a neighbouring point of the map exceeded a limit: (F,) and (F, ...) give (F, ...)."""
-        x, nodes = self.masses.amplitude, self.masses.frequency
-        k = np.clip(np.searchsorted(x, amplitude) - 1, 0, x.size - 2)
-        j = np.clip(np.searchsorted(nodes, frequency) - 1, 0, max(nodes.size - 2, 0))
-        j = j.reshape(-1, *[1] * (amplitude.ndim - 1))
-        right = np.minimum(j + 1, nodes.size - 1)
-        near = [self.is_doubtful[a, b] for a in (k, k + 1) for b in (j, right)]
-        return np.asarray(np.any(near, axis=0) & np.isfinite(amplitude))
-
-
-def _open_file(path: Any) -> xarray.Dataset:
-    import xarray
-
-    if not Path(path).exists():
-        raise DataError(f"{path} does not exist", "a file of rb.loss_map(...).to_netcdf")
-    try:
-        return xarray.load_dataset(path)
-    except Exception as error:
-        raise DataError(
-            f"{path} cannot be read as netCDF: {str(error).splitlines()[0]:.200}",
-            "a file of rb.loss_map(...).to_netcdf",
-        ) from None
-
-
-def _axis_of(text: str) -> FloatArray | None:
-    """Return the direction of the motion of a map; None if it has none, as for impact dampers."""
-    if not text:
-        return None
-    try:
-        case = Case.from_toml(text)
-    except RattleboxError:  # it names a file of another computer, such as a measured law
-        return None
-    (motion,) = case.shaker_motion
-    if not case.particle_dampers:
-        return None if motion.direction is None else unit_vector(motion.direction)
-    return np.asarray(direction_of_base(case, motion))
-
-
 class _Dampers:
     """Points of dampers, and mode shapes there along the direction of the dampers, (P, m)."""
 
-    def __init__(self, model: ModalModel, points: tuple[str, ...], table: _Map, direction: Any) -> None:
+    def __init__(self, model: ModalModel, points: tuple[str, ...], table: LossTable, direction: Any) -> None:
         self.points = points
         given = None if direction is None else unit_vector(direction)
         if given is not None and table.axis is not None and abs(abs(given @ table.axis) - 1) > 1e-6:
@@ -403,164 +316,19 @@ def _frequencies(given: Any, table: MassTable, model: ModalModel, shapes: FloatA
     return np.asarray(hertz[(hertz >= low) & (hertz <= high)])
 
 
-# ---- response
-
-
-@dataclass(frozen=True, eq=False)
-class _Transfer:
-    """Responses of the structure without dampers to a unit level, and to unit forces of P dampers, at F frequencies.
-
-    Attributes
-    ----------
-    frequency : (F,) float
-        Frequencies [Hz].
-    gain : (F, P, P) complex
-        Accelerations at the dampers per force on the structure [1/kg].
-    drive : (F, P) complex
-        Accelerations at the dampers per level.
-    to_point : (F, P) complex
-        Displacement of the observed point per force of each damper [m/N].
-    bare : (F,) complex
-        Displacement of the observed point per level.
-    points
-        Names of the points of the dampers.
-    """
-
-    frequency: FloatArray
-    gain: ComplexArray
-    drive: ComplexArray
-    to_point: ComplexArray
-    bare: ComplexArray
-    points: tuple[str, ...]
-    observed: str
-    load: str
-    model: ModalModel
-    shapes: FloatArray
-
-    @classmethod
-    def of(
-        cls, model: ModalModel, hertz: FloatArray, load: _Load, dampers: _Dampers, observed: tuple[str, FloatArray]
-    ) -> _Transfer:
-        omega = 2 * np.pi * hertz
-        with np.errstate(divide="ignore", invalid="ignore"):  # an undamped structure at a natural frequency
-            q = model.harmonic_response(omega, np.column_stack([load.force, dampers.shapes.T]))
-        at_dampers = np.asarray(-(omega[:, None, None] ** 2) * (dampers.shapes @ q), np.complex128)
-        at_point = np.asarray(observed[1] @ q, np.complex128)
-        return cls(
-            hertz,
-            at_dampers[:, :, 1:],
-            at_dampers[:, :, 0] + load.base,
-            at_point[:, 1:],
-            at_point[:, 0],
-            dampers.points,
-            observed[0],
-            load.name,
-            model,
-            dampers.shapes,
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class _Response:
-    """Response with a number of dampers at some points: arrays over (L, F) and (L, F, S), modes over (m, K)."""
-
-    amplitude: ComplexArray
-    cavity_amplitude: FloatArray
-    solutions: Solutions
-    flags: NDArray[np.int8]
-    interpolation_error: FloatArray
-    peak: FloatArray
-    peak_frequency: FloatArray
-    peak_error: FloatArray
-    mode_frequency: FloatArray
-    damping_ratio: FloatArray
-
-    @classmethod
-    def of(cls, transfer: _Transfer, table: _Map, place: tuple[str, ...], number: int, levels: FloatArray) -> _Response:
-        own = [transfer.points.index(name) for name in place]
-        solutions, amplitude, largest = _motions(transfer, table.masses, own, number, levels)
-        omega = 2 * np.pi * transfer.frequency
-        cavity = largest if table.masses.is_acceleration else largest / omega[:, None] ** 2
-        peak, where = _peaks(transfer, solutions, np.abs(amplitude), levels)
-        errors, peak_errors = [], []
-        for axis in (True, False):
-            thinned = table.masses.thinned(axis)
-            if thinned is None:
-                continue
-            others, changed, _ = _motions(transfer, thinned, own, number, levels)
-            with np.errstate(invalid="ignore"):
-                errors.append(np.abs(np.abs(changed[..., 0]) / np.abs(amplitude[..., 0]) - 1))
-                peak_errors.append(np.abs(_peaks(transfer, others, np.abs(changed), levels)[0] / peak - 1))
-        masks = (
-            np.isfinite(cavity).sum(axis=-1) > 1,
-            solutions.is_below,
-            solutions.is_above,
-            np.broadcast_to(~table.masses.covers(transfer.frequency), solutions.is_below.shape),
-            solutions.is_lost,
-            table.doubtful_at(transfer.frequency, np.moveaxis(cavity, 1, 0)).any(axis=-1).T,
-        )
-        model = transfer.model
-        damping = np.diag(2 * model.decay) + (0.0 if model.coupling is None else model.coupling)
-        frequency, ratio = damping_of_modes(table.masses, model.stiffness, damping, transfer.shapes[own], number)
-        return cls(
-            amplitude,
-            cavity,
-            solutions,
-            np.asarray(sum(mask.astype(np.int8) << bit for bit, mask in enumerate(masks)), np.int8),
-            np.max(errors, axis=0) if errors else np.full(solutions.is_below.shape, np.nan),
-            peak,
-            where,
-            np.max(peak_errors, axis=0) if peak_errors else np.full(peak.shape, np.nan),
-            frequency,
-            ratio,
-        )
-
-
-def _motions(
-    transfer: _Transfer, masses: MassTable, own: list[int], number: int, levels: FloatArray
-) -> tuple[Solutions, ComplexArray, FloatArray]:
-    """Return the motions of the dampers, the observed displacement, (L, F, S), and the largest acceleration of a damper."""
-    gain = number * transfer.gain[:, own][:, :, own]
-    solutions = solve(masses, transfer.frequency, gain, transfer.drive[:, own], levels)
-    moved = np.moveaxis(solutions.acceleration, 1, 0)  # (F, L, S, P)
-    omega = 2 * np.pi * transfer.frequency.reshape(-1, 1, 1, 1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        logs = np.log(np.abs(moved)) - masses.log_acceleration(omega)
-        mass, _ = masses.evaluate(transfer.frequency, np.nan_to_num(logs, nan=masses.limits[0]))
-    force = -number * mass * moved
-    bare = transfer.bare[:, None] * levels
-    displacement = bare[:, :, None] + np.einsum("flsp,fp->fls", force, transfer.to_point[:, own])
-    return solutions, np.moveaxis(displacement, 0, 1), np.abs(solutions.acceleration).max(axis=-1)
-
-
-def _peaks(
-    transfer: _Transfer, solutions: Solutions, amplitude: FloatArray, levels: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the largest amplitude at each level and its frequency; NaN if it may be where the map does not cover it."""
-    most = np.where(np.isfinite(amplitude), amplitude, -np.inf).max(axis=-1)
-    peak, where = most.max(axis=1), transfer.frequency[most.argmax(axis=1)]
-    # Below the map the damper has no known effect: the bare amplitude stands for the largest possible response there.
-    bare = np.abs(transfer.bare) * levels[:, None]
-    unknown = solutions.is_above | solutions.is_lost | (solutions.is_below & (bare > peak[:, None]))
-    known = np.isfinite(peak) & ~unknown.any(axis=1)
-    return np.where(known, peak, np.nan), np.where(known, where, np.nan)
-
-
 # ---- result
 
 
+def _described(units: str, long_name: str) -> dict[str, str]:
+    return {"units": units, "long_name": long_name}
+
+
 def _dataset(
-    parts: list[list[_Response]],
-    transfer: _Transfer,
-    table: _Map,
-    levels: FloatArray,
-    unit: str,
-    numbers: list[int],
-    places: list[tuple[str, ...]],
+    parts: list[list[MapResponse]], transfer: Transfer, masses: MassTable, axes: dict[str, Any], about: dict[str, str]
 ) -> xarray.Dataset:
+    """Return the responses of all arrangements and numbers of dampers."""
     import xarray
 
-    masses = table.masses
     count = max(part.amplitude.shape[-1] for row in parts for part in row)
     over = ("at", "number", "level", "frequency")
 
@@ -570,11 +338,7 @@ def _dataset(
             return np.array(arrays)
         return np.array([[_padded(array, count, missing) for array in row] for row in arrays])
 
-    def described(units: str, long_name: str) -> dict[str, str]:
-        return {"units": units, "long_name": long_name}
-
     amplitude = gather("amplitude", np.nan)
-    unstable = np.array([[_padded(part.solutions.is_unstable, count, False) for part in row] for row in parts])
     map_unit = "m/s^2" if masses.is_acceleration else "m"
     flags = gather("flags")
     flag_attributes = {
@@ -582,71 +346,65 @@ def _dataset(
         "flag_masks": [1 << bit for bit in range(len(FLAGS))],
         "flag_meanings": " ".join(FLAGS),
     }
-    motion, modal = (*over, "solution"), (*over[:2], "mode", "map_amplitude")
+    motion, peak, modal = (*over, "solution"), over[:3], (*over[:2], "mode", "map_amplitude")
+    half = "with half of the map"
     return xarray.Dataset(
         {
-            "amplitude": (motion, np.abs(amplitude), described("m", f"amplitude, {transfer.observed}")),
-            "phase": (motion, np.angle(amplitude), described("rad", "phase to the load")),
+            "amplitude": (motion, np.abs(amplitude), _described("m", f"amplitude, {about['point']}")),
+            "phase": (motion, np.angle(amplitude), _described("rad", "phase to the load")),
             "cavity_amplitude": (
                 motion,
                 gather("cavity_amplitude", np.nan),
-                described(map_unit, "largest amplitude of a damper"),
+                _described(map_unit, "largest amplitude of a damper"),
             ),
-            "is_unstable": (motion, unstable, {"long_name": "whether the motion is unstable"}),
+            "first_harmonic_share": (
+                motion,
+                gather("share", np.nan),
+                _described("1", "share of the motion of the dampers in the first harmonic"),
+            ),
+            "is_unstable": (motion, gather("is_unstable", False), {"long_name": "whether the motion is unstable"}),
             "solutions": (
                 over,
                 np.isfinite(amplitude).sum(axis=-1),
-                described("1", "number of steady motions in the map"),
+                _described("1", "number of steady motions in the map"),
             ),
             "flags": (over, flags, flag_attributes),
             "interpolation_error": (
                 over,
                 gather("interpolation_error"),
-                described("1", "relative change of the largest amplitude with half of the map"),
+                _described("1", f"relative change of the largest amplitude {half}"),
             ),
             "bare_amplitude": (
                 over[2:],
-                np.abs(transfer.bare) * levels[:, None],
-                described("m", "amplitude without dampers"),
+                np.abs(transfer.bare) * np.array(axes["level"][1])[:, None],
+                _described("m", "amplitude without dampers"),
             ),
-            "peak": (over[:3], gather("peak"), described("m", "largest amplitude over the frequency")),
-            "peak_frequency": (
-                over[:3],
-                gather("peak_frequency"),
-                described("Hz", "frequency of the largest amplitude"),
-            ),
+            "peak": (peak, gather("peak"), _described("m", "largest amplitude over the frequency")),
+            "peak_frequency": (peak, gather("peak_frequency"), _described("Hz", "frequency of the largest amplitude")),
             "peak_interpolation_error": (
-                over[:3],
+                peak,
                 gather("peak_error"),
-                described("1", "relative change of the peak with half of the map"),
+                _described("1", f"relative change of the peak {half}"),
             ),
-            "damping_ratio": (modal, gather("damping_ratio"), described("1", "damping ratio of the mode")),
-            "mode_frequency": (modal, gather("mode_frequency"), described("Hz", "natural frequency of the mode")),
+            "damping_ratio": (modal, gather("damping_ratio"), _described("1", "damping ratio of the mode")),
+            "mode_frequency": (modal, gather("mode_frequency"), _described("Hz", "natural frequency of the mode")),
         },
-        {
-            "at": ("at", [" + ".join(place) for place in places], {"long_name": "points of the dampers"}),
-            "number": ("number", numbers, described("1", "number of dampers at each point")),
-            "level": ("level", levels, described(unit, f"amplitude of the {transfer.load}")),
-            "frequency": ("frequency", transfer.frequency, described("Hz", "frequency")),
+        axes
+        | {
+            "frequency": ("frequency", transfer.frequency, _described("Hz", "frequency")),
             "solution": (
                 "solution",
                 np.arange(1, count + 1),
-                described("1", "number of the motion, the largest first"),
+                _described("1", "number of the motion, the largest first"),
             ),
-            "mode": ("mode", np.arange(1, transfer.model.stiffness.size + 1), described("1", "number of the mode")),
+            "mode": ("mode", np.arange(1, transfer.model.stiffness.size + 1), _described("1", "number of the mode")),
             "map_amplitude": (
                 "map_amplitude",
                 masses.amplitude,
-                described(map_unit, "amplitude of the damper with the largest motion"),
+                _described(map_unit, "amplitude of the damper with the largest motion"),
             ),
         },
-        {
-            "title": "Response from a loss map",
-            "point": transfer.observed,
-            "load": transfer.load,
-            "map_case": table.case,
-            "warnings": "\n".join(_warnings(flags)),
-        },
+        about | {"warnings": "\n".join(_warnings(flags))},
     )
 
 
@@ -655,7 +413,7 @@ def _padded(array: Any, count: int, missing: Any) -> Any:
     return np.concatenate([array, np.full(shape, missing, array.dtype)], axis=-1)
 
 
-def _warnings(flags: NDArray[np.int8]) -> list[str]:
+def _warnings(flags: NDArray[np.int16]) -> list[str]:
     """Return how many points have each flag."""
     found = []
     for bit, text in enumerate(FLAGS.values()):
@@ -664,19 +422,19 @@ def _warnings(flags: NDArray[np.int8]) -> list[str]:
     return found
 
 
-def _check_coverage(result: xarray.Dataset, unit: str, table: _Map) -> None:
+def _check_coverage(result: xarray.Dataset, table: LossTable) -> None:
     """Raise if the map covers no motion at a level; warn if runs of the map exceeded a limit."""
     masses = table.masses
     covered = masses.covers(result.frequency.values)
-    ends = " to ".join(f"{value:.4g}" for value in (masses.amplitude[0], masses.amplitude[-1]))
+    ends = f"{masses.amplitude[0]:.4g} to {masses.amplitude[-1]:.4g} {'m/s^2' if masses.is_acceleration else 'm'}"
     for level in result.level.values:
         one = result.sel(level=level)
         below, above = (one.flags.values & (1 << list(FLAGS).index(name)) > 0 for name in ("below_map", "above_map"))
         if not np.isfinite(one.amplitude).any() and (below | above)[..., covered].all():
             size = "larger" if above.any() else "smaller"
             raise Hint(
-                f"at {level:g} {unit} the motions of the dampers are {size} than the amplitudes of the map, {ends}"
-                f" {'m/s^2' if masses.is_acceleration else 'm'}, at all frequencies",
+                f"at {level:g} {result.level.attrs['units']} the motions of the dampers are {size} than the amplitudes of "
+                f"the map, {ends}, at all frequencies",
                 f"a map with {size} amplitudes, or another level",
                 ["level"],
             )

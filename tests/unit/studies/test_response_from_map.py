@@ -182,13 +182,18 @@ def test_amplitudes_as_accelerations() -> None:
 @pytest.fixture(scope="module")
 def ball_map() -> Any:
     """Return the map of a ball in a gap of 1 mm to each side, whose first motion reaches the walls."""
+    return map_of_ball(rb.geomspace("0.6 mm", "14 mm", 25))
+
+
+def map_of_ball(amplitudes: Any) -> xarray.Dataset:
+    """Return the map of a moving ball at two frequencies."""
     case = rb.Case(
         structure=rb.Shaker(motion=rb.Harmonic(amplitude="1 mm", frequency="30 Hz")),
         damper=ball(velocity="0.1 m/s"),
         duration="1 s",
         method=rb.Newton(),
     )
-    return rb.loss_map(case, rb.geomspace("0.6 mm", "14 mm", 25), ["30 Hz", "34 Hz"], cycles=(100, 60), progress=False)
+    return rb.loss_map(case, amplitudes, ["30 Hz", "34 Hz"], cycles=(100, 60), progress=False)
 
 
 def ball(**changes: Any) -> rb.ImpactDamper:
@@ -222,7 +227,8 @@ def test_peak_of_a_ball_is_that_of_the_simulation(ball_map: Any, tmp_path: Path)
 
 def test_outside_of_the_map_is_flagged_and_not_a_number(ball_map: Any, tmp_path: Path) -> None:
     """Smaller and larger motions and other frequencies are NaN with a flag, counted, and a peak among them is unknown."""
-    found = rb.response_from_map(OSCILLATOR, ball_map, level=["8 N", "40 N"], frequencies=[25.0, 31.8, 33.9])
+    without_case = ball_map.drop_attrs(deep=False)
+    found = rb.response_from_map(OSCILLATOR, without_case, level=["8 N", "40 N"], frequencies=[25.0, 31.8, 33.9])
     one = found.isel(at=0, number=0, solution=0)
     names = found.flags.attrs["flag_meanings"].split()
     bits = {name: 1 << bit for bit, name in enumerate(names)}
@@ -235,6 +241,60 @@ def test_outside_of_the_map_is_flagged_and_not_a_number(ball_map: Any, tmp_path:
     assert "1 of 6 points: a motion of a damper is above" in found.attrs["warnings"]
     found.to_netcdf(tmp_path / "response.nc")
     xarray.testing.assert_equal(xarray.load_dataset(tmp_path / "response.nc"), found)
+
+
+def test_balls_at_rest_are_another_motion() -> None:
+    """Without gravity a ball stays at rest where the amplitude without it is less than the gap, and the point is flagged."""
+    hertz = np.linspace(31.2, 32.8, 17).tolist()
+    ball_map = map_of_ball(rb.geomspace("0.16 mm", "1 mm", 12))
+    found = rb.response_from_map(OSCILLATOR, ball_map, level="1.15 N", frequencies=hertz).isel(at=0, number=0, level=0)
+    case = rb.Case(
+        structure=OSCILLATOR,
+        damper=ball(),
+        load=rb.Harmonic(amplitude="1.15 N", frequency="32 Hz"),
+        duration="1 s",
+        method=rb.Newton(),
+    )
+    at_rest = rb.frequency_response(case, hertz, direction="fresh", cycles=(400, 10), progress=False)
+    assert (at_rest.impacts_per_cycle == 0).all()
+    assert float(found.peak) == pytest.approx(float(at_rest.amplitude.max()), rel=1e-3)
+    moving = found.isel(frequency=np.flatnonzero(found.solutions == 2))
+    assert moving.sizes["frequency"] > 2
+    assert (abs(moving.amplitude / moving.bare_amplitude - 1) < 1e-9).any("solution").all()
+    assert (moving.flags & 1 == 1).all()
+
+
+def test_share_of_the_first_harmonic(ball_map: Any) -> None:
+    """Force harmonics of a periodic motion are those of its impulses; the share of the motion is that of the simulation."""
+    one = ball_map.sel({FREQUENCY: 30.0})
+    regular = one.isel({AMPLITUDE: slice(0, 2)})
+    assert regular.impacts_per_cycle.values == pytest.approx(2)
+    assert float(regular.force_variation.max()) < 1e-3
+    apparent = np.hypot(regular.effective_mass, regular.damping_mass)
+    first = (apparent * regular[AMPLITUDE] * (60 * np.pi) ** 2).values
+    odd, even = regular.force_harmonics.sel(harmonic=[3, 5, 7]), regular.force_harmonics.sel(harmonic=[2, 4, 6, 8])
+    # An impulse acts in the middle of its sampling step, a 64th of a cycle.
+    lost = 1 - np.cos(np.pi * odd.harmonic.values / 64)
+    assert (np.abs(odd.values / first[:, None] - 1) < lost).all()
+    assert float(even.max()) < 0.01 * first.min()
+    light = rb.SDOF(mass="0.2 kg", frequency="32 Hz", damping_ratio=0.05)
+    case = rb.Case(
+        structure=light,
+        damper=ball(),
+        load=rb.Harmonic(amplitude="3 N", frequency="32 Hz"),
+        duration="1 s",
+        method=rb.Newton(),
+    )
+    full = rb.frequency_response(
+        case, [31.0], direction="up", cycles=(100, 100), measure="rms_velocity", progress=False
+    ).isel(direction=0, level=0, frequency=0)
+    found = rb.response_from_map(light, ball_map, level="3 N", frequencies=[31.0]).isel(at=0, number=0, level=0)
+    share = float((2 * np.pi * 31 * full.amplitude) ** 2 / 2 / full.rms_velocity**2)
+    assert 1 - float(found.first_harmonic_share[0, 0]) == pytest.approx(1 - share, rel=0.5)
+    shaky = rb.response_from_map(
+        rb.SDOF(mass="0.1 kg", frequency="32 Hz", damping_ratio=0.01), ball_map, level="2 N", frequencies=[31.0]
+    )
+    assert (shaky.flags.values & 1 << shaky.flags.attrs["flag_meanings"].split().index("higher_harmonics") > 0).all()
 
 
 def test_runs_that_failed_or_exceeded_a_limit() -> None:

@@ -15,7 +15,8 @@ from rattlebox.model.errors import Hint
 from rattlebox.model.harmonics import Harmonic
 from rattlebox.model.structures import Shaker
 from rattlebox.studies.axes import read_axes
-from rattlebox.studies.kinds.sweep import Sweep
+from rattlebox.studies.kinds.sweep import result_notes
+from rattlebox.studies.map_work import ImpactMapWork, ParticleMapWork
 from rattlebox.studies.store import save_result
 from rattlebox.studies.study import (
     CONFIG,
@@ -38,8 +39,8 @@ class LossMap(Study):
     """Compute loss and effective mass of a damper on a shaker over amplitude and frequency.
 
     In the first harmonic, the force that drives the damper is its apparent mass m' - i m'' times the acceleration of the
-    cavity. For the structure, m' is an added mass, and pi m'' V^2 is the loss per cycle at the velocity amplitude V. One
-    map applies to all structures whose motion the damper does not change much.
+    cavity. For the structure, m' is an added mass, and pi m'' V^2 is the loss per cycle at the velocity amplitude V.
+    `rb.response_from_map` computes the response of structures from a map. `to_netcdf` writes it to a file.
 
     Parameters
     ----------
@@ -61,8 +62,10 @@ class LossMap(Study):
     -------
     xarray.Dataset
         Over amplitude and frequency: `loss_factor` m''/|m'|, `effective_mass` m' [kg], `damping_mass` m'' [kg],
-        `reduced_loss` (loss per cycle over m V^2), `loss_per_cycle` [J], `impacts_per_cycle` (impact dampers only) and
-        `status`; `particle_mass` m [kg].
+        `reduced_loss` (loss per cycle over m V^2), `loss_per_cycle` [J], `impacts_per_cycle` (impact dampers only),
+        `force_harmonics` [N] (over `harmonic`, too: amplitudes of the force on the particles), `force_variation` [N] (of
+        the complex amplitude of the first harmonic from cycle to cycle, root mean square), `status` and, for particle
+        dampers, `warnings`; `particle_mass` m [kg]. See `rb.sweep` for intervals and attributes.
 
     Raises
     ------
@@ -94,16 +97,14 @@ class LossMap(Study):
     samples: Samples | None = None
 
     @cached_property
-    def _sweep(self) -> Sweep:
-        """Sweep over amplitudes and frequencies."""
-        measures = [name for name in MEASURES if name != "impacts_per_cycle" or not self.case.particle_dampers]
-        return Sweep(
-            self.case,
-            dict(self._axes.values()),
-            measures,
-            cycles=self.cycles,
-            samples=self.samples,
-        )
+    def work(self) -> ImpactMapWork | ParticleMapWork:
+        """Runs at all amplitudes and frequencies."""
+        options: dict[str, Any] = {"cycles": self.cycles, "samples": self.samples, "intervals": True}
+        grid = read_axes(self.case, dict(self._axes.values()))
+        if self.case.particle_dampers:
+            names = [name for name in MEASURES if name != "impacts_per_cycle"]
+            return ParticleMapWork(self.case, grid, names, **options)
+        return ImpactMapWork(self.case, grid, MEASURES, motion=True, **options)
 
     @cached_property
     def _axes(self) -> dict[str, tuple[str, Any]]:
@@ -126,14 +127,15 @@ class LossMap(Study):
             for number, value in enumerate(column):
                 if not value > 0:
                     raise CaseError(f"{source}: {path}[{number}] = {value:g}\n  must be greater than zero")
-        self._sweep.validate()
+        self.work.validate()
 
     def compute(self) -> xarray.Dataset:
         """Run the sweep; see `Study.compute`."""
-        found = self._sweep.run(**self.where)
+        found = self.run_work(self.work)
         mass = sum(ball.weight for damper in self.case.impact_dampers for ball in damper.balls)
         mass += sum(float(damper.contents.mass.sum()) for damper in self.case.particle_dampers)
         found = found.assign(particle_mass=((), mass, {"units": "kg", "long_name": "mass of the particles"}))
+        found = found.assign_attrs(title="Loss map of a damper", **result_notes(self.work, found))
         return save_result(found, self.kind, self.store)
 
 

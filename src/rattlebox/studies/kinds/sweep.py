@@ -129,9 +129,7 @@ class Sweep(Study):
     def compute(self) -> xarray.Dataset:
         """Run the variants; see `Study.compute`."""
         result = self.run_work(self.work)
-        added = interval_warning(result)
-        if isinstance(self.work, ParticleWork):
-            added |= _first_refused(self.work, result)
+        added = result_notes(self.work, result)
         if self.store is not None:
             add_attributes(self.store, added)
         return result.assign_attrs(added)
@@ -139,6 +137,20 @@ class Sweep(Study):
 
 sweep = study_function(Sweep)
 """Run a study of this kind: see `Sweep`."""
+
+
+def result_notes(work: ImpactWork | ParticleWork, result: xarray.Dataset) -> dict[str, str]:
+    """Return the attributes `too_short`, measures without an interval, and `refused`, the first refused variant, if needed.
+
+    Parameters
+    ----------
+    work
+        Work of the study.
+    result
+        Its result.
+    """
+    refused = _first_refused(work, result) if isinstance(work, ParticleWork) else {}
+    return interval_warning(result) | refused
 
 
 def _first_refused(work: ParticleWork, result: xarray.Dataset) -> dict[str, str]:

@@ -1,0 +1,300 @@
+"""Response of a structure with dampers in the first harmonic, as arrays over level and frequency."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rattlebox.analysis.describing_function import MassTable, Solutions, damping_of_modes, solve
+from rattlebox.model.modes import ModalModel
+
+from .loss_table import LossTable
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+FLAGS = {
+    "several_solutions": "several steady motions coexist",
+    "below_map": "a motion of a damper is below the amplitudes of the map",
+    "above_map": "a motion of a damper is above the amplitudes of the map",
+    "outside_frequencies": "the frequency is outside of the map",
+    "not_found": "a motion was not found, because runs of the map failed or the search did",
+    "higher_harmonics": "less than 95 % of the motion of the dampers is in the first harmonic",
+    "map_warning": "runs of the map next to the motion exceeded a validity limit",
+}
+"""Names of flags and their meaning."""
+
+_SAME = 0.01
+"""Relative difference of motions below which they count as one."""
+
+LEAST_SHARE = 0.95
+"""Share of the mean square velocity in the first harmonic below which a motion is flagged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Transfer:
+    """Responses of a structure without dampers to a unit level, and to unit forces of P dampers, at F frequencies.
+
+    Attributes
+    ----------
+    model
+        Modes of the structure.
+    frequency : (F,) float
+        Frequencies [Hz].
+    shapes : (P, m) float
+        Mode shapes at the dampers.
+    force : (m,) float
+        Modal force of a unit level.
+    base : (P,) float
+        Acceleration of the base along each damper at a unit level.
+    observed : (m,) float
+        Mode shapes at the observed point.
+    """
+
+    model: ModalModel
+    frequency: FloatArray
+    shapes: FloatArray
+    force: FloatArray
+    base: FloatArray
+    observed: FloatArray
+
+    @cached_property
+    def _modal(self) -> ComplexArray:
+        """Modal displacements per level, and per force of each damper, (F, m, 1 + P)."""
+        with np.errstate(divide="ignore", invalid="ignore"):  # an undamped structure at a natural frequency
+            return self.model.harmonic_response(
+                2 * np.pi * self.frequency, np.column_stack([self.force, self.shapes.T])
+            )
+
+    def _accelerations(self, modal: ComplexArray, frequency: FloatArray) -> ComplexArray:
+        return np.asarray(-((2 * np.pi * frequency[:, None, None]) ** 2) * (self.shapes @ modal), np.complex128)
+
+    @cached_property
+    def gain(self) -> ComplexArray:
+        """Accelerations at the dampers per force on the structure, (F, P, P) [1/kg]."""
+        return self._accelerations(self._modal[:, :, 1:], self.frequency)
+
+    @cached_property
+    def drive(self) -> ComplexArray:
+        """Accelerations at the dampers per level, (F, P)."""
+        return np.asarray(self._accelerations(self._modal[:, :, :1], self.frequency)[:, :, 0] + self.base)
+
+    @cached_property
+    def to_point(self) -> ComplexArray:
+        """Displacement of the observed point per force of each damper, (F, P) [m/N]."""
+        return np.asarray(self.observed @ self._modal[:, :, 1:])
+
+    @cached_property
+    def bare(self) -> ComplexArray:
+        """Displacement of the observed point per level, (F,)."""
+        return np.asarray(self._modal[:, :, 0] @ self.observed)
+
+    def harmonic_gain(self, harmonic: int) -> FloatArray:
+        """Return the magnitude of velocities at the dampers per force at a multiple of the frequency, (F, P, P) [s/kg]."""
+        frequency = harmonic * self.frequency
+        with np.errstate(divide="ignore", invalid="ignore"):
+            modal = self.model.harmonic_response(2 * np.pi * frequency, self.shapes.T)
+        return np.abs(self._accelerations(modal, frequency)) / (2 * np.pi * frequency[:, None, None])
+
+    def at(self, dampers: list[int]) -> Transfer:
+        """Return the responses for some of the dampers."""
+        return Transfer(self.model, self.frequency, self.shapes[dampers], self.force, self.base[dampers], self.observed)
+
+
+@dataclass(frozen=True, eq=False)
+class MapResponse:
+    """Response with a number of dampers at some points: arrays over (L, F) and (L, F, S), of modes over (m, K).
+
+    Attributes
+    ----------
+    amplitude : (L, F, S) complex
+        Displacement of the observed point [m].
+    cavity_amplitude : (L, F, S) float
+        Largest amplitude of a damper in the unit of the map.
+    share : (L, F, S) float
+        Share of the mean square velocity of the dampers in the first harmonic.
+    is_unstable : (L, F, S) bool
+        Whether the motion lies between two folds.
+    flags : (L, F) int
+        Bits of `FLAGS`.
+    interpolation_error : (L, F) float
+        Relative change of the largest amplitude with half of the map.
+    peak, peak_frequency, peak_error : (L,) float
+        Largest amplitude [m], its frequency [Hz], and its relative change with half of the map.
+    mode_frequency, damping_ratio : (m, K) float
+        Natural frequency [Hz] and damping ratio of the modes.
+    """
+
+    amplitude: ComplexArray
+    cavity_amplitude: FloatArray
+    share: FloatArray
+    is_unstable: NDArray[np.bool_]
+    flags: NDArray[np.int16]
+    interpolation_error: FloatArray
+    peak: FloatArray
+    peak_frequency: FloatArray
+    peak_error: FloatArray
+    mode_frequency: FloatArray
+    damping_ratio: FloatArray
+
+    @classmethod
+    def of(cls, transfer: Transfer, table: LossTable, number: int, levels: FloatArray) -> MapResponse:
+        """Compute the response.
+
+        Parameters
+        ----------
+        transfer
+            Responses of the structure.
+        table
+            Loss map of one damper.
+        number
+            Number of dampers at each point.
+        levels : (L,) float
+            Levels.
+        """
+        masses, model = table.masses, transfer.model
+        solutions, amplitude = _motions(transfer, table, masses, number, levels)
+        squared = 1.0 if masses.is_acceleration else (2 * np.pi * transfer.frequency[:, None, None]) ** 2
+        each = np.abs(solutions.acceleration) / squared
+        peak, where = _peaks(transfer, solutions, np.abs(amplitude), levels)
+        damping = np.diag(2 * model.decay) + (0.0 if model.coupling is None else model.coupling)
+        frequency, ratio = damping_of_modes(masses, model.stiffness, damping, transfer.shapes, number)
+        share = _first_harmonic_share(transfer, table, number, each, ratio)
+        errors, peak_errors = [np.zeros(solutions.is_below.shape)], [np.zeros(peak.shape)]
+        for thinned in (masses.thinned(True), masses.thinned(False)):
+            if thinned is not None:
+                others, changed = _motions(transfer, table, thinned, number, levels)
+                with np.errstate(invalid="ignore"):
+                    errors.append(np.abs(np.abs(changed[..., 0]) / np.abs(amplitude[..., 0]) - 1))
+                    peak_errors.append(np.abs(_peaks(transfer, others, np.abs(changed), levels)[0] / peak - 1))
+        known = np.moveaxis(each, 1, 0)
+        doubtful = table.interpolate(table.is_doubtful.astype(float), transfer.frequency, known)
+        near = np.asarray(((doubtful > 0) & np.isfinite(known)).any(axis=(-2, -1)))
+        masks = {
+            "several_solutions": np.isfinite(amplitude).sum(axis=-1) > 1,
+            "below_map": solutions.is_below,
+            "above_map": solutions.is_above,
+            "outside_frequencies": np.broadcast_to(~masses.covers(transfer.frequency), solutions.is_below.shape),
+            "not_found": solutions.is_lost,
+            "higher_harmonics": (share < LEAST_SHARE).any(axis=-1),
+            "map_warning": near.T,
+        }
+        return cls(
+            amplitude,
+            each.max(axis=-1),
+            share,
+            solutions.is_unstable,
+            np.asarray(sum(masks[name].astype(np.int16) << bit for bit, name in enumerate(FLAGS)), np.int16),
+            np.where(np.isfinite(amplitude[..., 0]), np.max(errors, axis=0), np.nan),
+            peak,
+            where,
+            np.where(np.isfinite(peak), np.max(peak_errors, axis=0), np.nan),
+            frequency,
+            ratio,
+        )
+
+
+def _motions(
+    transfer: Transfer, table: LossTable, masses: MassTable, number: int, levels: FloatArray
+) -> tuple[Solutions, ComplexArray]:
+    """Return the motions of the dampers, and the displacement of the observed point, (L, F, S)."""
+    solutions = solve(masses, transfer.frequency, number * transfer.gain, transfer.drive, levels)
+    at_rest = levels[:, None, None] * transfer.drive
+    omega = 2 * np.pi * transfer.frequency
+    reach = 2 * np.abs(at_rest).max(axis=-1) / omega**2
+    can_rest = (reach < table.clearance) & masses.covers(transfer.frequency)
+    solutions, rests = _with_rest(solutions, np.where(can_rest[..., None], at_rest, np.nan))
+    moved = np.moveaxis(solutions.acceleration, 1, 0)  # (F, L, S, P)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logs = np.log(np.abs(moved)) - masses.log_acceleration(omega.reshape(-1, 1, 1, 1))
+        mass, _ = masses.evaluate(transfer.frequency, np.nan_to_num(logs, nan=masses.limits[0]))
+    mass = np.where(np.moveaxis(rests, 1, 0)[..., None], 0.0, mass)
+    force = -number * mass * moved
+    bare = transfer.bare[:, None] * levels
+    displacement = bare[:, :, None] + np.einsum("flsp,fp->fls", force, transfer.to_point)
+    return solutions, np.moveaxis(displacement, 0, 1)
+
+
+def _with_rest(solutions: Solutions, at_rest: ComplexArray) -> tuple[Solutions, NDArray[np.bool_]]:
+    """Return solutions with the motions of cavities whose balls are at rest, and which these are, (L, F, S).
+
+    Parameters
+    ----------
+    solutions
+        Solutions from the map, which may contain these motions.
+    at_rest : (L, F, P) complex
+        Acceleration of the cavities with balls at rest [m/s^2]; NaN where balls cannot be at rest.
+    """
+    with np.errstate(invalid="ignore"):
+        apart = np.abs(solutions.acceleration / at_rest[:, :, None, :] - 1).max(axis=-1)
+    known = (apart < _SAME).any(axis=-1)
+    added = np.where(known[..., None], np.nan, at_rest)
+    if not np.isfinite(added).any():
+        return solutions, np.zeros(solutions.is_unstable.shape, bool)
+    motions = np.concatenate([solutions.acceleration, added[:, :, None, :]], axis=2)
+    unstable = np.concatenate([solutions.is_unstable, np.zeros((*known.shape, 1), bool)], axis=2)
+    rests = np.zeros(unstable.shape, bool)
+    rests[..., -1] = np.isfinite(added).all(axis=-1)
+    size = np.nan_to_num(np.abs(motions).max(axis=-1), nan=-1.0)
+    order = np.argsort(-size, axis=-1, kind="stable")
+    return (
+        replace(
+            solutions,
+            acceleration=np.take_along_axis(motions, order[..., None], axis=2),
+            is_unstable=np.take_along_axis(unstable, order, axis=2),
+        ),
+        np.take_along_axis(rests, order, axis=2),
+    )
+
+
+def _peaks(
+    transfer: Transfer, solutions: Solutions, amplitude: FloatArray, levels: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the largest amplitude at each level and its frequency; NaN if it may be where the map does not cover it."""
+    most = np.where(np.isfinite(amplitude), amplitude, -np.inf).max(axis=-1)
+    peak, where = most.max(axis=1), transfer.frequency[most.argmax(axis=1)]
+    # Below the map the damper has no known effect: the bare amplitude stands for the largest possible response there.
+    bare = np.abs(transfer.bare) * levels[:, None]
+    unknown = solutions.is_above | solutions.is_lost | (solutions.is_below & (bare > peak[:, None]))
+    known = np.isfinite(peak) & ~unknown.any(axis=1)
+    return np.where(known, peak, np.nan), np.where(known, where, np.nan)
+
+
+def _first_harmonic_share(
+    transfer: Transfer, table: LossTable, number: int, amplitude: FloatArray, ratio: FloatArray
+) -> FloatArray:
+    """Return the share of the mean square velocity of the dampers in the first harmonic, (L, F, S); NaN if it is unknown.
+
+    Higher harmonics of the force act on the structure alone, those of several dampers in phase. The variation of the first
+    harmonic acts like white noise with the density sigma^2 / (2 f) around the frequency, which causes the mean square
+    velocity s^2 S / (8 zeta omega) of a mode with the shape s at the damper. Modes within a factor of 1.5 of the frequency
+    count.
+    """
+    if table.harmonics is None or table.variation is None:
+        return np.full(amplitude.shape[:-1], np.nan)
+    each = np.moveaxis(amplitude, 1, 0)  # (F, L, S, P)
+    omega = 2 * np.pi * transfer.frequency.reshape(-1, 1, 1)
+    acceleration = each * (1.0 if table.masses.is_acceleration else omega[..., None] ** 2)
+    first = ((acceleration / omega[..., None]) ** 2).sum(axis=-1) / 2
+    forces = table.interpolate(table.harmonics, transfer.frequency, each) * acceleration[..., None] * number
+    rest = np.zeros(first.shape)
+    for k in range(forces.shape[-1]):
+        velocity = np.einsum("fij,flsj->flsi", transfer.harmonic_gain(k + 2), forces[..., k])
+        rest += (velocity**2).sum(axis=-1) / 2
+    sigma = table.interpolate(table.variation, transfer.frequency, each) * acceleration
+    own = np.sqrt(transfer.model.stiffness)
+    bare = transfer.model.decay / np.where(own > 0, own, 1.0)
+    logs, logs_of_map = np.log(each.max(axis=-1)), np.log(table.masses.amplitude)
+    for mode in np.flatnonzero(own > 0):
+        known = np.isfinite(ratio[mode])
+        zeta = np.interp(logs, logs_of_map[known], ratio[mode, known]) if known.any() else bare[mode]
+        near = (omega < 1.5 * own[mode]) & (omega > own[mode] / 1.5)
+        shape = transfer.shapes[:, mode] ** 2
+        noise = shape.sum() * number * (shape * sigma**2).sum(axis=-1) * np.pi / omega
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rest += np.where(near, noise / (8 * np.maximum(zeta, 0) * own[mode]), 0.0)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.moveaxis(first / (first + rest), 0, 1))
