@@ -72,6 +72,7 @@ from rattlebox.model.structures import Shaker as Shaker
 from rattlebox.model.tuned_mass import TunedMass as TunedMass
 from rattlebox.plots.basins import plot_basins as plot_basins
 from rattlebox.plots.bifurcation import plot_bifurcation as plot_bifurcation
+from rattlebox.plots.case import plot_case as plot_case
 from rattlebox.plots.compare import plot_comparison as plot_comparison
 from rattlebox.plots.damping_curve import plot_damping_curve as plot_damping_curve
 from rattlebox.plots.design import plot_design as plot_design

@@ -47,7 +47,7 @@ def plot_run(
     out
         File to write: PNG, SVG or PDF; GIF or MP4 for a film; default run.png in the current folder.
     kind
-        "motion", "energy", "impacts" or "particles"; default "motion", and "particles" for snapshots.
+        "motion", "energy", "impacts", "particles" or "case"; default "motion", and "particles" for snapshots.
     of, at
         Options of studies; must be empty.
     number
@@ -155,7 +155,7 @@ def _write_film(run: Any, out: Path, options: dict[str, Any]) -> None:
 
 
 def _draw(run: Any, kind: str | None, number: int, options: dict[str, Any]) -> Figure:
-    kinds: tuple[str, ...] = ("particles",) if isinstance(run, Snapshots) else run.groups
+    kinds: tuple[str, ...] = ("particles",) if isinstance(run, Snapshots) else (*run.groups, "case")
     if (kind or kinds[0]) not in kinds:
         raise CaseError(f"--kind {kind}: this run has no such figure\n  {nearest(str(kind), kinds)}")
     if isinstance(run, Snapshots):

@@ -2,6 +2,7 @@
 
 from .basins import plot_basins
 from .bifurcation import plot_bifurcation
+from .case import plot_case
 from .compare import plot_comparison
 from .damping_curve import plot_damping_curve
 from .energy import plot_energy
@@ -41,6 +42,7 @@ __all__ = [
     "pen",
     "plot_basins",
     "plot_bifurcation",
+    "plot_case",
     "plot_comparison",
     "plot_damping_curve",
     "plot_energy",

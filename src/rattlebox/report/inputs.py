@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rattlebox._util.exceptions import RattleboxError
 from rattlebox.model.base import Part
 from rattlebox.model.dampers import ImpactDamper
 from rattlebox.model.materials import Material
@@ -74,26 +73,28 @@ def _damper_lines(case: Case, number: int) -> Iterator[tuple[str, str]]:
     """Yield mass, mass ratio, clearance or fill of a damper."""
     damper = case.dampers[number]
     if isinstance(damper, ImpactDamper):
-        mass = float(np.sum(damper.masses))
+        mass, points = float(np.sum(damper.masses)), [damper.point]
         yield "= mass of the balls", amount(mass, "kg")
         yield "= clearance", f"{amount(damper.clearance, 'm')}, twice the gap"
     else:
-        mass = float(damper.contents.mass.sum())
+        mass, points = float(damper.contents.mass.sum()), [each.point for each in damper.each()]
         volume = float((4 / 3 * np.pi * damper.contents.radius**3).sum())
-        yield "= particles", counted(len(damper.contents.radius), "particle")
-        yield "= mass of the particles", amount(mass, "kg")
+        each = ", each" if len(points) > 1 else ""
+        if each:
+            yield "= identical dampers", f"{len(points)}, {amount(mass * len(points), 'kg')} of particles in all"
+        yield f"= particles{each}", counted(len(damper.contents.radius), "particle")
+        yield f"= mass of the particles{each}", amount(mass, "kg")
         yield "= share of the volume of the cavity", amount(volume / damper.cavity.volume, "%", 3)
     modes = case.structure.modes()
-    try:
-        moved = np.asarray(modes.shapes[modes.point(damper.point)])
-    except RattleboxError:
+    if not len(modes.stiffness):
         return
-    if len(moved):
-        shape = np.linalg.norm(moved.reshape(len(moved), -1), axis=1)
-        ratios = mass * shape**2
-        first = int(np.argmax(ratios > 0))
-        if ratios[first] > 0:
-            yield f"= mass ratio to mode {first + 1} at its point", amount(float(ratios[first]), "%", 3)
+    ratio = np.zeros(len(modes.stiffness))
+    for point in points:
+        shape = np.asarray(modes.shapes[modes.point(point)])
+        ratio += mass * np.sum(shape.reshape(len(shape), -1) ** 2, axis=1)
+    moved = np.flatnonzero((ratio > 0) & (np.asarray(modes.stiffness) > 0))
+    if moved.size:
+        yield f"= mass over the effective mass of mode {moved[0] + 1}", amount(float(ratio[moved[0]]), "%", 3)
 
 
 def _lines(part: Part, leave_out: Sequence[str] = ()) -> Iterator[tuple[str, str]]:

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from markupsafe import Markup, escape
@@ -15,6 +16,7 @@ from markupsafe import Markup, escape
 from rattlebox._util.exceptions import RattleboxError
 from rattlebox._util.text import printable
 from rattlebox.model.case import Case
+from rattlebox.plots.case import plot_case
 
 from .inputs import input_tables
 from .kinds import kind_of
@@ -35,10 +37,11 @@ _MAX_CASES = 6
 
 
 class Image(NamedTuple):
-    """A figure as a data URL, "" if it cannot be drawn, with its caption."""
+    """A figure as a data URL, "" if it cannot be drawn, with its caption and its width [mm]."""
 
     url: str
     caption: str
+    width: float = 0.0
 
 
 class Described(NamedTuple):
@@ -142,6 +145,7 @@ def describe(name: str, case: Case, first: Described | None = None) -> Described
     first
         The first case, if this is a further one.
     """
+    drawing = image(Picture(_drawing_caption(case), partial(plot_case, case))) if first is None else None
     tables = input_tables(case)
     if first is not None:
         known = {(table.title, tuple(row)) for table in first.tables for row in table.rows}
@@ -149,7 +153,14 @@ def describe(name: str, case: Case, first: Described | None = None) -> Described
             table._replace(rows=[row for row in table.rows if (table.title, tuple(row)) not in known])
             for table in tables
         ]
-    return Described(name, None, tuple(table for table in tables if table.rows), first.name if first else None)
+    return Described(name, drawing, tuple(table for table in tables if table.rows), first.name if first else None)
+
+
+def _drawing_caption(case: Case) -> str:
+    scale = "Dampers, beams and plates are to scale, other structures are symbols."
+    beds = [damper.packing.kind for damper in case.particle_dampers]
+    start = " Particles are at their positions at the start." if beds else ""
+    return f"The case. {scale}{start}"
 
 
 def image(picture: Picture) -> Image:
@@ -161,7 +172,8 @@ def image(picture: Picture) -> Image:
         Figure to draw.
     """
     try:
-        return Image(data_url(picture.draw()), picture.caption)
+        figure = picture.draw()
+        return Image(data_url(figure), picture.caption, 25.4 * figure.get_figwidth())
     except RattleboxError as error:  # such as basins over one axis, which have no map
         complaint = getattr(error, "complaint", str(error))
         return Image("", f"{picture.caption} Not drawn: {complaint}.")

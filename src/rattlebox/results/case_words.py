@@ -137,6 +137,17 @@ def cavity_words(damper: ParticleDamper) -> str:
     return f"{name}, {diameter}{length}"
 
 
+def each_damper(case: Case) -> tuple[ImpactDamper | ParticleDamper, ...]:
+    """Return all dampers of a case, each of several identical ones on its own.
+
+    Parameters
+    ----------
+    case
+        The case.
+    """
+    return (*case.impact_dampers, *case.particle_dampers)
+
+
 def dampers_words(case: Case) -> str:
     """Return a phrase about all dampers and tuned masses of a case; empty if there are none.
 
@@ -145,7 +156,7 @@ def dampers_words(case: Case) -> str:
     case
         The case.
     """
-    phrases = [damper_words(damper) for damper in case.dampers]
+    phrases = [damper_words(damper) for damper in each_damper(case)]
     phrases += [
         f"a tuned mass of {amount(part.mass, 'kg')} at {amount(part.frequency, 'Hz')}" for part in case.tuned_masses
     ]

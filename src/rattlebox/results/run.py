@@ -86,7 +86,7 @@ class Run(Record):
 
     @property
     def plot(self) -> Plots:
-        """Figures of this run, `motion`, `energy`, `phase_portrait`, and `impacts` (1-D) or `particles` (3-D)."""
+        """Figures of this run: `motion`, `energy`, `phase_portrait`, `case`, and `impacts` (1-D) or `particles` (3-D)."""
         import_module("rattlebox.plots")  # registers the figures; results must not import plots statically
         return Plots(self)
 

@@ -1,0 +1,139 @@
+"""Drawing of a case: its structure, and each damper to scale."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..model.case import Case
+from ..model.dampers import ImpactDamper
+from ..model.particle_damper import ParticleDamper
+from ..results import Run
+from ..results.case_words import each_damper, joined, signal_words
+from ..results.figures import run_figure
+from .case_dampers import draw_impact_damper, draw_particle_damper
+from .case_structures import draw_structure
+from .style import Size, StyledFigure, figure_style, shorten
+
+_MAX_DAMPERS = 3
+"""Most dampers in a drawing; further ones are named below it."""
+_MAX_LETTERS, _MAX_LOADS = 60, 3
+
+
+class _Group(NamedTuple):
+    """Dampers that are drawn once, since they differ in name, point, start and random seed only."""
+
+    damper: ImpactDamper | ParticleDamper
+    numbers: list[int]
+
+
+def plot_case(case: Case, *, size: Size = "page") -> Figure:
+    """Draw a case: the structure with its loads and the points of its dampers, and each damper to scale with its dimensions.
+
+    Beams and plates are drawn to scale, with the shape of the first mode of a beam in grey; oscillators, buildings and modal
+    models have no geometry and are drawn as symbols. Beds of more than 2000 particles are drawn as a level.
+
+    Parameters
+    ----------
+    case
+        Case to draw.
+    size
+        Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    Figure
+        Figure with a panel for the structure, and one for each of up to three different dampers.
+
+    Raises
+    ------
+    TypeError
+        If something else is given.
+    ValueError
+        If the size is unknown.
+
+    Examples
+    --------
+    >>> import rattlebox as rb
+    >>> figure = rb.plot_case(rb.reference_case())
+    >>> len(figure.axes)
+    2
+    """
+    if not isinstance(case, Case):
+        raise TypeError(f"a case is needed, not {case!r:.60}")
+    groups = _groups(case)
+    shown = groups[:_MAX_DAMPERS]
+    count = 1 + len(shown)
+    with figure_style(size):
+        narrow = size == "column"
+        shape = (count, 1) if narrow else (2, 2) if count > 2 else (1, count)
+        figure = StyledFigure(size, (0.72 if narrow else 0.4) * shape[0])
+        panels: list[Axes] = list(figure.subplots(*shape, squeeze=False).ravel())
+        marks = {number: str(k + 1) for k, group in enumerate(groups) for number in group.numbers}
+        draw_structure(panels[0], case, marks if len(marks) > 1 else dict.fromkeys(marks, ""))
+        panels[0].set_title(_loads(case), parse_math=False)
+        for k, (panel, group) in enumerate(zip(panels[1:], shown, strict=False)):
+            draw: Any = draw_impact_damper if isinstance(group.damper, ImpactDamper) else draw_particle_damper
+            draw(panel, group.damper)
+            panel.set_title(_heading(case, group, k + 1 if len(groups) > 1 else 0), parse_math=False)
+        for panel in panels[1 + len(shown) :]:
+            panel.set_axis_off()
+        if len(groups) > len(shown):
+            panels[0].set_xlabel(f"{len(groups) - len(shown)} further dampers are not drawn")
+    return figure
+
+
+@run_figure("case")
+def plot_run_case(run: Run, *, size: Size = "page") -> Figure:
+    """Draw the case of a run; see `plot_case`.
+
+    Parameters
+    ----------
+    run
+        Run whose case is drawn.
+    size
+        Width of the figure: "column", "page" or "slide".
+
+    Returns
+    -------
+    Figure
+        The drawing.
+
+    Raises
+    ------
+    CaseError
+        If the run was read from a file, and a file that its case names can no longer be read.
+    ValueError
+        If the size is unknown.
+    """
+    return plot_case(run.case, size=size)
+
+
+def _groups(case: Case) -> list[_Group]:
+    """Return the dampers, equal ones in one group."""
+    groups: dict[str, _Group] = {}
+    for number, damper in enumerate(each_damper(case)):
+        common: dict[str, Any] = {"name": "", "point": None}
+        if isinstance(damper, ImpactDamper):
+            common |= {"start": 0.0}
+        elif damper.packing.is_random:
+            common |= {"packing": damper.packing.model_copy(update={"seed": 0})}
+        key = damper.model_copy(update=common).model_dump_json()
+        groups.setdefault(key, _Group(damper, [])).numbers.append(number)
+    return list(groups.values())
+
+
+def _heading(case: Case, group: _Group, number: int) -> str:
+    dampers = each_damper(case)
+    names = [dampers[k].label(k) for k in group.numbers]
+    text = joined(names) if len(names) < 4 else f"{len(names)} dampers, {names[0]} to {names[-1]}"
+    return f"({number}) {shorten(text, _MAX_LETTERS // 2)}" if number else shorten(text, _MAX_LETTERS // 2)
+
+
+def _loads(case: Case) -> str:
+    """Return a title with the loads, one on each line."""
+    words = [shorten(signal_words(each), _MAX_LETTERS) for each in (*case.loads, *case.base, *case.shaker_motion)]
+    more = [f"and {len(words) - _MAX_LOADS} more"] if len(words) > _MAX_LOADS else []
+    return "\n".join([*words[:_MAX_LOADS], *more]).replace("^2", "²")

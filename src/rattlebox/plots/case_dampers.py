@@ -1,0 +1,247 @@
+"""Drawings of dampers to scale, with dimensions."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, Ellipse, Rectangle
+from numpy.typing import NDArray
+
+from ..model.cavities import Box, Cylinder
+from ..model.dampers import ImpactDamper
+from ..model.packing import Settled
+from ..model.particle_damper import ParticleDamper
+from ..prepare.settle import settle
+from ..results.case_words import counted, joined
+from ..results.quantities import amount
+from .spheres import draw_spheres
+from .style import FAINT, INK, SERIES_COLOURS, pen
+from .technical import SOLID, arrow, dimension, text
+
+Array = NDArray[np.float64]
+
+MAX_DRAWN = 2000
+"""Most particles that are drawn one by one."""
+_PACKED = 0.6
+"""Share of the volume that particles fill in a bed whose level is drawn."""
+_VISIBLE = 0.04
+"""Gap over the length of the cavity below which a detail shows it enlarged."""
+_PIXELS = 700
+_FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""Right, up and towards the viewer of a view along y."""
+
+
+def draw_impact_damper(axes: Axes, damper: ImpactDamper) -> None:
+    """Draw the row of balls in its cavity to scale, with the clearance; a detail enlarges a small gap.
+
+    Parameters
+    ----------
+    axes
+        Axes to draw on.
+    damper
+        The damper.
+    """
+    length, radii = damper.row + damper.clearance, np.array([ball.half for ball in damper.balls])
+    high = 2 * float(radii.max())
+    wall = 0.06 * max(length, high)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    centres = damper.centres
+    bottom = -0.5 * high
+    for sign in (-1, 1):
+        x = sign * length / 2
+        axes.add_patch(
+            Rectangle(
+                (min(x, x + sign * wall), bottom), wall, high, facecolor=SOLID, edgecolor=INK, lw=pen(0.8), hatch="////"
+            )
+        )
+    axes.plot([-length / 2, length / 2], [bottom, bottom], color=INK, lw=pen(0.5))
+    axes.plot([-length / 2, length / 2], [bottom + high, bottom + high], color=INK, lw=pen(0.5), ls=(0, (4, 3)))
+    names = list(dict.fromkeys(ball.material.name or "own material" for ball in damper.balls))
+    for centre, radius, ball in zip(centres, radii, damper.balls, strict=True):
+        colour = SERIES_COLOURS[names.index(ball.material.name or "own material") % len(SERIES_COLOURS)]
+        axes.add_patch(Circle((centre, 0.0), radius, facecolor=colour, alpha=0.35, edgecolor=INK, lw=pen(0.8)))
+    unit = 0.16 * max(high, 0.5 * length)
+    dimension(axes, (-length / 2, bottom), (length / 2, bottom), amount(length, "m"), -1.2 * unit)
+    gap = 0.5 * damper.clearance
+    edge = float(centres[0] - radii[0])
+    small = gap < _VISIBLE * length
+    if gap > 0 and not small:
+        for a, b in ((-length / 2, edge), (-edge, length / 2)):
+            dimension(axes, (a, bottom + high), (b, bottom + high), amount(gap, "m"), 0.8 * unit)
+    sizes = list(dict.fromkeys(radii.tolist()))
+    diameters = " and ".join(amount(2 * each, "m") for each in sizes) if len(sizes) < 4 else "of several sizes"
+    words = [
+        counted(len(damper.balls), f"{joined([name.replace('_', ' ') for name in names])} ball"),
+        f"diameter {diameters}, {amount(float(np.sum(damper.masses)), 'kg')}",
+        f"gap 2 x {amount(gap, 'm')}" + (", enlarged on the right" if small and gap > 0 else ""),
+    ]
+    right = length / 2 + wall
+    if small and gap > 0:
+        _detail(axes, right + 0.45 * high, high, radii[-1], gap)
+        right += 1.25 * high
+    text(axes, ((right - length / 2 - wall) / 2, bottom - 2.4 * unit), "\n".join(words), va="top")
+    axes.set_xlim(-length / 2 - 2 * wall, right + wall)
+    axes.set_ylim(bottom - (3.4 + 1.4 * len(words)) * unit, bottom + high + 2.6 * unit)
+
+
+def _detail(axes: Axes, left: float, high: float, radius: float, gap: float) -> None:
+    """Draw the gap at the leading wall enlarged, in a circle at the right of the cavity."""
+    reach = 0.42 * high
+    centre = (left + reach, 0.0)
+    frame = Circle(centre, reach, facecolor="white", edgecolor=FAINT, lw=pen(0.8), zorder=3)
+    axes.add_patch(frame)
+    scale = 0.5 * reach / gap
+    surface = centre[0] - 0.5 * gap * scale
+    ball = Circle((surface - radius * scale, 0.0), radius * scale, facecolor=SERIES_COLOURS[0], alpha=0.35, zorder=4)
+    rim = Circle(
+        (surface - radius * scale, 0.0), radius * scale, facecolor="none", edgecolor=INK, lw=pen(0.8), zorder=5
+    )
+    solid = Rectangle(
+        (surface + gap * scale, -high),
+        high,
+        2 * high,
+        facecolor=SOLID,
+        edgecolor=INK,
+        lw=pen(0.8),
+        hatch="////",
+        zorder=4,
+    )
+    for patch in (ball, rim, solid):
+        axes.add_patch(patch)
+        patch.set_clip_path(frame)
+    arrow(axes, (surface, 0.0), (surface + gap * scale, 0.0), both=True, width=0.5)
+    text(axes, (centre[0], -reach - 0.05 * high), f"gap {amount(gap, 'm')}, x {scale:.0f}", va="top", fontsize="small")
+
+
+def draw_particle_damper(axes: Axes, damper: ParticleDamper) -> None:
+    """Draw a cavity from the front (along y) to scale, with its particles and dimensions.
+
+    Parameters
+    ----------
+    axes
+        Axes to draw on.
+    damper
+        The damper.
+    """
+    cavity = damper.cavity
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    half_x, half_z = (0.5 * cavity.extent(np.array(direction)) for direction in ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
+    count = len(damper.contents.radius)
+    if count <= MAX_DRAWN:
+        _draw_particles(axes, damper, half_x, half_z)
+    else:
+        _draw_level(axes, damper, half_x, half_z)
+    unit = 0.16 * max(half_x, half_z)
+    _draw_walls(axes, damper, half_x, half_z)
+    if not _is_inclined(damper):
+        dimension(axes, (-half_x, -half_z), (half_x, -half_z), amount(2 * half_x, "m"), -1.5 * unit)
+        dimension(axes, (half_x, -half_z), (half_x, half_z), amount(2 * half_z, "m"), -1.5 * unit, rotate=True)
+    words = [*_contents(damper), _cavity(damper)]
+    _draw_directions(axes, damper, -half_x - 5.2 * unit, -half_z, unit)
+    text(axes, (0.0, -half_z - 3.4 * unit), "\n".join(words), va="top")
+    axes.set_xlim(-half_x - 7 * unit, half_x + 4 * unit)
+    axes.set_ylim(-half_z - 9 * unit, half_z + unit)
+
+
+def _contents(damper: ParticleDamper) -> list[str]:
+    radii = damper.contents.radius
+    names = list(dict.fromkeys((each.material.name or "own material").replace("_", " ") for each in damper.particles))
+    size = amount(2 * float(radii.min()), "m")
+    if not math.isclose(radii.min(), radii.max()):
+        size += f" to {amount(2 * float(radii.max()), 'm')}"
+    share = float((4 / 3 * math.pi * radii**3).sum()) / damper.cavity.volume
+    mass = amount(float(damper.contents.mass.sum()), "kg")
+    return [
+        f"{counted(len(radii), f'{joined(names)} ball')} of {size}",
+        f"{mass}, {amount(share, '%', 3)} of the volume",
+    ]
+
+
+def _cavity(damper: ParticleDamper) -> str:
+    cavity = damper.cavity
+    if isinstance(cavity, Box):
+        return f"box, {amount(float(cavity.lengths[1]), 'm')} deep (y)"
+    if isinstance(cavity, Cylinder):
+        return f"cylinder, diameter {amount(2 * cavity.radius, 'm')}, {amount(cavity.length, 'm')} long"
+    return f"sphere, diameter {amount(float(cavity.lengths[0]), 'm')}"
+
+
+def positions_at_start(damper: ParticleDamper) -> Array:
+    """Return the initial positions of the particles, (n, 3) [m]; those of a settled bed are computed.
+
+    Parameters
+    ----------
+    damper
+        The damper.
+    """
+    return settle(damper) if isinstance(damper.packing, Settled) else damper.start.position
+
+
+def _draw_particles(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:
+    species = damper.contents.species
+    colours = np.array([_rgb(SERIES_COLOURS[k % len(SERIES_COLOURS)]) for k in species])
+    extent = (-half_x, half_x, -half_z, half_z)
+    width = max(16, round(_PIXELS * min(1.0, half_x / half_z)))
+    places = positions_at_start(damper) @ _FRONT.T
+    picture = draw_spheres(places, damper.contents.radius, colours, extent, width, "plain")
+    axes.imshow(picture, extent=extent, zorder=2, interpolation="antialiased")
+
+
+def _rgb(colour: str) -> tuple[float, ...]:
+    return tuple(0.5 + 0.5 * int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5))
+
+
+def _draw_level(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:
+    """Draw the level of a bed of many particles."""
+    radii, cavity = damper.contents.radius, damper.cavity
+    filled = float((4 / 3 * math.pi * radii**3).sum()) / _PACKED
+    rng = np.random.default_rng(0)
+    # The level below which this share of the cavity lies, from random points inside.
+    points = rng.uniform(-1, 1, (20_000, 3)) * [half_x, 0.5 * cavity.extent(np.array([0.0, 1.0, 0.0])), half_z]
+    heights = np.sort(points[cavity.depth(points) > 0, 2])
+    level = float(heights[min(heights.size - 1, int(heights.size * min(1.0, filled / cavity.volume)))])
+    grid_x, grid_z = np.meshgrid(np.linspace(-half_x, half_x, 400), np.linspace(-half_z, half_z, 400))
+    inside = cavity.depth(np.stack([grid_x.ravel(), np.zeros(grid_x.size), grid_z.ravel()], axis=1)) > 0
+    shown = (inside & (grid_z.ravel() < level)).reshape(grid_x.shape)
+    colour = np.zeros((*shown.shape, 4))
+    colour[shown] = (*_rgb(SERIES_COLOURS[0]), 1.0)
+    axes.imshow(colour, extent=(-half_x, half_x, -half_z, half_z), origin="lower", zorder=2)
+
+
+def _is_inclined(damper: ParticleDamper) -> bool:
+    """Return whether the cavity is a cylinder whose axis is along none of x, y and z."""
+    return isinstance(damper.cavity, Cylinder) and float(np.abs(damper.cavity.frame[2]).max()) < 1 - 1e-9
+
+
+def _draw_walls(axes: Axes, damper: ParticleDamper, half_x: float, half_z: float) -> None:
+    """Draw the outline of the cavity as seen along y."""
+    cavity = damper.cavity
+    line: dict[str, Any] = {"facecolor": "none", "edgecolor": INK, "lw": pen(1.0), "zorder": 4}
+    if _is_inclined(damper):
+        from .particles import outline
+
+        for edge in outline(cavity, _FRONT):
+            axes.plot(*(edge @ _FRONT.T)[:, :2].T, color=INK, lw=pen(1.0), zorder=4)
+    elif isinstance(cavity, Box) or (isinstance(cavity, Cylinder) and abs(cavity.frame[2][1]) < 0.5):
+        axes.add_patch(Rectangle((-half_x, -half_z), 2 * half_x, 2 * half_z, **line))
+    else:
+        axes.add_patch(Ellipse((0.0, 0.0), 2 * half_x, 2 * half_z, **line))
+
+
+def _draw_directions(axes: Axes, damper: ParticleDamper, x: float, z: float, unit: float) -> None:
+    """Draw the axes, the direction of the motion and of gravity at the left of the cavity."""
+    for direction, name in (((1.0, 0.0), "x"), ((0.0, 1.0), "z")):
+        end = (x + 1.6 * unit * direction[0], z + 1.6 * unit * direction[1])
+        arrow(axes, (x, z), end, width=0.5)
+        text(axes, (x + 2.2 * unit * direction[0], z + 2.2 * unit * direction[1]), name, fontsize="small")
+    gravity = np.array(damper.gravity)[[0, 2]]
+    if np.any(gravity):
+        start = x + 0.8 * unit, z + 6.0 * unit
+        pull = 1.8 * unit * gravity / np.linalg.norm(gravity)
+        arrow(axes, start, (start[0] + pull[0], start[1] + pull[1]))
+        text(axes, (start[0] + 0.9 * unit, start[1] - 0.6 * unit), "g", fontsize="small", fontstyle="italic")

@@ -1,0 +1,354 @@
+"""Drawings of structures: beams and plates to scale, others as symbols."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, Polygon, Rectangle
+
+from rattlebox._util.narrow import instance
+
+from ..model.beams import Beam
+from ..model.case import Case
+from ..model.plates import Plate
+from ..model.shear_buildings import ShearBuilding
+from ..model.structures import SDOF, Fixed, Shaker
+from ..results.case_words import each_damper, natural_frequencies
+from ..results.quantities import amount
+from .style import FAINT, INK, SERIES_COLOURS, label, pen, scaled, shorten
+from .technical import (
+    LOAD_COLOUR,
+    SOLID,
+    Point,
+    arrow,
+    body,
+    dashpot,
+    dimension,
+    ground,
+    mark,
+    spring,
+    text,
+)
+
+Marks = Mapping[int, str]
+"""Text in the mark of each damper, by its number in the case."""
+
+_MAX_STOREYS = 12
+_MAX_STEMS = 40
+
+
+def draw_structure(axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw the structure of a case with its loads, dampers and tuned masses.
+
+    Parameters
+    ----------
+    axes
+        Axes to draw on.
+    case
+        The case.
+    marks
+        Text in the mark of each damper.
+    """
+    structure = case.structure
+    draw: Callable[[Axes, Case, Marks], None]
+    if isinstance(structure, Beam):
+        draw = _draw_beam
+    elif isinstance(structure, Plate):
+        draw = _draw_plate
+    elif isinstance(structure, ShearBuilding):
+        draw = _draw_building
+    elif isinstance(structure, (SDOF, Shaker, Fixed)):
+        draw = _draw_block
+    else:
+        _draw_modes(axes, case, marks)
+        return
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    draw(axes, case, marks)
+
+
+def _points(case: Case) -> dict[int, str]:
+    """Return the point of each damper."""
+    modes = case.structure.modes()
+    return {number: modes.point(damper.point) for number, damper in enumerate(each_damper(case))}
+
+
+def _draw_block(axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw a mass on spring and dashpot, a shaker table, or a fixed cavity; none of them has a size."""
+    structure = case.structure
+    left = 0.0
+    body(axes, (0.0, -0.4), 1.2, 0.8)
+    if isinstance(structure, SDOF):
+        words = amount(structure.mass, "kg")
+        stiff = structure.stiffness if structure.frequency is None else None
+        if structure.frequency is not None or stiff:
+            left = -1.3
+            ground(axes, (left, -0.5), (left, 0.5), 0.15)
+            spring(axes, (left, 0.2), (0.0, 0.2), 0.2)
+            first = (
+                amount(structure.frequency, "Hz") if structure.frequency is not None else amount(stiff or 0.0, "N/m")
+            )
+            text(axes, (left / 2, 0.38), first, va="bottom", fontsize="small")
+            if structure.damping or structure.damping_ratio:
+                dashpot(axes, (left, -0.2), (0.0, -0.2), 0.22)
+                damping = (
+                    amount(structure.damping, "N s/m")
+                    if structure.damping
+                    else amount(structure.damping_ratio or 0, "%")
+                )
+                text(axes, (left / 2, -0.38), damping, va="top", fontsize="small")
+    elif isinstance(structure, Shaker):
+        words = "shaker"
+        arrow(axes, (0.2, -0.62), (1.0, -0.62), both=True, colour=LOAD_COLOUR, width=1.2)
+    else:
+        words = "fixed"
+        ground(axes, (1.2, -0.4), (0.0, -0.4), 0.15)
+    text(axes, (0.6, 0.2 if case.dampers else 0.0), words)
+    _row_of_marks(axes, case, marks, (0.6, -0.15))
+    right = 1.2
+    if case.loads:
+        arrow(axes, (1.3, 0.0), (1.95, 0.0), colour=LOAD_COLOUR, width=1.4)
+        text(axes, (1.62, 0.12), "F(t)", va="bottom", color=LOAD_COLOUR)
+        right = 2.1
+    top = 0.5 + _draw_tuned_masses(axes, case, {"mass": (0.6, 0.4)})
+    if case.base:
+        arrow(axes, (left - 0.35, -0.75), (left + 0.35, -0.75), both=True, colour=LOAD_COLOUR, width=1.2)
+        text(axes, (left + 0.45, -0.75), "motion of the base", ha="left", color=LOAD_COLOUR, fontsize="small")
+    text(axes, ((left + right) / 2, -1.15), "symbols, not to scale", color=FAINT, fontsize="small")
+    axes.set_xlim(left - 0.5, right + 0.3)
+    axes.set_ylim(-1.35, top)
+
+
+def _row_of_marks(axes: Axes, case: Case, marks: Marks, at: Point, radius: float = 0.13) -> None:
+    """Draw the marks of all dampers next to each other."""
+    shown = list(dict.fromkeys(marks[number] for number in range(len(marks))))
+    for k, words in enumerate(shown):
+        mark(axes, (at[0] + 2.4 * radius * (k - (len(shown) - 1) / 2), at[1]), words, radius)
+
+
+def _draw_tuned_masses(axes: Axes, case: Case, places: Mapping[str, Point], step: float = 0.0) -> float:
+    """Draw tuned masses above their points; return the height that they take."""
+    modes = case.structure.modes()
+    height = 0.0
+    for number, part in enumerate(case.tuned_masses):
+        try:
+            x, y = places[modes.point(part.point)]
+        except (KeyError, ValueError):
+            continue
+        size = step or 0.35
+        spring(axes, (x + (number - 0.3) * size, y), (x + (number - 0.3) * size, y + 1.2 * size), 0.25 * size, 3)
+        dashpot(axes, (x + (number + 0.3) * size, y), (x + (number + 0.3) * size, y + 1.2 * size), 0.25 * size)
+        body(axes, (x + (number - 0.6) * size, y + 1.2 * size), 1.2 * size, 0.6 * size)
+        words = f"{amount(part.mass, 'kg')}, {amount(part.frequency, 'Hz')}"
+        text(axes, (x + (number + 0.75) * size, y + 1.5 * size), words, ha="left", fontsize="small")
+        height = max(height, 2.2 * size)
+    return height
+
+
+def _draw_beam(axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw a beam to scale with its supports, points, cross-section and first mode."""
+    beam = instance(case.structure, Beam)
+    length = beam.length
+    thick = beam.diameter or beam.height or 0.0
+    shown = max(thick, 0.012 * length)
+    unit = 0.06 * length
+    axes.add_patch(Rectangle((0.0, -shown / 2), length, shown, facecolor=SOLID, edgecolor=INK, lw=pen(0.8), zorder=3))
+    first, second = beam.ends.split("-")
+    for x, end, side in ((0.0, first, -1), (length, second, 1)):
+        _draw_support(axes, x, end, side, shown, unit)
+    _draw_mode(axes, beam, unit)
+    if beam.tip_mass:
+        edge = max(shown, unit)
+        body(axes, (length, -edge / 2), 0.7 * edge, edge)
+        text(axes, (length + 0.85 * edge, 0.6 * edge), f"+ {amount(beam.tip_mass, 'kg')}", ha="left", fontsize="small")
+    places = {"tip": length, "middle": length / 2} | dict(beam.points)
+    above: dict[str, Point] = {name: (x, shown / 2) for name, x in places.items()}
+    _draw_points(axes, case, marks, above, shown, unit)
+    dimension(axes, (0.0, -shown / 2), (length, -shown / 2), amount(length, "m"), -3.0 * unit)
+    _draw_section(axes, beam, length * 1.15, unit, thick)
+    top = 4.5 * unit + _draw_tuned_masses(axes, case, above, 2.2 * unit)
+    axes.set_xlim(-3 * unit, length * 1.15 + max(thick, unit) + 6 * unit)
+    axes.set_ylim(-0.5 * shown - 5.5 * unit, 0.5 * shown + top)
+
+
+def _draw_support(axes: Axes, x: float, end: str, side: int, thick: float, unit: float) -> None:
+    """Draw the support at an end of a beam."""
+    if end == "clamped":
+        half = 0.5 * thick + unit
+        start, stop = ((x, half), (x, -half)) if side > 0 else ((x, -half), (x, half))
+        ground(axes, start, stop, 0.8 * unit)
+    elif end == "pinned":
+        tip = (x, -0.5 * thick)
+        corners = [tip, (x - 0.6 * unit, tip[1] - unit), (x + 0.6 * unit, tip[1] - unit)]
+        axes.add_patch(Polygon(corners, facecolor="white", edgecolor=INK, lw=pen(0.8), zorder=3))
+        ground(axes, (x + unit, tip[1] - unit), (x - unit, tip[1] - unit), 0.5 * unit)
+
+
+def _draw_mode(axes: Axes, beam: Beam, unit: float) -> None:
+    """Draw the shape of the first elastic mode in grey."""
+    places = np.linspace(0.0, beam.length, 41)
+    fine = beam.model_copy(
+        update={"points": {str(k): float(x) for k, x in enumerate(places)}, "mode_count": beam.mode_count}
+    )
+    modes = fine.modes()
+    elastic = np.flatnonzero(modes.stiffness > 0)
+    if not elastic.size:
+        return
+    shape = np.array([modes.shapes[str(k)][elastic[0]] for k in range(places.size)])
+    axes.plot(places, 2.2 * unit * shape / np.abs(shape).max(), color=FAINT, lw=pen(0.8), ls=(0, (4, 2)), zorder=1)
+
+
+def _draw_section(axes: Axes, beam: Beam, x: float, unit: float, thick: float) -> None:
+    """Draw the cross-section at the right of a beam: to scale if it is large enough to be seen."""
+    if not thick:
+        return
+    enlarged = max(1.0, 2.0 * unit / thick)
+    centre = x + 2 * unit + 0.5 * thick * enlarged
+    words = [amount(thick, "m")]
+    if beam.diameter is not None:
+        axes.add_patch(Circle((centre, 0.0), 0.5 * thick * enlarged, facecolor=SOLID, edgecolor=INK, lw=pen(0.8)))
+        if beam.inner_diameter:
+            inner = 0.5 * beam.inner_diameter * enlarged
+            axes.add_patch(Circle((centre, 0.0), inner, facecolor="white", edgecolor=INK, lw=pen(0.8)))
+            words.append(f"inner {amount(beam.inner_diameter, 'm')}")
+    elif beam.width is not None:
+        wide = beam.width * enlarged
+        body(axes, (centre - wide / 2, -thick * enlarged / 2), wide, thick * enlarged)
+        words = [f"{amount(beam.width, 'm')} x {amount(thick, 'm')}"]
+    words.append("section" if enlarged == 1 else f"section, x {enlarged:.2g}")
+    text(axes, (centre, -0.5 * thick * enlarged - 0.4 * unit), "\n".join(words), va="top", fontsize="small")
+
+
+def _draw_points(axes: Axes, case: Case, marks: Marks, places: Mapping[str, Point], thick: float, unit: float) -> None:
+    """Draw marks of dampers on a beam, and arrows of loads above, at their points, whose names are below."""
+    modes = case.structure.modes()
+    used: dict[str, int] = {}
+    for number, name in _points(case).items():
+        x, y = places[name]
+        mark(axes, (x - 1.7 * unit * used.get(name, 0), y - thick / 2), marks[number], 0.75 * unit)
+        used[name] = used.get(name, 0) + 1
+    tuned = [modes.point(part.point) for part in case.tuned_masses]
+    for load in case.loads:
+        name = modes.point(load.point)
+        x, y = places[name]
+        x -= 2.0 * unit if name in tuned else 0.0
+        arrow(axes, (x, y + 3.2 * unit), (x, y + 0.9 * unit), colour=LOAD_COLOUR, width=1.4)
+        _force(axes, (x + 0.4 * unit, y + 2.6 * unit))
+        used.setdefault(name, 1)
+    for name in dict.fromkeys([*used, *tuned]):
+        x, y = places[name]
+        text(axes, (x, y - thick - 0.9 * unit), shorten(name, 14), fontsize="small", va="top")
+    if case.base:
+        arrow(axes, (-unit, -4.2 * unit), (-unit, -2.2 * unit), both=True, colour=LOAD_COLOUR, width=1.2)
+        text(axes, (-0.5 * unit, -4.6 * unit), "motion of the base", ha="left", color=LOAD_COLOUR, fontsize="small")
+
+
+def _force(axes: Axes, at: Point) -> None:
+    text(axes, at, "F(t)", ha="left", color=LOAD_COLOUR, fontsize="small")
+
+
+def _draw_plate(axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw a plate from above to scale, with its points."""
+    plate = instance(case.structure, Plate)
+    a, b = plate.length, plate.width
+    unit = 0.05 * max(a, b)
+    body(axes, (0.0, 0.0), a, b)
+    inside = (0.3 * unit, 0.3 * unit), a - 0.6 * unit, b - 0.6 * unit
+    axes.add_patch(Rectangle(*inside, fill=False, edgecolor=FAINT, lw=pen(0.6), ls="--", zorder=3))
+    places: dict[str, Point] = {"middle": (a / 2, b / 2)} | {name: (x, y) for name, (x, y) in plate.points.items()}
+    modes = case.structure.modes()
+    used: dict[str, int] = {}
+    for number, name in _points(case).items():
+        x, y = places[name]
+        mark(axes, (x + 1.7 * unit * used.get(name, 0), y), marks[number], 0.75 * unit)
+        used[name] = used.get(name, 0) + 1
+    for load in case.loads:
+        name = modes.point(load.point)
+        x, y = places[name]
+        axes.plot(x, y, marker="x", color=LOAD_COLOUR, ms=pen(6), mew=pen(1.4), zorder=9)
+        _force(axes, (x + unit, y - unit))
+        used.setdefault(name, 1)
+    for part in case.tuned_masses:
+        name = modes.point(part.point)
+        x, y = places[name]
+        axes.add_patch(Rectangle((x - unit / 2, y - unit / 2), unit, unit, facecolor=SERIES_COLOURS[2], zorder=7))
+        used.setdefault(name, 1)
+    for name in used:
+        x, y = places[name]
+        text(axes, (x, y + 1.2 * unit), shorten(name, 14), va="bottom", fontsize="small", zorder=9)
+    dimension(axes, (0.0, 0.0), (a, 0.0), amount(a, "m"), -1.5 * unit)
+    dimension(axes, (a, 0.0), (a, b), amount(b, "m"), -1.5 * unit, rotate=True)
+    thickness = f"{amount(plate.thickness, 'm')} thick, " if plate.thickness else ""
+    note = f"{thickness}simply supported, seen from above"
+    if case.base:
+        note += "; the base moves normal to the plate"
+    text(axes, (a / 2, -3.6 * unit), note, va="top", fontsize="small")
+    axes.set_xlim(-unit, a + 3.5 * unit)
+    axes.set_ylim(-5.5 * unit, b + unit)
+
+
+def _draw_building(axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw the storeys of a building as symbols with masses and stiffnesses."""
+    building = instance(case.structure, ShearBuilding)
+    count = len(building.masses)
+    step = max(1, -(-count // _MAX_STOREYS))
+    ground(axes, (1.5, 0.0), (-0.5, 0.0), 0.2)
+    points = _points(case)
+    modes = building.modes()
+    for k in range(count):
+        y = k + 1.0
+        for x in (0.0, 1.0):
+            axes.plot([x, x], [k, y], color=INK, lw=pen(1.0), zorder=1)
+        axes.add_patch(Rectangle((-0.15, y - 0.08), 1.3, 0.16, facecolor=SOLID, edgecolor=INK, lw=pen(0.8), zorder=2))
+        if k % step == 0:
+            text(axes, (-0.25, y), amount(building.masses[k], "kg"), ha="right", fontsize="small")
+            text(axes, (0.5, y - 0.5), amount(building.stiffnesses[k], "N/m"), fontsize="small", color=INK)
+        name = f"storey {k + 1}"
+        own = [number for number, point in points.items() if point == name]
+        for j, number in enumerate(own):
+            mark(axes, (1.45 + 0.45 * j, y), marks[number], 0.2)
+        for load in case.loads:
+            if modes.point(load.point) == name:
+                arrow(axes, (1.9 + 0.45 * len(own), y), (1.2 + 0.45 * len(own), y), colour=LOAD_COLOUR, width=1.4)
+        for part in case.tuned_masses:
+            if modes.point(part.point) == name:
+                text(
+                    axes,
+                    (1.25 + 0.45 * len(own), y),
+                    f"+ tuned mass {amount(part.mass, 'kg')}",
+                    ha="left",
+                    fontsize="small",
+                )
+    if case.base:
+        arrow(axes, (-0.2, -0.45), (1.2, -0.45), both=True, colour=LOAD_COLOUR, width=1.2)
+        text(axes, (0.5, -0.6), "motion of the base", va="top", color=LOAD_COLOUR, fontsize="small")
+    text(axes, (0.5, -1.3), "symbols, not to scale", color=FAINT, fontsize="small")
+    axes.set_xlim(-1.6, 3.2)
+    axes.set_ylim(-1.6, count + 0.6)
+
+
+def _draw_modes(axes: Axes, case: Case, marks: Marks) -> None:
+    """Draw the effective mass of each mode at the points of the dampers over the natural frequency."""
+    modes, frequencies = case.structure.modes(), np.array(natural_frequencies(case))
+    stiff = np.asarray(modes.stiffness) > 0
+    names = list(dict.fromkeys([*_points(case).values(), *(modes.point(load.point) for load in case.loads)]))
+    names = names or list(modes.shapes)[:1]
+    divisor, unit = scaled(frequencies, "Hz")
+    for k, name in enumerate(names[: len(SERIES_COLOURS)]):
+        shape = np.asarray(modes.shapes[name])[stiff]
+        square = (shape.reshape(len(shape), -1) ** 2).sum(axis=1)
+        moved = square > 1e-12 * square.max(initial=0.0)
+        own = ", ".join(marks[n] for n, point in _points(case).items() if point == name and marks[n])
+        style: dict[str, Any] = {"color": SERIES_COLOURS[k], "marker": "o", "ms": pen(3), "ls": ""}
+        x, y = frequencies[moved][:_MAX_STEMS] / divisor, square[moved][:_MAX_STEMS]
+        axes.plot(x, y, label=f"at {shorten(name, 20)}" + (f" ({own})" if own else ""), **style)
+        axes.vlines(x, 0, y, color=SERIES_COLOURS[k], lw=pen(0.8))
+    axes.margins(x=0.1)
+    axes.set_ylim(0.0, 1.4 * axes.get_ylim()[1])  # room for the legend
+    label(axes, "x", "Natural frequency", unit)
+    label(axes, "y", "1 / effective mass", "1/kg")
+    for each in axes.legend(loc="upper right", fontsize="small").get_texts():
+        each.set_parse_math(False)

@@ -1,0 +1,220 @@
+"""Elements of technical drawings: dimensions, springs, dashpots, grounds, arrows, numbered marks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
+
+from .style import INK, SERIES_COLOURS, pen
+
+SOLID = "#dfe6ec"
+"""Fill of bodies."""
+LOAD_COLOUR = SERIES_COLOURS[1]
+"""Colour of loads and motions."""
+MARK_COLOUR = SERIES_COLOURS[0]
+"""Colour of dampers."""
+
+Point = tuple[float, float]
+
+
+def text(axes: Axes, at: Point, words: str, **options: Any) -> None:
+    """Write a text that is never read as mathematics, since names of users may contain dollar signs.
+
+    Parameters
+    ----------
+    axes
+        Axes of the drawing.
+    at
+        Position.
+    words
+        The text.
+    **options
+        Options of `Axes.text`.
+    """
+    chosen: Any = {"ha": "center", "va": "center", "parse_math": False} | options
+    axes.text(*at, words, **chosen)
+
+
+def arrow(axes: Axes, start: Point, end: Point, *, both: bool = False, colour: str = INK, width: float = 0.8) -> None:
+    """Draw an arrow.
+
+    Parameters
+    ----------
+    axes
+        Axes of the drawing.
+    start, end
+        Its ends; the head is at the end.
+    both
+        Whether there is a head at both ends.
+    colour, width
+        Colour, and line width [pt at 8 pt letters].
+    """
+    style = "<|-|>" if both else "-|>"
+    axes.add_patch(
+        FancyArrowPatch(
+            start,
+            end,
+            arrowstyle=style,
+            color=colour,
+            lw=pen(width),
+            mutation_scale=pen(6),
+            shrinkA=0,
+            shrinkB=0,
+            zorder=6,
+        )
+    )
+
+
+def dimension(axes: Axes, start: Point, end: Point, words: str, offset: float, *, rotate: bool = False) -> None:
+    """Draw a dimension line parallel to the line between two points, with its words.
+
+    Parameters
+    ----------
+    axes
+        Axes with equal scales.
+    start, end
+        Points whose distance is shown.
+    words
+        Length with its unit.
+    offset
+        Distance of the dimension line from the points, to the left of the direction from start to end; in data units.
+    rotate
+        Whether the words are along the line.
+    """
+    a, b = np.asarray(start, float), np.asarray(end, float)
+    along = (b - a) / (np.linalg.norm(b - a) or 1.0)
+    normal = np.array([-along[1], along[0]])
+    shift = normal * offset
+    for point in (a, b):
+        tail = np.stack([point + 0.15 * shift, point + 1.15 * shift])
+        axes.plot(*tail.T, color=INK, lw=pen(0.35), zorder=5)
+    first, last = a + shift, b + shift
+    arrow(axes, (first[0], first[1]), (last[0], last[1]), both=True, width=0.5)
+    middle = (first + last) / 2 + 0.2 * shift
+    angle = float(np.degrees(np.arctan2(along[1], along[0]))) if rotate else 0.0
+    angle = angle - 180 if angle > 90 else angle + 180 if angle <= -90 else angle
+    across = abs(shift[0]) < abs(shift[1])
+    horizontal = "center" if across or rotate else ("left" if shift[0] > 0 else "right")
+    vertical = ("bottom" if shift[1] > 0 else "top") if across else "center"
+    if rotate and not across:
+        vertical = "bottom"
+        horizontal = "center"
+    text(
+        axes,
+        (middle[0], middle[1]),
+        words,
+        ha=horizontal,
+        va=vertical,
+        rotation=angle,
+        rotation_mode="anchor",
+        zorder=7,
+    )
+
+
+def ground(axes: Axes, start: Point, end: Point, depth: float) -> None:
+    """Draw a fixed edge with hatches on the left of the direction from start to end.
+
+    Parameters
+    ----------
+    axes
+        Axes of the drawing.
+    start, end
+        Ends of the edge.
+    depth
+        Depth of the hatches.
+    """
+    a, b = np.asarray(start, float), np.asarray(end, float)
+    along = (b - a) / np.linalg.norm(b - a)
+    normal = np.array([-along[1], along[0]]) * depth
+    corners = np.stack([a, b, b + normal, a + normal])
+    axes.add_patch(Polygon(corners, facecolor="none", edgecolor=INK, hatch="/////", lw=0, zorder=1))
+    axes.plot(*np.stack([a, b]).T, color=INK, lw=pen(1.2), zorder=3)
+
+
+def spring(axes: Axes, start: Point, end: Point, width: float, turns: int = 5) -> None:
+    """Draw a spring as a zigzag.
+
+    Parameters
+    ----------
+    axes
+        Axes of the drawing.
+    start, end
+        Its ends.
+    width
+        Width of the zigzag.
+    turns
+        Number of its turns.
+    """
+    a, b = np.asarray(start, float), np.asarray(end, float)
+    along, length = (b - a) / np.linalg.norm(b - a), float(np.linalg.norm(b - a))
+    normal = np.array([-along[1], along[0]])
+    places = np.concatenate([[0.0, 0.2], np.linspace(0.2, 0.8, 2 * turns + 1)[1:-1], [0.8, 1.0]]) * length
+    sides = np.concatenate([[0, 0], [(-1) ** k for k in range(2 * turns - 1)], [0, 0]]) * width / 2
+    line = a + np.outer(places, along) + np.outer(sides, normal)
+    axes.plot(*line.T, color=INK, lw=pen(0.8), zorder=3)
+
+
+def dashpot(axes: Axes, start: Point, end: Point, width: float) -> None:
+    """Draw a dashpot.
+
+    Parameters
+    ----------
+    axes
+        Axes of the drawing.
+    start, end
+        Its ends.
+    width
+        Width of its cylinder.
+    """
+    a, b = np.asarray(start, float), np.asarray(end, float)
+    along = b - a
+    normal = np.array([-along[1], along[0]]) / np.linalg.norm(along) * width / 2
+
+    def line(*points: Any) -> None:
+        axes.plot(*np.stack(points).T, color=INK, lw=pen(0.8), zorder=3)
+
+    line(a, a + 0.4 * along)
+    line(a + 0.65 * along + normal, a + 0.4 * along + normal, a + 0.4 * along - normal, a + 0.65 * along - normal)
+    line(a + 0.55 * along + 0.8 * normal, a + 0.55 * along - 0.8 * normal)
+    line(a + 0.55 * along, b)
+
+
+def body(axes: Axes, corner: Point, width: float, height: float) -> None:
+    """Draw a rectangular body.
+
+    Parameters
+    ----------
+    axes
+        Axes of the drawing.
+    corner
+        Lower left corner.
+    width, height
+        Its edges.
+    """
+    axes.add_patch(Rectangle(corner, width, height, facecolor=SOLID, edgecolor=INK, lw=pen(0.8), zorder=2))
+
+
+def mark(axes: Axes, at: Point, words: str, radius: float) -> None:
+    """Draw the number of a damper in a circle; without a number a ball in a cavity.
+
+    Parameters
+    ----------
+    axes
+        Axes with equal scales.
+    at
+        Position.
+    words
+        Number.
+    radius
+        Radius of the circle.
+    """
+    style: Any = {"facecolor": "white", "edgecolor": MARK_COLOUR, "lw": pen(0.9), "zorder": 8}
+    if not words:
+        axes.add_patch(Rectangle((at[0] - 1.2 * radius, at[1] - 0.8 * radius), 2.4 * radius, 1.6 * radius, **style))
+        axes.add_patch(Circle(at, 0.7 * radius, facecolor=MARK_COLOUR, alpha=0.5, zorder=9))
+        return
+    axes.add_patch(Circle(at, radius, **style))
+    text(axes, at, words, color=MARK_COLOUR, zorder=9, fontsize="small", fontweight="bold")
