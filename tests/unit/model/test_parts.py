@@ -361,10 +361,10 @@ def test_every_material_is_physical_and_has_a_source() -> None:
     """The library has the documented materials, each with a source; brittle materials have no yield stress."""
     library = rb.materials()
     assert {"steel", "stainless_steel", "tungsten_carbide", "lead", "brass", "aluminium"} <= set(library)
-    assert {"glass", "alumina", "pmma", "nylon"} <= set(library)
+    assert {"glass", "alumina", "zirconia", "pmma", "nylon", "tungsten_alloy", "copper"} <= set(library)
     assert all(material.source for material in library.values())
     brittle = {name for name, material in library.items() if material.yield_stress is None}
-    assert brittle == {"tungsten_carbide", "glass", "alumina"}
+    assert brittle == {"tungsten_carbide", "glass", "alumina", "zirconia"}
     steel = library["steel"]
     assert (steel.young, steel.poisson, steel.density, steel.yield_stress) == (200e9, 0.3, 7850.0, 1030e6)
 
