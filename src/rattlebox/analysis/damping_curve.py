@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,16 +18,50 @@ if TYPE_CHECKING:
 
     from rattlebox.results.run import Run
 
-SKIPPED = 2.0
-"""Cycles at the start that are ignored: particles at rest must first be set in motion."""
+
+class SmoothDecay(NamedTuple):
+    """Amplitude and phase of a free decay, averaged over one cycle; without the first and last three cycles.
+
+    Attributes
+    ----------
+    time : (T,) float
+        Times [s].
+    log_amplitude : (T,) float
+        Logarithm of the envelope.
+    phase : (T,) float
+        Phase of the oscillation [rad].
+    """
+
+    time: FloatArray
+    log_amplitude: FloatArray
+    phase: FloatArray
+
+
+def smooth_decay(time: ArrayLike, values: ArrayLike) -> SmoothDecay:
+    """Return amplitude and phase of a free decay about its rest position.
+
+    The rest position, which a weight may shift, is removed as the mean over one cycle around each sample. The mean over a
+    cycle also removes the ripple that impacts leave in the envelope; of a linear decay it changes nothing.
+    """
+    t, x, cycle = oscillation(time, values)
+    step = (t[-1] - t[0]) / (t.size - 1)
+    inner, mean = mean_over_period(t, x, cycle * step)
+    inner, signal, _ = analytic_signal(inner, x[np.isin(t, inner)] - mean)
+    # Subtracting the mean over T has changed a local exp(s t) by the factor 1 - sinh(s T / 2) / (s T / 2), which is not one
+    # where T is not the local period.
+    signal = np.where(np.abs(signal) > 0, signal, np.finfo(float).tiny)
+    rate = np.gradient(np.log(np.abs(signal)) + 1j * np.unwrap(np.angle(signal)), step)
+    half = 0.5 * cycle * step * mean_over_period(inner, rate, cycle * step)[1]
+    means = [mean_over_period(inner, x, cycle * step) for x in (np.log(np.abs(signal)), np.unwrap(np.angle(signal)))]
+    return SmoothDecay(means[0][0], means[0][1] - np.log(np.abs(1 - np.sinh(half) / half)), means[1][1])
 
 
 def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: ArrayLike) -> xarray.Dataset:
     """Compute the damping ratio and frequency of a free decay at given amplitudes.
 
     The damping at an amplitude is the mean over the part of the decay in which the envelope falls through a band around it,
-    whose edges are the geometric means with the neighbouring amplitudes. The rest position, which a weight may shift, is
-    removed as the mean over one cycle around each sample.
+    whose edges are halfway to the nearer neighbour on a logarithmic scale. The rest position, which a weight may shift, is
+    removed, and the envelope is smoothed, by means over one cycle around each sample.
 
     Parameters
     ----------
@@ -41,9 +75,9 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
     Returns
     -------
     xarray.Dataset
-        `damping_ratio`, `frequency` [Hz], the times `begin` and `end` of each band [s], and the integral `squares` of the
-        squared envelope over the phase, over `amplitude`; NaN if the decay does not fall through the whole band,
-        passes it in less than half a cycle, or enters it in the first two cycles.
+        `damping_ratio`, `frequency` [Hz], and the times `begin` and `end` of each band [s], over `amplitude`; NaN if the
+        decay does not fall through the whole band, passes it in less than half a cycle, or enters it in the first three
+        cycles or leaves it in the last three, which the envelope takes and in which particles at rest are set in motion.
 
     Raises
     ------
@@ -72,35 +106,22 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
         raise ValueError(
             f"amplitudes are {levels.tolist()}, but must be ascending and above zero; try: sorted amplitudes"
         )
-    t, x, cycle = oscillation(time, values)
-    step = (t[-1] - t[0]) / (t.size - 1)
-    inner, mean = mean_over_period(t, x, cycle * step)
-    inner, signal, _ = analytic_signal(inner, x[np.isin(t, inner)] - mean)
+    decay = smooth_decay(time, values)
     # The smallest envelope so far, since particles may return energy to the structure for a while.
-    envelope = np.minimum.accumulate(np.abs(signal))
-    phase = np.unwrap(np.angle(signal))
-    edges = band_edges(levels)
-    ratio, frequency, begins, ends, squares = np.full((5, levels.size), np.nan)
-    begin = t[0] + SKIPPED * cycle * step
+    logarithm = np.minimum.accumulate(decay.log_amplitude)
+    lower, upper = (np.log(edges) for edges in band_edges(levels))
+    ratio, frequency, begins, ends = np.full((4, levels.size), np.nan)
     for k in range(levels.size):
-        if not envelope[-1] < edges[k] < edges[k + 1] <= envelope[0]:
+        if not logarithm[-1] < lower[k] < upper[k] <= logarithm[0]:
             continue
-        (t_high, phase_high), (t_low, phase_low) = (
-            _crossing(inner, envelope, phase, e) for e in (edges[k + 1], edges[k])
-        )
+        (t_high, phase_high), (t_low, phase_low) = (_crossing(decay, logarithm, e) for e in (upper[k], lower[k]))
         turn = phase_low - phase_high
-        if t_high < begin or turn < math.pi:
+        if turn < math.pi:
             continue
-        delta = math.log(edges[k + 1] / edges[k]) / turn
+        delta = (upper[k] - lower[k]) / turn
         ratio[k] = delta / math.sqrt(1 + delta**2)
         frequency[k] = turn / (2 * math.pi * (t_low - t_high))
         begins[k], ends[k] = t_high, t_low
-        inside = (inner > t_high) & (inner < t_low)
-        squares[k] = np.trapezoid(
-            np.concatenate([[edges[k + 1]], np.abs(signal[inside]), [edges[k]]]) ** 2,
-            np.concatenate([[phase_high], phase[inside], [phase_low]]),
-        )
-    unit = f"({units_of(values)})^2" if units_of(values) else ""
     axis = ("amplitude", levels, {"units": units_of(values), "long_name": "amplitude"})
     return xarray.Dataset(
         {
@@ -108,9 +129,6 @@ def damping_over_amplitude(time: ArrayLike, values: ArrayLike, amplitudes: Array
             "frequency": labelled("frequency", frequency, "Hz", "frequency of the decay", amplitude=axis),
             "begin": labelled("begin", begins, "s", "time at which the band is entered", amplitude=axis),
             "end": labelled("end", ends, "s", "time at which the band is left", amplitude=axis),
-            "squares": labelled(
-                "squares", squares, unit, "integral of the squared envelope over the phase", amplitude=axis
-            ),
         }
     )
 
@@ -162,11 +180,11 @@ def equivalent_damping(run: Run, amplitude: float | None = None, *, point: str |
     return math.nan if decay is None else decay.damping_ratio
 
 
-def band_edges(levels: FloatArray) -> FloatArray:
-    """Return the edges of bands around amplitudes, (A + 1,): geometric means, extrapolated at both ends."""
-    logs = np.log(levels)
-    middle = 0.5 * (logs[1:] + logs[:-1])
-    return np.asarray(np.exp(np.concatenate([[2 * logs[0] - middle[0]], middle, [2 * logs[-1] - middle[-1]]])))
+def band_edges(levels: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the lower and upper edges of bands around amplitudes, (A,): halfway to the nearer neighbour, on a log scale."""
+    distance = np.diff(np.log(levels))
+    half = np.exp(0.5 * np.minimum(np.append(distance, np.inf), np.insert(distance, 0, np.inf)))
+    return levels / half, levels * half
 
 
 def mean_over_period(t: FloatArray, x: FloatArray, period: float) -> tuple[FloatArray, FloatArray]:
@@ -178,10 +196,11 @@ def mean_over_period(t: FloatArray, x: FloatArray, period: float) -> tuple[Float
     return inner, np.asarray((whole(inner + period / 2) - whole(inner - period / 2)) / period)
 
 
-def _crossing(t: FloatArray, envelope: FloatArray, phase: FloatArray, level: float) -> tuple[float, float]:
-    """Return time and phase at which a falling envelope first reaches a level."""
-    k = int(np.argmax(envelope <= level))
+def _crossing(decay: SmoothDecay, falling: FloatArray, level: float) -> tuple[float, float]:
+    """Return time and phase at which a falling logarithm of the envelope first reaches a level."""
+    k = int(np.argmax(falling <= level))
     if k == 0:
-        return float(t[0]), float(phase[0])
-    part = math.log(envelope[k - 1] / level) / math.log(envelope[k - 1] / envelope[k])
-    return float(t[k - 1] + part * (t[k] - t[k - 1])), float(phase[k - 1] + part * (phase[k] - phase[k - 1]))
+        return float(decay.time[0]), float(decay.phase[0])
+    part = (falling[k - 1] - level) / (falling[k - 1] - falling[k])
+    time, phase = (float(x[k - 1] + part * (x[k] - x[k - 1])) for x in (decay.time, decay.phase))
+    return time, phase
