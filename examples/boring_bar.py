@@ -9,7 +9,7 @@ import rattlebox as rb
 AMPLITUDES = ["20 um", "28 um", "40 um", "57 um", "80 um"]
 
 
-def curve(fill, softening=100, amplitudes=AMPLITUDES, packings=2):
+def curve(fill, softening=100, amplitudes=AMPLITUDES, packings=3):
     """Return the damping ratio over amplitude with a fill, as a share of the cavity's volume."""
     balls = rb.ParticleDamper(
         particles=rb.Particles(material="tungsten_carbide", diameter="6 mm", fill_ratio=fill),
