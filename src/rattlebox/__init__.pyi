@@ -78,6 +78,7 @@ from rattlebox.plots.damping_curve import plot_damping_curve as plot_damping_cur
 from rattlebox.plots.design import plot_design as plot_design
 from rattlebox.plots.loss_map import plot_loss_map as plot_loss_map
 from rattlebox.plots.lyapunov import plot_lyapunov as plot_lyapunov
+from rattlebox.plots.map_response import plot_response_from_map as plot_response_from_map
 from rattlebox.plots.maps import plot_map as plot_map
 from rattlebox.plots.particles import film_particles as film_particles
 from rattlebox.plots.particles import plot_particles as plot_particles

@@ -22,6 +22,7 @@ PAGES = (
     "how-to/fmu",
     "how-to/frequency_response",
     "how-to/loads",
+    "how-to/map_on_structure",
     "how-to/matlab",
     "how-to/notebooks",
     "how-to/paraview",

@@ -26,7 +26,7 @@ _FINE = 8  # amplitudes in each interval of the table at which levels are comput
 _EDGE = 0.1  # width of the transition outside of the table, in natural logarithms of the amplitude
 _BISECTIONS = 40
 _LONGEST, _SHORTEST = 0.1, 1e-6  # steps along a branch, in natural logarithms of the level
-_MOST_STEPS = 4000
+_MOST_STEPS = 1500
 _ROUNDING = 1e-9
 
 
@@ -117,8 +117,17 @@ class MassTable:
             mass += np.where(w > 0, w * (((c[0] * d + c[1]) * d + c[2]) * d + c[3]), 0.0)
             slope += np.where(w > 0, w * ((3 * c[0] * d + 2 * c[1]) * d + c[2]), 0.0)
         beyond = log_amplitude - inner
-        decay = np.exp(-np.abs(beyond) / _EDGE)
-        return mass + slope * np.sign(beyond) * _EDGE * (1 - decay), slope * decay
+        if not beyond.any():
+            return mass, slope
+        # The damping mass must not change its sign there: the structure would vibrate without a load.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            short = np.fmin(_EDGE, 0.5 * np.abs(mass.imag / slope.imag))
+        parts = []
+        for value, change, width in ((mass.real, slope.real, _EDGE), (mass.imag, slope.imag, np.maximum(short, 1e-9))):
+            decay = np.exp(-np.abs(beyond) / width)
+            parts.append((value + change * np.sign(beyond) * width * (1 - decay), change * decay))
+        (mass_real, slope_real), (mass_imag, slope_imag) = parts
+        return mass_real + 1j * mass_imag, slope_real + 1j * slope_imag
 
     def thinned(self, amplitudes: bool) -> MassTable | None:
         """Return the table without every second amplitude or frequency; None if fewer than three are left to omit from."""

@@ -8,6 +8,7 @@ from .damping_curve import plot_damping_curve
 from .energy import plot_energy
 from .impacts import plot_impacts
 from .lyapunov import plot_lyapunov
+from .map_response import plot_response_from_map
 from .motion import plot_motion
 from .particles import film_particles, plot_particles
 from .phase import plot_phase_portrait
@@ -52,5 +53,6 @@ __all__ = [
     "plot_motion",
     "plot_particles",
     "plot_phase_portrait",
+    "plot_response_from_map",
     "scaled",
 ]

@@ -72,7 +72,7 @@ def plot_frequency_response(
         divisor, unit = scaled(response.frequency, "Hz")
         label(panels[-1], "x", "Frequency", unit)
         panels[-1].set_xlim(float(response.frequency[0]) / divisor, float(response.frequency[-1]) / divisor)
-        panels[0].legend(handles=_level_handles(response), loc="lower left", bbox_to_anchor=(0, 1), ncols=4)
+        panels[0].legend(handles=level_handles(response), loc="lower left", bbox_to_anchor=(0, 1), ncols=4)
         figure.legend(handles=_line_handles(response), loc="outside upper left", ncols=3 if size == "column" else 5)
     return figure
 
@@ -103,7 +103,8 @@ def _draw(axes: Axes, response: xarray.Dataset, name: str, per_level: bool) -> N
     label(axes, "y", text[0].upper() + text[1:] + " over level" * per_level, prefixed)
 
 
-def _level_handles(response: xarray.Dataset) -> list[Line2D]:
+def level_handles(response: xarray.Dataset) -> list[Line2D]:
+    """Return the entries of a legend for the levels of a response, in the colours of their order."""
     divisor, unit = scaled(response.level, str(response.level.attrs["units"]))
     return [
         Line2D([], [], color=SERIES_COLOURS[k % len(SERIES_COLOURS)], label=f"{level:.4g} {unit}")

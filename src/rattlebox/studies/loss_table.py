@@ -38,6 +38,8 @@ class LossTable:
     ----------
     masses
         Apparent mass.
+    mass
+        Mass of the particles [kg]; NaN if it is unknown.
     interval : (K, J, 2) float or None
         Half of the 95 % intervals of m' and m'' [kg].
     harmonics : (K, J, N) float or None
@@ -57,6 +59,7 @@ class LossTable:
     """
 
     masses: MassTable
+    mass: float
     interval: FloatArray | None
     harmonics: FloatArray | None
     variation: FloatArray | None
@@ -107,6 +110,7 @@ class LossTable:
         text = str(data.attrs.get("case", ""))
         return cls(
             MassTable(frequency, amplitude, mass, unit == "m/s^2"),
+            float(data.get("particle_mass", np.nan)),
             np.stack([data[name].values for name in intervals], axis=2) if set(intervals) <= set(data) else None,
             data.force_harmonics.values / acceleration[..., None] if "force_harmonics" in data else None,
             data.force_variation.values / acceleration if "force_variation" in data else None,

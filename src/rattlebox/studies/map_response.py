@@ -23,12 +23,16 @@ FLAGS = {
     "outside_frequencies": "the frequency is outside of the map",
     "not_found": "a motion was not found, because runs of the map failed or the search did",
     "higher_harmonics": "less than 95 % of the motion of the dampers is in the first harmonic",
+    "heavy_damper": "the mass of the dampers is over 15 % of the effective mass for an impact, so that impacts are weaker",
     "map_warning": "runs of the map next to the motion exceeded a validity limit",
 }
 """Names of flags and their meaning."""
 
 _SAME = 0.01
 """Relative difference of motions below which they count as one."""
+
+HEAVY = 0.15
+"""Mass of the dampers at a point over the effective mass for an impact there, above which motions are flagged."""
 
 LEAST_SHARE = 0.95
 """Share of the mean square velocity in the first harmonic below which a motion is flagged."""
@@ -114,6 +118,8 @@ class MapResponse:
         Displacement of the observed point [m].
     cavity_amplitude : (L, F, S) float
         Largest amplitude of a damper in the unit of the map.
+    mass_ratio
+        Mass of the particles at a point over the effective mass for an impact there, the largest of all points.
     share : (L, F, S) float
         Share of the mean square velocity of the dampers in the first harmonic.
     is_unstable : (L, F, S) bool
@@ -130,6 +136,7 @@ class MapResponse:
 
     amplitude: ComplexArray
     cavity_amplitude: FloatArray
+    mass_ratio: float
     share: FloatArray
     is_unstable: NDArray[np.bool_]
     flags: NDArray[np.int16]
@@ -156,17 +163,18 @@ class MapResponse:
             Levels.
         """
         masses, model = table.masses, transfer.model
-        solutions, amplitude = _motions(transfer, table, masses, number, levels)
+        solutions, amplitude, rests = _motions(transfer, table, masses, number, levels)
         squared = 1.0 if masses.is_acceleration else (2 * np.pi * transfer.frequency[:, None, None]) ** 2
         each = np.abs(solutions.acceleration) / squared
         peak, where = _peaks(transfer, solutions, np.abs(amplitude), levels)
         damping = np.diag(2 * model.decay) + (0.0 if model.coupling is None else model.coupling)
         frequency, ratio = damping_of_modes(masses, model.stiffness, damping, transfer.shapes, number)
-        share = _first_harmonic_share(transfer, table, number, each, ratio)
+        share = np.where(rests, 1.0, _first_harmonic_share(transfer, table, number, each, ratio))
+        heavy = number * table.mass * float((transfer.shapes**2).sum(axis=1).max())
         errors, peak_errors = [np.zeros(solutions.is_below.shape)], [np.zeros(peak.shape)]
         for thinned in (masses.thinned(True), masses.thinned(False)):
             if thinned is not None:
-                others, changed = _motions(transfer, table, thinned, number, levels)
+                others, changed, _ = _motions(transfer, table, thinned, number, levels)
                 with np.errstate(invalid="ignore"):
                     errors.append(np.abs(np.abs(changed[..., 0]) / np.abs(amplitude[..., 0]) - 1))
                     peak_errors.append(np.abs(_peaks(transfer, others, np.abs(changed), levels)[0] / peak - 1))
@@ -180,11 +188,13 @@ class MapResponse:
             "outside_frequencies": np.broadcast_to(~masses.covers(transfer.frequency), solutions.is_below.shape),
             "not_found": solutions.is_lost,
             "higher_harmonics": (share < LEAST_SHARE).any(axis=-1),
+            "heavy_damper": (np.isfinite(amplitude) & ~rests).any(axis=-1) & (heavy > HEAVY),
             "map_warning": near.T,
         }
         return cls(
             amplitude,
             each.max(axis=-1),
+            heavy,
             share,
             solutions.is_unstable,
             np.asarray(sum(masks[name].astype(np.int16) << bit for bit, name in enumerate(FLAGS)), np.int16),
@@ -199,8 +209,8 @@ class MapResponse:
 
 def _motions(
     transfer: Transfer, table: LossTable, masses: MassTable, number: int, levels: FloatArray
-) -> tuple[Solutions, ComplexArray]:
-    """Return the motions of the dampers, and the displacement of the observed point, (L, F, S)."""
+) -> tuple[Solutions, ComplexArray, NDArray[np.bool_]]:
+    """Return the motions of the dampers, the observed displacement, and whether balls are at rest, (L, F, S)."""
     solutions = solve(masses, transfer.frequency, number * transfer.gain, transfer.drive, levels)
     at_rest = levels[:, None, None] * transfer.drive
     omega = 2 * np.pi * transfer.frequency
@@ -215,7 +225,7 @@ def _motions(
     force = -number * mass * moved
     bare = transfer.bare[:, None] * levels
     displacement = bare[:, :, None] + np.einsum("flsp,fp->fls", force, transfer.to_point)
-    return solutions, np.moveaxis(displacement, 0, 1)
+    return solutions, np.moveaxis(displacement, 0, 1), rests
 
 
 def _with_rest(solutions: Solutions, at_rest: ComplexArray) -> tuple[Solutions, NDArray[np.bool_]]:

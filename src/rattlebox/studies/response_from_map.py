@@ -89,7 +89,9 @@ def response_from_map(
         level and frequency: `bare_amplitude` without dampers. Over `at`, `number` and `level`: `peak` [m], the largest
         amplitude, and `peak_frequency`; NaN if the response may be larger where the map does not cover it. Over `at`,
         `number`, `mode` and `map_amplitude`, that of the damper with the largest motion: `damping_ratio` and
-        `mode_frequency`. What the map does not cover is NaN. The attribute `warnings` counts it.
+        `mode_frequency`. Over `at` and `number`: `mass_ratio` of the particles to the effective mass of the structure
+        for an impact at their point, 1 / sum of squared mode shapes. What the map does not cover is NaN. The attribute
+        `warnings` counts it.
 
     Raises
     ------
@@ -100,9 +102,13 @@ def response_from_map(
 
     Notes
     -----
-    See `rattlebox.analysis.describing_function` for the method. It holds where the cavity moves almost harmonically. It
-    cannot compute amplitudes that change from cycle to cycle, which a heavy ball can cause, and a motion of the damper that
-    the map, which starts from the initial state of its case, did not reach.
+    See `rattlebox.analysis.describing_function` for the method. It holds for light dampers whose cavity moves almost
+    harmonically. An impact on a light structure is weaker than one on the shaker of the map: with one to four balls on beams
+    of up to 8 modes, peaks differed by up to 5 % from simulations at mass ratios below 0.15, which are not flagged, by 14 %
+    at 0.23 and by 60 % at 0.46. Amplitudes that change from cycle to cycle, which a heavy ball can cause, are not computed.
+
+    A map holds one motion of the damper at each amplitude, the one that follows from the initial state of its case. Others
+    may exist. One of them is included: balls at rest without gravity, where the amplitude without dampers is below the gap.
 
     Examples
     --------
@@ -385,6 +391,11 @@ def _dataset(
                 peak,
                 gather("peak_error"),
                 _described("1", f"relative change of the peak {half}"),
+            ),
+            "mass_ratio": (
+                over[:2],
+                gather("mass_ratio"),
+                _described("1", "mass of the dampers over the effective mass for an impact"),
             ),
             "damping_ratio": (modal, gather("damping_ratio"), _described("1", "damping ratio of the mode")),
             "mode_frequency": (modal, gather("mode_frequency"), _described("Hz", "natural frequency of the mode")),
